@@ -20,11 +20,10 @@ from typing import Any
 import numpy as np
 
 from benchmarks import harness, limits
-from benchmarks.errors import DEFAULT, LEVELS, STATES
+from benchmarks.errors import DEFAULT, LEVELS, STATES, parted
 from benchmarks.limits import Limit
 from benchmarks.verification.normal_contact import E_STAR, HALF_WIDTH, RADIUS, SPAN, press
-from fingerpad.model.check import check
-from fingerpad.model.touching import by_rule
+from fingerpad.model.feasibility import by_rule, check
 from fingerpad.richardson import MORE, ONCE, MeshParameter
 from fingerpad.runs.batch import Summary
 from fingerpad.scene import Scene, SceneError, load, start
@@ -131,7 +130,7 @@ def loops() -> dict[str, tuple[Scene, str]]:
 
 # -- numbers -------------------------------------------------------------------------------------------------
 def _title(name: str) -> str:
-    state, quantity = name.split("_", 1)
+    state, quantity = parted(name)
     words = f"SED at ridge {quantity[4:]}" if quantity.startswith("sed_") else _SHORT[quantity]
     return f"{words}, {STATES[state]}"
 
@@ -145,7 +144,7 @@ def judged(scene: str, summary: Summary, ends: Mapping[str, Limit]) -> list[Case
     once = not request or len(summary["accuracy"]["solves"]) == 1 + parameters
     for name, q in quantities.items():
         sites = "_sed_" in name
-        if name not in ends or name == "slip_f_t" or (sites and request and q["allowed"] is None):
+        if name not in ends or name == "full_slip_f_t" or (sites and request and q["allowed"] is None):
             continue  # the last: the sites are coarse where an accuracy was requested of others alone
         end, of = ends[name], abs(ends[name].value)
         if sites:  # over the largest of the state
@@ -154,7 +153,7 @@ def judged(scene: str, summary: Summary, ends: Mapping[str, Limit]) -> list[Case
         estimate, error, bar = (100 / of * v for v in (q["estimate"], abs(q["value"] - end.value), end.bar))
         allowed = None if q["allowed"] is None else 100 * q["allowed"] / of
         found[name] = Case(WHOLE, scene, _title(name), once, estimate, error, bar, allowed)
-    worst = {name.split("_")[0]: name for name in sorted(found, key=lambda n: found[n].error) if "_sed_" in name}
+    worst = {parted(name)[0]: name for name in sorted(found, key=lambda n: found[n].error) if "_sed_" in name}
     return [case for name, case in found.items() if "_sed_" not in name or name in worst.values()]
 
 
@@ -170,7 +169,7 @@ def row(summary: Summary, base: float) -> dict[str, Any]:
 def of_parameter(name: str, rows: Sequence[Mapping[str, Any]]) -> Iterator[Case]:
     """Yield the cases of a study of docs/errors.json, without the finest run, whose change makes the limit."""
     for quantity in rows[0]["quantities"]:
-        if quantity in ("slip_mu_app", "unknowns", "factorisations") or "ridges" in quantity:
+        if quantity in ("full_slip_mu_app", "unknowns", "factorisations") or "ridges" in quantity:
             continue  # counts, and the quotient of f_T and a given force
         found = [r["quantities"][quantity] for r in rows]
         parts = [r["lengths"].get(quantity, r["quantities"][quantity]) for r in rows]

@@ -2,8 +2,8 @@
 
 environment/run python3 -m benchmarks.assumptions [--jobs 2] [--draw]     half an hour
 
-Full runs at 75 N/m, most of them at a contact size of 10 um, and the smooth finger (fingerpad.reduced.smooth) for the
-ridge profiles. Each row of the page is the command of one run. Writes docs/assumptions.json and docs/assumptions.md.
+Full runs at 75 N/m, most of them at a contact size of 10 um. Each row of the page is the command of one run. Writes
+docs/assumptions.json and docs/assumptions.md.
 """
 
 import argparse
@@ -18,7 +18,7 @@ from benchmarks import harness
 from benchmarks.paper.friction import within
 from benchmarks.runs import Array, Run
 from fingerpad.richardson import plus_minus
-from fingerpad.runs.batch import Summary, sweep
+from fingerpad.runs.batch import Summary
 from fingerpad.scene import Scene, load
 from fingerpad.scene.reading import override
 
@@ -89,26 +89,23 @@ def cases() -> dict[str, Case]:
     return {**READINGS, **changed, **FLAT, **BESIDE}
 
 
-# -- the smooth finger ---------------------------------------------------------------------------------------
+# -- ridge profiles ------------------------------------------------------------------------------------------
 _WIDE = "mesh.touching_fraction=0.6"
 _SHOWN = ("[1]", "[1, 0, -0.11]", "[1, -0.125]", "[1, -0.25]", "[1, -0.48, 0.13]")
-_OTHERS = (
-    *("[1, -0.0625]", "[1, -0.11]", "[1, -0.1875]", "[1, 0, -0.05]", "[1, -0.125, -0.05]"),
-    *("[1, -0.22, 0.12]", "[1, -0.24, 0.1]", "[1, -0.42, 0.23]", "[1, -0.47, 0.19]", "[1, -0.49, 0.16]"),
-)
+_OTHERS = ("[1, -0.0625]", "[1, 0, -0.05]")
 _BY_VOLTAGE = {"[1, -0.25]": (150, 165), "[1, -0.48, 0.13]": (165, 170, 172)}
 
 
-def _smooth(profile: str, voltage: float, *more: str) -> tuple[str, Case]:
+def _profile(profile: str, voltage: float, *more: str) -> tuple[str, Case]:
     changes = (f"geometry.ridge_profile={profile}", f"voltage={voltage:g}", *more)
-    return f"{profile} at {voltage:g} V", Case("", changes, (_COARSE[0], *([_WIDE] if profile.count(",") > 1 else [])))
+    return f"{profile} at {voltage:g} V", Case("", changes, (*_COARSE, *([_WIDE] if profile.count(",") > 1 else [])))
 
 
-def smooth() -> dict[str, Case]:
-    """Return the runs of the smooth finger by name: profiles at 200 V and other voltages, the flat one at 10 N/m."""
-    at_200 = dict(_smooth(profile, 200.0) for profile in (*_SHOWN, *_OTHERS))
-    others = dict(_smooth(profile, u) for profile, voltages in _BY_VOLTAGE.items() for u in voltages)
-    light = {f"flat, 10 N/m, {u:g} V": _smooth(_SHOWN[-1], u, "f_ext=10")[1] for u in (0.0, 200.0)}
+def profiles() -> dict[str, Case]:
+    """Return the runs of ridge profiles by name: at 200 V and other voltages, the flat one at 10 N/m."""
+    at_200 = dict(_profile(profile, 200.0) for profile in (*_SHOWN, *_OTHERS))
+    others = dict(_profile(profile, u) for profile, voltages in _BY_VOLTAGE.items() for u in voltages)
+    light = {f"flat, 10 N/m, {u:g} V": _profile(_SHOWN[-1], u, "f_ext=10")[1] for u in (0.0, 200.0)}
     return at_200 | others | light
 
 
@@ -118,33 +115,32 @@ _KEYS = ("mu_app", "f_t", "contact_length")
 
 def _row(summary: Summary) -> dict[str, float | None]:
     """Return the numbers of a summary at full slip, and the contact length of normal contact; SI."""
-    found = {key: summary[f"slip_{key}"] for key in _KEYS}
-    return found | {"error": summary.get("slip_mu_app_error"), "normal": summary["normal_contact_length"]}
+    found = {key: summary[f"full_slip_{key}"] for key in _KEYS}
+    return found | {"error": summary.get("full_slip_mu_app_error"), "charged": summary["charged_contact_length"]}
 
 
 def compute(args: argparse.Namespace) -> None:
     """Run what is missing and keep the numbers."""
     scenes = {name: case.scene() for name, case in cases().items()}
-    finger = {name: case.scene() for name, case in smooth().items()}
-    full = harness.run(scenes, args, _LIMIT)
-    small = sweep(finger, args.out.parent / "smooth", args.jobs, _LIMIT, "smooth")
-    if failed := [name for name, summary in (full | small).items() if "failure" in summary]:
+    shapes = {name: case.scene() for name, case in profiles().items()}
+    full, shaped = harness.run(scenes, args, _LIMIT), harness.run(shapes, args, _LIMIT)
+    if failed := [name for name, summary in (full | shaped).items() if "failure" in summary]:
         raise SystemExit(f"no numbers are kept: {'; '.join(failed)} failed; the other runs are kept in {args.out}")
-    found: dict[str, dict[str, Any]] = {"full": {}, "smooth": {}}
+    found: dict[str, dict[str, Any]] = {"full": {}, "profiles": {}}
     for name, scene in scenes.items():
         run = Run(scene, args.out)
-        gaps = {state: run.on_ridges(run.row(state), "d_eq")[1].tolist() for state in ("normal", "slip")}
+        gaps = {state: run.on_ridges(run.row(state), "d_eq")[1].tolist() for state in ("charged", "full_slip")}
         found["full"][name] = _row(full[name]) | {"gaps": gaps, "penetration": float(run.steps["penetration"].max())}
-    for name, scene in finger.items():
-        pressure = small[name]["slip_f_contact"] / small[name]["slip_contact_length"]
+    for name, scene in shapes.items():
+        pressure = shaped[name]["full_slip_f_contact"] / shaped[name]["full_slip_contact_length"]
         more = {"pressure": pressure, "d_eq": float(scene.closure()(pressure).d_eq)}
-        found["smooth"][name] = _row(small[name]) | more
-    harness.keep("assumptions", found, harness.made(full.values()), args.docs)
+        found["profiles"][name] = _row(shaped[name]) | more
+    harness.keep("assumptions", found, harness.made([*full.values(), *shaped.values()]), args.docs)
 
 
 # -- page ----------------------------------------------------------------------------------------------------
 _LENGTHS = ("L_R, full slip (mm)", "L_R, normal contact (mm)")
-_OF_LENGTHS = ("contact_length", "normal")
+_OF_LENGTHS = ("contact_length", "charged")
 _HEAD = ("µ_app", "f_T (N/m)", *_LENGTHS)
 
 
@@ -207,7 +203,7 @@ def _flat(full: Mapping[str, Any]) -> str:
 
 def _gaps(row: Mapping[str, Any]) -> Array:
     """Return the air gaps of both states (m)."""
-    return np.concatenate([row["gaps"][state] for state in ("normal", "slip")])
+    return np.concatenate([row["gaps"][state] for state in ("charged", "full_slip")])
 
 
 def _counts(row: Mapping[str, Any]) -> tuple[int, int, int]:
@@ -218,18 +214,18 @@ def _counts(row: Mapping[str, Any]) -> tuple[int, int, int]:
 
 def values(found: Mapping[str, Any]) -> dict[str, Any]:
     """Return the numbers in the page's sentences; changes in per cent."""
-    full, finger = found["full"], found["smooth"]
+    full, shaped = found["full"], found["profiles"]
 
     def change(name: str, other: str = "reference", key: str = "mu_app", of: Mapping[str, Any] = full) -> float:
         return float(100 * (of[name][key] / of[other][key] - 1))
 
-    near = [row for name, row in finger.items() if name.endswith("200 V") and "flat" not in name]
+    near = [row for name, row in shaped.items() if name.endswith("200 V") and "flat" not in name]
     close = [row["d_eq"] for row in near if abs(row["mu_app"] / PAPER - 1) <= NEAR]
     gaps, both = _gaps(full["finest"]), full["both"]
     light = "flat, 10 N/m, 200 V", "flat, 10 N/m, 0 V"
     met = [
         float(name.split()[-2])
-        for name, row in finger.items()
+        for name, row in shaped.items()
         if name.startswith(_SHOWN[-1]) and row["d_eq"] >= LEAST_GAP and abs(row["mu_app"] / PAPER - 1) <= NEAR
     ]
     lowest = _gaps(both)[_gaps(both) < LEAST_GAP]
@@ -248,8 +244,8 @@ def values(found: Mapping[str, Any]) -> dict[str, Any]:
         "profiles": len(near),
         "close": len(close),
         "close_gaps": _micro(min(close), max(close)),
-        "low": finger["[1, -0.25] at 150 V"],
-        "low_gap": _micro(finger["[1, -0.25] at 150 V"]["d_eq"]),
+        "low": shaped["[1, -0.25] at 150 V"],
+        "low_gap": _micro(shaped["[1, -0.25] at 150 V"]["d_eq"]),
         "met_low": min(met),
         "met_high": max(met),
         "flat": _counts(full["flat"]),
@@ -260,9 +256,9 @@ def values(found: Mapping[str, Any]) -> dict[str, Any]:
         "both_off": 100 * (both["mu_app"] / PAPER - 1),
         "both_gaps": _counts(both),
         "both_range": _micro(lowest.min(), lowest.max()),
-        "light_normal": change(*light, "normal", finger),
-        "light_slip": change(*light, "contact_length", finger),
-        "heavy_normal": change("flat 200", "flat 0", "normal"),
+        "light_normal": change(*light, "charged", shaped),
+        "light_slip": change(*light, "contact_length", shaped),
+        "heavy_normal": change("flat 200", "flat 0", "charged"),
         "heavy_slip": change("flat 200", "flat 0", "contact_length"),
     }
 
@@ -277,7 +273,7 @@ def draw(docs: Path) -> Path:
         text["readings"].format(**words),
         f"## Parameters\n\n{text['parameters'].format(**words)}\n\n{_changes(full, PARAMETERS)}",
         harness.folded("Parameters that change little", _changes(full, LITTLE)),
-        *(text["tips"].format(**words), text["profiles"], _profiles(kept.numbers["smooth"])),
+        *(text["tips"].format(**words), text["profiles"], _profiles(kept.numbers["profiles"])),
         *(text["other-profiles"].format(**words), text["flat"], _flat(full), text["rest"].format(**words)),
     ]
     title, finding, how = "Assumptions and what they change", text["finding"].format(**words), text["how"]

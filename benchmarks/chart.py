@@ -18,11 +18,11 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from benchmarks import errors, harness
-from benchmarks.errors import STATES
+from benchmarks.errors import STATES, parted
 from benchmarks.limits import Limit
 from benchmarks.runs import finished
 from fingerpad.io import style
-from fingerpad.model.touching import by_rule
+from fingerpad.model.feasibility import by_rule
 from fingerpad.scene import Scene, load
 
 _LIMIT = 10800.0  # s of processor time for one run
@@ -31,8 +31,8 @@ TARGETS = (5e-2, 1e-2, 2e-3)  # errors whose cost is in the tables
 DEFAULT = "default"
 OTHER_MODEL = "formulation"
 KINDS = {"f_t": "f_T and µ_app", "contact_length": "contact length", "sed_0": "SED at the central Merkel site"}
-QUANTITIES = [f"{state}_{kind}" for kind in KINDS for state in STATES if kind != "f_t" or state == "slip"]
-ALL = "slip_all"  # the largest error of all quantities; its cost is that of full slip, the last state
+QUANTITIES = [f"{state}_{kind}" for kind in KINDS for state in STATES if kind != "f_t" or state == "full_slip"]
+ALL = "full_slip_all"  # the largest error of all quantities; its cost is that of full slip, the last state
 Reference = Mapping[str, Limit]
 
 
@@ -94,7 +94,7 @@ class Point:
 
     def cost(self, quantity: str, measure: str = "work") -> float:
         """Return the cost up to the state of a quantity."""
-        return float(getattr(self, measure)[quantity.split("_", 1)[0]])
+        return float(getattr(self, measure)[parted(quantity)[0]])
 
 
 def runs(out: Path, reference: Reference) -> Iterator[Point]:
@@ -154,11 +154,11 @@ _MARKS = {  # kind of setting: its families, colour, marker
     "element": (("element",), style.PURPLE, "D"),
     "solver or steps": (("solver", "steps"), style.GREY, "X"),
 }
-_PANELS = ("slip_f_t", "normal_contact_length", "slip_sed_0", ALL)
+_PANELS = ("full_slip_f_t", "charged_contact_length", "full_slip_sed_0", ALL)
 
 
 def _words(quantity: str) -> str:
-    state, kind = quantity.split("_", 1)
+    state, kind = parted(quantity)
     return "largest error of all quantities" if quantity == ALL else f"{KINDS[kind]}, {STATES[state]}"
 
 
@@ -205,20 +205,22 @@ def _paint(figure: Figure, points: Sequence[Point], reference: Reference) -> Non
 def _finding(points: Sequence[Point]) -> str:
     text, error, everything = harness.prose("chart"), 100 * _default(points).error(ALL), [*QUANTITIES, ALL]
     on = sum(_default(points) in front(points, quantity) for quantity in everything)
-    aims = ((ALL, 0.05), ("slip_f_t", 0.01), ("slip_f_t", 0.002))
+    aims = ((ALL, 0.05), ("full_slip_f_t", 0.01), ("full_slip_f_t", 0.002))
     best = [cheapest(points, *aim) for aim in aims]
     parts = [text["finding"].format(*best, error=error, on=on, n=len(everything))]
     for p in points:
         if p.label == "P1":
-            wrong = (100 * p.errors[name] for name in ("normal_contact_length", "slip_sed_0"))
+            wrong = (100 * p.errors[name] for name in ("charged_contact_length", "full_slip_sed_0"))
             parts.append(text["linear"].format(*wrong))
     return "\n\n".join(parts)
 
 
 def _other_models(points: Sequence[Point]) -> str:
-    names = ("slip_f_t", "normal_contact_length", "slip_contact_length")
+    names = ("full_slip_f_t", "charged_contact_length", "full_slip_contact_length")
     own, others = _default(points).cost(ALL), [p for p in points if p.family == OTHER_MODEL]
-    rows = [[p.label, f"{p.work['slip'] / own:.2g}"] + [f"{100 * p.errors[q]:.2g} %" for q in names] for p in others]
+    rows = [
+        [p.label, f"{p.work['full_slip'] / own:.2g}"] + [f"{100 * p.errors[q]:.2g} %" for q in names] for p in others
+    ]
     return harness.table(["formulation or penalty", "work", *map(_words, names)], rows)
 
 

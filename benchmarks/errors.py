@@ -21,8 +21,8 @@ from benchmarks.runs import SITES as AT_SITES
 from benchmarks.runs import Array, Run, finished
 from fingerpad.accuracy.rigid_screen import ORDER
 from fingerpad.io import style
-from fingerpad.io.states import PREFIXES, WORDS
-from fingerpad.model.touching import by_rule
+from fingerpad.io.states import WORDS
+from fingerpad.model.feasibility import by_rule
 from fingerpad.richardson import plus_minus
 from fingerpad.scene import Scene, load
 
@@ -30,13 +30,13 @@ _LIMIT = 10800.0  # s of processor time for one run
 LEVELS = 4  # meshes of the limit
 DEFAULT = by_rule(Scene())
 AT = 10e-6  # m, contact size of the studies that change another setting
-STATES = {prefix: WORDS[state] for state, prefix in PREFIXES.items()}  # "uncharged", "normal", "slip"
+STATES = WORDS
 SITES = (-5, 0, 5)  # ridges whose Merkel sites are shown: a trailing, the central and a leading one
 QUANTITIES: Mapping[str, tuple[str, float]] = {  # name: words, and the value of its unit in SI
-    "slip_mu_app": ("µ_app, full slip", 1),
-    "slip_f_t": ("f_T, full slip (N/m)", 1),
+    "full_slip_mu_app": ("µ_app, full slip", 1),
+    "full_slip_f_t": ("f_T, full slip (N/m)", 1),
     **{f"{state}_contact_length": (f"contact length, {words} (mm)", 1e-3) for state, words in STATES.items()},
-    **{f"{state}_ridges_in_contact": (f"ridges, {STATES[state]}", 1) for state in ("normal", "slip")},
+    **{f"{state}_ridges_in_contact": (f"ridges, {STATES[state]}", 1) for state in ("charged", "full_slip")},
     **{f"{state}_sed_{j}": (f"SED at ridge {j}, {words} (J/m³)", 1) for state, words in STATES.items() for j in SITES},
 }
 LENGTHS = [f"{state}_contact_length" for state in STATES]
@@ -47,6 +47,12 @@ STUDIES: dict[str, tuple[str, float, str, Sequence[float]]] = {  # heading, unit
     "receptor": ("Size at the Merkel sites", 1e-6, "µm", (40e-6, 20e-6, 10e-6, 5e-6, 2.5e-6)),
     "penalty": ("Penalty stiffness", 1e9, "MPa/mm", (0.5e12, 1.5e12, 5e12)),
 }
+
+
+def parted(name: str) -> tuple[str, str]:
+    """Return the state and the quantity of a key such as ``full_slip_mu_app``."""
+    state = next(state for state in STATES if name.startswith(f"{state}_"))
+    return state, name.removeprefix(f"{state}_")
 
 
 # -- numbers -------------------------------------------------------------------------------------------------
@@ -176,11 +182,11 @@ def draw(docs: Path) -> Path:
     errors = {name: abs(whole[name] / end.value - 1) for name, end in ends.items()}
     worst = [100 * max(errors[n] for n in errors if kind in n) for kind in ("mu_app", "contact_length", "sed_")]
     middle, stiff = (row["quantities"] for row in studies["penalty"][1:])
-    friction, *rigid = (100 * (stiff[name] / middle[name] - 1) for name in ("slip_mu_app", *LENGTHS))
-    mu, length = _end(ends["slip_mu_app"], 1)[0], _end(ends["normal_contact_length"], 1e-3)[0]
+    friction, *rigid = (100 * (stiff[name] / middle[name] - 1) for name in ("full_slip_mu_app", *LENGTHS))
+    mu, length = _end(ends["full_slip_mu_app"], 1)[0], _end(ends["charged_contact_length"], 1e-3)[0]
     finding = text["finding"].format(*worst, mu=mu, length=length, least=min(rigid), most=max(rigid), friction=friction)
     factor = max(max(predicted / change, change / predicted) for predicted, change in stiffer(docs).values())
-    again = numbers["again"]["own"]["values"]["slip_f_t"]
+    again = numbers["again"]["own"]["values"]["full_slip_f_t"]
     body = [
         harness.picture(docs / "errors.png", (9, 3.6), lambda figure: _paint(figure, numbers, ends), text["caption"]),
         f"## Limits\n\n{_limits(numbers, ends)}",
@@ -189,7 +195,7 @@ def draw(docs: Path) -> Path:
         text["penalty"].format(order=ORDER, factor=factor),
         _study("penalty", studies["penalty"]),
     ]
-    how = text["how"].format(apart=max(abs(again / whole["slip_f_t"] - 1), 1e-8))
+    how = text["how"].format(apart=max(abs(again / whole["full_slip_f_t"] - 1), 1e-8))
     title = "Discretisation error of the default scene"
     return harness.page(docs / "errors.md", title, finding, how, body, "make chart", kept.made, ["errors"])
 

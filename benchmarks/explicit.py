@@ -18,9 +18,9 @@ from mpi4py import MPI
 from petsc4py import PETSc
 from scipy.sparse.linalg import eigsh
 
+from fingerpad.model.feasibility import by_rule
 from fingerpad.model.finger import Finger
 from fingerpad.model.options import FingerModel, plan
-from fingerpad.model.touching import by_rule
 from fingerpad.scene import Scene
 from geometry import tags
 from geometry.bodies import ridge
@@ -28,7 +28,6 @@ from geometry.mesh import load
 from variational import compat
 from variational.attraction.electroadhesion import ELECTROSTATIC
 from variational.body import Body
-from variational.contact.formulation import History
 from variational.contact.penalty import Penalty
 from variational.materials.ogden import Ogden
 from variational.problem import Interface, Problem
@@ -72,8 +71,8 @@ class Ridge:
 
     def slide(self, to: float) -> float:
         """Move the screen sideways to a place (m), by the anchors of friction; return how far it moved."""
-        h, moved = self.body.problem.history, to - self._slid
-        self.body.problem.set_history(History(h.anchor - moved, h.pressure, h.x))
+        history, moved = self.body.problem.history, to - self._slid
+        history.accept(history.translated(-moved))
         self._slid = to
         return moved
 
@@ -81,7 +80,7 @@ class Ridge:
         """Accept the history of the present fields; return contact force, friction (N/m) and contact length (m)."""
         state = self.body.observer.state()
         loads = self.body.observer.ridge_loads(state)
-        self.body.problem.set_history(History(state.anchor, state.p_n, state.x))
+        self.body.problem.history.accept(state.history)
         return [float(values[0]) for values in (loads.f_contact, loads.f_friction[:1], loads.length)]
 
 

@@ -42,7 +42,7 @@ def parser(description: str | None, out: str = "traces") -> argparse.ArgumentPar
     found = argparse.ArgumentParser(description=description, formatter_class=argparse.RawDescriptionHelpFormatter)
     found.add_argument("--out", type=Path, default=RESULTS / out, help="folder of runs")
     found.add_argument("--docs", type=Path, default=DOCS, help="folder of the page, its pictures and its numbers")
-    found.add_argument("--jobs", type=positive(int), default=2, help="runs at a time")
+    found.add_argument("--jobs", type=positive, default=2, help="runs at a time")
     found.add_argument("--draw", action="store_true", help="compute nothing, draw the page from the kept numbers")
     return found
 

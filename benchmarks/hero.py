@@ -38,7 +38,7 @@ def main(folder: str) -> None:
     with np.load(Path(folder) / "surface_slide.npz") as a:
         ridge = {name: a[f"end_{name}"][a["end_ridge"] == RIDGE] for name in ("x", "y", "p", "p_el", "d_eq")}
     full = {name: scene["full"].get("summary") for name, scene in kept("models").numbers["scenes"].items()}
-    friction = {str(f): [[u, full[f"{f} N/m, {u} V"]["slip_mu_app"]] for u in range(0, 201, 50)] for f in FORCES}
+    friction = {str(f): [[u, full[f"{f} N/m, {u} V"]["full_slip_mu_app"]] for u in range(0, 201, 50)] for f in FORCES}
     along = {name: _rows([float(f"{v:.6g}") for v in values]) for name, values in ridge.items()}
     keep("hero", {"finger": outlines, "ridge": along, "friction": friction}, made([summary]))
     draw(DOCS)

@@ -29,9 +29,8 @@ from typing import Any
 import numpy as np
 from mpi4py import MPI
 
-from fingerpad.accuracy.recompute import Solve, StateRecorder, solve_again
+from fingerpad.accuracy.solves import Solve, StateRecorder, solve_again
 from fingerpad.io.files import replace
-from fingerpad.io.states import PREFIXES
 from fingerpad.model.finger import Step
 from fingerpad.model.options import FingerModel, plan
 from fingerpad.model.simulation import Simulation
@@ -148,7 +147,7 @@ def _solve(scene: Scene, levels: int) -> dict[str, Any]:
         return solve_again(model.changed(mesh=mesh), before.states, MPI.COMM_WORLD)
 
     def summary(solve: Solve) -> dict[str, Any]:
-        ridges = {f"{PREFIXES[name]}_ridges_in_contact": s.state.ridges_in_contact for name, s in solve.states.items()}
+        ridges = {f"{name}_ridges_in_contact": s.state.ridges_in_contact for name, s in solve.states.items()}
         cost = {name: getattr(solve, name) for name in ("unknowns", "factorisations", "processor_seconds")}
         return {"mesh": solve.mesh.model_dump()} | cost | {"values": solve.values() | ridges}
 

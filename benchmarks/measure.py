@@ -28,13 +28,14 @@ from benchmarks import explicit
 from fingerpad.accuracy.refinement import Refinement
 from fingerpad.io.drawing import Drawing
 from fingerpad.io.writing import Writer
+from fingerpad.model.feasibility import by_rule
 from fingerpad.model.finger import Finger
 from fingerpad.model.options import FingerModel, plan
 from fingerpad.model.report import Report
 from fingerpad.model.simulation import Simulation
 from fingerpad.model.stability import StabilityChecks
-from fingerpad.model.touching import by_rule
 from fingerpad.runs import full
+from fingerpad.runs.context import RunContext
 from fingerpad.scene import load
 from variational.quantities import Observer
 from variational.solvers.equations import Equations
@@ -147,7 +148,7 @@ def run(scene: str = "") -> Numbers:
     """Return counts and processor seconds of a whole run with errors and pictures."""
     started, parts = time.process_time(), Parts()
     with tempfile.TemporaryDirectory() as folder:
-        result = full.run(load(Path(scene) if scene else None), Path(folder), MPI.COMM_WORLD, lines=False)
+        result = full.run(load(Path(scene) if scene else None), RunContext(Path(folder)))
     errors = sum(parts.of(_ERRORS, parts.seconds).values())
     return {
         "newton": result.cost.newton_iterations,
@@ -236,7 +237,7 @@ def forms() -> Numbers:
     dolfinx.jit.ffcx_jit = timed
     small = load(Path(__file__).parents[1] / "demos" / "scenes" / "small_finger.toml")
     with tempfile.TemporaryDirectory() as folder:
-        full.run(small.replace(output={"receptors": True}), Path(folder), MPI.COMM_WORLD, lines=False)
+        full.run(small.replace(output={"receptors": True}), RunContext(Path(folder)))
     return {"seconds": sum(seconds)}
 
 

@@ -1,10 +1,10 @@
-"""Which model when: the two reduced models beside full runs, over forces and voltages.
+"""Which model when: the charged cylinders beside full runs, over forces and voltages.
 
 environment/run python3 -m benchmarks.models [--jobs 2] [--draw]     twenty minutes, mostly full runs
 
 The full runs have a contact size of 10 um. Four more are at loads that no number of a model comes from, and a few
 beyond these forces and voltages; both have tables of their own on the page. Writes docs/models.json, from which the
-reduced models have their known error and ``check`` its rule of the cost, and docs/models.md.
+cylinders have their known error, and docs/models.md.
 """
 
 import argparse
@@ -17,9 +17,9 @@ import numpy as np
 
 from benchmarks import harness
 from benchmarks.runs import FORCES, VOLTAGES, trace
-from fingerpad.io.states import PREFIXES, WORDS
+from fingerpad.io.states import WORDS
 from fingerpad.reduced import cylinders
-from fingerpad.runs.batch import Summary, sweep
+from fingerpad.runs.batch import Summary
 from fingerpad.scene import Scene, load
 from fingerpad.scene.reading import override
 from variational.state import RESULTS
@@ -27,12 +27,12 @@ from variational.state import RESULTS
 _SOFT = ("subcutis", "dermis", "viable_epidermis")
 _LIMIT = 3600.0  # s of processor time for one run
 SIZE = 10e-6  # m, contact size
-MODELS = {"cylinders": "charged cylinders", "smooth": "smooth finger"}
+MODELS = {"cylinders": "charged cylinders"}
 QUANTITIES = {
-    "slip_mu_app": f"µ_app, {WORDS['full_slip']}",
-    "slip_contact_length": f"contact length, {WORDS['full_slip']}",
-    "normal_contact_length": f"contact length, {WORDS['charged']}",
-    "normal_f_electrostatic": f"attraction, {WORDS['charged']}",
+    "full_slip_mu_app": f"µ_app, {WORDS['full_slip']}",
+    "full_slip_contact_length": f"contact length, {WORDS['full_slip']}",
+    "charged_contact_length": f"contact length, {WORDS['charged']}",
+    "charged_f_electrostatic": f"attraction, {WORDS['charged']}",
 }
 _COST = ("seconds", "factorisations", "unknowns")
 HELD_OUT = ((8.2, 153.0), (20.8, 124.0), (34.2, 136.0), (38.7, 153.0))  # N/m, V; no model has a number from these loads
@@ -46,7 +46,7 @@ BEYOND = {  # words: changes of the default scene, beside the mesh's
     HALF_STEPS: ("f_ext=120", "voltage=150", "numerics.step_scale=0.5"),
 }
 _ROUNDOFF = 1e-6  # of a tenth of a per cent
-_KEPT = ("slip_mu_app", "slip_ridges_in_contact", "factorisations", "newton_iterations")
+_KEPT = ("full_slip_mu_app", "full_slip_ridges_in_contact", "factorisations", "newton_iterations")
 
 
 # -- numbers -------------------------------------------------------------------------------------------------
@@ -74,29 +74,28 @@ def answer(summary: Summary) -> dict[str, Any]:
     """Return the numbers of a run or of a reduced model that docs/models.json has."""
     if "failure" in summary:
         return {"failure": summary["failure"]}
-    keys = (f"{PREFIXES[state]}_{key}" for state in ("charged", "full_slip") for key in RESULTS)
+    keys = (f"{state}_{key}" for state in ("charged", "full_slip") for key in RESULTS)
     found = {"full_slip": summary["full_slip"]} | {key: summary[key] for key in keys if summary[key] is not None}
     cost = {key: summary["processor_seconds" if key == "seconds" else key] for key in _COST}
-    return {"summary": found, "cost": cost, "more": {key: summary[key] for key in ("table_version",) if key in summary}}
+    return {"summary": found, "cost": cost}
 
 
 def compute(args: argparse.Namespace) -> None:
     """Run what is missing and keep the numbers."""
     wanted, others = scenes() | held_out(), harness.run(beyond(), args, _LIMIT)
     full = harness.run(wanted, args, _LIMIT)
-    smooth = sweep(wanted, args.out.parent / "smooth", args.jobs, _LIMIT, "smooth")
     keys = (*_KEPT, "full_slip", "failure")
     kept = {
-        "scenes": {key: answers(scene, smooth[key], full[key]) for key, scene in scenes().items()},
-        "held_out": {key: answers(scene, smooth[key], full[key]) for key, scene in held_out().items()},
+        "scenes": {key: answers(scene, full[key]) for key, scene in scenes().items()},
+        "held_out": {key: answers(scene, full[key]) for key, scene in held_out().items()},
         "beyond": {words: {key: summary.get(key) for key in keys} for words, summary in others.items()},
     }
     harness.keep("models", kept, harness.made([*full.values(), *others.values()]), args.docs)
 
 
-def answers(scene: Scene, smooth: Summary, full: Summary) -> dict[str, Any]:
+def answers(scene: Scene, full: Summary) -> dict[str, Any]:
     """Return the numbers of every model in one scene that docs/models.json has."""
-    summaries = {"cylinders": cylinders.solve(scene).to_dict(), "smooth": smooth, "full": full}
+    summaries = {"cylinders": cylinders.solve(scene).to_dict(), "full": full}
     return {model: answer(summary) for model, summary in summaries.items()}
 
 
@@ -112,10 +111,11 @@ def error(found: Mapping[str, Any], model: str, key: str) -> float | None:
 
 
 # -- page ----------------------------------------------------------------------------------------------------
-_ANSWERS = "forces, friction and contact length"
 _WHICH = {  # model: finger it is for, its answers
-    "cylinders": ("the default finger, or one whose uncharged contact length is known", _ANSWERS),
-    "smooth": ("any finger of which three ridges or more touch", f"{_ANSWERS}, height of the bone"),
+    "cylinders": (
+        "the default finger, or one whose uncharged contact length is known",
+        "forces, friction and contact length",
+    ),
     "full": ("any finger", "everything, receptors too"),
 }
 
@@ -166,12 +166,8 @@ def _matrix(scenes: Mapping[str, Any], model: str, key: str) -> str:
 
 def _section(scenes: Mapping[str, Any], model: str) -> list[str]:
     failed = [key for key, each in scenes.items() if "failure" in each.get(model, {})]
-    answers = [each[model]["more"] for each in scenes.values() if "more" in each.get(model, {})]
-    versions = [more.get("table_version", 0) for more in answers]
-    old = sum(version < max(versions) for version in versions)
     parts = [f"## Errors of the {MODELS[model]} (`{model}`), in per cent of the full model"]
     parts += [f"No answer at {'; '.join(failed)}."] * bool(failed)
-    parts += [harness.prose("models")["old"].format(n=old)] * bool(old)
     first, *others = ((words, _matrix(scenes, model, key)) for key, words in QUANTITIES.items())
     return [*parts, f"**{first[0]}**\n\n{first[1]}", *(harness.folded(words, matrix) for words, matrix in others)]
 
@@ -191,9 +187,9 @@ def draw(docs: Path) -> Path:
     kept, text = harness.kept("models", docs), harness.prose("models")
     scenes, held = kept.numbers["scenes"], kept.numbers["held_out"]
     every = scenes | held
-    largest = {model: _largest(every, model, "slip_mu_app") for model in MODELS}
-    largest |= {f"{model}_pull": _largest(every, model, "normal_f_electrostatic") for model in MODELS}
-    largest |= {f"{model}_length": _largest(every, model, "normal_contact_length") for model in MODELS}
+    largest = {model: _largest(every, model, "full_slip_mu_app") for model in MODELS}
+    largest |= {f"{model}_pull": _largest(every, model, "charged_f_electrostatic") for model in MODELS}
+    largest |= {f"{model}_length": _largest(every, model, "charged_contact_length") for model in MODELS}
     full = [each["full"] for each in every.values() if "full" in each]
     slips = sum(bool(each.get("summary", {}).get("full_slip")) for each in full)
     finding = text["finding"].format(**largest, slips=slips, n=len(full), which=_which(every))
@@ -202,7 +198,7 @@ def draw(docs: Path) -> Path:
     body += [part for model in MODELS for part in _section(scenes, model)]
     body += [
         "## Full runs",
-        f"**{QUANTITIES['slip_mu_app']}**\n\n{_matrix(scenes, 'full', 'slip_mu_app')}",
+        f"**{QUANTITIES['full_slip_mu_app']}**\n\n{_matrix(scenes, 'full', 'full_slip_mu_app')}",
         text["beyond"].format(half=kept.numbers["beyond"][HALF_STEPS], table=_beyond(kept.numbers["beyond"])),
     ]
     path, command = docs / "models.md", "python3 -m benchmarks.models"

@@ -2,8 +2,8 @@
 
 environment/run python3 -m benchmarks.newtons [--draw]     one run of the full model, some minutes, then seconds
 
-The traces are those of docs/models.json: the full, the smooth and the cylinders' finger at eight forces and five
-voltages, with a contact size of 10 um. The run raises the force while the finger slides, for comparison with them.
+The traces are those of docs/models.json: the full and the cylinders' finger at eight forces and five voltages, with a
+contact size of 10 um. The run raises the force while the finger slides, for comparison with them.
 Writes docs/newtons.json, docs/newtons.md and its picture; docs/paper.md has the friction from here.
 """
 
@@ -21,7 +21,7 @@ from benchmarks import harness, three_dimensions
 from benchmarks.models import SIZE, name
 from benchmarks.runs import FORCES, VOLTAGES, Run, trace
 from fingerpad.io import style
-from fingerpad.io.states import PREFIXES, WORDS
+from fingerpad.io.states import WORDS
 from fingerpad.reduced import cylinders
 from fingerpad.scene import Scene
 from fingerpad.scene.slices import Slices
@@ -50,8 +50,8 @@ def states(scenes: Found, model: str, voltage: float, state: str) -> list[Contac
     """Return the kept states of a model over force, at a voltage (V)."""
     found = []
     for f_ext in FORCES:
-        summary, prefix = scenes[name(f_ext, voltage)][model]["summary"], PREFIXES[state]
-        values = {key: summary[f"{prefix}_{key}"] for key in RESULTS if f"{prefix}_{key}" in summary}
+        summary = scenes[name(f_ext, voltage)][model]["summary"]
+        values = {key: summary[f"{state}_{key}"] for key in RESULTS if f"{state}_{key}" in summary}
         if model == "cylinders":
             values["bone_height"] = -cylinders.indentation(f_ext, state)
         found.append(ContactState(f_ext=f_ext, voltage=voltage, **values))
@@ -108,7 +108,7 @@ def by_model(scenes: Found) -> list[dict[str, Any]]:
     """Return the sums of each model at :data:`COMPARED`, and the estimate of a run at :data:`CENTRE`."""
     found = []
     for voltage in VOLTAGES:
-        for model in ("full", "smooth", "cylinders"):
+        for model in ("full", "cylinders"):
             total = at_force(finger(), kept(scenes, model, voltage), COMPARED, Slices().count)
             found.append({"model": model} | row(total, voltage, RADII[1]))
     return found
@@ -244,13 +244,11 @@ def _table_of_models(numbers: Found) -> str:
         mine = {each["model"]: each for each in numbers["models"] if each["voltage"] == voltage}
         full = mine["full"]
         cells = [
-            f"{100 * (mine[model][key] / full[key] - 1):+.1f}"
-            for key in ("mu_app", "contact_area", "gross_area")
-            for model in ("smooth", "cylinders")
+            f"{100 * (mine['cylinders'][key] / full[key] - 1):+.1f}" for key in ("mu_app", "contact_area", "gross_area")
         ]
         rows.append([f"{voltage:g}", f"{full['mu_app']:.4f}", *cells])
     quantities = ("µ_app", "ridge area", "gross area")
-    kinds = [f"{what}, `{model}` (%)" for what in quantities for model in ("smooth", "cylinders")]
+    kinds = [f"{what}, `cylinders` (%)" for what in quantities]
     return harness.table(("U (V)", "µ_app, `full`", *kinds), rows)
 
 

@@ -48,7 +48,7 @@ _PACKAGES = ("geometry", "variational", "fingerpad")
 _WITHOUT_NUMBERS = (  # these start, read, refuse, order runs, write and print
     *(f"fingerpad/{wing}/" for wing in ("cli", "io", "report", "calculator", "runs")),
     *("fingerpad/startup.py", "fingerpad/installed.py", "geometry/meshfile.py"),
-    *("fingerpad/model/cost.py", "fingerpad/model/expected.py"),
+    *("fingerpad/model/cost.py", "fingerpad/model/memory.py"),
     *("fingerpad/scene/contradictions.py", "fingerpad/scene/messages.py"),
 )
 _REDUCED = "fingerpad/reduced"  # no full run uses it: part of the programs that import it

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from fingerpad.model.touching import by_rule
+from fingerpad.model.feasibility import by_rule
 from fingerpad.runs.batch import key, result
 from fingerpad.scene import Scene, from_data
 
@@ -59,7 +59,7 @@ class Run:
     @cached_property
     def ridges(self) -> dict[str, Array]:
         """Columns of the ridges in contact, one row a step and ridge."""
-        return {k: np.array(v, dtype=float) for k, v in self._columns("ridges").items() if k != "state"}
+        return {k: np.array(v, dtype=float) for k, v in self._columns("ridges").items() if k != "note"}
 
     @cached_property
     def receptors(self) -> dict[str, Array]:
@@ -68,13 +68,13 @@ class Run:
         count = len(np.unique(columns["ridge"]))
         return {k: v.reshape(-1, count) if k != "ridge" else v[:count] for k, v in columns.items()}
 
-    def row(self, prefix: str) -> int:
-        """Return the row in :attr:`steps` of ``uncharged``, ``normal`` or ``slip``, as in ``summary.json``."""
-        return int(np.flatnonzero(self.steps["step"] == self.summary[f"{prefix}_step"])[0])
+    def row(self, state: str) -> int:
+        """Return the row in :attr:`steps` of ``uncharged``, ``charged`` or ``full_slip``, as in ``summary.json``."""
+        return int(np.flatnonzero(self.steps["step"] == self.summary[f"{state}_step"])[0])
 
     pressed = property(lambda self: self.row("uncharged"), doc="Row of uncharged normal contact.")
-    normal = property(lambda self: self.row("normal"), doc="Row of charged normal contact.")
-    slip = property(lambda self: self.row("slip"), doc="Row of full slip.")
+    charged = property(lambda self: self.row("charged"), doc="Row of charged normal contact.")
+    full_slip = property(lambda self: self.row("full_slip"), doc="Row of full slip.")
 
     def on_ridges(self, row: int, name: str) -> tuple[Array, Array]:
         """Return numbers and a value of the ridges in contact in a row of :attr:`steps`."""

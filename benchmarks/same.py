@@ -12,8 +12,8 @@ A change that moves numbers by roundoff alone has ``--within``: a number may the
 of its key, and the records of the solver's steps are left out. Two ranks, which add in another order in each run,
 always have it.
 
-Numbers that a change is meant to change are left out by a word of their key, as in ``--but sed`` for slip_sed_0. Then
-the two commits are the same for those pages alone whose programs do not have the word.
+Numbers that a change is meant to change are left out by a word of their key, as in ``--but sed`` for full_slip_sed_0.
+Then the two commits are the same for those pages alone whose programs do not have the word.
 """
 
 import argparse
@@ -41,7 +41,6 @@ _BODY = [["press", {"f_ext": 4.4}], ["charge", {"voltage": 150.0}], ["slide", {"
 SCENES: dict[str, dict[str, Any]] = {
     "errors estimated": {"output": {"errors": True}},
     "cylinders": {},
-    "smooth finger": {},
     "accuracy asked for": {"accuracy": {"mu_app": 0.05}},
     "20 µm": {"mesh": {"contact": 20e-6}},
     "receptors": {"output": {"receptors": True}},
@@ -86,7 +85,6 @@ SCENES: dict[str, dict[str, Any]] = {
 
 MORE: dict[str, dict[str, Any]] = {
     "cylinders": {"model": "cylinders", "default": True},
-    "smooth finger": {"model": "smooth"},
     "folder": {"folder": True},
     "law of friction": {"friction": {"law": "Derjaguin", "mu_f": 0.3, "tau_0": 5e3}},
     "materials": {"materials": {"dermis": {"law": "NeoHooke", "shear_modulus": 2.5e3, "poisson": 0.45}}},

@@ -53,19 +53,39 @@ def scene(case: dict[str, Any], folder: Path) -> dict[str, Any]:
     if "friction" in case:
         laws["friction"] = law(case["friction"])
     if "closure" in case:
-        laws["closure"] = law(case["closure"] | {"h_0": given.h_0})
+        laws["roughness"] = law(case["closure"] | {"h_0": given.h_0})
     if "materials" in case:
         laws["materials"] = {layer: law(each) for layer, each in case["materials"].items()}
     if case.get("mesh"):
-        laws["mesh"] = folder / "finger.msh"
-        write_mesh(laws["mesh"])
-    more = {name: case[name] for name in ("model", "force") if name in case}
+        laws["geometry"] = {"file": str(folder / "finger.msh")}
+        write_mesh(folder / "finger.msh")
+    given, laws = with_laws(given, laws)
+    more = {"model": case["model"]} if "model" in case else {}
+    if "force" in case and "force" in fp.Scene.model_fields:
+        given = given.replace(force=case["force"])
+    elif "force" in case:
+        more["force"] = case["force"]
     out = folder / "out" if case.get("folder") else None
     result = fp.run(given, out=out, **more, **laws)
-    found = {"steps": result.steps, "loads": result.loads, "named": result.named, "failure": result.failure}
+    found: dict[str, Any] = {"failure": result.failure}
+    if "force" not in case:  # with one a program has steps and states of its own choice beside the finger's slices
+        found |= {"steps": result.steps, "loads": result.loads, "named": result.named}
     if result.finger is not None:
         found["finger"] = result.finger.to_dict()
     return {name: plain(value) for name, value in found.items()}
+
+
+def with_laws(given: fp.Scene, laws: dict[str, Any]) -> tuple[fp.Scene, dict[str, Any]]:
+    """Return a scene with its laws, and what a run is given beside it: a program of before took them as arguments."""
+    if not hasattr(given, "with_laws"):
+        if "geometry" in laws:  # of which the file of a mesh leaves nothing to read
+            data = given.parameters()
+            data["geometry"] = {"sc_thickness": given.geometry.sc_thickness}
+            given = fp.Scene(**{name: value for name, value in data.items() if name != "mesh"})
+        return given.replace(**laws), {}
+    if "geometry" in laws:
+        laws["mesh"] = Path(laws.pop("geometry")["file"])
+    return given, {"closure" if name == "roughness" else name: value for name, value in laws.items()}
 
 
 def write_mesh(path: Path) -> None:

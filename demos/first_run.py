@@ -17,9 +17,9 @@ print(curve)
 
 result = fp.run(scene, out="results/mine")                         # finite elements: a minute or two
 slip = result.full_slip                                            # also .uncharged, .charged, .steps
-print(f"µ_app = {slip.mu_app:.4f} ± {slip.error.mu_app:.4f}, {slip.ridges_in_contact} ridges in contact")
+print(f"section at the centre: µ_app = {slip.mu_app:.4f} ± {slip.error.mu_app:.4f}, {slip.f_ext:.0f} N/m")
 whole = result.finger                                              # a sum of slices along the finger
-print(f"whole finger: {whole.f_ext:.2f} N, friction force {whole.states['full_slip'].totals['f_t']:.3f} N")
+print(f"whole finger: µ_app = {whole.states['full_slip'].mu_app:.4f}, {whole.f_ext:.2f} N")
 result.plot("surface", "surface.png")                              # pressure, attraction and gap along the skin
 
 # fmt: on

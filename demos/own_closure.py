@@ -55,7 +55,7 @@ def main(out: str = "results/demos/own_closure", size: str = "small") -> None:
     gaps = np.array([1e-6, 1.5e-6, 2e-6, 3e-6])
     found, exact = np.array([friction(gap) for gap in gaps]).T
     scene = fp.Scene.load(SMALL) if size == "small" else fp.Scene()
-    finger = fp.run(scene.replace(output={"errors": False}), closure=ConstantGap(2e-6))
+    finger = fp.run(scene.replace(output={"errors": False}, roughness=ConstantGap(2e-6)))
     slip = finger.full_slip
     inside = EPS_0 * slip.voltage**2 / 2 / (scene.h_0 + 2e-6) ** 2 * slip.contact_length
     if MPI.COMM_WORLD.rank == 0:

@@ -56,7 +56,7 @@ def main(out: str = "results/demos/own_friction", size: str = "small") -> None:
     exact = MU * forces + TAU_0 * lengths
     built_in = slid(fp.Derjaguin(MU, TAU_0), forces[0])
     scene = fp.Scene.load(SMALL) if size == "small" else fp.Scene()
-    finger = fp.run(scene.replace(voltage=0.0, output={"errors": False}), friction=Mine(MU, TAU_0))
+    finger = fp.run(scene.replace(voltage=0.0, output={"errors": False}, friction=Mine(MU, TAU_0)))
     slip = finger.full_slip
     if MPI.COMM_WORLD.rank == 0:
         for force, f_t, closed in zip(forces, found, exact, strict=True):

@@ -62,7 +62,7 @@ def main(out: str = "results/demos/own_material", size: str = "small") -> None:
     pressed_only = [{"name": "press", "f_ext": scene.f_ext}]
     scene = scene.replace(history=pressed_only, friction=0.0, output={"errors": False})
     yeoh = Yeoh(SOFT.shear_modulus, SOFT.bulk, 10 * SOFT.shear_modulus)
-    fingers = [fp.run(scene, materials={"dermis": material}) for material in (SOFT, yeoh)]
+    fingers = [fp.run(scene.replace(materials={"dermis": material})) for material in (SOFT, yeoh)]
     height = [finger.uncharged.bone_height for finger in fingers]
     if MPI.COMM_WORLD.rank == 0:
         for name, path in blocks.items():

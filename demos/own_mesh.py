@@ -82,7 +82,8 @@ def main(out: str = "results/demos/own_mesh", size: str = "15e-6") -> None:
     MPI.COMM_WORLD.barrier()
     layers = {"stratum corneum": HARD, "dermis": SOFT}
     body = fp.Body(path, layers, friction=MU_0).press(F_EXT).slide(until_full_slip=True)
-    result = fp.run(fp.Scene(f_ext=F_EXT, voltage=0.0), mesh=path, materials={"stratum_corneum": HARD, "dermis": SOFT})
+    materials = {"stratum_corneum": HARD, "dermis": SOFT}
+    result = fp.run(fp.Scene(f_ext=F_EXT, voltage=0.0, geometry={"file": path}, materials=materials))
     ridges, slip = body.state.ridges, result.full_slip
     if MPI.COMM_WORLD.rank == 0:
         for number, force in zip(ridges.number, ridges.f_contact, strict=True):

@@ -8,9 +8,9 @@ from typing import Annotated
 
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 
-from geometry.bounds import within
+from geometry.units import within
 
-Finite = Annotated[float, Field(allow_inf_nan=False)]
+Finite = Annotated[float, Field(strict=True, allow_inf_nan=False)]
 Outline = Annotated[Finite, within(1e-3, 0.1, "m")]
 Part = Annotated[Finite, within(1e-5, 0.1, "m")]
 Layer = Annotated[Finite, within(1e-6, 1e-2, "m")]
@@ -52,7 +52,7 @@ class Fingertip(BaseModel):
     scaled to the amplitude. The crests reach the outline; layers and receptor sites stay centred on the ridge's
     middle. *Assumption*: a sinusoid, since the measured profile of the paper is not published. Curves have 32
     points per ridge, enough for 16 harmonics."""
-    ridge_count: Annotated[int, Field(ge=1, le=101)] = 55
+    ridge_count: Annotated[int, Field(strict=True, ge=1, le=101)] = 55
     """Number of ridges; odd, so that one ridge is centred on x = 0. A whole finger has 3 at least. *Assumption*: the
     ridges cover the palmar half."""
     intermediate_ridge_height: Wave = 450e-6
@@ -120,7 +120,7 @@ class MeshSize(BaseModel):
     of the intermediate ridges."""
     touching_half_arc: Annotated[Finite, within(1e-6, 0.2, "m")] | None = None
     """Arc length on either side of the centre within which ridges can touch. By default a rule of thumb gives it
-    (:mod:`fingerpad.model.touching`). A run that finds contact at the end of this arc starts again with more
+    (:mod:`fingerpad.model.feasibility`). A run that finds contact at the end of this arc starts again with more
     ridges."""
     touching_fraction: Annotated[Finite, within(1e-3, 1)] = 0.4
     """Part of a ridge's period, around its crest, that can touch. Grooves have coarser facets."""

@@ -19,9 +19,9 @@ from geometry.parameters import Fingertip, MeshSize
 from geometry.profiles import Profiles
 
 LONGER = (
-    "accuracy api counts demo demos element ending energy environment faults formulations light mirror needs own_laws "
-    "own_mesh performance readme reach report results slices_runs smooth stability_map steady_slip sweep_force "
-    "translation verification zone"
+    "accuracy api counts demo demos element ending energy environment faults formulations light symmetry needs "
+    "own_laws own_mesh performance readme reach report results slices_runs stability_map full_slip sweep_force "
+    "translation verification contact_zone"
 )
 """Tests that `make check` leaves out, by the names of their files: whole runs. A new file is checked."""
 
@@ -58,11 +58,16 @@ def pytest_sessionstart():
 
 
 def pytest_collection_modifyitems(config, items):
-    """Leave out, under mpirun, what is written for one rank."""
-    if MPI.COMM_WORLD.size > 1:
-        for_one = [item for item in items if item.get_closest_marker("mpi") is None]
-        config.hook.pytest_deselected(items=for_one)
-        items[:] = [item for item in items if item not in for_one]
+    """Leave out, under mpirun, what is written for one rank; in a quick run, what takes a second or more."""
+    left_out = [
+        item
+        for item in items
+        if (MPI.COMM_WORLD.size > 1 and item.get_closest_marker("mpi") is None)
+        or (config.getoption("--quick") and item.get_closest_marker("slow") is not None)
+    ]
+    if left_out:
+        config.hook.pytest_deselected(items=left_out)
+        items[:] = [item for item in items if item not in left_out]
 
 
 @pytest.fixture(scope="session", autouse=True)

@@ -30,9 +30,9 @@ from pydantic import BaseModel
 
 from fingerpad.cli import refuse
 from fingerpad.cli.arguments import Parser, scene_of
-from fingerpad.io.folder import check_folder
+from fingerpad.io.files import check_folder
 from fingerpad.model import options
-from fingerpad.model.memory import estimate
+from fingerpad.model.feasibility import by_rule, refuse_sizes
 from fingerpad.reduced.cylinders import tip_radius
 from fingerpad.scene import Scene, SceneError
 from tests import fuzz_files
@@ -40,23 +40,7 @@ from variational.attraction.cylinder import Cylinder, NoEquilibriumError
 
 SCENES = sorted((Path(__file__).parent.parent / "demos/scenes").glob("*.toml"))
 LONGEST = 300  # characters of a refusal
-_NUMBERS = (
-    "0",
-    "-1",
-    "1",
-    "nan",
-    "inf",
-    "-inf",
-    "1e308",
-    "5e-324",
-    "-0.0",
-    "1e-9",
-    "1e9",
-    "16",
-    "1.97",
-    "75e3",
-    "2e14",
-)
+_NUMBERS = tuple("0 -1 1 nan inf -inf 1e308 5e-324 -0.0 1e-9 1e9 16 1.97 75e3 2e14".split())
 _WHOLE = ("9" * 400, "0x" + "f" * 5000, "-" + "9" * 30, "9223372036854775808", "0b1", "1_000")
 _TEXTS = (
     '"200"', '"high"', '""', '"a/b"', '"../../etc"', '"/"', '"."', '".hidden"', '"CON"', '"a\\u0000b"', '"line\\nend"',
@@ -231,7 +215,7 @@ def fault(case: Mutant, folder: Path) -> tuple[str, str]:
     if case.file is not None:
         (folder / "scene.toml").write_bytes(case.file)
     argv = [word.replace("{folder}", str(folder)) for word in case.argv]
-    parser = Parser("fingerpad run", "Press, charge and slide a finger.", "fingerpad run")
+    parser = Parser("run", "fingerpad run")
     parser.add_scene()
     parser.add_out("results", "folder of the results")
     out, err = io.StringIO(), io.StringIO()
@@ -286,12 +270,10 @@ def bad_refusal(code: Any, text: str) -> str:
 
 def _unready(scene: Scene) -> str:
     """Return why an accepted scene is not ready for a run, empty if it is."""
-    needed = options.plan(scene)
-    found = estimate(scene, needed)
-    if not 0 < found.memory <= scene.numerics.memory:
-        return f"memory {found.memory:g}"
+    if scene.geometry.file is None:
+        refuse_sizes(scene.geometry, by_rule(scene).mesh, scene.numerics, options.plan(scene))
     json.dumps(scene.parameters(), allow_nan=False)
-    closure = scene.roughness.bearing_area(scene.h_0)
+    closure = scene.closure()
     gaps = closure(np.geomspace(scene.roughness.p_floor, closure.full_pressure, 20)).d_eq
     if not (np.isfinite(gaps).all() and (gaps >= 0).all()):
         return f"air gaps {gaps}"

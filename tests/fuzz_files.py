@@ -25,7 +25,8 @@ import scipy.io
 from mpi4py import MPI
 
 import geometry
-from fingerpad.cli import measured, refuse, topography
+from fingerpad.cli import refuse, topography
+from fingerpad.measurements import table as measurements
 from fingerpad.scene import SceneError, from_data
 from geometry.mesh import load
 from geometry.profiles import GeometryError
@@ -68,11 +69,16 @@ def whole() -> tuple[tuple[str, bytes], ...]:
     plain += [(".npy", b"\x93NUMPY\x02\x00" + len(h).to_bytes(4, "little") + h.encode() + bytes(400)) for h in _HEADERS]
     matrix = "\n".join(";".join(f"{z:.6f}" for z in row) for row in heights)
     points = "\n".join(f"{a} {b} {z:.6f}" for a, b, z in zip(x.ravel(), y.ravel(), heights.ravel(), strict=True))
-    plain += [(".csv", matrix.encode()), (".xyz", points.encode())] * 3
+    header = "# Channel: Height\n# Width: 32 µm\n# Height: 24 µm\n# Value units: µm\n"
+    gwyddion = header + matrix.replace(";", " ")
+    plain += [(".csv", matrix.encode()), (".xyz", points.encode()), (".txt", gwyddion.encode())] * 3
     voltages = "time (s),voltage (V)\n" + "".join(f"{k / 10},{20 * k % 150}\n" for k in range(8))
     table = "# source: Surname 2020\n# people: 5\nforce (N/m), voltage (V), friction (1), spread (1)\n"
     table += "".join(f"{10 * k}, 100, 0.{k}, 0.0{k}\n" for k in range(1, 8))
-    tables = [(".volts", voltages.encode()), (".measured", table.encode())]
+    tables = [
+        (".volts", voltages.encode()),
+        *((".measured", table.replace(", ", mark).encode()) for mark in (", ", ";")),
+    ]
     return (*plain, *_instruments(heights), *_meshes() * 2, *tables * 4)
 
 
@@ -220,10 +226,10 @@ def _read(path: Path) -> int:
             press, over_time = {"name": "press", "f_ext": 5.0}, {"name": "wave", "duration": 0.1, "voltage": wave}
             from_data({"history": [press, over_time]})
         elif path.suffix == ".measured":
-            measured.read(path)
+            measurements.read(path)
         else:
-            unit, size = ["--unit", "um"], ["--size", "32", "24"]
-            given = {".npy": unit + size, ".csv": unit + size, ".xyz": unit}
+            unit, size = ["--unit", "um"], ["--size", "32 um", "24 um"]
+            given = {ending: unit + size for ending in (".npy", ".csv", ".xyz")}
             given |= {ending: unit + size for ending in (".mat", ".npz", ".h5", ".tif")}
             return topography.main([str(path), *given.get(path.suffix, [])])
     except (SceneError, GeometryError) as error:

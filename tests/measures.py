@@ -27,12 +27,16 @@ def vertices(body, facets):
     return body.mesh.geometry.x[entities_to_geometry(body.mesh, 0, points.astype(np.int32)).ravel(), :2]
 
 
+def rows_of(folder: Path, name: str = "steps") -> list[dict[str, str]]:
+    """Return the rows of a table of a run."""
+    with (folder / f"{name}.csv").open(encoding="utf-8", newline="") as file:
+        return list(csv.DictReader(file))
+
+
 def accepted(folder: Path) -> list[dict[str, str]]:
     """Return the accepted steps that are on disk, each complete."""
-    file = folder / "steps.csv"
-    if not file.exists():
+    if not (folder / "steps.csv").exists():
         return []
-    with file.open(encoding="utf-8", newline="") as lines:
-        rows = list(csv.DictReader(lines))
+    rows = rows_of(folder)
     assert all(None not in row and None not in row.values() for row in rows)
     return rows

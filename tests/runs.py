@@ -9,7 +9,11 @@ from unittest.mock import patch
 from mpi4py import MPI
 
 from fingerpad.io import finger_picture, history_picture, skin_picture, style
+from fingerpad.model.feasibility import by_rule
+from fingerpad.model.options import FingerModel, plan
+from fingerpad.model.simulation import Simulation
 from fingerpad.runs import full
+from fingerpad.runs.context import RunContext
 from fingerpad.scene import Scene
 
 PICTURES = ((finger_picture, "finger"), (skin_picture, "surface"), (history_picture, "history"))
@@ -24,6 +28,19 @@ def no_pictures() -> Iterator[None]:
         yield
 
 
+def path_of(scene: Scene, *reports: Any, comm: MPI.Comm = MPI.COMM_WORLD) -> Simulation:
+    """Return the path of a scene, still to be followed; ``reports`` are called at steps and at loads."""
+    asked = by_rule(scene)
+    return Simulation(FingerModel(asked, plan(asked)), comm, *reports)
+
+
+def followed(scene: Scene, *reports: Any, comm: MPI.Comm = MPI.COMM_WORLD) -> Simulation:
+    """Return the path of a scene after its last load."""
+    path = path_of(scene, *reports, comm=comm)
+    assert path.run() is None, "a run would start again"
+    return path
+
+
 def touch(path: Path, *args: Any, **options: Any) -> None:
     """Leave a picture's file empty."""
     Path(path).touch()
@@ -36,4 +53,4 @@ def run(scene: Scene, folder: Path, comm: MPI.Comm = MPI.COMM_WORLD, pictures: b
     """
     built = patch.object(style, "save", lambda figure, path: figure if path is None else touch(path))
     with built if pictures else no_pictures():
-        return full.run(scene, folder, comm).to_dict()
+        return full.run(scene, RunContext(folder, comm, lines=True)).to_dict()

@@ -10,9 +10,9 @@ import pytest
 from mpi4py import MPI
 
 import fingerpad as fp
-from fingerpad import reduced
-from fingerpad.io.result import Cost
-from fingerpad.io.states import PREFIXES, STATES
+from fingerpad import runs
+from fingerpad.io.answer import Cost
+from fingerpad.io.states import STATES
 from fingerpad.model.hints import finer_mesh_may_help
 from fingerpad.runs import attempt, full, sweep
 from fingerpad.runs.processes import End
@@ -58,7 +58,7 @@ def test_unknown_name_is_refused():
 
 
 def test_model_that_is_none_is_refused():
-    with pytest.raises(fp.SceneError, match="model is 'rigid'; it must be 'cylinders' or 'smooth' or 'full'"):
+    with pytest.raises(fp.SceneError, match="model is 'rigid'; it must be 'cylinders' or 'full'"):
         fp.run(model="rigid")
 
 
@@ -80,7 +80,7 @@ def test_summary_is_the_result(ran):
     for name in STATES:
         state = getattr(result, name)
         for key in (*CONDITIONS, *RESULTS):
-            assert kept[f"{PREFIXES[name]}_{key}"] == kept["states"][name][key] == getattr(state, key), key
+            assert kept[f"{name}_{key}"] == kept["states"][name][key] == getattr(state, key), key
 
 
 def test_result_is_read_again(ran):
@@ -106,11 +106,11 @@ def test_arrays_have_documented_shapes(ran):
 
 
 def test_model_without_its_libraries_is_refused_in_a_sentence(monkeypatch):
-    monkeypatch.setitem(sys.modules, "fingerpad.reduced.smooth", None)
-    monkeypatch.delattr(reduced, "smooth", raising=False)
+    monkeypatch.setitem(sys.modules, "fingerpad.runs.full", None)
+    monkeypatch.delattr(runs, "full", raising=False)
     monkeypatch.setattr("fingerpad.installed.OPTIONAL", ("fingerpad",))
-    with pytest.raises(ImportError, match="the model 'smooth' needs fingerpad, which is not installed;"):
-        fp.run(from_data(SMALL), model="smooth")
+    with pytest.raises(ImportError, match="the model 'full' needs fingerpad, which is not installed;"):
+        fp.run(from_data(SMALL))
 
 
 @pytest.mark.parametrize("kind", ["surface", "finger", "history"])
@@ -231,19 +231,19 @@ def test_sweep_is_taken_up_again(tmp_path, monkeypatch):
     """One of two points is there; the other one is run, and its crash is in the table."""
     asked = []
 
-    def run(module, arguments, limit):
+    def run(module, arguments, limit, folders):
         scene = json.loads(Path(arguments[0]).read_text(encoding="utf-8"))
         asked.append((scene["voltage"], arguments[3]))
         if scene["voltage"] > 0:
             return End(1, "CRASH_1", "out of luck", "")
-        done = fp.Result(from_data(scene), "smooth", None, None, state(voltage=0.0), cost=Cost(1.0))
+        done = fp.Result(from_data(scene), "full", None, None, state(voltage=0.0), cost=Cost(1.0))
         (Path(arguments[1]) / "summary.json").write_text(json.dumps(done.to_dict()), encoding="utf-8")
         return End(0, "", "", "")
 
     monkeypatch.setattr("fingerpad.runs.batch.run", run)
     for _ in range(2):
-        found = fp.sweep(fp.Scene(), tmp_path, model="smooth", voltage=[0.0, 100.0])
-    assert asked == [(0.0, "smooth"), (100.0, "smooth"), (100.0, "smooth")]
+        found = fp.sweep(fp.Scene(), tmp_path, voltage=[0.0, 100.0])
+    assert asked == [(0.0, "full"), (100.0, "full"), (100.0, "full")]
     assert found[0].full_slip.mu_app == 0.52 and found[1].failure == "CRASH_1: out of luck"
     assert "out of luck" in str(found)
 
@@ -335,8 +335,8 @@ def test_world_is_the_default(monkeypatch):
     """Without a communicator a run is of all ranks."""
     seen = []
 
-    def run(scene, out, comm, lines, bar, resume, asked):
-        seen.append(comm)
+    def run(scene, context):
+        seen.append(context.ranks)
         return fp.Result(scene, "full", None, None, None)
 
     monkeypatch.setattr(full, "run", run)

@@ -6,8 +6,8 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from fingerpad.model import balance
 from fingerpad.model.finger import Finger
+from fingerpad.model.state import broken, refuse_strained, refuse_unbalanced
 from fingerpad.report import trust
 from variational.contact.nitsche import Nitsche
 from variational.contact.penalty import Penalty
@@ -34,9 +34,9 @@ SLIP = {"f_contact": 100.0, "f_electrostatic": 25.0, "f_ext": 75.0, "f_t": -25.0
 def test_balance_and_cone(change, words):
     """The limit is what the solves leave of a sum of forces; roundoff of the cone is 0.25 % of it."""
     slip = ContactState(**(SLIP | {"ridges_in_contact": 3, "contact_length": 1e-3} | change))
-    found = balance.broken(slip, LEFT, 0.25)
+    found = broken(slip, LEFT, 0.25)
     assert words in found and bool(found) == bool(words)
-    assert balance.broken(None, LEFT, 0.25) == ""
+    assert broken(None, LEFT, 0.25) == ""
 
 
 @pytest.mark.parametrize(
@@ -57,7 +57,7 @@ def test_report_has_the_same_limit(record, limit):
 def test_forces_left_at_a_node(floor, words):
     """Where the solve ended at its roundoff no tolerance helps, and none is named."""
     with pytest.raises(StepFailed, match=f"^here: a force of 0.00075 N/m is left at a node; .*{words}"):
-        balance.refuse_unbalanced("here", 1e-5, None, None, 75.0, 1e-9, floor)
+        refuse_unbalanced("here", 1e-5, None, None, 75.0, 1e-9, floor)
 
 
 @pytest.mark.parametrize(
@@ -76,7 +76,7 @@ def test_limit_of_what_is_left(node, sideways, down, words):
     loads = SimpleNamespace(**{name: np.array(values) for name, values in parts.items()})
     refused = pytest.raises(StepFailed, match=f"^here: .*{words}") if words else nullcontext()
     with refused:
-        balance.refuse_unbalanced("here", node * 1e-6, loads, np.array([25.0, 75.0]), 75.0, 1e-9, 0.0)
+        refuse_unbalanced("here", node * 1e-6, loads, np.array([25.0, 75.0]), 75.0, 1e-9, 0.0)
 
 
 def test_finger_tells_the_roundoff_of_its_solver():
@@ -88,7 +88,7 @@ def test_finger_tells_the_roundoff_of_its_solver():
 
 def test_friction_of_another_law_is_not_compared_with_coulomb_s():
     slip = ContactState(**(SLIP | {"ridges_in_contact": 3, "contact_length": 1e-3, "f_t": 30.0}))
-    assert balance.broken(slip, 1e-4, None) == ""
+    assert broken(slip, 1e-4, None) == ""
 
 
 def record(stored: float) -> StepRecord:
@@ -103,14 +103,23 @@ def state(f_contact: float, stored: float) -> ContactState:
     return ContactState(**(SLIP | made))
 
 
+class Own(Penalty):
+    """A formulation with a remedy of its own."""
+
+    unloaded_energy = "try a softer eps_n"
+
+
 def test_body_without_loads_stores_nothing():
-    """Nitsche's method may keep a tenth of the energy; 1e-30 J/m are roundoff, as is all before the first load.
+    """Nitsche's method may keep a tenth of the energy; less than a millionth is roundoff, as is all before a load.
 
     The unloaded skin is on the screen, and may bear roundoff there.
     """
     unloaded, pressed = state(1e-12, 1e-40), state(100.0, 1e-5)
-    balance.refuse_strained("step 3 (lift)", record(1e-30), [unloaded, pressed], 75.0, PENALTY)
-    balance.refuse_strained("step 2 (lower)", record(1e-30), [unloaded], 75.0, PENALTY)
-    for formulation, remedy in ((Nitsche(20.0, 1), "larger"), (PENALTY, "second state without stress")):
+    refuse_strained("step 3 (lift)", record(0.5e-11), [unloaded, pressed], 75.0, PENALTY)
+    with pytest.raises(StepFailed, match="nothing loads"):
+        refuse_strained("step 3 (lift)", record(2e-11), [unloaded, pressed], 75.0, PENALTY)
+    refuse_strained("step 2 (lower)", record(1e-30), [unloaded], 75.0, PENALTY)
+    remedies = {Nitsche(20.0, 1): "larger", PENALTY: "second state without stress", Own(1e12, 1e11): "softer eps_n"}
+    for formulation, remedy in remedies.items():
         with pytest.raises(StepFailed, match=rf"^step 3 \(lift\): nothing loads .* stores 1e-06 J/m; .*{remedy}"):
-            balance.refuse_strained("step 3 (lift)", record(1e-6), [unloaded, pressed], 75.0, formulation)
+            refuse_strained("step 3 (lift)", record(1e-6), [unloaded, pressed], 75.0, formulation)

@@ -6,12 +6,10 @@ from dataclasses import replace
 import pytest
 
 from fingerpad.io.result import Result
-from fingerpad.reduced.smooth import smoothed
 from fingerpad.scene import SceneError, as_kept
 from fingerpad.slices.estimate import with_newtons
 from fingerpad.slices.traces import history
-from geometry.bounds import computed
-from geometry.parameters import Fingertip
+from geometry.units import computed
 from tests.small_finger import small
 from variational.state import ContactState
 
@@ -51,13 +49,6 @@ def test_trace_of_a_slide_at_a_bound_can_be_run_and_read(slide):
     trace = history(small(slide_length=slide), "full_slip", 1.0)
     assert [load.bone_x for load in trace.loads()[2:]] == [slide / 4, slide, 2 * slide]
     assert as_kept(json.loads(json.dumps(trace.parameters()))) == trace
-
-
-def test_smooth_finger_may_be_narrower_than_any_finger_given():
-    """Its outline is the mean line of the ridges', below their tips."""
-    shape = {"width": 1e-3, "height": 1e-3, "bone_width": 2e-4, "nail_half_width": 1e-4, "nail_bed_half_width": 5e-5}
-    found = smoothed(Fingertip(**shape))
-    assert found.width == pytest.approx(0.9e-3, rel=0.05) and found.ridge_amplitude == 1e-9
 
 
 def test_what_is_typed_is_refused_after_all():

@@ -14,6 +14,7 @@ from typing import Any
 
 import pytest
 
+import fingerpad as fp
 from fingerpad.calculator import fields
 from fingerpad.calculator.page import page
 from fingerpad.cli import main
@@ -46,7 +47,7 @@ def whole() -> str:
 def sets() -> list[dict[str, float]]:
     """Return values by field, in the units of the fields: each alone at its ends and beyond, corners, and others."""
     found: list[dict[str, float]] = [{}]
-    scene = [key for key in FIELDS if key not in ("length", "ridges")]
+    scene = [key for key in FIELDS if key not in ("length", "ridges", "force")]
     for key in scene:
         found += [{key: end} for end in FIELDS[key].slider]
     corner = ("voltage", "f_ext", "electric.d_i", "roughness.h_rms")
@@ -83,7 +84,7 @@ def by_python(values: dict[str, float]) -> dict[str, float] | str:
     except SceneError as error:
         return str(error)
     assert found.full_slip is not None
-    more = {key: found.record[f"slip_{key}"] for key in ("p_c", "d_eq")}
+    more = {key: found.record[f"full_slip_{key}"] for key in ("p_c", "d_eq")}
     return {key: getattr(found.full_slip, key) for key in NUMBERS} | more
 
 
@@ -128,6 +129,39 @@ def test_closed_form_is_that_of_python(tmp_path):
       }}
     }})));"""
     agree(some, by_script(program, tmp_path))
+
+
+def test_whole_finger_is_that_of_python(tmp_path):
+    """To 1e-9: each trace is made to the same force as in Python, so that its points are the same."""
+    scenes: list[dict[str, Any]] = [
+        {"voltage": voltage, "force": force, "friction": 0.25}
+        for voltage in (0.0, 120.0, 200.0)
+        for force in (0.03, 0.6)
+    ]
+    scenes += [{"voltage": 200.0, "force": force, "friction": 0.25} for force in (1e-5, 50.0, 200.0)]
+    default = in_si({key: field.value for key, field in FIELDS.items()})
+    program = f"""console.log(JSON.stringify({json.dumps([default | scene for scene in scenes])}.map((p) => {{
+      try {{
+        return closedForm.whole(p);
+      }} catch (error) {{
+        if (!(error instanceof closedForm.NoEquilibriumError)) throw error;
+        return error.message;
+      }}
+    }})));"""
+    answers = by_script(program, tmp_path)
+    assert [isinstance(found, str) for found in answers] == [False] * 7 + [True] * 2
+    for scene, found in zip(scenes, answers, strict=True):
+        if isinstance(found, str):
+            with pytest.raises(SceneError):
+                fp.run(Scene(**scene), model="cylinders")
+            continue
+        result = fp.run(Scene(**scene), model="cylinders")
+        expected = result.finger.values("full_slip")
+        names = ("mu_app", "f_t", "f_electrostatic", "contact_area", "gross_area", "indentation")
+        assert {name: found[name] for name in names} == pytest.approx(
+            {name: expected[name] for name in names}, rel=SAME
+        )
+        assert found["section"]["mu_app"] == pytest.approx(result.full_slip.mu_app, rel=SAME)
 
 
 def test_error_function_against_the_standard_library(tmp_path):

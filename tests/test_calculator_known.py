@@ -7,12 +7,12 @@ import pytest
 
 from fingerpad.calculator import fields
 from fingerpad.calculator.page import page
-from fingerpad.reduced import cylinders, known
+from fingerpad.reduced import cylinder_errors, cylinders
 from fingerpad.scene import Scene
 from tests.browser import asked
 from tests.commands import kept
 
-BANDS = known.KNOWN_ERROR["cylinders"]["full_slip"]
+BANDS = cylinder_errors.KNOWN_ERROR["full_slip"]
 # Sets values into fields; returns what the page shows of its error.
 SHOWN = """
 function shown(values) {
@@ -67,7 +67,7 @@ def test_known_point_has_its_errors(whole, tmp_path):
                            ("contact_length", "contact_length", 1e3)):  # fmt: skip
         error = float(re.search(r"± ([0-9.]+)", found["cells"][key])[1])
         assert error == pytest.approx(BANDS[band] * getattr(state, key) * per, abs=6e-3)
-    assert "±" not in found["cells"]["d_eq"] and found["caption"] == "At this point"
+    assert "±" not in found["cells"]["d_eq"] and found["caption"] == "Section at the centre of the finger"
     assert found["voltage"]["bands"] == found["force"]["bands"] == 1
 
 
@@ -76,7 +76,9 @@ def test_point_that_no_run_is_at_has_no_error(whole, tmp_path):
     other = [{"friction": 0.26}, {"electric.d_i": 2}, {"roughness.h_rms": 4}, {"roughness.gamma": 0.4}]
     for found in shown(whole, tmp_path, *beyond, *other, {"length": 1.5, "ridges": 16}):
         assert not any("±" in cell for cell in found["cells"].values())
-        assert found["caption"] == "At this point: error not known" and found["always"].endswith(", error not known")
+        assert found["caption"] == "Section at the centre of the finger: error not known" and found["always"].endswith(
+            ", error not known"
+        )
         assert "not known" in found["notes"]
 
 

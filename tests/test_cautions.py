@@ -104,6 +104,7 @@ def test_body_on_soft_contact():
     assert DEEP in caution
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("values", "words"),
     [({"contact": {"eps_n": 1e11}}, DEEP), ({"roughness": {"young": 3e4}}, "beyond zero separation")],

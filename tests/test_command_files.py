@@ -1,6 +1,7 @@
 """Files that commands write: a user's own are not replaced, those of an earlier run of the command are."""
 
 import os
+from importlib.resources import files
 from pathlib import Path
 
 import pytest
@@ -50,11 +51,12 @@ def test_own_file_is_replaced(capsys, tmp_path):
     for voltage in ("100", "200"):
         assert main(["estimate", "--voltage", voltage, "--csv", str(table)]) == 0
         assert f"75.0,{voltage}.0," in table.read_text()
-        assert main(["calculator", "--out", str(page)]) == 0
+    page.write_text((files("fingerpad.calculator") / "page.html").read_text(encoding="utf-8").partition("{{")[0])
+    assert main(["calculator", "--out", str(page)]) == 0 and "</html>" in page.read_text(encoding="utf-8")
 
 
 def read(*argv: str) -> None:
-    parser = Parser("fingerpad any", "Any command.", "fingerpad any")
+    parser = Parser("any", "fingerpad any")
     parser.add_argument("maps", nargs="*", type=Path)
     parser.add_file("--plot", PICTURE, "picture")
     parser.add_file("--csv", Kind("a table", (".csv",)), "table")

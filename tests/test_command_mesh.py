@@ -1,14 +1,18 @@
-"""The commands check and mesh: loads, laws and cost of a run, and its mesh."""
+"""The commands check and mesh: loads and laws of a run, and its mesh."""
+
+import re
 
 import pytest
+from mpi4py import MPI
 
 from fingerpad.cli import main
-from fingerpad.io.left import between
-from fingerpad.model import expected as cost
-from fingerpad.model.memory import estimate
-from fingerpad.model.options import plan
-from fingerpad.scene import Scene, from_data
-from tests.commands import COARSE, kept, refused
+from fingerpad.io.pace import between
+from fingerpad.model.feasibility import by_rule, memory, unknowns
+from fingerpad.model.finger import meshed
+from fingerpad.model.options import FingerModel, plan
+from fingerpad.scene import Scene, load
+from fingerpad.scene.reading import override
+from tests.commands import COARSE, refused
 
 
 def test_check(tmp_path, capsys):
@@ -23,75 +27,43 @@ def test_check(tmp_path, capsys):
 
 
 @pytest.mark.parametrize(("formulation", "told"), [("augmented", 1), ("penalty", 0), ("nitsche", 0)])
-def test_method_for_comparison_is_named_before_a_run(tmp_path, capsys, formulation, told):
+def test_method_for_comparison_is_named_before_a_run(tmp_path, monkeypatch, capsys, formulation, told):
     """One line of the model, for the augmented Lagrangian alone."""
+    monkeypatch.setattr("fingerpad.cli.check._picture", lambda *given: "")
     argv = ["check", "--set", f"contact.formulation={formulation}", "--out", str(tmp_path)]
     assert main([*argv, *(word for text in COARSE for word in ("--set", text))]) == 0
     assert capsys.readouterr().out.count("contact by a method for comparison") == told
 
 
-def test_rule_of_the_cost_is_that_of_kept_runs():
-    """Shares, factors and time are the default run's of docs/chart.json, times those of docs/performance.json."""
-    points = {point["label"]: point for point in kept("chart.json")["points"]}
-    work = points["default"]["work"]
-    slip, charged, pressed = work["slip"], work["normal"], work["uncharged"]
-    shares = {"force": pressed / slip, "voltage": (charged - pressed) / slip, "slide": (slip - charged) / slip}
-    assert cost.SHARES == pytest.approx(shares, abs=0.01)
-    at_10_um = points["10 µm"]["work"]["slip"]
-    for name, label in (("nitsche", "Nitsche, γ_0 = 1"), ("augmented", "augmented Lagrangian")):
-        assert cost.FORMULATIONS[name] == pytest.approx(points[label]["work"]["slip"] / at_10_um, rel=0.01)
-    run, operations = (kept("performance.json")[name]["found"] for name in ("run", "operations"))
-    path = sum(run["path"].values())
-    unknowns = next(each["unknowns"] for each in operations if each["factor"] == 1.0)
-    assert cost.SECONDS == pytest.approx(path / run["factorisations"] / unknowns, rel=0.02)
-    beside = dict(run["beside"])
-    assert cost.ERRORS == pytest.approx(beside.pop("errors") / path, rel=0.03)
-    assert cost.BESIDE == pytest.approx(sum(beside.values()) / path, rel=0.03)
-    assert cost.COMPILING == pytest.approx(kept("performance.json")["compile"]["found"]["cold"]["seconds"], rel=0.03)
-    needed = plan(Scene())
-    default = cost.expected(Scene(), needed, estimate(Scene(), needed).unknowns)
-    assert default.factorisations == pytest.approx(run["factorisations"], rel=0.02)
-    assert default.seconds == pytest.approx(run["processor"], rel=0.1)
-    for name, found in kept("models.json")["scenes"].items():
-        f_ext, voltage = (float(part.split()[0]) for part in name.split(","))
-        scene = from_data({"f_ext": f_ext, "voltage": voltage})
-        ratio = sum(cost.factorisations(scene)) / found["full"]["cost"]["factorisations"]
-        assert 0.5 < ratio < 2, name
-
-
-def test_cost_of_a_press_is_a_part():
-    scene = from_data({"history": [{"name": "press", "f_ext": 75.0}]})
-    assert sum(cost.factorisations(scene)) == pytest.approx(cost.SHARES["force"] * cost.RUNS)
-
-
-@pytest.mark.parametrize(
-    ("values", "load"),
-    [
-        ({"voltage": 5000.0}, "the load charge has 75 N/m and 5000 V"),
-        ({"f_ext": 1.0}, "the load press has 1 N/m and 0 V"),
-        ({"history": [{"name": "dip", "bone_height": -1e-4}]}, "the load dip has no f_ext and 0 V"),
-    ],
-)
-def test_work_outside_of_the_kept_runs_is_not_known(values, load):
-    """Named with the first load there; inside, up to the ends, it is known."""
-    assert cost.beyond_loads(from_data(values)).endswith(load)
-    assert not any(
-        cost.beyond_loads(from_data({"f_ext": f, "voltage": u})) for f in (5.0, 150.0) for u in (-200.0, 0.0)
-    )
-
-
-def test_cost_is_not_extrapolated(tmp_path, monkeypatch, capsys):
-    """No number of factorisations, no hours, and no promise; on a coarse mesh the time alone is not known."""
-    monkeypatch.setattr("fingerpad.cli.check._picture", lambda *given: "")
+def test_loads_that_were_never_tried_are_named(tmp_path, capsys):
+    """There is no promise for them."""
     argv = ["check", "--out", str(tmp_path), *(word for text in COARSE for word in ("--set", text))]
     assert main([*argv, "--set", "voltage=5000"]) == 0
     text = capsys.readouterr().out
-    assert "the work is not known: it was measured at 5 to 150 N/m and up to 200 V, and the load charge" in text
-    assert "factorisations" not in text and "hours" not in text and "can be run" not in text
+    assert "can be run" not in text
+    assert "charge has 75 N/m and 5000 V, and tried were 5 to 150 N/m and 0 to 200 V" in text
     assert main(argv) == 0
-    text = capsys.readouterr().out
-    assert " factorisations\n" in text and "The scene can be run." in text
-    assert "the time is not known: it was measured with 41 000 to 900 000 unknowns, and the mesh has some" in text
+    assert capsys.readouterr().out.endswith("The scene can be run.\n")
+
+
+def test_mesh_is_counted(tmp_path, capsys):
+    """Its triangles and unknowns are those of the run, and the memory follows from them."""
+    argv = ["check", "--out", str(tmp_path), *(word for text in COARSE for word in ("--set", text))]
+    assert main(argv) == 0
+    triangles, number, gigabytes = re.search(
+        r"(\d+) triangles of element P2, (\d+) unknowns\n.*\n  about ([\d.]+) GB", capsys.readouterr().out
+    ).groups()
+    scene = load(None, dict(map(override, COARSE)))
+    mesh = meshed(FingerModel(by_rule(scene), plan(scene)), MPI.COMM_SELF).mesh
+    points, made = (mesh.topology.index_map(d).size_global for d in (0, 2))
+    assert int(triangles) == made and int(number) == unknowns(points, made, "P2")
+    assert float(gigabytes) == pytest.approx(memory(int(number)) / 1e9, rel=0.02)
+
+
+def test_mesh_beyond_the_memory_is_refused(capsys):
+    """It is meshed, and passes the bound; the refusal has the number of its unknowns."""
+    words = [word for text in (*COARSE, "numerics.memory=0.35e9") for word in ("--set", text)]
+    assert "the mesh has " in refused(capsys, "check", *words)
 
 
 def test_mesher_that_fails_is_refused_in_a_sentence(monkeypatch, capsys):
@@ -108,15 +80,6 @@ def test_mesher_that_fails_is_refused_in_a_sentence(monkeypatch, capsys):
         main(["mesh", "--out", "x.msh"])
 
 
-def test_cost_of_a_slide_is_that_of_its_way():
-    """Given as a place or as a distance."""
-    found = []
-    for way in ("bone_x", "bone_x_by"):
-        scene = from_data({"history": [{"name": "press", "f_ext": 75.0}, {"name": "slide", way: 5e-3}]})
-        found.append(sum(cost.factorisations(scene)))
-    assert found[0] == found[1] == pytest.approx((cost.SHARES["force"] + cost.SHARES["slide"]) * cost.RUNS)
-
-
 @pytest.mark.parametrize(
     ("seconds", "words"),
     [(3.0, "1.5 to 6 s"), (80.0, "0.67 to 2.7 minutes"), (1200.0, "10 to 40 minutes"), (7200.0, "1 to 4 hours")],
@@ -124,17 +87,6 @@ def test_cost_of_a_slide_is_that_of_its_way():
 def test_time_is_a_range(seconds, words):
     """Half of it to twice as much, in the unit in which the longer time is read."""
     assert between(seconds / 2, 2 * seconds) == words
-
-
-def test_cost_names_its_parts(tmp_path, monkeypatch, capsys):
-    """The error estimate where there is one."""
-    monkeypatch.setattr("fingerpad.cli.check._picture", lambda *given: "")
-    argv = ["check", "--out", str(tmp_path), "--set", "mesh.contact=10e-6"]
-    assert main(argv) == 0
-    whole = capsys.readouterr().out
-    assert "for the error estimate" in whole and "when the forms are compiled" in whole
-    assert main([*argv, "--set", "output.errors=false"]) == 0
-    assert "for the error estimate" not in capsys.readouterr().out
 
 
 def test_mesh_is_read_again_with_its_names(tmp_path, capsys):
@@ -155,7 +107,3 @@ def test_mesh_is_read_again_with_its_names(tmp_path, capsys):
     assert {"stratum corneum", "dermis", "bone rim", "outer skin", "ridge 0", "ridge -1"} <= groups
     assert y.min() == pytest.approx(0, abs=2e-6)
     assert y.max() == pytest.approx(Scene().geometry.height, rel=1e-3)  # chords of an ellipse
-
-
-def test_mesh_refuses_another_name(capsys):
-    assert "finger.stl cannot be a mesh; its name must end with .msh" in refused(capsys, "mesh", "--out", "finger.stl")

@@ -12,9 +12,9 @@ from scipy.optimize import brentq
 from geometry import tags
 from geometry.bodies import block, ridge
 from geometry.mesh import load
+from tests.test_element import confined_stress as confined
 from variational.body import Body
 from variational.contact import formulation
-from variational.contact.formulation import History
 from variational.contact.penalty import Penalty
 from variational.materials.ogden import Ogden
 from variational.problem import Interface
@@ -32,10 +32,10 @@ P_EL = 8.854e-12 * VOLTAGE**2 / 2 / (H_0 + D_EQ) ** 2
 TOLERANCE = 1e-9  # N/m, imbalance of the nodal forces at which the solves here end
 
 
-def over(body, mu_f=0.0, eps_n=EPS_N, eps_t=EPS_T, held=True, element="P2") -> Body:
+def over(body, mu_f=0.0, eps_n=EPS_N, eps_t=EPS_T, held=True, element="P2", formulation=None) -> Body:
     """Return a body over the screen; with ``held`` its sides do not move sideways."""
     skin = {tags.STRATUM_CORNEUM: Ogden(G_0, ALPHA, NU)}
-    interface = Interface(Penalty(eps_n, eps_t), mu_f, H_0)
+    interface = Interface(formulation or Penalty(eps_n, eps_t), mu_f, H_0)
     sides = body.facets(tags.SIDES) if held else None
     return Body(body, skin, interface, BearingArea(H_0), element=element, tolerance=TOLERANCE, held=sides)
 
@@ -54,10 +54,8 @@ def body():
 
 
 def confined_stress(stretch: float) -> float:
-    """Return dW/dlambda_2 of Eqs. 1 and 2 at stretches (1, stretch, 1): J = stretch, a = -alpha."""
-    a, bulk = -ALPHA, 2 * G_0 * (1 + NU) / (3 * (1 - 2 * NU))
-    powers = 2 * G_0 / (a * stretch) * stretch ** (-a / 3) * (stretch**a - (stretch**a + 2) / 3)
-    return powers + bulk * (stretch - 1)
+    """Return dW/dlambda_2 of Eqs. 1 and 2 at stretches (1, stretch, 1)."""
+    return confined(Ogden(G_0, ALPHA, NU), stretch)
 
 
 def uniform_pressure(depth: float, p_el: float = 0.0) -> float:
@@ -89,16 +87,6 @@ def test_patch(body, part):
     np.testing.assert_allclose(p_n, uniform_pressure(part * HEIGHT), rtol=2e-8)
 
 
-def test_patch_under_voltage(body):
-    """Attraction adds to the contact pressure: p_n = elastic stress + p_el. Tolerance: 1e-9 N/m on 73 kPa, as above."""
-    solver = make(body)
-    solver.problem.voltage.value = VOLTAGE
-    solver.control = Control(0.0, -0.02 * HEIGHT)
-    solver.solve()
-    p_n = Observer(solver.problem).state().p_n
-    np.testing.assert_allclose(p_n, uniform_pressure(0.02 * HEIGHT, P_EL), rtol=1e-9)
-
-
 def test_no_contact_no_force():
     """Above the screen the body keeps its shape. Tolerance: ten nodal imbalances; contact is exactly none."""
     solver = make(load(MPI.COMM_WORLD, block(WIDTH, HEIGHT, 0.25e-3, gap=10e-6)))
@@ -111,8 +99,8 @@ def test_no_contact_no_force():
     assert np.abs(solver.reaction).max() < 10 * TOLERANCE
 
 
-def test_resultants_of_the_patch(body):
-    """Force, length, mean pressure and attraction of the ridge are the uniform ones times the width.
+def test_patch_under_voltage(body):
+    """Attraction adds to the contact pressure: p_n = elastic stress + p_el. Resultants are those times the width.
 
     Tolerance: the solve's on 73 kPa; roundoff for what does not depend on the pressure.
     """
@@ -120,8 +108,8 @@ def test_resultants_of_the_patch(body):
     solver.problem.voltage.value = VOLTAGE
     solver.control = Control(0.0, -0.02 * HEIGHT)
     solver.solve()
-    loads = Observer(solver.problem).ridge_loads()
-    p_n = uniform_pressure(0.02 * HEIGHT, P_EL)
+    loads, p_n = Observer(solver.problem).ridge_loads(), uniform_pressure(0.02 * HEIGHT, P_EL)
+    np.testing.assert_allclose(Observer(solver.problem).state().p_n, p_n, rtol=1e-9)
     assert loads.length[0] == pytest.approx(WIDTH, rel=1e-10, abs=0)  # the skin stays flat to the solve's tolerance
     assert loads.f_contact[0] == pytest.approx(p_n * WIDTH, rel=1e-9)
     assert loads.p_c[0] == pytest.approx(p_n, rel=1e-9)
@@ -139,12 +127,18 @@ def press(solver, force: float, voltage: float = 0.0):
     solver.solve()
 
 
+@pytest.fixture(scope="module")
+def pressed(body) -> Solver:
+    """The block under 5 N/m."""
+    press(solver := make(body), 5.0)
+    return solver
+
+
 @pytest.mark.parametrize("voltage", [0.0, VOLTAGE])
 def test_force_is_reached(body, voltage):
     """The bone's reaction is the prescribed force, and contact less attraction. Tolerance: that of the solve."""
     force = 5.0
-    solver = make(body)
-    press(solver, force, voltage)
+    press(solver := make(body), force, voltage)
     loads = Observer(solver.problem).ridge_loads()
     attraction = P_EL * WIDTH if voltage else 0.0
     assert solver.reaction[1] == pytest.approx(force, abs=10 * TOLERANCE)
@@ -153,30 +147,25 @@ def test_force_is_reached(body, voltage):
     assert loads.f_attraction[0] == pytest.approx(attraction, rel=1e-12)  # roundoff: the skin is below d_eq
 
 
-def test_height_under_force(body):
+def test_height_under_force(pressed):
     """Force and height are two ways to the same state: the height reached is confined compression's.
 
     Tolerance: some ten imbalances of 1e-9 N/m in 5 N/m, on a height of a micrometre.
     """
-    force = 5.0
-    solver = make(body)
-    press(solver, force)
-    p_n = force / WIDTH
+    p_n = 5.0 / WIDTH
     stretch = brentq(lambda x: confined_stress(x) + p_n, 0.5, 1.0, xtol=1e-15)
-    assert solver.bone[1] == pytest.approx(-(1 - stretch) * HEIGHT - p_n / EPS_N, rel=1e-8, abs=0)
-    assert solver.bone[0] == 0
+    assert pressed.bone[1] == pytest.approx(-(1 - stretch) * HEIGHT - p_n / EPS_N, rel=1e-8, abs=0)
+    assert pressed.bone[0] == 0
 
 
-def test_bone_moves_as_one(body):
+def test_bone_moves_as_one(body, pressed):
     """Every node of the rim has the bone's displacement."""
-    solver = make(body)
-    press(solver, 5.0)
-    V = solver.problem.V
-    rim = fem.locate_dofs_topological(V, 1, body.facet_tags.find(tags.BONE_RIM))
-    moved = solver.problem.displacement()[rim]
-    np.testing.assert_array_equal(moved, np.tile(solver.bone, (len(rim), 1)))
+    rim = fem.locate_dofs_topological(pressed.problem.V, 1, body.facet_tags.find(tags.BONE_RIM))
+    moved = pressed.problem.displacement()[rim]
+    np.testing.assert_array_equal(moved, np.tile(pressed.bone, (len(rim), 1)))
 
 
+@pytest.mark.slow
 def test_ridge():
     """One papillary ridge pressed 60 um: 36.048 N/m, the limit over meshes of other programs too.
 
@@ -209,7 +198,7 @@ def slide():
         solver.solve()
         state = observer.state()
         states.append((control, state, observer.ridge_loads(state), solver.reaction.copy(), observer.slip(state)))
-        solver.problem.set_history(History(state.anchor, state.p_n, state.x))
+        solver.problem.history.accept(state.history)
 
     step(Control(0.0, -0.001 * HEIGHT))
     step(Control(0.0, None, 2.0))
@@ -290,11 +279,9 @@ def test_tolerance_belongs_to_its_solver(body):
 
 
 # -- what a solve leaves -------------------------------------------------------------------------------
-def test_imbalance_is_the_largest_free_force(body):
+def test_imbalance_is_the_largest_free_force(body, pressed):
     """The figure reported is that of the residual assembled anew, over the free unknowns, per force scale."""
-    solver = make(body)
-    press(solver, 5.0)
-    problem, layout = solver.problem, solver.layout
+    problem, layout = pressed.problem, pressed.layout
     f = layout.create_vector()
     f.set(0.0)
     layout.add_to_unknowns(fem.assemble_vector(problem.residual).array.copy(), f)
@@ -305,8 +292,8 @@ def test_imbalance_is_the_largest_free_force(body):
     rows = layout.rows[2 * sides] - f.getOwnershipRange()[0]
     f.array_w[rows[(rows >= 0) & (rows < layout.local_size)]] = 0.0
     largest = max(problem.mesh.comm.allgather(float(np.abs(f.array_r).max(initial=0.0))))
-    assert solver.imbalance() == pytest.approx(largest, rel=1e-6, abs=0)
-    assert 0 < solver.imbalance() < TOLERANCE
+    assert pressed.imbalance() == pytest.approx(largest, rel=1e-6, abs=0)
+    assert 0 < pressed.imbalance() < TOLERANCE
 
 
 def test_imbalance_of_a_body_out_of_balance(body):

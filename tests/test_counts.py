@@ -7,9 +7,9 @@ by 2 % or by two. A change of the solver that is meant to save work, or is worth
 """
 
 import pytest
-from mpi4py import MPI
 
 from fingerpad.runs import full
+from fingerpad.runs.context import RunContext
 from fingerpad.scene import from_data, load
 from tests.test_demo import MESH, NINE, SMALL
 
@@ -26,7 +26,7 @@ SLACK, LEAST = 0.02, 2
 @pytest.mark.parametrize("name", COUNTS)
 def test_work_is_what_it_was(name):
     """Press, charge and slide to full slip, on the path alone."""
-    result = full.run(SCENES[name], None, MPI.COMM_WORLD, lines=False)
+    result = full.run(SCENES[name], RunContext())
     found = (result.cost.factorisations, result.cost.newton_iterations, len(result.steps))
     assert not result.failure
     for now, before in zip(found, COUNTS[name], strict=True):

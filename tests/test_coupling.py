@@ -13,16 +13,14 @@ from mpi4py import MPI
 from numpy.typing import NDArray
 from scipy.optimize import brentq
 
-from fingerpad.model.options import FingerModel, plan
-from fingerpad.model.simulation import Simulation
-from fingerpad.model.touching import by_rule
-from fingerpad.reduced import ridge_cell
 from fingerpad.runs import full
+from fingerpad.runs.context import RunContext
 from fingerpad.scene import Scene, from_data
 from geometry import tags
 from geometry.bodies import ridge
 from geometry.mesh import load
-from tests.small_finger import small
+from tests.runs import followed
+from tests.small_finger import NINE, small
 from variational.body import Body
 from variational.contact.penalty import Penalty
 from variational.materials.ogden import Ogden
@@ -38,7 +36,6 @@ from variational.solvers.timing import Timings
 
 H_0, EPS_0, FOLD_VOLTAGE = 0.514e-6, 8.854e-12, 200.0
 CENTRE = 2e-6  # m
-MESH = {"contact": 30e-6, "receptor": 100e-6, "interface": 200e-6, "growth": 1.0, "touching_half_arc": 1.0e-3}
 Array = NDArray[np.float64]
 
 
@@ -51,7 +48,7 @@ class Stub:
         self.stops, self.lost = [], lambda d: False  # how solves may end; air gaps at which there is no equilibrium
         self.problem = SimpleNamespace(
             interface=SimpleNamespace(formulation=SimpleNamespace(error=lambda *_: 0.0, tolerance=0.0), friction=None),
-            history=None,
+            history=SimpleNamespace(accepted={}),
             voltage=SimpleNamespace(value=FOLD_VOLTAGE),
             mesh=SimpleNamespace(comm=MPI.COMM_SELF),
             set_air_gaps=lambda d: setattr(self, "d", d),
@@ -229,8 +226,8 @@ def test_last_solve_is_exact_where_a_ridge_lets_go_late():
     assert [stop.part for stop in stub.stops[-2:]] == [0.0, 0.0]
 
 
-@pytest.mark.parametrize("tolerance", [1e-4, 1e-3])
-def test_small_loads_are_as_exact_as_asked_for(tolerance):
+@pytest.mark.slow
+def test_small_loads_are_as_exact_as_asked_for():
     """Volt by volt: each load leaves the forces nearly in balance, and yet moves the air gaps by a thousand tolerances.
 
     The loads end with a force that sets a large force scale. The attraction goes with the inverse square of d_eq.
@@ -238,13 +235,11 @@ def test_small_loads_are_as_exact_as_asked_for(tolerance):
     volts = [{"name": f"{volt} V", "voltage": float(volt)} for volt in (100, 101, 102, 103)]
     loads = [{"name": "press", "f_ext": 0.2}, *volts, {"name": "more", "f_ext": 4.0}]
     pulls = []
-    for each in (tolerance, 1e-6):
-        scene = small().replace(history=loads, numerics={"coupling_tolerance": each})
-        path = Simulation(FingerModel(by_rule(scene), plan(scene)), MPI.COMM_SELF)
-        path.run()
+    for tolerance in (1e-6, 1e-4, 1e-3):
+        path = followed(small().replace(history=loads, numerics={"coupling_tolerance": tolerance}), comm=MPI.COMM_SELF)
         pulls.append([state.f_electrostatic for state in path.states if state.load.endswith("V")])
-    assert pulls[0] == pytest.approx(pulls[1], rel=3 * tolerance)
-    assert pulls[1][-1] > 1.05 * pulls[1][0]
+        assert pulls[-1] == pytest.approx(pulls[0], rel=3 * tolerance)
+    assert pulls[0][-1] > 1.05 * pulls[0][0]
 
 
 @pytest.mark.parametrize("beyond", [1.0, 10.0, 100.0])  # Pa
@@ -298,28 +293,21 @@ def test_mean_pressure_is_over_the_length_chosen(by_gap):
 def finger(scene: Scene) -> tuple[Array, Array]:
     """Return pressures over the length under pressure (Pa) and air gaps (m) of a charged finger's ridges in contact."""
     loads = [{"name": "press", "f_ext": 1.0}, {"name": "charge", "voltage": 100.0}]
-    made = full.run(scene.replace(history=loads), None, MPI.COMM_SELF, lines=False)
+    made = full.run(scene.replace(history=loads), RunContext(comm=MPI.COMM_SELF))
     touching = made.charged.p_c > 0
     return made.charged.p_c[touching], made.charged.d_eq[touching]
 
 
-def cell(scene: Scene) -> tuple[Array, Array]:
-    """Return those of the one ridge from which the smooth finger's table is made."""
-    walk = ridge_cell._Cell(scene, 2.5).walk
-    walk.run(Target("press", f_ext=1.0))
-    walk.run(Target("charge", voltage=100.0))
-    return walk.observer.ridge_loads(walk.surface_state).p_c, walk.coupling.d_eq
-
-
-@pytest.mark.parametrize("model", [finger, cell])
-def test_scene_chooses_the_length(model):
+@pytest.mark.slow
+def test_scene_chooses_the_length():
     """By default each air gap is the closure's at the pressure over the length under pressure; by gap it is larger.
 
     Tolerance: the loop's, which ends with an iteration or two to spare. A longer length by a twentieth opens the gap by
     some 2 %.
     """
-    scene = from_data({"geometry": {"ridge_count": 9}, "mesh": MESH, "output": {"receptors": False, "errors": False}})
+    mesh = NINE["mesh"] | {"contact": 30e-6}
+    scene = from_data(NINE | {"mesh": mesh, "output": {"receptors": False, "errors": False}})
     for length, least, most in (("pressure", 1 - 1e-6, 1 + 1e-6), ("gap", 1.02, 2.0)):
-        p_c, d_eq = model(scene.replace(contact={"length": length}))
+        p_c, d_eq = finger(scene.replace(contact={"length": length}))
         ratio = d_eq / scene.closure()(p_c).d_eq
         assert ((least < ratio) & (ratio < most)).all()

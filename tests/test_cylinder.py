@@ -53,6 +53,17 @@ def test_charged_cylinder_is_maugis(f):
     assert state.f_attraction == pytest.approx(sigma * state.attracted, rel=1e-9)
 
 
+@pytest.mark.parametrize("voltage", [0.0, 100.0, 200.0])
+def test_loads_together_are_the_loads_one_by_one(voltage):
+    """With a modulus of each; the roots of one load do not depend on the others beyond their tolerance."""
+    forces, moduli = np.geomspace(0.01, 10.0, 5), np.geomspace(1e5, 1e6, 5)
+    together = Cylinder(RADIUS, moduli, H_0, BearingArea(H_0)).under_loads(forces, voltage)
+    for f, modulus, state in zip(forces, moduli, together, strict=True):
+        alone = Cylinder(RADIUS, modulus, H_0, BearingArea(H_0)).under_load(f, voltage)
+        for name in ("length", "attracted", "p_c", "d_eq", "f_contact", "f_attraction"):
+            assert getattr(state, name) == pytest.approx(getattr(alone, name), rel=1e-11)
+
+
 def test_range_keeps_the_work_of_adhesion():
     """The attraction from contact to infinity does the work sigma (h_0 + 2 d_eq); quadrature's tolerance is 1e-8."""
     d_eq = 1.7e-6

@@ -4,7 +4,7 @@ import csv
 import errno
 import json
 import shutil
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from xml.etree import ElementTree
 
@@ -14,10 +14,9 @@ import xarray
 from mpi4py import MPI
 
 import fingerpad as fp
-from fingerpad.io import columns, dataset
-from fingerpad.io.over_time import QUANTITIES, OverTime
+from fingerpad.io import dataset, files, quantities
+from fingerpad.io.over_time import OverTime
 from fingerpad.io.result import Result
-from fingerpad.runs import sweep_dataset
 from fingerpad.scene import from_data
 from tests.runs import run
 from variational.roughness.closure import AirGap, Closure
@@ -63,14 +62,14 @@ def test_steps_are_those_of_the_table(folder, data):
             assert row[name] == str(value) if values.dtype.kind in "OUb" else float(row[name]) == value, name
 
 
-@pytest.mark.parametrize(("table", "known"), [("ridges", columns.RIDGES), ("receptors", columns.RECEPTORS)])
+@pytest.mark.parametrize(("table", "known"), [("ridges", quantities.RIDGES), ("receptors", quantities.SITES)])
 def test_ridges_and_sites_are_those_of_the_tables(folder, data, table, known):
     rows = rows_of(folder, table)
     assert rows
     for row in rows:
         at = data.sel(step=int(row["step"]), ridge=int(row["ridge"]))
         for name in known:
-            if name == "state":
+            if name == "note":
                 assert at["ridge_note"] == row[name]
             elif name.startswith("meissner"):
                 assert float(at["meissner_sed"].sel(side=name.removeprefix("meissner_"))) == float(row[name])
@@ -78,8 +77,10 @@ def test_ridges_and_sites_are_those_of_the_tables(folder, data, table, known):
                 assert float(at[name if table == "receptors" else f"ridge_{name}"]) == float(row[name])
 
 
-def test_ridges_out_of_contact_have_no_values(folder, data):
-    assert int(data["ridge_p_c"].notnull().sum()) == len(rows_of(folder, "ridges"))
+def test_ridges_out_of_contact_have_no_length(folder, data):
+    """All ridges that can touch have values, and the rows of the table are those in contact."""
+    assert int((data["ridge_contact_length"] > 0).sum()) == len(rows_of(folder, "ridges"))
+    np.testing.assert_allclose(data["ridge_f_electrostatic"].sum("ridge"), data["f_electrostatic"], rtol=1e-12)
 
 
 def test_coupling_is_that_of_the_table(folder, data):
@@ -121,7 +122,7 @@ def test_loads_are_those_of_the_summary(folder, data):
         for name, extremes in load.extremes.items():
             at = data.sel(load=load.name)
             assert (float(at[f"load_{name}_min"]), float(at[f"load_{name}_max"])) == (extremes.min, extremes.max)
-    means = {name: 1.0 + k for k, name in enumerate(QUANTITIES)}
+    means = {name: 1.0 + k for k, name in enumerate(quantities.EXTREMES)}
     timed = OverTime(0.5, 2.0, means, 2, (1.0, 2.0), (0.3, 0.1))
     loads = (replace(result.loads[0], over_time=timed), *result.loads[1:])
     at = dataset.dataset(replace(result, loads=loads)).isel(load=0)
@@ -151,7 +152,7 @@ def test_skin_is_along_facets_and_points(data):
     """Under pressure are facets of the ridges that have values in that step, and of no others."""
     skin = data.sel(state="charged")
     assert skin["skin_p_n"].dims == ("facet", "point") and skin.sizes["point"] == 4
-    bears = skin["ridge_f_contact"].sel(step=int(skin["state_step"])).notnull()
+    bears = skin["ridge_f_contact"].sel(step=int(skin["state_step"])) > 0
     touching = skin["skin_ridge"].where((skin["skin_p_n"] > 0).any("point"))
     assert set(touching.values[touching.notnull()]) == set(data["ridge"].values[bears.values])
 
@@ -178,11 +179,16 @@ def test_tables_are_the_results_own_in_another_folder(folder, tmp_path, monkeypa
     assert "ridge_f_contact" in ours
 
 
+@dataclass(frozen=True)
 class Odd(Closure):
-    """A closure with attributes of any kind."""
+    """A closure with parameters of any kind."""
 
-    def __init__(self, **fields):
-        vars(self).update(fields)
+    points: tuple
+    names: tuple
+    none: tuple
+    empty: tuple
+    numbers: tuple
+    on: bool
 
     def __call__(self, p_c):
         return AirGap(2e-6 + 0 * np.asarray(p_c, dtype=float))
@@ -192,27 +198,17 @@ def test_laws_of_any_fields_are_attributes(tmp_path):
     """What NetCDF has no attribute for is JSON; numbers are kept as they are."""
     table = [[0.0, 5e-6], [1e4, 4e-6]]
     fields = {"points": np.array(table), "names": ("a", "b"), "none": (None, 1.0), "empty": ()}
-    fp.run(fp.Scene(), closure=Odd(**fields, numbers=(1, 2.5), on=True), model="cylinders", out=tmp_path)
+    fp.run(fp.Scene(roughness=Odd(**fields, numbers=(1, 2.5), on=True)), model="cylinders", out=tmp_path)
     found = xarray.load_dataset(tmp_path / "result.nc").attrs
-    as_json = {name: json.loads(found[f"laws.closure.{name}"]) for name in (*fields, "on")}
+    as_json = {name: json.loads(found[f"roughness.{name}"]) for name in (*fields, "on")}
     assert as_json == {"points": table, "names": ["a", "b"], "none": [None, 1], "empty": [], "on": True}
-    assert found["laws.closure.numbers"].tolist() == [1, 2.5]
+    assert found["roughness.numbers"].tolist() == [1, 2.5]
 
 
 def test_dataset_of_a_result_that_was_read_back(folder):
     """The same file, to the last byte."""
     again = Result.load(folder).to_xarray()
     assert bytes(again.to_netcdf(engine="scipy", format="NETCDF3_64BIT")) == (folder / "result.nc").read_bytes()
-
-
-def test_laws_of_a_result_that_was_read_are_kept():
-    """They are objects of Python, of which a file has the names alone."""
-    laws = {"closure": {"law": "mine.Gap", "height": 2e-6}}
-    read = fp.Result(
-        fp.Scene(), "full", None, None, None, record={"parameters": fp.Scene().parameters() | {"laws": laws}}
-    )
-    found = dataset.attributes(read)
-    assert found["laws.closure.law"] == "mine.Gap" and json.loads(found["parameters"])["laws"] == laws
 
 
 def test_skin_that_was_read_back_is_that_of_the_run(folder, data):
@@ -228,11 +224,11 @@ def test_skins_of_several_meshes_come_back_without_filling(folder, tmp_path):
     """Five facets of one point in one state, as they were."""
     result = Result.load(folder)
     whole = result.charged.skin
-    few = Skin(whole.ridge[:5], *(getattr(whole, name)[:5, :1] for name in columns.SKIN))
+    few = Skin(whole.ridge[:5], *(getattr(whole, name)[:5, :1] for name in quantities.SKIN))
     assert not dataset.save(replace(result, folder=tmp_path, charged=replace(result.charged, skin=few)))
-    found = dataset.skins(tmp_path)
-    np.testing.assert_array_equal(found["charged"].x, few.x)
-    np.testing.assert_array_equal(found["uncharged"].p_n, result.uncharged.skin.p_n)
+    _, found = dataset.read(tmp_path, ())
+    np.testing.assert_array_equal(found["charged"].skin.x, few.x)
+    np.testing.assert_array_equal(found["uncharged"].skin.p_n, result.uncharged.skin.p_n)
 
 
 @pytest.mark.parametrize("content", [None, b"", b"CDF\x02", "half"])
@@ -244,7 +240,8 @@ def test_skin_is_left_out_where_the_dataset_is_not_whole(folder, tmp_path, conte
     if content is not None:
         (copy / "result.nc").write_bytes(whole[: len(whole) // 2] if content == "half" else content)
     again = Result.load(copy)
-    assert all(state.skin is None for state in again.named.values())
+    assert all(state.skin is None and state.ridges is None for state in again.named.values())
+    assert [state.row() for state in again.steps] == [state.row() for state in Result.load(folder).steps]
     assert again.charged.contact_length == Result.load(folder).charged.contact_length
 
 
@@ -279,7 +276,7 @@ def test_swept_keys_are_coordinates(tmp_path):
     np.testing.assert_array_equal(data["state_mu_app"].sel(state="full_slip"), found.array("mu_app"))
     for row in rows_of(tmp_path, "table"):
         at = data.sel(voltage=float(row["voltage"]), f_ext=float(row["f_ext"]), state="full_slip")
-        assert float(at["state_f_t"]) == float(row["slip_f_t"])
+        assert float(at["state_f_t"]) == float(row["full_slip_f_t"])
     assert "voltage" not in data.attrs and data.attrs["friction"] == 0.25
 
 
@@ -295,11 +292,12 @@ def full(file, text):
     """Find no room for a dataset."""
     if Path(file).suffix == ".nc":
         raise OSError(errno.ENOSPC, "No space left on device")
+    Path(file).write_bytes(text.encode() if isinstance(text, str) else text)
 
 
 def test_full_disk_loses_the_dataset_alone(tmp_path, monkeypatch):
     """The tables, the summary and its note stay."""
-    monkeypatch.setattr(dataset, "replace", full)
+    monkeypatch.setattr(files, "replace", full)
     summary = run(from_data(SCENE | {"history": SCENE["history"][:1]}), tmp_path, MPI.COMM_SELF)
     note = "result.nc was not written: No space left on device; all other files are complete"
     assert summary["notes"] == [note]
@@ -308,15 +306,20 @@ def test_full_disk_loses_the_dataset_alone(tmp_path, monkeypatch):
     assert rows_of(tmp_path, "steps") and not (tmp_path / "result.nc").exists()
 
 
-def test_what_netcdf_cannot_hold_loses_the_dataset_alone(tmp_path, monkeypatch):
-    monkeypatch.setattr(dataset, "attributes", lambda result: {"table": [[1.0]]})
-    found = fp.run(fp.Scene(), model="cylinders", out=tmp_path)
-    assert found.notes[-1].startswith("result.nc was not written: NetCDF cannot hold it (")
+def test_error_of_the_program_is_no_note(tmp_path, monkeypatch):
+    """It is raised, after the summary is on disk."""
+
+    def broken(result):
+        raise KeyError("p_mean")
+
+    monkeypatch.setattr(dataset, "attributes", broken)
+    with pytest.raises(KeyError, match="p_mean"):
+        fp.run(fp.Scene(), model="cylinders", out=tmp_path)
     assert (tmp_path / "summary.json").exists() and not (tmp_path / "result.nc").exists()
 
 
 def test_full_disk_loses_no_table_of_a_sweep(tmp_path, monkeypatch):
-    monkeypatch.setattr(dataset, "replace", full)
+    monkeypatch.setattr(files, "replace", full)
     found = fp.sweep(fp.Scene(), tmp_path, model="cylinders", voltage=[0, 100])
     assert found.notes[1:] == ("sweep.nc was not written: No space left on device; all other files are complete",)
     assert str(found).endswith(found.notes[1]) and len(rows_of(tmp_path, "table")) == 2
@@ -326,6 +329,6 @@ def test_without_xarray_the_sentence_says_what_to_install(tmp_path, monkeypatch)
     def missing(sweep):
         raise ImportError("No module named 'xarray'")
 
-    monkeypatch.setattr(sweep_dataset, "of_sweep", missing)
+    monkeypatch.setattr(fp.Sweep, "to_xarray", missing)
     found = fp.sweep(fp.Scene(), tmp_path, model="cylinders", voltage=[0])
     assert found.notes == ("sweep.nc was not written: No module named 'xarray'; pip install xarray",)

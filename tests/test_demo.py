@@ -13,6 +13,7 @@ import pytest
 from mpi4py import MPI
 
 from fingerpad.runs import full
+from fingerpad.runs.context import RunContext
 from fingerpad.scene import from_data, load
 from tests import runs
 
@@ -58,8 +59,8 @@ def test_reaches_full_slip(summary):
 
 def test_friction_at_full_slip_is_the_cone(summary):
     """f_T is mu_0 times the contact force; the solver leaves 1e-9 of f_ext, 1e-6 is what physics.md asks for."""
-    assert summary["slip_f_t"] == pytest.approx(MU_0 * summary["slip_f_contact"], rel=1e-6)
-    assert summary["slip_mu_app"] == pytest.approx(summary["slip_f_t"] / 3.0, rel=1e-9)
+    assert summary["full_slip_f_t"] == pytest.approx(MU_0 * summary["full_slip_f_contact"], rel=1e-6)
+    assert summary["full_slip_mu_app"] == pytest.approx(summary["full_slip_f_t"] / 3.0, rel=1e-9)
 
 
 def test_numbers_are_those_of_this_mesh(summary):
@@ -67,13 +68,17 @@ def test_numbers_are_those_of_this_mesh(summary):
 
     dolfinx 0.9 and 0.11 agree to 1e-12, steps and tolerances leave some 1e-7; another gmsh may place nodes otherwise.
     """
-    found = {name: summary[name] for name in ("slip_f_t", "normal_contact_length", "slip_contact_length")}
-    pinned = {"slip_f_t": 1.46509184, "normal_contact_length": 0.200798168e-3, "slip_contact_length": 0.200360275e-3}
+    found = {name: summary[name] for name in ("full_slip_f_t", "charged_contact_length", "full_slip_contact_length")}
+    pinned = {
+        "full_slip_f_t": 1.46509184,
+        "charged_contact_length": 0.200798168e-3,
+        "full_slip_contact_length": 0.200360275e-3,
+    }
     assert found == pytest.approx(pinned, rel=1e-6, abs=0)
-    assert (summary["normal_ridges_in_contact"], summary["slip_ridges_in_contact"]) == (5, 5)
+    assert (summary["charged_ridges_in_contact"], summary["full_slip_ridges_in_contact"]) == (5, 5)
 
 
-@pytest.mark.parametrize("state", ["normal", "slip"])
+@pytest.mark.parametrize("state", ["charged", "full_slip"])
 def test_bone_bears_contact_less_attraction(summary, state):
     """Force balance at the solver's tolerance, times some hundred nodes."""
     force = summary[f"{state}_f_contact"] - summary[f"{state}_f_electrostatic"]
@@ -83,9 +88,9 @@ def test_bone_bears_contact_less_attraction(summary, state):
 def test_voltage_adds_friction_and_contact(coarse, summary):
     """The attraction presses: against the uncharged normal contact, contact force and length grow."""
     uncharged = [row for row in steps(coarse) if row["load"] == "press"][-1]
-    assert summary["normal_f_contact"] > 1.5 * float(uncharged["f_contact"])
-    assert summary["normal_contact_length"] > float(uncharged["contact_length"])
-    assert summary["slip_mu_app"] > 1.5 * MU_0
+    assert summary["charged_f_contact"] > 1.5 * float(uncharged["f_contact"])
+    assert summary["charged_contact_length"] > float(uncharged["contact_length"])
+    assert summary["full_slip_mu_app"] > 1.5 * MU_0
 
 
 def test_normal_contact_is_symmetric(summary):
@@ -93,7 +98,7 @@ def test_normal_contact_is_symmetric(summary):
 
     The rest is error of the mesh: 0.19 % with contact sizes of 20 um, below 0.01 % with the 10 um of this scene.
     """
-    assert abs(summary["normal_f_t"]) < 1e-3 * summary["slip_f_t"]
+    assert abs(summary["charged_f_t"]) < 1e-3 * summary["full_slip_f_t"]
 
 
 def test_never_outside_the_cone(coarse):
@@ -112,7 +117,7 @@ def test_leaves_what_it_promises(coarse, summary):
     assert summary["parameters"]["mesh"]["contact"] == 10e-6
 
 
-@pytest.mark.parametrize("state", ["normal", "slip"])
+@pytest.mark.parametrize("state", ["charged", "full_slip"])
 def test_surface_array_bears_the_contact_force(coarse, summary, state):
     """Pressure over the current abscissa, by the trapezoidal rule, coarse on a few facets of 10 um a ridge."""
     with np.load(coarse / "surface.npz") as arrays:
@@ -137,12 +142,12 @@ def test_ranks_agree_with_one(size):
     """The same numbers to 1e-6: the coupling's tolerance on the air gap, times its contraction."""
     small = NINE | {"f_ext": 1.0, "voltage": 100.0, "mesh": MESH}
     scene = from_data(small) if size == "small" else load(COARSE).replace(output={"errors": False})
-    found, other = (full.run(scene, None, comm, lines=False).to_dict() for comm in (MPI.COMM_WORLD, MPI.COMM_SELF))
+    found, other = (full.run(scene, RunContext(comm=comm)).to_dict() for comm in (MPI.COMM_WORLD, MPI.COMM_SELF))
     assert (found["ranks"], other["ranks"]) == (MPI.COMM_WORLD.size, 1)
-    for state in ("normal", "slip"):
+    for state in ("charged", "full_slip"):
         for name in ("f_contact", "f_electrostatic", "contact_length", "bone_height", "ridges_in_contact"):
             assert other[f"{state}_{name}"] == pytest.approx(found[f"{state}_{name}"], rel=1e-6), name
-    assert other["slip_mu_app"] == pytest.approx(found["slip_mu_app"], rel=1e-6)
+    assert other["full_slip_mu_app"] == pytest.approx(found["full_slip_mu_app"], rel=1e-6)
 
 
 @pytest.mark.parametrize(

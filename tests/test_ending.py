@@ -140,8 +140,7 @@ def test_ignored_signals_stay_ignored():
 RAISES = """
 import sys
 from pathlib import Path
-from fingerpad.startup import MPI, start
-start()
+from fingerpad.startup import MPI
 from fingerpad.io.files import Table, replace_json
 from fingerpad.io.interrupt import Interrupt, Interrupted
 from tests.runs import run
@@ -173,7 +172,7 @@ def test_what_one_rank_raises_ends_all(tmp_path, rank):
 # -- a full disk -------------------------------------------------------------------------------------------
 def test_full_disk(tmp_path):
     """ADIOS2 cannot write the first load's fields; a limit of file sizes stands for the disk."""
-    code = "import resource, runpy, sys\nfrom fingerpad.startup import start; start()\n"
+    code = "import resource, runpy, sys\nimport fingerpad.startup\n"
     code += "resource.setrlimit(resource.RLIMIT_FSIZE, (100_000, 100_000))\n"
     code += "runpy.run_module('fingerpad', run_name='__main__')"
     (scene := tmp_path / "scene.toml").write_text(LONG, encoding="utf-8")

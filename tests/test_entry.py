@@ -17,6 +17,9 @@ FOUND = {
     "ffcx_options.json": '{{"epsilon": 77}}',
     "matplotlibrc": "lines.linewidth: 77",
     "ucx.conf": "UCX_LOG_LEVEL=debug",
+    "sitecustomize.py": "raise SystemExit('found')",
+    "usercustomize.py": "raise SystemExit('found')",
+    "mpi4py.py": "raise SystemExit('found')",
 }
 STATE = """
 import dolfinx.jit, ffcx.options, matplotlib
@@ -35,12 +38,12 @@ def python(folder: Path, code: str, **environment: str) -> subprocess.CompletedP
 
 @pytest.fixture(scope="module")
 def clean(tmp_path_factory) -> str:
-    done = python(tmp_path_factory.mktemp("clean"), "from fingerpad.startup import start; start()" + STATE)
+    done = python(tmp_path_factory.mktemp("clean"), "import fingerpad.startup" + STATE)
     assert done.returncode == 0, done.stderr
     return done.stdout
 
 
-@pytest.mark.parametrize("first", ["from fingerpad.startup import start; start()", "import fingerpad.runs.full"])
+@pytest.mark.parametrize("first", ["import fingerpad.startup", "import fingerpad.runs.full"])
 def test_nothing_is_taken_from_the_current_folder(tmp_path, clean, first):
     """Neither by a program nor by a script of one's own."""
     for name, text in FOUND.items():
@@ -67,7 +70,7 @@ def test_nothing_is_taken_from_the_home_folder(tmp_path, clean):
     place.mkdir()
     found = [
         python(place, first + STATE.replace(', matplotlib.rcParams["lines.linewidth"]', ""), HOME=str(home))
-        for first in ("", "from fingerpad.startup import start; start()")
+        for first in ("", "import fingerpad.startup")
     ]
     assert found[0].stdout == "True ['found']\n77\n"
     assert found[1].stdout == clean.replace(" 1.5\n", "\n"), found[1].stderr
@@ -93,6 +96,6 @@ def test_the_environment_and_the_command_line_are_obeyed(tmp_path):
 def test_modules_of_the_current_folder_are_not_run(tmp_path):
     """Processes of a sweep are started with python3 -m, which looks there first."""
     (tmp_path / "numpy.py").write_text("raise SystemExit('found')")
-    run = "processes.run('fingerpad.runs.batch', ['no.json', '.', '9', 'full'], 9).message"
+    run = "processes.run('fingerpad.runs.one', ['no.json', '.', '9', 'full'], 9).message"
     code = f"from fingerpad.runs import processes; print({run})"
     assert "No such file or directory: 'no.json'" in python(tmp_path, code).stdout

@@ -33,11 +33,11 @@ def test_second_order_is_overestimated_three_times():
 def test_energy_density_is_taken_for_the_order_of_strains(degree, left):
     """Half of the last change is left at first order, a quarter at second; cubic elements have no more to show for."""
     found = MeshParameter(degree=degree)
-    found.record({"slip_sed_0": 1.3}, {"slip_sed_0": 1.0})
-    assert found.share("slip_sed_0") == pytest.approx(left, rel=1e-12)
+    found.record({"full_slip_sed_0": 1.3}, {"full_slip_sed_0": 1.0})
+    assert found.share("full_slip_sed_0") == pytest.approx(left, rel=1e-12)
 
 
-@pytest.mark.parametrize(("name", "left"), [("slip_f_t", 0.1 / 4), ("slip_sed_0", 0.1 / 4 / 3)])
+@pytest.mark.parametrize(("name", "left"), [("full_slip_f_t", 0.1 / 4), ("full_slip_sed_0", 0.1 / 4 / 3)])
 def test_accidentally_small_change_is_not_believed(name, left):
     """A change of nothing at all counts as the quarter of the one before it that second order leaves."""
     found = MeshParameter()
@@ -49,9 +49,9 @@ def test_accidentally_small_change_is_not_believed(name, left):
 def test_quantity_that_is_new_has_its_last_change_alone():
     """A site whose ridge touches on the finer meshes only."""
     found = MeshParameter()
-    found.record({}, {"slip_sed_3": 1.0})
-    found.record({"slip_sed_3": 1.3}, {"slip_sed_3": 1.0})
-    assert found.share("slip_sed_3") == pytest.approx(0.1, rel=1e-12)
+    found.record({}, {"full_slip_sed_3": 1.0})
+    found.record({"full_slip_sed_3": 1.3}, {"full_slip_sed_3": 1.0})
+    assert found.share("full_slip_sed_3") == pytest.approx(0.1, rel=1e-12)
 
 
 def test_ridges_that_change_both_ways_do_not_cancel():

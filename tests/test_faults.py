@@ -61,7 +61,7 @@ def test_undisturbed(scene, tmp_path):
     summary = run(scene(), tmp_path, MPI.COMM_WORLD)
     assert "failure" not in summary
     assert len(accepted(tmp_path)) == summary["steps"] > GOOD
-    assert summary["normal_stable"] is True
+    assert summary["charged_stable"] is True
 
 
 @pytest.fixture

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 import geometry
-from fingerpad.cli.measured import read as measurements
+from fingerpad.measurements.table import read as measurements
 from fingerpad.scene import SceneError, from_data, load
 from geometry.meshfile import file as mesh
 from geometry.profiles import GeometryError
@@ -28,7 +28,7 @@ def voltages(path: Path) -> None:
 
 
 def topography(path: Path) -> None:
-    from_data({"roughness": {"topography": {"file": str(path), "unit": "um", "size": [1.0, 1.0]}}})
+    from_data({"roughness": {"topography": {"file": str(path), "unit": "um", "size": [1e-3, 1e-3]}}})
 
 
 DOORS = {

@@ -1,16 +1,22 @@
 """Ridges with flat tops, and what an air gap of all ridges means for friction whatever their profile."""
 
+from functools import partial
 from pathlib import Path
 
 import numpy as np
 import pytest
+from mpi4py import MPI
 
-from fingerpad.reduced import ridge_cell
-from fingerpad.scene import from_data
+from benchmarks.stability import strip
 from fingerpad.scene import scene as scenes
-from geometry.parameters import Fingertip
+from geometry import tags
+from geometry.mesh import load
+from geometry.parameters import Fingertip, MeshSize
 from geometry.profiles import Profiles
 from variational.attraction.insulator import VACUUM_PERMITTIVITY
+from variational.body import Body
+from variational.problem import Interface
+from variational.solvers.continuation import Target
 
 FLAT = scenes.load(Path(__file__).parent.parent / "demos/scenes/flat_ridges.toml")
 UM = 1e-6
@@ -69,16 +75,29 @@ def test_profile_is_a_ridge():
 
 
 @pytest.fixture(scope="module")
-def pressed(tmp_path_factory):
-    """Mean contact pressure and contact over external force of a sliding ridge, flat and a sinusoid, by force."""
+def pressed():
+    """Mean contact pressure and contact over external force of a sliding ridge, flat and a sinusoid, by height."""
     found = []
     for profile in (FLAT.geometry.ridge_profile, Fingertip().ridge_profile):
-        data = {"f_ext": 10.0, "voltage": 170.0, "geometry": {"ridge_profile": profile}}
-        scene = from_data(data | {"mesh": {"contact": 15e-6, "touching_fraction": FLAT.mesh.touching_fraction}})
-        table = ridge_cell.tables(scene, tmp_path_factory.mktemp("tables")).slip
-        force = table.contact - table.attraction
+        finger = Fingertip(ridge_profile=profile)
+        size = MeshSize(contact=15 * UM, interface=60 * UM, touching_fraction=FLAT.mesh.touching_fraction)
+        mesh = load(MPI.COMM_SELF, partial(strip.build, finger, size, 1), strip.LAYERS)
+        skins = {tag: solid for tag, solid in FLAT.solids().items() if tag in strip.LAYERS}
+        interface = Interface(FLAT.contact.law, FLAT.friction_law(), FLAT.h_0)
+        made = Body(mesh, skins, interface, FLAT.closure(), moving_sides=mesh.facets(tags.SIDES))
+        walk, states = made.continuation, []
+        for target in (Target("press", f_ext=5.0), Target("charge", voltage=170.0)):
+            walk.run(target)
+        walk.run(Target("slide", bone_x=5e-3, until_full_slip=True))
+        for height in np.linspace(made.solver.bone[1], 0, 8)[:6]:
+            walk.run(Target("lift", bone_height=float(height)))
+            loads = made.observer.ridge_loads(walk.surface_state)
+            states.append([float(v[0]) for v in (loads.f_contact, loads.f_attraction, loads.length)])
+        contact, attraction, length = np.array(states).T
+        force = contact - attraction
         on = force > 0.5  # N/m: pressed
-        found.append((force[on], table.contact[on] / table.length[on], table.contact[on] / force[on]))
+        assert on.sum() >= 3
+        found.append((force[on], contact[on] / length[on], contact[on] / force[on]))
     return found
 
 

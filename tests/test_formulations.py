@@ -1,38 +1,37 @@
 """Penalty, Nitsche and augmented Lagrangian solve the same contact problems, on any number of ranks."""
 
+from dataclasses import dataclass
+from functools import cache
+from typing import ClassVar
+
 import numpy as np
 import pytest
 from ffcx.naming import compute_signature
 from mpi4py import MPI
-from scipy.optimize import brentq
 
-from geometry import tags
+from fingerpad.cli.check import _model
+from fingerpad.model.feasibility import by_rule
+from fingerpad.model.options import FingerModel, plan
+from fingerpad.scene import SceneError, from_data
+from fingerpad.scene.laws import used
+from fingerpad.scene.parameters import FORMULATIONS
 from geometry.bodies import block, ridge
 from geometry.mesh import load
-from variational.body import Body
+from tests.test_contact import HEIGHT, MU_F, TOLERANCE, WIDTH, confined_stress, over
 from variational.contact.augmented import AugmentedLagrangian
-from variational.contact.formulation import History
+from variational.contact.formulation import Formulation, Springs
 from variational.contact.nitsche import Nitsche
 from variational.contact.penalty import Penalty
-from variational.materials.ogden import Ogden
-from variational.problem import Interface
-from variational.roughness.bam import BearingArea
 from variational.solvers.continuation import Continuation, StepFailed, Target
 from variational.solvers.failure import NotConverged
 
 pytestmark = pytest.mark.mpi
-WIDTH, HEIGHT = 1e-3, 0.5e-3
-G_0, ALPHA, NU = 86.76e3, -14.53, 0.48
-MU_F, H_0 = 0.25, 0.514e-6
-IMBALANCE = 1e-9  # N/m, at which solves end
 NITSCHE = [Nitsche(10.0, 0), Nitsche(100.0, 1), Nitsche(10.0, -1)]
 
 
 def make(body, formulation, mu_f=0.0, held=True) -> Continuation:
     """Return a body above the screen; with ``held`` its sides do not move sideways."""
-    skin, law = {tags.STRATUM_CORNEUM: Ogden(G_0, ALPHA, NU)}, Interface(formulation, mu_f, H_0)
-    sides = body.facets(tags.SIDES) if held else None
-    return Body(body, skin, law, BearingArea(H_0), tolerance=IMBALANCE, held=sides).continuation
+    return over(body, mu_f, held=held, formulation=formulation).continuation
 
 
 def contact_force(run: Continuation) -> float:
@@ -41,13 +40,6 @@ def contact_force(run: Continuation) -> float:
 
 
 # -- patch test ----------------------------------------------------------------------------------------
-def confined_stress(stretch: float) -> float:
-    """Return dW/dlambda_2 of Eqs. 1 and 2 at stretches (1, stretch, 1): J = stretch, a = -alpha."""
-    a, bulk = -ALPHA, 2 * G_0 * (1 + NU) / (3 * (1 - 2 * NU))
-    powers = 2 * G_0 / (a * stretch) * stretch ** (-a / 3) * (stretch**a - (stretch**a + 2) / 3)
-    return powers + bulk * (stretch - 1)
-
-
 @pytest.mark.parametrize("voltage", [0.0, 200.0])
 @pytest.mark.parametrize("formulation", [*NITSCHE, AugmentedLagrangian(1.5e12, 1e11, 1e-14)], ids=repr)
 def test_patch(formulation, voltage):
@@ -64,14 +56,45 @@ def test_patch(formulation, voltage):
     assert np.abs(run.surface_state.y).max(initial=0.0) < 1e-13
 
 
-def test_patch_of_the_penalty():
-    """The skin of the penalty sinks by p_n / eps_n, which the compression lacks, and no more. Tolerance: as above."""
-    eps_n = 1.5e12
-    run = make(load(MPI.COMM_WORLD, block(WIDTH, HEIGHT, 0.25e-3)), Penalty(eps_n, 1e11))
-    run.run(Target("press", bone_height=-0.02 * HEIGHT))
-    p_n = brentq(lambda p: confined_stress(0.98 + p / eps_n / HEIGHT) + p, 0.0, 1e6, xtol=1e-12, rtol=1e-15)
-    np.testing.assert_allclose(run.surface_state.p_n, p_n, rtol=1e-8)
-    np.testing.assert_allclose(run.surface_state.y, -p_n / eps_n, rtol=1e-8)
+# -- a formulation of one's own -------------------------------------------------------------------------
+@dataclass(frozen=True)
+class OneSpring(Formulation):
+    """Springs of one stiffness (Pa/m) in both directions, by the recipe of CONTRIBUTING."""
+
+    eps: float = 1.5e12
+
+    symmetric_start: ClassVar[bool] = False
+    caution: ClassVar[str] = "contact by one spring"
+
+    def springs(self, skin) -> Springs:
+        """Return springs without preload."""
+        return Springs(0.0, 0.0, skin.constant(self.eps), skin.constant(self.eps))
+
+
+def test_formulation_of_one_s_own():
+    """One class is all that a body takes: it presses as the penalty of that stiffness, to the last bit."""
+    mine, springs = (
+        make(load(MPI.COMM_WORLD, block(WIDTH, HEIGHT, 0.25e-3)), formulation, MU_F)
+        for formulation in (OneSpring(), Penalty(1.5e12, 1.5e12))
+    )
+    for run in (mine, springs):
+        run.run(Target("press", bone_height=-0.02 * HEIGHT))
+        run.run(Target("slide", bone_x=1e-6))
+    assert contact_force(mine) == contact_force(springs)
+    assert (mine.solver.reaction == springs.solver.reaction).all()
+
+
+def test_formulation_of_one_s_own_is_a_key_of_a_scene(monkeypatch):
+    """One line of the registry: scenes, refusals, the check and what a run leaves out take it from its class."""
+    monkeypatch.setitem(FORMULATIONS, "one spring", OneSpring)
+    scene = from_data({"contact": {"formulation": "one spring", "eps": 2e12}})
+    model = FingerModel(by_rule(scene), plan(scene))
+    assert model.contact == OneSpring(2e12)
+    assert not model.options.symmetric_start and plan(from_data({})).symmetric_start
+    assert from_data(scene.parameters()) == scene
+    with pytest.raises(SceneError, match="eps_n"):
+        from_data({"contact": {"formulation": "one spring", "eps_n": 2e12}})
+    assert used(scene)["contact"] == "OneSpring(eps=2e+12)" and "contact by one spring" in [*_model(scene, plan(scene))]
 
 
 # -- one ridge -----------------------------------------------------------------------------------------
@@ -80,6 +103,7 @@ def pressed():
     """Press one ridge by 60 um without friction; the accepted run by formulation."""
     body = load(MPI.COMM_WORLD, ridge(20e-6))
 
+    @cache
     def press(formulation) -> Continuation:
         run = make(body, formulation)
         run.run(Target("press", bone_height=-60e-6))
@@ -109,7 +133,7 @@ def test_force_of_a_ridge(pressed, exact, formulation):
     """All agree in the force, on facets of 20 um that miss the limit of fine meshes by 4e-3, to a tenth of that."""
     run = pressed(formulation)
     assert contact_force(run) == pytest.approx(contact_force(exact), rel=5e-4)
-    assert contact_force(run) == pytest.approx(run.solver.reaction[1], abs=100 * IMBALANCE)
+    assert contact_force(run) == pytest.approx(run.solver.reaction[1], abs=100 * TOLERANCE)
 
 
 def test_augmented_lagrangian_leaves_no_more_than_its_tolerance(pressed):
@@ -132,9 +156,15 @@ def test_contact_length(pressed, exact):
 SLIDING = [Penalty(1e11, 1e10), AugmentedLagrangian(1e12, 1e10, 5e-9), *(Nitsche(10.0, theta) for theta in (0, 1, -1))]
 
 
-def slide(comm, formulation) -> list:
+@cache
+def slide(ranks: int, formulation) -> list:
     """Press a block whose sides are free with friction and move it sideways at constant force; states by step."""
-    run = make(load(comm, block(WIDTH, HEIGHT, 0.125e-3)), formulation, MU_F, held=False)
+    run = make(
+        load(MPI.COMM_SELF if ranks == 1 else MPI.COMM_WORLD, block(WIDTH, HEIGHT, 0.125e-3)),
+        formulation,
+        MU_F,
+        held=False,
+    )
     steps = []
 
     def accept(target, part, attempt):
@@ -149,15 +179,15 @@ def slide(comm, formulation) -> list:
 
 @pytest.fixture(scope="module", params=SLIDING, ids=repr)
 def slid(request):
-    return slide(MPI.COMM_WORLD, request.param)
+    return slide(MPI.COMM_WORLD.size, request.param)
 
 
 def test_full_slip_is_the_cone(slid):
     """At the end every point slips: f_T = mu_f times the contact force. Tolerance: nodal imbalances of the solve."""
     *_, share, f_contact, reaction = slid[-1]
     assert share == (1.0, True)
-    assert f_contact == pytest.approx(2.0, abs=100 * IMBALANCE)
-    assert reaction[0] == pytest.approx(-MU_F * f_contact, abs=100 * IMBALANCE)
+    assert f_contact == pytest.approx(2.0, abs=100 * TOLERANCE)
+    assert reaction[0] == pytest.approx(-MU_F * f_contact, abs=100 * TOLERANCE)
 
 
 def test_stick_before_slip(slid):
@@ -172,7 +202,7 @@ def test_elastic_slip():
 
     In few steps: cut often enough, one would slip too little to need a multiplier.
     """
-    states = [state for _, state, *_ in slide(MPI.COMM_WORLD, SLIDING[1])]
+    states = [state for _, state, *_ in slide(MPI.COMM_WORLD.size, SLIDING[1])]
     assert len(states) < 30
     for before, after in zip(states, states[1:], strict=False):
         sticks = (after.p_n > 0) & (np.abs(after.t_t) < MU_F * after.p_n * (1 - 1e-8))
@@ -182,9 +212,7 @@ def test_elastic_slip():
 @pytest.mark.parametrize("formulation", [SLIDING[1], SLIDING[2]], ids=repr)
 def test_ranks(formulation):
     """Forces by step are those of one rank, to the tolerances of solves and multipliers."""
-    found, alone = (
-        np.array([[f, *r] for *_, f, r in slide(comm, formulation)]) for comm in (MPI.COMM_WORLD, MPI.COMM_SELF)
-    )
+    found, alone = (np.array([[f, *r] for *_, f, r in slide(ranks, formulation)]) for ranks in (MPI.COMM_WORLD.size, 1))
     np.testing.assert_allclose(found, alone, rtol=0, atol=1e-6)
 
 
@@ -222,7 +250,8 @@ def test_rejected_attempts_leave_no_trace(formulation):
     def fail(pseudo_transient=False):
         solve(pseudo_transient)
         state = run.observer.state()
-        run.problem.correct_history(History(2 * state.anchor, 2 * state.p_n, state.x))
+        doubled = {"anchor": 2 * state.anchor, "pressure": 2 * state.p_n}
+        run.problem.history.impose({**run.problem.history.accepted, **doubled})
         raise NotConverged("TEST", False)
 
     run.coupling.solve = fail

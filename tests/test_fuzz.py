@@ -31,7 +31,7 @@ def test_mutants_are_repeatable():
 
 @pytest.mark.parametrize(
     ("broken", "value"),
-    [("fingerpad.scene.reading._MOST_DEPTH", 10**6), ("fingerpad.model.check.refuse_beyond", lambda *given: None)],
+    [("fingerpad.scene.reading._MOST_DEPTH", 10**6), ("fingerpad.model.feasibility.refuse_sizes", lambda *given: None)],
 )
 def test_what_is_broken_is_found(folder, monkeypatch, broken, value):
     """Without one of the guards there is a mutant that shows it."""

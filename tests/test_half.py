@@ -8,15 +8,16 @@ import ufl
 from mpi4py import MPI
 
 from fingerpad.model import simulation
+from fingerpad.model.feasibility import by_rule
 from fingerpad.model.options import FingerModel, plan
 from fingerpad.model.simulation import Simulation
-from fingerpad.model.touching import by_rule
 from fingerpad.scene import from_data
+from tests.runs import followed
 from tests.test_demo import MESH, NINE
 from variational.materials.neo_hooke import NeoHooke
 from variational.solvers import newton as solvers
-from variational.state import ContactState
 
+pytestmark = pytest.mark.slow
 CLOSE = 1e-5  # relative: air gaps are within 1e-6
 HISTORY = [
     {"name": "press", "f_ext": 1.0},
@@ -37,11 +38,17 @@ def model(history, led: bool = True) -> FingerModel:
     return FingerModel(scene, replace(needed, symmetric_start=led))
 
 
-def follow(history, led: bool) -> list[ContactState]:
-    """Return the states of a small finger's path, led by its half or not."""
-    path = Simulation(model(history, led), MPI.COMM_WORLD)
-    assert path.run() is None
-    return path.states
+FOLLOWED: dict[str, Simulation] = {}
+
+
+def follow(history, led: bool) -> Simulation:
+    """Return a small finger's path, led by its half or not; each path is followed once."""
+    key = str((history, led))
+    if key not in FOLLOWED:
+        path = Simulation(model(history, led), MPI.COMM_WORLD)
+        assert path.run() is None
+        FOLLOWED[key] = path
+    return FOLLOWED[key]
 
 
 @pytest.mark.mpi
@@ -55,7 +62,7 @@ def follow(history, led: bool) -> list[ContactState]:
     ids=["press, charge, slide", "bone height", "lift"],
 )
 def test_half_leads_to_the_states_of_the_whole(history):
-    led, whole = follow(history, True), follow(history, False)
+    led, whole = (follow(history, half).states for half in (True, False))
     assert [state.load for state in led] == [state.load for state in whole]
     for mine, other in zip(led, whole, strict=True):
         for name in ("f_ext", "bone_height", "f_contact", "f_electrostatic", "contact_length", "slipping"):
@@ -65,7 +72,7 @@ def test_half_leads_to_the_states_of_the_whole(history):
 
 
 def test_state_that_the_half_leads_to_is_symmetric():
-    last = [state for state in follow(HISTORY, True) if state.load == "charge"][-1]
+    last = [state for state in follow(HISTORY, True).states if state.load == "charge"][-1]
     assert last.bone_x == 0.0
     assert abs(last.f_t) < 1e-12
     assert np.array_equal(last.ridges.d_eq, last.ridges.d_eq[::-1])
@@ -87,9 +94,8 @@ def test_stability_is_examined_on_the_whole_finger(monkeypatch):
     assert examined[:2] == ["press", "charge"]
 
 
-def test_work_of_the_half_is_counted(monkeypatch):
-    path = Simulation(model(HISTORY[:3]), MPI.COMM_SELF)
-    path.run()
+def test_work_of_the_half_is_counted():
+    path = follow(HISTORY, True)
     counted = path.finger.solver.counts.newton
     assert counted >= sum(state.record.newton_iterations for state in path.states)
 
@@ -114,8 +120,7 @@ def test_mixed_element_is_in_balance_on_the_whole_finger():
     scene = NINE | {"history": BRIEF, "mesh": MESH, "numerics": {"element": "P2-P1"}, "materials": layers}
     scene = by_rule(from_data(scene))
     assert plan(scene).symmetric_start
-    path = Simulation(FingerModel(scene, plan(scene)), MPI.COMM_WORLD)
-    assert path.run() is None
+    path = followed(scene)
     tolerance = scene.numerics.tolerance
     assert [state.record.imbalance for state in path.states if state.record.imbalance > tolerance] == []
     assert [state.record.floor for state in path.states] == [0.0] * len(path.states)
@@ -154,7 +159,7 @@ def test_no_half_where_the_finger_is_not_its_own_mirror_image(history, moves):
     """An own material may have fibres at an angle; one of the program's may not."""
     scene = from_data(NINE | {"history": history, "mesh": MESH})
     straight, inclined = (
-        plan(scene.with_laws(materials={"dermis": solid})) for solid in (NeoHooke(2.5e3), Fibres(2.5e3))
+        plan(scene.replace(materials={"dermis": solid})) for solid in (NeoHooke(2.5e3), Fibres(2.5e3))
     )
     assert (straight.both_halves, straight.symmetric_start) == (moves, moves)
     assert (inclined.both_halves, inclined.symmetric_start) == (True, False)

@@ -9,7 +9,6 @@ import pytest
 import fingerpad as fp
 from fingerpad.io.quantities import PLUS_MINUS
 from fingerpad.io.result import Result
-from fingerpad.io.result_text import text
 from fingerpad.io.states import load_result
 from fingerpad.report import trust
 from fingerpad.report.headline import head
@@ -48,15 +47,15 @@ def test_waveform_without_full_slip_is_in_the_title():
     assert "from 0.1000 to 0.4000, without full slip</h1>" in page
     words = "part of the skin sticks in every state, so that friction stays below that of sliding"
     assert page.count(words) == 2 and 'class="verdict care"' in page
-    assert words in text(found)
+    assert words in str(found)
 
 
 def test_waveform_with_some_full_slip_says_in_how_much():
     """Of the states after its begin; no reason for a caution, and nothing where all are of full slip."""
     some, every = waved(True, False, True, False), waved(True, True, True, True)
     words = "full slip in 50 % of its states; in the others part of the skin sticks"
-    assert words in head(some) and words in text(some) and "without full slip" not in head(some)
-    assert "sticks" not in head(every) + text(every)
+    assert words in head(some) and words in str(some) and "without full slip" not in head(some)
+    assert "sticks" not in head(every) + str(every)
     for found in (some, every):
         assert not any(each.what == "no full slip under a waveform" for each in trust.findings(found))
 
@@ -66,7 +65,7 @@ def test_finger_that_does_not_rub_does_not_stick():
     still = waved(False, False)
     loads = tuple(replace(load, extremes=load.extremes | {"f_t": replace(load.extremes["f_t"], min=0.0, max=0.0)})
                   for load in still.loads)  # fmt: skip
-    assert "sticks" not in head(replace(still, loads=loads)) + text(replace(still, loads=loads))
+    assert "sticks" not in head(replace(still, loads=loads)) + str(replace(still, loads=loads))
 
 
 # -- what ± holds ------------------------------------------------------------------------------------------
@@ -93,6 +92,6 @@ def test_verdict_with_a_caution_has_no_link(monkeypatch):
 
 
 def test_plus_minus_is_explained_where_it_is_printed():
-    shown = text(Result(fp.Scene(), "full", None, None, state(error=Errors(mu_app=0.0026))))
+    shown = str(Result(fp.Scene(), "full", None, None, state(error=Errors(mu_app=0.0026))))
     assert PLUS_MINUS in shown and "what the finger and the model assume is not in it" in PLUS_MINUS
-    assert PLUS_MINUS not in text(Result(fp.Scene(), "full", None, None, state()))
+    assert PLUS_MINUS not in str(Result(fp.Scene(), "full", None, None, state()))

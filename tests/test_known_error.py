@@ -3,38 +3,35 @@
 import pytest
 
 from fingerpad.io.result import Result
-from fingerpad.io.states import PREFIXES
-from fingerpad.reduced import cylinders, known
+from fingerpad.reduced import cylinder_errors, cylinders
 from fingerpad.report import trust
 from fingerpad.scene import Scene, from_data
 from tests.commands import kept
-from variational.contact.friction import Coulomb
-from variational.roughness.bam import BearingArea
+from tests.test_laws import Held
+from variational.contact.friction import Derjaguin
 
 
 def test_known_error_is_that_of_the_kept_runs():
     """The figures printed are the largest differences from the full runs in docs/models.json, rounded up to 0.1 %."""
     numbers = kept("models.json")
     runs = numbers["scenes"] | numbers["held_out"]
-    assert len(runs) == known.KNOWN_RUNS and len(numbers["held_out"]) == 4
+    assert len(runs) == cylinder_errors.KNOWN_RUNS and len(numbers["held_out"]) == 4
     points = [tuple(float(part.split()[0]) for part in name.split(",")) for name in runs]
-    assert known.KNOWN_FORCES == (min(f for f, _ in points), max(f for f, _ in points))
-    assert known.KNOWN_VOLTAGES == (min(u for _, u in points), max(u for _, u in points))
-    for model, states in known.KNOWN_ERROR.items():
-        assert set(states) == {"full_slip", "charged"}
-        for state, bands in states.items():
-            for key, largest in bands.items():
-                name = f"{PREFIXES[state]}_{key}"
-                pairs = [(each[model]["summary"][name], each["full"]["summary"][name]) for each in runs.values()]
-                worst = max(abs(ours / full - 1) for ours, full in pairs if full)
-                assert worst <= largest < worst + 1e-3, (model, name)
+    assert cylinder_errors.KNOWN_FORCES == (min(f for f, _ in points), max(f for f, _ in points))
+    assert cylinder_errors.KNOWN_VOLTAGES == (min(u for _, u in points), max(u for _, u in points))
+    assert set(cylinder_errors.KNOWN_ERROR) == {"full_slip", "charged"}
+    for state, bands in cylinder_errors.KNOWN_ERROR.items():
+        for key, largest in bands.items():
+            name = f"{state}_{key}"
+            pairs = [(each["cylinders"]["summary"][name], each["full"]["summary"][name]) for each in runs.values()]
+            worst = max(abs(ours / full - 1) for ours, full in pairs if full)
+            assert worst <= largest < worst + 1e-3, name
 
 
-@pytest.mark.parametrize("model", ["cylinders", "smooth"])
-def test_band_is_named_where_the_runs_are(model):
-    """Every quantity that has one, normal contact too; what the ± of the smooth finger's mesh does not hold."""
-    words = known.in_words(known.errors(model, from_data({"f_ext": 42.0, "voltage": -120.0})))
-    for bands in known.KNOWN_ERROR[model].values():
+def test_band_is_named_where_the_runs_are():
+    """Every quantity that has one, normal contact too."""
+    words = cylinder_errors.in_words(cylinder_errors.errors(from_data({"f_ext": 42.0, "voltage": -120.0})))
+    for bands in cylinder_errors.KNOWN_ERROR.values():
         for error in bands.values():
             assert f" {100 * error:.1f} %" in words
     assert "44 full runs at 5 to 150 N/m and 0 to 200 V" in words and "in charged normal contact" in words
@@ -51,20 +48,20 @@ def test_band_is_named_where_the_runs_are(model):
         from_data({"geometry": {"ridge_count": 21}}),
         from_data({"materials": {"dermis": {"poisson": 0.49}}}),
         from_data({"contact": {"eps_n": 2e12}}),
-        Scene().with_laws(friction=Coulomb(0.3)),
-        Scene().with_laws(closure=BearingArea(Scene().h_0)),
+        Scene(friction=Derjaguin(0.25, 1e3)),
+        Scene(roughness=Held()),
     ],
     ids=str,
 )
 def test_no_band_where_no_run_is(scene):
     """Beyond the loads, and with anything else than those runs have; a caution names it."""
-    assert known.errors("smooth", scene) == {} and len(known.cautions(scene)) == 1
+    assert cylinder_errors.errors(scene) == {} and len(cylinder_errors.cautions(scene)) == 1
 
 
 def test_answer_has_its_band_in_words_and_in_its_file(tmp_path):
     """The report's verdict has it too. With a contact length as given there is none."""
     found = cylinders.solve(Scene())
-    assert found.to_dict()["model_error"] == known.KNOWN_ERROR["cylinders"]
+    assert found.to_dict()["model_error"] == cylinder_errors.KNOWN_ERROR
     assert "attraction f_el 14.0 %" in str(found)
     read = Result.from_dict(found.to_dict())
     assert "attraction f_el 14.0 %" in trust.verdict(trust.findings(read))[1]

@@ -5,12 +5,14 @@ import json
 import numpy as np
 import pytest
 
+from fingerpad.cli import compare
 from fingerpad.io.quantities import PLUS_MINUS
 from fingerpad.io.result import Result
 from fingerpad.reduced import cylinders
-from fingerpad.runs import compare
+from fingerpad.reduced.model import STATES
 from fingerpad.scene import SceneError, from_data
-from variational.contact.friction import Coulomb
+from tests.test_laws import Held
+from variational.contact.friction import Derjaguin
 from variational.state import RESULTS
 
 
@@ -46,7 +48,7 @@ def test_default_scene_is_near_the_full_model(default):
 def test_what_it_cannot_know_is_absent(default):
     unknown = [(state, name) for state, s in default.named.items() for name in RESULTS if np.isnan(getattr(s, name))]
     assert unknown == [("charged", "bone_height"), ("full_slip", "bone_height")]
-    assert default.to_dict()["slip_bone_height"] is None and default.uncharged is None
+    assert default.to_dict()["full_slip_bone_height"] is None and default.uncharged is None
     assert any("bone's height" in note for note in default.notes)
 
 
@@ -76,8 +78,8 @@ def test_other_screen_than_the_runs_is_said():
     found = cylinders.solve(scene(friction=0.3, electric={"d_i": 2e-6}))
     assert any("known with the default friction, electric, and not here" in text for text in found.cautions)
     assert not cylinders.solve(scene(friction=0.3), cylinders.given(1.5e-3, 16)).cautions, "its length is given"
-    own = scene().with_laws(closure=scene().closure(), friction=Coulomb(0.3))
-    assert any("the default friction, closure, and not here" in text for text in cylinders.solve(own).cautions)
+    own = scene().replace(roughness=Held(), friction=Derjaguin(0.3, 1e3))
+    assert any("the default friction, roughness, and not here" in text for text in cylinders.solve(own).cautions)
 
 
 def test_state_past_the_end_of_the_closure_is_said():
@@ -111,13 +113,13 @@ def test_ridge_without_a_round_tip_is_refused():
 
 # -- lengths of a run --------------------------------------------------------------------------------------
 def keep(folder, **values):
-    names = {f"{state}_{name}": 1.0 for state in ("normal", "slip") for name in RESULTS}
-    lengths = {"normal_contact_length": 1.7e-3, "slip_contact_length": 1.6e-3}
-    ridges = {"normal_ridges_in_contact": 17, "slip_ridges_in_contact": 16}
+    names = {f"{state}_{name}": 1.0 for state in ("charged", "full_slip") for name in RESULTS}
+    lengths = {"charged_contact_length": 1.7e-3, "full_slip_contact_length": 1.6e-3}
+    ridges = {"charged_ridges_in_contact": 17, "full_slip_ridges_in_contact": 16}
     cost = {"wall_seconds": 9.0, "factorisations": 3, "unknowns": 5, "full_slip": True}
-    summary = (
-        {"f_ext": 75.0, "voltage": 200.0, "parameters": scene().parameters()} | names | lengths | ridges | cost | values
-    )
+    flat, at = names | lengths | ridges, {"f_ext": 75.0, "voltage": 200.0}
+    states = {name: at | {key: flat[f"{name}_{key}"] for key in RESULTS} for name in STATES}
+    summary = at | {"parameters": scene().parameters(), "states": states} | flat | cost | values
     (folder / "summary.json").write_text(json.dumps(summary), encoding="utf-8")
     return summary
 
@@ -135,9 +137,9 @@ def test_length_of_a_run(tmp_path, sign):
 @pytest.mark.parametrize(
     ("values", "sentence"),
     [
-        ({"model": "smooth"}, "is one of the model 'smooth'; give a full run"),
+        ({"model": "cylinders"}, "is one of the model 'cylinders'; give a full run"),
         ({"voltage": 50.0}, "is one at voltage 50 V"),
-        ({"slip_contact_length": None}, "did not reach full slip"),
+        ({"full_slip_contact_length": None}, "did not reach full slip"),
         (
             {"parameters": scene(geometry={"ridge_amplitude": 50e-6}).parameters()},
             r"is one of another finger \(its geometry.ridge_amplitude was 5e-05, and is 0.0001 now\)",
@@ -164,7 +166,9 @@ def test_missing_run_is_refused(tmp_path):
 
 def test_errors_of_a_run_stand_beside_its_values(tmp_path):
     """With what ± is; a state that comes without an error has its value alone."""
-    answer = Result.from_dict(keep(tmp_path, slip_contact_length_error=2e-5))
+    summary = keep(tmp_path)
+    summary["states"]["full_slip"]["error"] = {"contact_length": 2e-5}
+    answer = Result.from_dict(summary)
     assert answer.full_slip.error.known() == {"contact_length": 2e-5}
     lines = compare.table([answer]).splitlines()
     assert next(line for line in lines if line.startswith("full slip: contact length")).endswith("1.600 ± 0.020")

@@ -1,22 +1,32 @@
-"""Laws of one's own in a scene: closure, materials, friction and mesh, refused in one sentence or used throughout."""
+"""Laws in a scene: closure, materials, friction and mesh, as objects or as tables, refused or used throughout."""
 
 import json
 import pickle
+import re
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 import pytest
 import ufl
-from mpi4py import MPI
 
-from fingerpad.model.options import FingerModel, plan
+import fingerpad as fp
+from fingerpad.model.options import plan
 from fingerpad.model.simulation import Simulation
 from fingerpad.reduced import cylinders
-from fingerpad.scene import Scene, SceneError, from_data, laws
-from fingerpad.scene.law_source import digest
-from fingerpad.scene.laws import Laws, used
+from fingerpad.scene import CONTACT, Scene, SceneError, from_data, law_keys, load
+from fingerpad.scene import materials as scene_materials
+from fingerpad.scene.keys import docstrings
+from fingerpad.scene.law_code import digest
+from fingerpad.scene.laws import LAYERS, used
+from fingerpad.scene.materials import CLOSURES, FRICTION_LAWS, MATERIALS
+from fingerpad.scene.reading import flat
+from fingerpad.scene.schema import schema
 from geometry import tags
+from tests.runs import followed
+from tests.small_finger import NINE
+from variational.coefficients import parameter
+from variational.contact.formulation import Springs
 from variational.contact.friction import CONE_ROUNDOFF, Coulomb, Derjaguin, Friction
 from variational.materials.material import Material
 from variational.materials.neo_hooke import NeoHooke
@@ -36,6 +46,13 @@ class Held(Closure):
 
     def __call__(self, p_c):
         return AirGap(self.gap + 0 * np.asarray(p_c, dtype=float))
+
+
+@dataclass(frozen=True)
+class Insulated(Held):
+    """A closure with an insulator of its own."""
+
+    h_0: float = 0.5e-6
 
 
 @dataclass(frozen=True)
@@ -60,21 +77,19 @@ class Mine(Material):
         return self.shear_modulus / 2 * (ufl.det(F) ** (-2 / 3) * ufl.inner(F, F) - 3)
 
 
-OWN = {"closure": Held(), "materials": {"dermis": Mine(2.5e3, 6e4)}, "friction": Saturating(0.4, 2e4)}
+OWN = {"roughness": Held(), "materials": {"dermis": Mine(2.5e3, 6e4)}, "friction": Saturating(0.4, 2e4)}
 
 
 # -- in the scene ----------------------------------------------------------------------------------------------
-def test_scene_without_laws_has_its_own():
+def test_scene_has_the_laws_of_the_paper():
     scene = Scene()
-    assert not scene.laws
-    assert "laws" not in scene.parameters()
-    assert scene.closure() == scene.roughness.bearing_area(scene.h_0)
+    assert scene.closure() == BearingArea(scene.h_0)
     assert scene.friction_law() == Coulomb(0.25)
     assert scene.solids()[tags.DERMIS] == Ogden(2.55e3, -14.53, 0.48)
 
 
-def test_scene_takes_laws():
-    scene = Scene().with_laws(**OWN)
+def test_scene_takes_objects():
+    scene = Scene(**OWN)
     assert scene.closure() == Held()
     assert scene.friction_law() == OWN["friction"]
     solids = scene.solids()
@@ -83,66 +98,199 @@ def test_scene_takes_laws():
     assert set(solids) == set(tags.LAYERS.values())
 
 
+TABLES = {
+    "roughness": {"law": f"{__name__}:Held", "gap": 2e-6},
+    "materials": {"dermis": {"law": f"{__name__}:Mine", "shear_modulus": 2.5e3, "bulk": 6e4}},
+    "friction": {"law": f"{__name__}:Saturating", "mu_f": 0.4, "t_most": 2e4},
+}
+
+
+@pytest.mark.parametrize(
+    ("table", "given"),
+    [
+        (TABLES, OWN),
+        ({"friction": {"law": "Derjaguin", "mu_f": 0.3, "tau_0": "5 kPa"}}, {"friction": DERJAGUIN}),
+        ({"friction": {"law": "Coulomb", "mu_f": 0.4}}, {"friction": 0.4}),
+        ({"friction": {"mu_f": 0.4}}, {"friction": Coulomb(0.4)}),
+        ({"materials": {"nail": {"law": "NeoHooke", "shear_modulus": 1e7}}}, {"materials": {"nail": NeoHooke(1e7)}}),
+        ({"materials": {"nail": {"poisson": 0.2}}}, {"materials": {"nail": SaintVenant(170e6, 0.2)}}),
+        ({"roughness": {"h_rms": "2 um"}}, {"roughness": BearingArea(Scene().h_0, h_rms=2e-6)}),
+    ],
+    ids=lambda value: "-".join(value),
+)
+def test_table_and_object_are_one_value(table, given):
+    """By the way of a file too: what is written of either gives the same scene again."""
+    scene = Scene(**table)
+    assert scene == Scene(**given)
+    assert Scene(**json.loads(json.dumps(scene.parameters(), allow_nan=False))) == scene
+
+
 def test_laws_are_kept_by_copies():
-    scene = Scene().with_laws(**OWN)
-    assert scene.model_copy(update={"f_ext": 10.0}).laws == scene.laws
+    scene = Scene(**OWN)
+    assert scene.model_copy(update={"f_ext": 10.0}).closure() == Held()
     assert pickle.loads(pickle.dumps(scene)) == scene != Scene()
 
 
 def test_laws_are_kept_by_changes():
-    """But for friction, whose number takes the place of a law: a series of runs over it is one over it."""
-    scene = Scene().with_laws(**OWN)
-    assert scene.replace(f_ext=10.0).laws == scene.laws
+    """A law in place of another one is a change like any other; a table of some parameters keeps the rest."""
+    scene = Scene(**OWN)
     changed = scene.replace(friction=0.1)
-    assert changed.friction_law() == Coulomb(0.1)
-    assert changed.closure() == Held()
-
-
-def test_laws_are_added_to_those_there_are():
-    scene = Scene().with_laws(materials={"dermis": NeoHooke(2e3)}).with_laws(materials={"nail": NeoHooke(1e7)})
-    assert set(scene.with_laws(friction=0.1).laws.materials) == {"dermis", "nail"}
+    assert (changed.friction_law(), changed.closure()) == (Coulomb(0.1), Held())
+    changed = scene.replace(friction={"mu_f": 0.2}, materials={"nail": NeoHooke(1e7)})
+    assert changed.friction == Saturating(0.2, 2e4)
+    assert (changed.materials.dermis, changed.materials.nail) == (Mine(2.5e3, 6e4), NeoHooke(1e7))
+    assert changed.replace(friction={"law": "Derjaguin", "mu_f": 0.3, "tau_0": 5e3}).friction == DERJAGUIN
 
 
 @pytest.mark.parametrize(("given", "law"), [(0.4, Coulomb(0.4)), (0, None), (0.0, None), (DERJAGUIN, DERJAGUIN)])
 def test_friction_is_a_law_or_a_coefficient(given, law):
-    assert Scene().with_laws(friction=given).friction_law() == law
+    assert Scene(friction=given).friction_law() == law
 
 
 def test_model_has_friction_where_the_law_is_one():
-    assert plan(from_data({"friction": 0.0}).with_laws(friction=DERJAGUIN)).friction
-    assert not plan(Scene().with_laws(friction=0.0)).friction
+    assert plan(Scene(friction=DERJAGUIN)).friction
+    assert not plan(Scene(friction=0.0)).friction
+
+
+@dataclass(frozen=True)
+class OfArrays(Mine):
+    """A material written with NumPy's functions."""
+
+    def energy(self, F):
+        return self.shear_modulus * np.tanh(F[0, 0])
+
+
+class NoData(Closure):
+    """A closure that is no dataclass."""
+
+    def __call__(self, p_c):
+        return AirGap(2e-6 + 0 * np.asarray(p_c, dtype=float))
 
 
 @pytest.mark.parametrize(
     ("given", "sentence"),
     [
-        (
-            {"materials": {"derms": NeoHooke(1e3)}},
-            "materials has 'derms', which is no layer; layers are",
-        ),
-        ({"materials": {"dermis": 2.5e3}}, "materials['dermis'] is 2500; it must be a Material"),
-        ({"materials": NeoHooke(1e3)}, "it must be a table of materials by layer"),
-        ({"materials": {"dermis": NeoHooke(-1.0)}}, "materials['dermis']: NeoHooke(shear_modulus=-1.0, poisson=0.48)"),
-        ({"closure": 2e-6}, "closure is 2e-06; it must be a Closure"),
-        ({"closure": Held(-1e-6)}, "closure Held returns an air gap of -1e-06 m at a pressure of 0 Pa"),
-        ({"closure": Held(float("nan"))}, "closure Held returns an air gap of nan m"),
-        ({"friction": "smooth"}, "friction is 'smooth'; it must be a Friction, a friction coefficient"),
-        ({"friction": Derjaguin(0.3, -5e3)}, "it must be finite and not negative"),
-        ({"mesh": 3}, "mesh is 3; it must be the path of a file"),
-        ({"mesh": "nowhere.msh"}, "mesh is 'nowhere.msh', and there is no such file"),
+        ({"materials": {"derms": NeoHooke(1e3)}}, "materials.derms is not a key of materials; did you mean"),
+        ({"materials": {"dermis": 2.5e3}}, "materials.dermis is 2500; it must be a table of keys"),
+        ({"materials": {"dermis": DERJAGUIN}}, "contact.friction:Derjaguin'; it must be a Material"),
+        ({"materials": {"dermis": NeoHooke(-1.0)}}, "dermis.shear_modulus is -1 Pa; it must be from 1 to 1e+12 Pa"),
+        ({"materials": {"dermis": OfArrays(2.5e3, 6e4)}}, "materials.dermis: the energy of OfArrays"),
+        ({"materials": {"dermis": Ogden(1e3, 2.0, convention="abaqus")}}, "dermis.convention is 'abaqus'"),
+        ({"roughness": 2e-6}, "roughness is 2e-06; it must be a table of keys"),
+        ({"roughness": NoData()}, "NoData'; a law must be a @dataclass(frozen=True)"),
+        ({"roughness": BearingArea(2e-6)}, "roughness.h_0 is 2e-06 and the scene has 5.13986"),
+        ({"roughness": Held(-1e-6)}, "roughness: closure Held returns an air gap of -1e-06 m at a pressure of 0 Pa"),
+        ({"roughness": Held(float("nan"))}, "roughness.gap is nan; it must be a finite number"),
+        ({"friction": "smooth"}, "friction is 'smooth'; it must be a number"),
+        ({"friction": Derjaguin(0.3, -5e3)}, "friction.tau_0 is -5000 Pa; it must be 0 or from 0.001 to 1e+09 Pa"),
+        ({"friction": Saturating(0.4, lambda p: p)}, "friction.t_most is"),
+        ({"friction": {"law": "Derjagun"}}, "friction.law is 'Derjagun'; it must be 'Coulomb', 'Derjaguin' or a law"),
+        ({"friction": {"law": "Derjaguin", "mu_f": 0.3}}, "friction.tau_0 is missing; it must be given"),
+        ({"friction": {"mu_f": 0.3, "tau_0": 5e3}}, "friction.tau_0 is not a key of friction with the law Coulomb"),
+        ({"friction": {"law": "Derjaguin", "mu_f": 0.3, "tau_0": "5 mm"}}, "friction.tau_0 is '5 mm'; its unit"),
+        ({"friction": {"law": 3}}, "friction.law is 3; it must be 'Coulomb', 'Derjaguin' or a law of your own"),
+        ({"geometry": {"file": 3}}, "geometry.file is 3; it must be text"),
+        ({"geometry": {"file": "nowhere.msh"}}, "geometry.file is 'nowhere.msh', and there is no such file"),
     ],
-)
+)  # fmt: skip
 def test_what_is_no_law_is_refused(given, sentence):
     with pytest.raises(SceneError) as error:
-        Scene().with_laws(**given)
+        Scene(**given)
     assert sentence in str(error.value)
     assert "\n" not in str(error.value)
 
 
-def test_files_hold_no_laws():
-    for make in (from_data, lambda data: Scene(**data)):
-        with pytest.raises(SceneError, match="laws is no key, since no file can hold one; give laws from Python"):
-            make({"laws": {"friction": {"mu_f": 0.3}}})
+@pytest.mark.parametrize("solid", [NeoHooke, Ogden, SaintVenant], ids=repr)
+def test_incompressible_solid_is_refused(solid):
+    values = {"shear_modulus": 2e3, "alpha": -14.0, "young": 1e6, "poisson": 0.5}
+    law = solid(**{name: values[name] for name in law_keys.keys_of(solid)})
+    with pytest.raises(SceneError, match="materials.dermis.poisson is 0.5; it must be from -0.9 to 0.4999"):
+        Scene(materials={"dermis": law})
+    with pytest.raises(ValueError, match="moduli that are divided by zero; poisson must be above -1 and below 0.5"):
+        law.check()  # of a body
+
+
+def test_closure_of_one_s_own_has_the_insulator_of_the_attraction():
+    """Otherwise air gaps and attraction are of two insulators."""
+    with pytest.raises(SceneError, match="the closure Insulated has h_0 = 2e-06 m, and the attraction has .* 5.13986"):
+        Scene(roughness=Insulated(h_0=2e-6))
+    scene = Scene(roughness=Insulated(h_0=Scene().h_0 * (1 + 1e-9)))
+    with pytest.raises(SceneError, match="the two must be the same"):
+        scene.replace(geometry={"sc_thickness": 250e-6})
+
+
+def test_closure_of_the_package_follows_the_insulator():
+    found = Scene(roughness=BearingArea(Scene().h_0, h_rms=2e-6)).replace(geometry={"sc_thickness": 250e-6})
+    assert found.closure() == BearingArea(found.h_0, h_rms=2e-6)
+
+
+# -- recipes of CONTRIBUTING -----------------------------------------------------------------------------------
+@dataclass(frozen=True)
+class Softer(Mine):
+    shear_modulus: float = parameter(1.0, 1e6, "Pa", default=2.5e3)
+    """Shear modulus (Pa)."""
+    bulk: float = parameter(1.0, 1e9, "Pa", default=6e4)
+    """Bulk modulus (Pa)."""
+
+
+@dataclass(frozen=True)
+class Stuck(Saturating):
+    mu_f: float = parameter(0.1, 1.0)
+    """Coefficient."""
+    t_most: float = parameter(1.0, 1e6, "Pa", default=2e4)
+    """Strength (Pa)."""
+
+
+@dataclass(frozen=True)
+class Wide(Held):
+    gap: float = parameter(1e-9, 1e-3, "m", default=2e-6)
+    """Gap (m)."""
+
+
+@dataclass(frozen=True)
+class OneSpring(fp.Formulation):
+    eps: float = parameter(1e7, 1e17, "Pa/m", default=1.5e12)
+    """Stiffness (Pa/m)."""
+
+    def springs(self, skin):
+        return Springs(0.0, 0.0, skin.constant(self.eps), skin.constant(self.eps))
+
+
+@pytest.mark.parametrize(
+    ("kind", "law", "table", "key"),
+    [
+        (MATERIALS, Softer, {"materials": {"dermis": {"law": "Softer", "bulk": "60 kPa"}}}, "materials.dermis.bulk"),
+        (FRICTION_LAWS, Stuck, {"friction": {"law": "Stuck", "mu_f": 0.4, "t_most": "20 kPa"}}, "friction.t_most"),
+        (CLOSURES, Wide, {"roughness": {"law": "Wide", "gap": "2 um"}}, "roughness.gap"),
+        (CONTACT.kind, OneSpring, {"contact": {"formulation": "OneSpring", "eps": "1.5e12 Pa/m"}}, "contact.eps"),
+    ],
+    ids=["material", "friction", "closure", "formulation"],
+)  # fmt: skip
+def test_law_of_the_package_is_one_line_of_a_registry(kind, law, table, key, monkeypatch):
+    """Its name, units, ranges and words are then those of scene files, refusals, the schema and fingerpad's names."""
+    monkeypatch.setitem(kind.laws, law.__name__, law)
+    scene = Scene(**table)
+    assert law.__name__ in " ".join(used(scene).values()) and law in map(type, scene.laws().values())
+    assert Scene(**json.loads(json.dumps(scene.parameters()))) == scene
+    assert getattr(fp, law.__name__) is law
+    assert law.__name__ in json.dumps(schema())
+    words = {docstrings(law)[name] for name in law_keys.keys_of(law)}
+    assert words <= set(re.findall('"description": "([^"]*)"', json.dumps(schema())))
+    with pytest.raises(SceneError, match=f"{key} is '1 s'; its unit is not a unit of"):
+        load(None, flat(table) | {key: "1 s"})
+    cylinders.solve(scene, cylinders.given(1.5e-3, 15))
+
+
+def test_registries_of_the_recipes_are_there():
+    """Each row of CONTRIBUTING for a law names a folder and a registry, which this test's laws were added to."""
+    rows = (Path(__file__).parents[1] / "CONTRIBUTING.md").read_text(encoding="utf-8").splitlines()
+    names = {"friction law": "FRICTION_LAWS", "material": "MATERIALS", "model of roughness": "CLOSURES"}
+    for what, name in names.items():
+        row = next(row for row in rows if row.startswith(f"| {what} |"))
+        assert f"`{name}` in `fingerpad/scene/materials.py`" in row and hasattr(scene_materials, name)
+    assert "`FORMULATIONS` in `fingerpad/scene/parameters.py`" in next(
+        row for row in rows if row.startswith("| contact formulation |")
+    )
 
 
 # -- scenes apart ----------------------------------------------------------------------------------------------
@@ -154,19 +302,31 @@ def test_parameters_tell_laws_apart(tmp_path):
         *({name: law} for name, law in OWN.items()),
         {"friction": Saturating(0.4, 3e4)},
         {"friction": Coulomb(0.4)},
+        {"geometry": {"file": file}},
     ]
-    scenes = [Scene(), *(Scene().with_laws(**one) for one in given), Scene().with_laws(mesh=file)]
+    scenes = [Scene(), *(Scene(**one) for one in given)]
     texts = [json.dumps(scene.parameters(), sort_keys=True, allow_nan=False) for scene in scenes]
     assert len(set(texts)) == len(texts)
-    again = Scene().with_laws(friction=Saturating(0.4, 20000))
+    again = Scene(friction=Saturating(0.4, 20000))
     assert json.dumps(again.parameters(), sort_keys=True) == texts[3]
     file.write_text("other", encoding="utf-8")
-    assert json.dumps(Scene().with_laws(mesh=file).parameters(), sort_keys=True) != texts[-1]
+    assert json.dumps(Scene(geometry={"file": file}).parameters(), sort_keys=True) != texts[-1]
+
+
+def test_mesh_is_read_when_it_is_given(tmp_path):
+    """A run of hours ends with the hash of what it began with, be the file gone."""
+    file = tmp_path / "mine.msh"
+    file.write_text("one", encoding="utf-8")
+    scene = Scene(geometry={"file": file})
+    before = scene.parameters()
+    file.unlink()
+    assert scene.parameters() == before
+    assert len(before["geometry"]["file_sha256"]) == 64
 
 
 def test_names_of_the_laws():
-    found = used(Scene().with_laws(**OWN))
-    assert set(found) == {*laws.LAYERS, "contact", "friction", "attraction", "closure"}
+    found = used(Scene(**OWN))
+    assert set(found) == {*LAYERS, "contact", "friction", "attraction", "closure"}
     assert found["dermis"] == "Mine(shear_modulus=2500, bulk=60000)"
     assert found["subcutis"] == "Ogden(shear_modulus=25000, alpha=5, poisson=0.48, convention='printed')"
     assert found["nail"] == "SaintVenant(young=170000000, poisson=0.3)"
@@ -180,100 +340,11 @@ def test_names_of_what_is_left_out():
     assert (found["friction"], found["attraction"], found["closure"]) == ("none", "none", "none")
 
 
-def test_names_are_those_of_the_objects():
-    """What is named without finite elements is what the finite elements are given."""
-    scene = Scene()
-    for layer, tag in laws.LAYERS.items():
-        assert used(scene)[layer] == laws._words(scene.solids()[tag])
-    assert used(scene)["contact"] == laws._words(scene.contact.law())
-
-
-# -- laws beside keys ------------------------------------------------------------------------------------------
-def test_number_is_the_key_friction():
-    """A number is no law: what is read of the scene is what acts."""
-    scene = Scene().with_laws(friction=DERJAGUIN).with_laws(friction=0.4)
-    assert scene == Scene().replace(friction=0.4)
-    assert (scene.friction, scene.parameters()["friction"], scene.laws.friction) == (0.4, 0.4, None)
-
-
-def test_layer_is_named_by_key_or_by_name():
-    one, other = (Scene().with_laws(materials={name: NeoHooke(2e3)}) for name in ("nail_bed", "nail bed"))
-    assert one == other
-    assert other.solids()[tags.NAIL_BED] == NeoHooke(2e3)
-    with pytest.raises(SceneError, match="materials has the layer 'nail_bed' twice, by its key and by its name"):
-        one.with_laws(materials={"nail bed": NeoHooke(1e3), "nail_bed": NeoHooke(2e3)})
-
-
-@pytest.mark.parametrize(
-    ("law", "change", "sentence"),
-    [
-        (
-            {"closure": Held()},
-            {"roughness": {"h_rms": 2e-6}},
-            "roughness is changed, and the scene has the closure Held",
-        ),
-        (
-            {"materials": {"dermis": NeoHooke(2e3)}},
-            {"materials": {"dermis": {"poisson": 0.4}}},
-            "materials.dermis is changed, and the scene has the material NeoHooke",
-        ),
-    ],
-)
-def test_key_that_a_law_replaces_is_not_changed(law, change, sentence):
-    with pytest.raises(SceneError, match=sentence):
-        Scene().with_laws(**law).replace(**change)
-    assert Scene().with_laws(**law).replace(materials={"subcutis": {"poisson": 0.4}}, f_ext=10.0).f_ext == 10.0
-
-
-def test_closure_has_the_insulator_of_the_attraction():
-    """Equal but for roundoff; otherwise air gaps and attraction are of two insulators."""
-    h_0 = Scene().h_0
-    scene = Scene().with_laws(closure=BearingArea(h_0 * (1 + 1e-9)))
-    with pytest.raises(
-        SceneError, match="the closure BearingArea has h_0 = 2e-06 m, and the attraction has .* 5.13986"
-    ):
-        scene.with_laws(closure=BearingArea(2e-6))
-    with pytest.raises(SceneError, match="the two must be the same"):
-        scene.replace(geometry={"sc_thickness": 250e-6})
-
-
-def test_mesh_is_read_when_it_is_given(tmp_path):
-    """A run of hours ends with the hash of what it began with, be the file gone."""
-    file = tmp_path / "mine.msh"
-    file.write_text("one", encoding="utf-8")
-    scene = Scene().with_laws(mesh=file)
-    before = scene.parameters()
-    file.unlink()
-    assert scene.parameters() == before
-    assert len(before["laws"]["mesh"]["sha256"]) == 64
-
-
-@pytest.mark.parametrize("solid", [NeoHooke(2e3, 0.5), Ogden(2e3, -14.0, 0.5), SaintVenant(1e6, 0.5)], ids=repr)
-def test_incompressible_solid_is_refused(solid):
-    with pytest.raises(SceneError, match="moduli that are divided by zero; poisson must be above -1 and below 0.5"):
-        Scene().with_laws(materials={"dermis": solid})
-
-
-@dataclass(frozen=True)
-class OfArrays(Mine):
-    """A material written with NumPy's functions."""
-
-    def energy(self, F):
-        return self.shear_modulus * np.tanh(F[0, 0])
-
-
-def test_energy_that_ufl_cannot_hold_is_refused():
-    with pytest.raises(SceneError, match="energy of OfArrays.*, to be written with arithmetic and ufl's functions"):
-        Scene().with_laws(materials={"dermis": OfArrays(2.5e3, 6e4)})
-
-
 # -- all at once -----------------------------------------------------------------------------------------------
-SMALL = {
+SMALL = NINE | {
     "f_ext": 1.0,
     "voltage": 100.0,
     "slide_length": 1e-3,
-    "geometry": {"ridge_count": 9},
-    "mesh": {"contact": 40e-6, "receptor": 100e-6, "interface": 200e-6, "growth": 1.0, "touching_half_arc": 1.0e-3},
     "output": {"errors": False, "receptors": False},
 }
 
@@ -281,9 +352,8 @@ SMALL = {
 @pytest.fixture(scope="module")
 def slid() -> Simulation:
     """A small finger with a closure, a dermis and a friction law of one's own, pressed, charged and slid."""
-    scene = from_data(SMALL).with_laws(**OWN)
-    simulation = Simulation(FingerModel(scene, plan(scene)), MPI.COMM_WORLD)
-    simulation.run()
+    scene = from_data(SMALL | OWN)
+    simulation = followed(scene)
     return simulation
 
 
@@ -325,17 +395,16 @@ def test_energies_of_own_laws_balance(slid):
 
 
 def test_laws_of_a_run_tell_its_folder():
-    """Kept results are found by the parameters, which have the laws with module and numbers."""
-    given = Laws(**OWN).parameters()
-    law = {"law": f"{Saturating.__module__}.Saturating", "source code": digest(Saturating)}
-    assert given["friction"] == law | {"mu_f": 0.4, "t_most": 2e4}
-    assert given["materials"]["dermis"]["bulk"] == 6e4
-    assert Path(__file__).stem in given["closure"]["law"]
+    """Kept results are found by the parameters, which have the laws with module, numbers and the hash of their file."""
+    given = Scene(**OWN).parameters()
+    assert given["friction"] == TABLES["friction"] | {"sha256": digest(Saturating)}
+    assert given["materials"]["dermis"] == TABLES["materials"]["dermis"] | {"sha256": digest(Mine)}
+    assert given["roughness"] == TABLES["roughness"] | {"sha256": digest(Held)}
 
 
 def test_answers_name_their_laws():
     """The summary of a model has every law in words."""
-    scene = Scene().with_laws(friction=DERJAGUIN)
+    scene = Scene(friction=DERJAGUIN)
     summary = json.loads(json.dumps(cylinders.solve(scene).to_dict(), allow_nan=False))
     assert summary["laws"] == used(scene)
-    assert summary["parameters"]["laws"]["friction"]["tau_0"] == 5e3
+    assert summary["parameters"]["friction"]["tau_0"] == 5e3

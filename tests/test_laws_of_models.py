@@ -1,11 +1,9 @@
 """Laws of one's own in the reduced models, and in the rule of thumb."""
 
-import json
-
 import pytest
 
-from fingerpad.model import touching
-from fingerpad.reduced import cylinders, ridge_cell, smooth
+from fingerpad.model import feasibility
+from fingerpad.reduced import cylinders
 from fingerpad.scene import Scene, SceneError, laws
 from tests.test_laws import DERJAGUIN, OWN, Held
 from variational.contact.friction import Coulomb, Derjaguin
@@ -16,7 +14,7 @@ from variational.materials.ogden import Ogden
 def test_cylinders_take_any_friction_law():
     """f_T is the limit at each state's mean pressure over its length. Tolerance: roundoff."""
     for law in (DERJAGUIN, OWN["friction"], Coulomb(0.25)):
-        slip = cylinders.solve(Scene().with_laws(friction=law)).full_slip
+        slip = cylinders.solve(Scene(friction=law)).full_slip
         length = slip.contact_length
         assert slip.f_t == pytest.approx(law.limit(slip.f_contact / length) * length, rel=1e-14)
         assert slip.mu_app == pytest.approx(slip.f_t / 75.0, rel=1e-14)
@@ -24,14 +22,14 @@ def test_cylinders_take_any_friction_law():
 
 def test_cylinders_take_any_closure():
     """Each ridge is Maugis's cylinder at the closure's own gap."""
-    found = cylinders.solve(Scene().with_laws(closure=Held()))
-    assert found.record["slip_d_eq"] == 2e-6
+    found = cylinders.solve(Scene(roughness=Held()))
+    assert found.record["full_slip_d_eq"] == 2e-6
     assert found.full_slip.f_electrostatic != cylinders.solve(Scene()).full_slip.f_electrostatic
 
 
 def test_cylinders_know_the_default_fingers_lengths_alone():
-    scene = Scene().with_laws(materials={"stratum_corneum": NeoHooke(1e5)})
-    with pytest.raises(SceneError, match="materials are given for stratum_corneum, and a contact length is known of"):
+    scene = Scene(materials={"stratum_corneum": NeoHooke(1e5)})
+    with pytest.raises(SceneError, match="materials is not that of the default finger, whose contact length is known"):
         cylinders.solve(scene)
     given = cylinders.given(1.5e-3, 15)
     own, default = (cylinders.solve(one, given).full_slip.f_electrostatic for one in (scene, Scene()))
@@ -40,46 +38,19 @@ def test_cylinders_know_the_default_fingers_lengths_alone():
 
 def test_modulus_of_the_skin_is_the_given_materials():
     """The same solid given as a key and as an object has the same modulus. Tolerance: roundoff."""
-    own = Scene().with_laws(materials={"stratum_corneum": Ogden(86.76e3, -14.53, 0.48)})
+    own = Scene(materials={"stratum_corneum": Ogden(86.76e3, -14.53, 0.48)})
     assert laws.skin_modulus(own) == pytest.approx(laws.skin_modulus(Scene()), rel=1e-12)
 
 
-def test_smooth_finger_takes_a_coefficient_alone(tmp_path):
-    with pytest.raises(SceneError, match=r"friction is Derjaguin\(.*so that it takes a friction coefficient alone"):
-        smooth.solve(Scene().with_laws(friction=DERJAGUIN), tmp_path)
-
-
-def test_reduced_models_take_no_mesh(tmp_path):
+def test_cylinders_take_no_mesh(tmp_path):
     file = tmp_path / "mine.msh"
     file.write_text("", encoding="utf-8")
-    scene = Scene().with_laws(mesh=file)
-    for solve in (cylinders.solve, lambda scene: smooth.solve(scene, tmp_path)):
-        with pytest.raises(SceneError, match="answers for fingers of the scene's own geometry"):
-            solve(scene)
-
-
-def test_layer_of_another_material_between_walls():
-    """The stretch under a pressure is a root of the material's own stress, here of the same solid in another form."""
-    neo, ogden = NeoHooke(2.5e3, 0.48), Ogden(2.5e3, 2.0, 0.48, "abaqus")
-    assert ridge_cell.confined(neo, 2e4) == pytest.approx(ridge_cell.confined(ogden, 2e4), rel=1e-12)
-
-
-def test_tables_of_a_ridge_depend_on_its_laws():
-    names = [
-        json.dumps(ridge_cell._made_of(scene), sort_keys=True)
-        for scene in (
-            Scene(),
-            Scene().with_laws(closure=Held()),
-            Scene().with_laws(materials={"dermis": NeoHooke(2e3)}),
-            Scene().with_laws(friction=0.3),
-        )
-    ]
-    assert len(set(names)) == 4
-    subcutis = Scene().with_laws(materials={"subcutis": NeoHooke(2e3)})  # not in the cell
-    assert json.dumps(ridge_cell._made_of(subcutis), sort_keys=True) == names[0]
+    scene = Scene(geometry={"file": file})
+    with pytest.raises(SceneError, match="answers for fingers of the scene's own geometry"):
+        cylinders.solve(scene)
 
 
 def test_rule_of_thumb_takes_a_law():
     """More friction rolls the finger further, by the coefficient at a ridge's pressure."""
-    plain, rough = (touching.by_rule(Scene().with_laws(friction=law)) for law in (Coulomb(0.25), Derjaguin(0.25, 2e4)))
+    plain, rough = (feasibility.by_rule(Scene(friction=law)) for law in (Coulomb(0.25), Derjaguin(0.25, 2e4)))
     assert rough.mesh.touching_half_arc > plain.mesh.touching_half_arc

@@ -110,25 +110,18 @@ def test_forces_of_the_rim_add_up(space, layout):
     assert_allclose(layout.rigid_part(f), [2, -3], rtol=1e-13)
 
 
-def test_matrix_is_the_reduced_one(space, layout):
-    """The matrix times the unknowns of u is T^T times the action on u. Tolerance: roundoff of some thirty terms."""
-    A, f = matrix(layout, space), smooth(space)
-    nodal = fem.assemble_vector(fem.form(ufl.action(bilinear(space), f))).array
+@pytest.mark.parametrize("transposed", [False, True])
+def test_matrix_is_the_reduced_one(space, layout, transposed):
+    """The matrix times the unknowns of u is T^T times the action on u. Tolerance: roundoff of some thirty terms.
+
+    The same for the rows: the product of the transposed matrix and the action of the adjoint form.
+    """
+    A, f, form = matrix(layout, space), smooth(space), bilinear(space)
+    nodal = fem.assemble_vector(fem.form(ufl.action(ufl.adjoint(form) if transposed else form, f))).array
     expected, product = layout.create_vector(), layout.create_vector()
     expected.set(0.0)
     layout.add_to_unknowns(nodal, expected)
-    A.mult(unknowns(layout, f), product)
-    assert_allclose(product.array_r, expected.array_r, rtol=0, atol=1e-13 * expected.norm(3))
-
-
-def test_transposed_matrix_is_the_reduced_one(space, layout):
-    """The same for the rows: the product of the transposed matrix and the action of the adjoint form."""
-    A, f = matrix(layout, space), smooth(space)
-    nodal = fem.assemble_vector(fem.form(ufl.action(ufl.adjoint(bilinear(space)), f))).array
-    expected, product = layout.create_vector(), layout.create_vector()
-    expected.set(0.0)
-    layout.add_to_unknowns(nodal, expected)
-    A.multTranspose(unknowns(layout, f), product)
+    (A.multTranspose if transposed else A.mult)(unknowns(layout, f), product)
     assert_allclose(product.array_r, expected.array_r, rtol=0, atol=1e-13 * expected.norm(3))
 
 

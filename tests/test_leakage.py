@@ -6,10 +6,9 @@ import pytest
 
 import fingerpad as fp
 from fingerpad.calculator.page import page
-from fingerpad.cli import main
+from fingerpad.cli import compare, main
 from fingerpad.io.over_time import NOTE
 from fingerpad.reduced import cylinders
-from fingerpad.runs import compare
 from fingerpad.scene import Scene, from_data
 from fingerpad.scene.remarks import LEAKAGE, leakage, remarks
 from tests.small_finger import SMALL

@@ -4,6 +4,7 @@ import json
 import os
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 import fingerpad as fp
@@ -13,7 +14,6 @@ from fingerpad.io.checkpoint import Checkpoint
 from fingerpad.io.files import Table, lock_file, replace
 from fingerpad.io.place import Place, PlaceError, Serial
 from fingerpad.scene import SceneError
-from fingerpad.slices.traces import folder_of
 
 
 @pytest.fixture
@@ -66,8 +66,6 @@ def test_folder_may_be_reached_by_a_link(out, tmp_path):
 @pytest.mark.parametrize(
     ("name", "start"),
     [
-        ("charged", lambda out: folder_of(out, "charged")),
-        ("ridge_tables", lambda out: fp.run(model="smooth", out=out)),
         ("full", lambda out: fp.sweep(out=out, voltage=[100], quiet=True)),
         ("full", lambda out: main(["compare", "--out", str(out), "--model", "full", "--quiet"]) and None),
     ],
@@ -98,7 +96,7 @@ def test_writers_take_the_place_of_a_link(out, victim):
     Table(out / "a.csv", {"x": 1}).close()
     style.save(style.figure(1.0), out / "a.png")
     replace(out / "a.html", "page")
-    Checkpoint(out, {}, {}).write(1, [], {})
+    Checkpoint(out, {}, {}).write({"x": np.zeros(1)})
     assert not any((out / name).is_symlink() for name in ("a.csv", "a.png", "a.html", "checkpoint"))
     assert json.loads((out / "checkpoint" / "head.json").read_text())["format"] == 1
 

@@ -14,16 +14,18 @@ from fingerpad.io.drawing import Drawing
 from fingerpad.io.over_time import NOTE, without_parts_of_jumps
 from fingerpad.io.result import Result
 from fingerpad.io.states import load_result
-from fingerpad.model.course import Course
+from fingerpad.model.feasibility import by_rule
 from fingerpad.model.options import FingerModel, plan
+from fingerpad.model.schedule import targets
 from fingerpad.model.simulation import Simulation
-from fingerpad.model.touching import by_rule
 from fingerpad.report.run_page import page
 from fingerpad.runs import full
+from fingerpad.runs.context import RunContext
 from fingerpad.scene import Load, Scene, from_data
 from fingerpad.scene.waveform import SAMPLES
 from variational.state import ContactState
 
+pytestmark = pytest.mark.slow
 SMALL = tomllib.loads((Path(__file__).parents[1] / "demos/scenes/small_finger.toml").read_text(encoding="utf-8"))
 FINGER = {
     "geometry": SMALL["geometry"],
@@ -201,17 +203,22 @@ def test_first_load_over_time_begins_unloaded():
 def test_course_of_a_square():
     """Its jumps are cut into steps, its plateaus are not; what is done is counted in time, not by the pieces."""
     load = Load(name="wave", duration=2 / 60, voltage=WAVE | {"waveform": "square"})
-    course = Course([load], 1.0)
-    targets = course.targets(load, 0.0)
-    jumps = [after for before, after in pairwise(targets) if before.voltage != after.voltage]
-    assert len(jumps) == 3 and not any(target.continues for target in jumps)
-    assert sum(target.continues for target in targets) == len(targets) - 1 - len(jumps)
-    done = []
-    for target in targets:
-        time = course.time(target, 1.0, 0.0)
-        assert course.done(target, 1.0) == pytest.approx(time * 60 / 2, abs=1e-12)
-        done.append(course.done(target, 1.0))
-    assert done == sorted(done) and done[-1] == 1.0
+    pieces = targets(load, 0.0, 1.0)
+    jumps = [after for before, after in pairwise(pieces) if before.voltage != after.voltage]
+    assert len(jumps) == 3 and not any(target.continues or target.duration for target in jumps)
+    assert sum(target.continues for target in pieces) == len(pieces) - 1 - len(jumps)
+    assert sum(target.duration for target in pieces) == pytest.approx(2 / 60, rel=1e-12)
+    asked, done = scene(PRESS, load.model_dump(exclude_none=True)), dict[int, float]()
+    made = Simulation(
+        FingerModel(by_rule(asked), plan(asked)),
+        MPI.COMM_WORLD,
+        lambda step, part: done.update({step.state.step: 2 * part - 1}),
+    )
+    made.run()
+    wave = [state for state in made.states if state.load == "wave"]
+    found = [done[state.step] for state in wave]
+    assert found == sorted(found) and found[-1] == 1.0
+    assert found == pytest.approx([state.time * 60 / 2 for state in wave], abs=1e-12)
 
 
 @pytest.mark.mpi
@@ -255,7 +262,7 @@ def test_square_of_a_file_is_the_square():
 
 # -- results -------------------------------------------------------------------------------------------
 def result(*loads: dict, out: Path | None = None, **more) -> Result:
-    return full.run(scene(*loads, **more), out, MPI.COMM_WORLD, lines=False, bar=False)
+    return full.run(scene(*loads, **more), RunContext(out, bar=False))
 
 
 def test_results_of_a_run(tmp_path):
@@ -316,7 +323,7 @@ def test_mean_from_steps_that_are_too_long_is_told(tmp_path):
         {"name": "back", "bone_x_by": -5e-4, "speed": 1e-3},
         {"name": "lift", "bone_height": 5e-5, "duration": 1.0},
     ]
-    long, short = (full.run(scene(*loads, numerics={"step_scale": part}), None, MPI.COMM_WORLD) for part in (1, 0.1))
+    long, short = (full.run(scene(*loads, numerics={"step_scale": part}), RunContext()) for part in (1, 0.1))
     told = [note.split(" the mean ")[0] for note in long.cautions]
     assert told == ["In the load back", "In the load lift"]
     assert not any("In the load back" in text for text in short.cautions)

@@ -122,9 +122,9 @@ def test_apparent_areas_are_those_of_the_whole_finger(grid, key, changed, verdic
 )
 def test_friction_over_the_load(grid, power, verdicts):
     """Independent of the load, falling, a power of the load, and five times higher: by µ of the runs at 0 V."""
-    f_t = np.array(grid.fine["slip_f_t"])
+    f_t = np.array(grid.fine["full_slip_f_t"])
     f_t[:, 0] = 0.25 * np.array(FORCES) ** (1 + power)
-    found = rows.numbers(grid._replace(fine=dict(grid.fine) | {"slip_f_t": f_t}), kept("measured").numbers["runs"])
+    found = rows.numbers(grid._replace(fine=dict(grid.fine) | {"full_slip_f_t": f_t}), kept("measured").numbers["runs"])
     keys = ("friction_load", "friction_acrylic", "friction_power", "friction_occluded")
     assert [found[key][1] for key in keys] == verdicts
 
@@ -133,8 +133,10 @@ def test_squares_hold_in_both_ranges_of_the_voltage(grid):
     """An amplitude of 75 to 150 V is 53 to 106 V of effective voltage: U² in one of both ranges is not enough."""
 
     def verdict(rises):
-        f_t = grid.fine["slip_f_t"][:, :1] + np.array([0.0, *rises, 16.0])
-        found = rows.numbers(grid._replace(fine=dict(grid.fine) | {"slip_f_t": f_t}), kept("measured").numbers["runs"])
+        f_t = grid.fine["full_slip_f_t"][:, :1] + np.array([0.0, *rises, 16.0])
+        found = rows.numbers(
+            grid._replace(fine=dict(grid.fine) | {"full_slip_f_t": f_t}), kept("measured").numbers["runs"]
+        )
         return found["friction_range"][1]
 
     assert verdict((1.0, 4.0, 9.0)) == HIT
@@ -188,7 +190,7 @@ def test_words_of_the_page_are_those_of_its_rows(judged, grid):
     softer = judged["softer"].numbers
     assert softer["less"] - softer["less_error"] < STRIKING < softer["more"] - softer["error"]
     assert judged["ridges"].numbers["high"] < 0.67 / 3
-    found = rows.exponents(grid.fine["slip_f_t"], VOLTAGES[1:])
+    found = rows.exponents(grid.fine["full_slip_f_t"], VOLTAGES[1:])
     assert list(found - 2 <= 0.25) == [force >= 25 for force in FORCES] and (found > 2).all()
     assert judged["force_depth"].numbers["other_each"] < judged["force_depth"].numbers["each"] / 5
     assert judged["pressure_shape"].numbers["other"] < judged["pressure_shape"].numbers["misfit"]
@@ -199,7 +201,9 @@ def test_friction_follows_the_attraction(grid):
     coarse = grid.coarse
     forces = np.array(FORCES)[:, None]
     # The slide ends where f_T is steady to 1e-6 of itself.
-    np.testing.assert_allclose(coarse["slip_f_t"], 0.25 * (forces + coarse["slip_f_electrostatic"]), rtol=1e-6)
+    np.testing.assert_allclose(
+        coarse["full_slip_f_t"], 0.25 * (forces + coarse["full_slip_f_electrostatic"]), rtol=1e-6
+    )
 
 
 def test_kept_rows_are_those_of_the_other_pages(judged):

@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 
 from benchmarks import harness, models
-from fingerpad.io.states import PREFIXES
 from fingerpad.reduced import cylinders
 from fingerpad.runs.batch import key
 from fingerpad.scene import from_data
@@ -18,10 +17,10 @@ def test_lengths_in_the_program_are_the_runs():
     for state in ("charged", "full_slip"):
         for k, f in enumerate(cylinders.FORCES):
             run = known[models.name(f, 0.0)]["full"]["summary"]
-            assert cylinders.LENGTHS[state][k] == pytest.approx(run[f"{PREFIXES[state]}_contact_length"], abs=0.5e-7)
+            assert cylinders.LENGTHS[state][k] == pytest.approx(run[f"{state}_contact_length"], abs=0.5e-7)
             depth = cylinders.INDENTATIONS[state][k]
-            assert depth == pytest.approx(-run[f"{PREFIXES[state]}_bone_height"], abs=0.5e-7)
-            assert cylinders.RIDGES[state][k] == run[f"{PREFIXES[state]}_ridges_in_contact"]
+            assert depth == pytest.approx(-run[f"{state}_bone_height"], abs=0.5e-7)
+            assert cylinders.RIDGES[state][k] == run[f"{state}_ridges_in_contact"]
 
 
 def test_lengths_between_known_forces_are_a_power_law():
@@ -69,16 +68,15 @@ def answer(**values):
     return {
         "summary": {"full_slip": True} | values,
         "cost": {"seconds": 2.0, "factorisations": 3, "unknowns": 5},
-        "more": {},
     }
 
 
 def test_errors_are_against_the_full_model():
     """Without an answer of either there is none."""
-    found = {"cylinders": answer(slip_mu_app=0.5), "full": answer(slip_mu_app=0.4)}
-    assert models.error(found, "cylinders", "slip_mu_app") == pytest.approx(0.25, rel=1e-12)
-    assert models.error(found, "smooth", "slip_mu_app") is None
-    assert models.error({"cylinders": found["cylinders"]}, "cylinders", "slip_mu_app") is None
+    found = {"cylinders": answer(full_slip_mu_app=0.5), "full": answer(full_slip_mu_app=0.4)}
+    assert models.error(found, "cylinders", "full_slip_mu_app") == pytest.approx(0.25, rel=1e-12)
+    assert models.error(found, "cylinders", "full_slip_f_t") is None
+    assert models.error({"cylinders": found["cylinders"]}, "cylinders", "full_slip_mu_app") is None
 
 
 def test_failure_is_kept_alone():
@@ -86,31 +84,27 @@ def test_failure_is_kept_alone():
 
 
 def test_page(tmp_path):
-    """One scene of two has no smooth answer; the other is by older tables."""
+    """One scene has no answer of the cylinders, and one no full slip."""
     values = {name: 1.0 for name in models.QUANTITIES}
-    smooth = answer(**values) | {"more": {"table_version": 2}}
     scenes = {
-        models.name(75.0, 0.0): {"cylinders": answer(**values), "smooth": answer(**values), "full": answer(**values)},
+        models.name(75.0, 0.0): {"cylinders": answer(**values), "full": answer(**values)},
         models.name(75.0, 200.0): {
-            "cylinders": answer(**values | {"slip_mu_app": 1.1}),
-            "smooth": {"failure": "lost"},
+            "cylinders": answer(**values | {"full_slip_mu_app": 1.1}),
             "full": answer(**values) | {"summary": values | {"full_slip": False}},
         },
-        models.name(5.0, 0.0): {"cylinders": answer(**values), "smooth": smooth, "full": answer(**values)},
+        models.name(5.0, 0.0): {"cylinders": {"failure": "lost"}, "full": answer(**values)},
     }
     lost = dict.fromkeys((*models._KEPT, "full_slip")) | {"failure": "TIME_LIMIT: not done"}
-    half = lost | {"slip_mu_app": 0.25, "slip_ridges_in_contact": 7, "full_slip": True, "failure": None}
+    half = lost | {"full_slip_mu_app": 0.25, "full_slip_ridges_in_contact": 7, "full_slip": True, "failure": None}
     beyond = {"twice the voltage": lost, models.HALF_STEPS: half}
-    less = answer(**values | {"normal_f_electrostatic": 0.8})
+    less = answer(**values | {"charged_f_electrostatic": 0.8})
     held = {"8.2 N/m, 153 V": {"cylinders": less, "full": answer(**values)}}
     harness.keep("models", {"scenes": scenes, "held_out": held, "beyond": beyond}, BY, tmp_path)
     text = models.draw(tmp_path).read_text(encoding="utf-8")
-    assert "give µ_app within 10.0 %" in text
+    assert "give µ_app within 10.0 %" in text and "No answer at 5 N/m, 0 V." in text
     assert "full slip in 3 of 4 scenes" in text
     assert "| `cylinders` | 8.2 N/m, 153 V | +0.0 | +0.0 | +0.0 | -20.0 |" in text
-    assert "attraction is within 20.0 % by the cylinders" in text
-    assert "No answer at 75 N/m, 200 V." in text
-    assert "1 of the answers are by an older law of one ridge" in text
+    assert "attraction is within 20.0 %" in text
     assert "| 75 | +0.0 | – | – | – | +10.0 |" in text
     assert "has 7 ridges, and µ_app is\n0.2500" in text
     assert "| 0.25 | 7 | – | – | yes |" in text

@@ -170,7 +170,7 @@ def test_run_without_voltage(pressed, tmp_path, monkeypatch):
     folder, less = pressed
     history = {"history": [{"name": "press", "bone_height": -60e-6}]}
     whole = summary_of(history, tmp_path, monkeypatch, voltage=True)
-    assert [less[f"normal_{name}"] for name in RESULTS] == [whole[f"normal_{name}"] for name in RESULTS]
+    assert [less[f"charged_{name}"] for name in RESULTS] == [whole[f"charged_{name}"] for name in RESULTS]
     assert less["factorisations"] == whole["factorisations"]
     assert {"what": "attraction and the air gaps of the ridges", "reason": "no load has a voltage"} in less["omitted"]
     assert json.loads((folder / "summary.json").read_text(encoding="utf-8"))["omitted"] == less["omitted"]
@@ -185,7 +185,7 @@ def test_run_without_receptors(pressed, tmp_path, capsys):
     (tmp_path / "receptors.csv").write_text("of an earlier run\n", encoding="utf-8")
     capsys.readouterr()
     less = summary_of(data, tmp_path)
-    assert less["normal_f_contact"] == pytest.approx(whole["normal_f_contact"], rel=0.01)
+    assert less["charged_f_contact"] == pytest.approx(whole["charged_f_contact"], rel=0.01)
     assert less["unknowns"] < whole["unknowns"]
     assert not (tmp_path / "receptors.csv").exists()
     assert (tmp_path / "finger_press.png").exists()

@@ -103,6 +103,17 @@ def closed_form(stretches, solid):
     return np.array(P, dtype=float), tangent
 
 
+def rotation(angle: float):
+    return np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
+
+
+def hooke(lame: float, shear: float):
+    """Return the moduli lame I x I + 2 shear sym."""
+    delta = np.eye(2)
+    both = np.einsum("ik,jl->ijkl", delta, delta) + np.einsum("il,jk->ijkl", delta, delta)
+    return lame * np.einsum("ij,kl->ijkl", delta, delta) + shear * both
+
+
 def assert_agrees(evaluate, stretches, solid):
     """Compare stress and tangent at F = diag(stretches), relative to the largest modulus and stress."""
     _, P, A = evaluate(np.diag(stretches), solid)
@@ -152,19 +163,16 @@ def test_undeformed(evaluate, solid):
     """F = I is free of energy and stress, and its tangent is Hooke's: (K - 2/3 G) I x I + 2 G sym."""
     W, P, A = evaluate(np.eye(2), solid)
     shear, _, poisson, _ = solid
-    bulk, delta = ogden.bulk_modulus(shear, poisson), np.eye(2)
-    hooke = (bulk - 2 / 3 * shear) * np.einsum("ij,kl->ijkl", delta, delta)
-    hooke += shear * (np.einsum("ik,jl->ijkl", delta, delta) + np.einsum("il,jk->ijkl", delta, delta))
+    bulk = ogden.bulk_modulus(shear, poisson)
     assert abs(W) < ROUNDOFF * bulk
     assert np.abs(P).max() < ROUNDOFF * bulk
-    np.testing.assert_allclose(A, hooke, rtol=0, atol=ROUNDOFF * bulk)
+    np.testing.assert_allclose(A, hooke(bulk - 2 / 3 * shear, shear), rtol=0, atol=ROUNDOFF * bulk)
 
 
 @pytest.mark.parametrize("solid", LAWS)
 def test_objectivity(evaluate, solid):
     """P(Q F) = Q P(F) and W(Q F) = W(F) for a rotation Q. Tolerance: roundoff of the rotated F times a power of 15."""
-    F, angle = np.array([[1.1, 0.3], [-0.2, 0.8]]), 0.7
-    Q = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
+    F, Q = np.array([[1.1, 0.3], [-0.2, 0.8]]), rotation(0.7)
     W, P, A = evaluate(F, solid)
     rotated_W, rotated_P, _ = evaluate(Q @ F, solid)
     assert rotated_W == pytest.approx(W, rel=1e-12)
@@ -174,12 +182,7 @@ def test_objectivity(evaluate, solid):
 @pytest.mark.parametrize("solid", LAWS)
 def test_isotropy(evaluate, solid):
     """Rotations before and after a stretch leave the closed form's stress between them."""
-    stretches = np.array([1.15, 0.85])
-
-    def rotation(angle):
-        return np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
-
-    Q, R = rotation(0.4), rotation(-1.1)
+    stretches, Q, R = np.array([1.15, 0.85]), rotation(0.4), rotation(-1.1)
     _, P, A = evaluate(Q @ np.diag(stretches) @ R, solid)
     expected, _ = closed_form(stretches, solid)
     np.testing.assert_allclose(P, Q @ np.diag(expected) @ R, rtol=0, atol=1e-13 * np.abs(A).max())
@@ -212,13 +215,9 @@ def test_nail_stress(evaluate_nail, stretches, young, poisson):
 
 def test_nail_tangent(evaluate_nail):
     """At a rotation the nail is Hooke's solid, turned. Tolerance: roundoff."""
-    young, poisson, angle = 170e6, 0.3, 0.5
-    Q = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
-    lame, mu = young * poisson / ((1 + poisson) * (1 - 2 * poisson)), young / (2 * (1 + poisson))
-    delta = np.eye(2)
-    hooke = lame * np.einsum("ij,kl->ijkl", delta, delta)
-    hooke += mu * (np.einsum("ik,jl->ijkl", delta, delta) + np.einsum("il,jk->ijkl", delta, delta))
+    young, poisson, Q = 170e6, 0.3, rotation(0.5)
+    moduli = hooke(young * poisson / ((1 + poisson) * (1 - 2 * poisson)), young / (2 * (1 + poisson)))
     W, P, A = evaluate_nail(Q, (young, poisson))
     assert W == pytest.approx(0, abs=1e-15 * young)
     assert np.abs(P).max() < 1e-15 * young
-    np.testing.assert_allclose(A, np.einsum("ia,kb,ajbl->ijkl", Q, Q, hooke), rtol=0, atol=1e-14 * young)
+    np.testing.assert_allclose(A, np.einsum("ia,kb,ajbl->ijkl", Q, Q, moduli), rtol=0, atol=1e-14 * young)

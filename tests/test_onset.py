@@ -15,10 +15,10 @@ from variational.solvers.continuation import Target
 from variational.solvers.onset import return_to_onset
 
 
-def charged(contact, step_scale=1.0, comm=MPI.COMM_WORLD) -> Body:
+def charged(contact, step_scale=1.0) -> Body:
     roughness = BearingArea(0.51e-6)
     skin = {"contact": contact, "friction": MU_F, "roughness": roughness}
-    return Body(RIDGE, SKIN, **skin, step_scale=step_scale, comm=comm).press(FORCE).charge(VOLTAGE)
+    return Body(RIDGE, SKIN, **skin, step_scale=step_scale).press(FORCE).charge(VOLTAGE)
 
 
 @pytest.mark.parametrize(
@@ -62,14 +62,6 @@ def test_full_slip_begins_at_once_where_it_is():
     body.slide(50e-6)
     assert body.state.bone_x == pytest.approx(x + 50e-6, rel=1e-6)
     assert body.energy.dissipated - spent == pytest.approx(f_t * 50e-6, rel=1e-4)
-
-
-@pytest.mark.mpi
-def test_onset_is_the_same_on_all_ranks():
-    """The place of full slip on the ranks together is that of one rank alone, to the solves' tolerance."""
-    together = charged(SPRINGS).slide(until_full_slip=True).state
-    alone = charged(SPRINGS, comm=MPI.COMM_SELF).slide(until_full_slip=True).state
-    assert together.bone_x == pytest.approx(alone.bone_x, rel=1e-6)
 
 
 def test_body_that_something_else_holds_stays_where_it_is():

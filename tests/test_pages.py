@@ -143,8 +143,8 @@ def test_results_differ_by_their_numbers_alone():
     now = before | {"mu": 0.5000000000000001, "steps": [{"a": 1}]}
     assert len(list(same.differences(before, now))) == 2
     assert len(list(same.differences(before, now, but=["mu"]))) == 1
-    assert list(same.differences({"slip_mu_app": 0.0}, {"slip_mu_app": None})) == []
-    assert list(same.differences({"slip_mu_app": 0.1}, {"slip_mu_app": None}))
+    assert list(same.differences({"full_slip_mu_app": 0.0}, {"full_slip_mu_app": None})) == []
+    assert list(same.differences({"full_slip_mu_app": 0.1}, {"full_slip_mu_app": None}))
     assert list(same.differences(before, {})) and list(same.differences({"a": None}, {"a": 0.0}))
 
 

@@ -28,7 +28,7 @@ def state(f_ext, voltage, lost=0.0, ridges=10.0):
     steps = {name: np.array(values) for name, values in rows.items()} | {"mu_app": np.array(rows["f_t"]) / f_ext}
     touching = {0: np.arange(-5, 5), 2: np.arange(-4, 6)}
     gap = np.full(10, 2e-6 if f_ext < 100 else 1.6e-6)
-    return SimpleNamespace(steps=steps, normal=0, slip=2, on_ridges=lambda row, name: (touching[row], gap))
+    return SimpleNamespace(steps=steps, charged=0, full_slip=2, on_ridges=lambda row, name: (touching[row], gap))
 
 
 PATHS = {"rise_0": 0.02, "left_0": 1.0, "new_0": 1.0, "rise_200": 0.011, "left_200": 1.0, "new_200": 2.0}
@@ -91,11 +91,11 @@ def both(change, other):
 
 
 def lengths(normal, slip, forces=slice(None)):
-    return both(times("normal_contact_length", normal, forces), times("slip_contact_length", slip, forces))
+    return both(times("charged_contact_length", normal, forces), times("full_slip_contact_length", slip, forces))
 
 
 def ridges(normal, slip, forces=slice(None)):
-    return both(times("normal_ridges_in_contact", normal, forces), times("slip_ridges_in_contact", slip, forces))
+    return both(times("charged_ridges_in_contact", normal, forces), times("full_slip_ridges_in_contact", slip, forces))
 
 
 def put(name, value):
@@ -106,10 +106,10 @@ def lose(plain, charged):
     """Return a change of the grid: shares of the contact length that sliding loses at 0 and at 200 V, by force."""
 
     def change(grid):
-        slip = grid["normal_contact_length"] * 0.9
+        slip = grid["charged_contact_length"] * 0.9
         for k, lost in ((0, plain), (-1, charged)):
-            slip[:, k] = grid["normal_contact_length"][:, k] * (1 - lost)
-        return dict(grid) | {"slip_contact_length": slip}
+            slip[:, k] = grid["charged_contact_length"][:, k] * (1 - lost)
+        return dict(grid) | {"full_slip_contact_length": slip}
 
     return change
 
@@ -125,19 +125,19 @@ FALLING = np.linspace(0.1, 0.06, 8)
         ("1.7 to 3", both(put("gaps", 40), put("gaps_within", [[0]] * 5 + [[40]] * 3)), NOT),
         ("1.7 to 3", both(put("gaps", 40), put("gaps_within", [[0]] * 4 + [[40]] * 4)), IN_PART),
         ("1.7 to 3", both(put("gaps", 40), put("gaps_within", 21)), HOLDS),
-        ("more than 100 %", times("slip_f_t", 2.1), HOLDS),
-        ("more than 100 %", times("slip_f_t", 1.9), NOT),
-        ("more than 100 %", times("slip_f_t", 2.1, FIRST), NOT),
-        ("more than 100 %", times("slip_f_t", [2.1] * 4 + [1.9] * 4), IN_PART),
-        ("below 50 V", times("slip_f_t", 1.04, voltage=50.0), HOLDS),
-        ("below 50 V", times("slip_f_t", 1.21, voltage=50.0), NOT),
-        ("below 50 V", times("slip_f_t", 1.06, voltage=50.0), IN_PART),
-        ("largest at small", times("slip_f_t", np.linspace(3, 2, 8)), HOLDS),
-        ("largest at small", times("slip_f_t", np.linspace(2, 3, 8)), NOT),
-        ("largest at small", times("slip_f_t", [3, 2, 2.5, 2, 2, 2, 2, 2]), IN_PART),
-        ("much less", both(times("slip_f_t", 2.0), lengths(1.3, 1.3)), HOLDS),
-        ("much less", both(times("slip_f_t", 1.2), lengths(1.3, 1.3)), IN_PART),
-        ("much less", both(times("slip_f_t", 2.0), lengths(1.01, 1.01)), NOT),
+        ("more than 100 %", times("full_slip_f_t", 2.1), HOLDS),
+        ("more than 100 %", times("full_slip_f_t", 1.9), NOT),
+        ("more than 100 %", times("full_slip_f_t", 2.1, FIRST), NOT),
+        ("more than 100 %", times("full_slip_f_t", [2.1] * 4 + [1.9] * 4), IN_PART),
+        ("below 50 V", times("full_slip_f_t", 1.04, voltage=50.0), HOLDS),
+        ("below 50 V", times("full_slip_f_t", 1.21, voltage=50.0), NOT),
+        ("below 50 V", times("full_slip_f_t", 1.06, voltage=50.0), IN_PART),
+        ("largest at small", times("full_slip_f_t", np.linspace(3, 2, 8)), HOLDS),
+        ("largest at small", times("full_slip_f_t", np.linspace(2, 3, 8)), NOT),
+        ("largest at small", times("full_slip_f_t", [3, 2, 2.5, 2, 2, 2, 2, 2]), IN_PART),
+        ("much less", both(times("full_slip_f_t", 2.0), lengths(1.3, 1.3)), HOLDS),
+        ("much less", both(times("full_slip_f_t", 1.2), lengths(1.3, 1.3)), IN_PART),
+        ("much less", both(times("full_slip_f_t", 2.0), lengths(1.01, 1.01)), NOT),
         ("20 % larger", lengths(1.21, 1.21), HOLDS),
         ("20 % larger", lengths(1.19, 1.19), NOT),
         ("20 % larger", lengths(1.41, 1.41), NOT),
@@ -148,12 +148,12 @@ FALLING = np.linspace(0.1, 0.06, 8)
         ("new ridges in contact", both(lengths(1.5, 1.5), ridges(1.0, 1.0)), IN_PART),
         ("new ridges in contact", both(lengths(1.1, 1.1), ridges(1.2, 1.2)), NOT),
         ("new ridges in contact", both(lengths(1.5, 1.5), ridges(1.2, 1.2, FIRST)), IN_PART),
-        ("average ridge", put("slip_ridges_in_contact", 10), IN_PART),
-        ("ridges fewer", put("slip_ridges_in_contact", 10), NOT),
-        ("ridges fewer", put("slip_ridges_in_contact", [[10]] + [[8]] * 7), IN_PART),
+        ("average ridge", put("full_slip_ridges_in_contact", 10), IN_PART),
+        ("ridges fewer", put("full_slip_ridges_in_contact", 10), NOT),
+        ("ridges fewer", put("full_slip_ridges_in_contact", [[10]] + [[8]] * 7), IN_PART),
         ("up to 12 %", lose(EVEN, EVEN + 0.06), HOLDS),
         ("up to 12 %", lose(EVEN, EVEN + 0.2), IN_PART),
-        ("up to 12 %", put("slip_contact_length", 1.0), NOT),
+        ("up to 12 %", put("full_slip_contact_length", 1.0), NOT),
         ("up to 12 %", lose(np.array([-0.01] + [0.05] * 7), EVEN + 0.06), IN_PART),
         ("enhances", lose(EVEN, EVEN + FALLING), HOLDS),
         ("enhances", lose(EVEN, EVEN + FALLING[::-1]), NOT),
@@ -164,9 +164,9 @@ FALLING = np.linspace(0.1, 0.06, 8)
         ("even without", lose(EVEN + 0.01, EVEN), HOLDS),
         ("even without", lose(EVEN - 0.01, EVEN), NOT),
         ("even without", lose(FALLING - 0.02, EVEN), IN_PART),
-        ("increases the contact pressure", times("slip_f_t", 3.0, voltage=150.0), HOLDS),
-        ("increases the contact pressure", times("slip_f_t", 1.04, voltage=150.0), NOT),
-        ("largest tangential force", both(lengths(1.1, 1.1), times("slip_f_t", 0.9)), NOT),
+        ("increases the contact pressure", times("full_slip_f_t", 3.0, voltage=150.0), HOLDS),
+        ("increases the contact pressure", times("full_slip_f_t", 1.04, voltage=150.0), NOT),
+        ("largest tangential force", both(lengths(1.1, 1.1), times("full_slip_f_t", 0.9)), NOT),
         ("about linear", lose(EVEN, -EVEN), NOT),
     ],
 )
@@ -184,7 +184,7 @@ def test_loads_out_of_line_are_named(grid):
     assert by(found, "up to 12 %").numbers["second"] == pytest.approx(0.1)
     assert "0 V loses nothing: 150 N/m" in by(found, "enhances").ours
     assert by(found, "enhances").numbers["small_most"] == pytest.approx(4)
-    same = both(put("moved", [[0]] + [[2]] * 7), put("slip_ridges_in_contact", 20))
+    same = both(put("moved", [[0]] + [[2]] * 7), put("full_slip_ridges_in_contact", 20))
     assert by(judged(same(grid)), "average ridge").why.startswith(
         "over 5 % at 16 of 16: ridges come and go at 14; at 5 N/m and 0 V, 5 N/m and 200 V the same"
     )
@@ -209,7 +209,7 @@ def test_markers_of_the_reductions_are_of_their_voltage(grid):
     friction.paint(figure, grid)
     markers = {line.get_color(): line for line in figure.axes[1].lines if line.get_linestyle() == "None"}
     for k, voltage in enumerate(VOLTAGES):
-        stress = 1e-3 * grid["slip_f_t"][:, k] / grid["slip_contact_length"][:, k]
+        stress = 1e-3 * grid["full_slip_f_t"][:, k] / grid["full_slip_contact_length"][:, k]
         assert markers[style.voltage(voltage)].get_xdata() == pytest.approx(stress, rel=1e-12)
 
 

@@ -26,7 +26,7 @@ def skin(**changes):
     slip = np.tile([True, True, *[False] * (n - 4), True, True], (len(RIDGES), 1))
     normal = {"p": p, "p_el": np.full(x.shape, 0.5), "t": MU_0 * p * np.where(slip, 1.0, 0.5) * np.sign(x)}
     partial = normal | {"t": MU_0 * p * np.where(x > 0, 1.0, 0.5)}
-    states = {"normal": normal | changes, "partial": partial, "slip": normal}
+    states = {"charged": normal | changes, "partial": partial, "full_slip": normal}
     found = {f"{s}_{name}": values.ravel() for s, a in states.items() for name, values in a.items()}
     for s in states:
         found |= {f"{s}_x": x.ravel(), f"{s}_ridge": np.repeat(RIDGES, n).astype(float)}
@@ -40,7 +40,7 @@ def run_of(arrays, gaps=None, partial=None):
     steps = {"f_ext": np.full(4, 10.0), "contact_length": np.array([2.5, 2.0, 4.0, 5.0])}
     of_row = {0: gaps[0], 3: gaps[1]}
     return SimpleNamespace(
-        arrays=lambda _: arrays, steps=steps, normal=0, slip=3, scene=Scene(),
+        arrays=lambda _: arrays, steps=steps, charged=0, full_slip=3, scene=Scene(),
         on_ridges=lambda row, name: (RIDGES, np.array(of_row[row], dtype=float)),
     )  # fmt: skip
 
@@ -60,12 +60,12 @@ def test_section_of_a_skin_as_the_paper_has_it():
 
 def p_with(k, value):
     """Return a pressure that differs at one point of each ridge."""
-    p = skin()["normal_p"].reshape(len(RIDGES), -1).copy()
+    p = skin()["charged_p"].reshape(len(RIDGES), -1).copy()
     p[:, k] = value
     return p
 
 
-SHEAR = skin()["normal_t"].reshape(len(RIDGES), -1)
+SHEAR = skin()["charged_t"].reshape(len(RIDGES), -1)
 HALF = np.r_[np.full(5, 0.5), np.full(85, 1.0)]  # of the friction limit in partial slip
 STICK = {"t": 0.01 * np.sign(RIDGES[:, None] + np.linspace(-0.3, 0.3, POINTS + 2))}
 
@@ -100,7 +100,7 @@ def test_slip_that_springs_take_up_is_shown_beside_the_verdict():
 def test_tension_without_pressure_does_not_count():
     """Attraction beyond the contact's edge is no tension of the skin: only points under pressure are judged."""
     arrays = skin()
-    for state in ("normal", "partial", "slip"):
+    for state in ("charged", "partial", "full_slip"):
         arrays[f"{state}_p_el"] = np.where(arrays[f"{state}_p"] > 0, 0.1, 9.0)
     assert by(fields.section(run_of(arrays), run_of(arrays)), "tensile").numbers["points"] == 0
 
@@ -166,7 +166,7 @@ def charged(run_x, tag, before, after):
     finger = {"x": run_x, "u": np.zeros_like(run_x), "triangles": triangles, "tag": np.array(tag)}
     arrays = {"finger_press": finger | {"sed": np.array(before)}, "finger_charge": finger | {"sed": np.array(after)}}
     return SimpleNamespace(
-        arrays=arrays.__getitem__, normal=0, on_ridges=lambda row, name: (np.array([-1, 0, 1]), None), scene=Scene()
+        arrays=arrays.__getitem__, charged=0, on_ridges=lambda row, name: (np.array([-1, 0, 1]), None), scene=Scene()
     )
 
 
@@ -217,7 +217,7 @@ def mapped(normal, slip, sites=(1.0, 0.5), papillae=(1.0, 2.0), away=1.0):
     both = np.array([*[1.0] * 2, away])
     arrays = {"finger_press": finger(*about(0), *about(1)), "finger_charge": normal, "finger_slide": slip}
     return SimpleNamespace(
-        arrays=arrays.__getitem__, loads=["press", "charge", "slide"], pressed=0, normal=1, slip=2, scene=Scene(),
+        arrays=arrays.__getitem__, loads=["press", "charge", "slide"], pressed=0, charged=1, full_slip=2, scene=Scene(),
         receptors={
             "ridge": ridges,
             "merkel_sed": np.array([both, both * sites[0], both * sites[1]]),
@@ -276,7 +276,7 @@ def test_verdict_on_the_maps(words, plain, charged, expected):
 def test_places_about_a_ridge():
     """Across and up from the tip of its intermediate ridge, also where the outline is inclined."""
     run = mapped(finger((9, 0.1, 0.4, VE, 2.0), (9, -0.3, -0.2, DERMIS, 3.0), (0, 0.0, 0.5, VE, 4.0)), two())
-    found = energy.Column(run, run.normal, 9.0)
+    found = energy.Column(run, run.charged, 9.0)
     assert found.sed.tolist() == [2.0, 3.0]
     assert found.across == pytest.approx([0.1, -0.3], abs=1e-9)
     assert found.height == pytest.approx([0.4, -0.2], abs=1e-9)
@@ -291,7 +291,7 @@ def test_claim_is_judged_site_by_site():
     def run(sed, touching, papillae=1.0):
         receptors = {"ridge": np.array([-3, -2, -1, 0]), "merkel_sed": np.array([sed])}
         receptors |= {"meissner_left": np.ones((1, 4)), "meissner_right": np.full((1, 4), papillae)}
-        return SimpleNamespace(receptors=receptors, slip=0, on_ridges=lambda row, name: (touching, None))
+        return SimpleNamespace(receptors=receptors, full_slip=0, on_ridges=lambda row, name: (touching, None))
 
     found = fields.claim(run([9.0, 100.0, 200.0, 400.0], [-2, -1]), run([1.0, 80.0, 202.0, 400.0], [-1, 0], 1.4))
     assert found.numbers == pytest.approx({"median": 0.01, "largest": -0.2, "papillae": 0.2, "least": 0.0, "most": 0.4})

@@ -45,12 +45,12 @@ def test_run_is_read(tmp_path):
         "step": [1, 2, 2, 4],
         "ridge": [0, 0, 1, 1],
         "d_eq": [3e-6, 2e-6, 2.5e-6, 2.6e-6],
-        "state": ["", "", "", ""],
+        "note": ["", "", "", ""],
     }
     receptors = {"step": [1, 1, 2, 2], "ridge": [0, 1, 0, 1], "merkel_sed": [1.0, 2.0, 3.0, 4.0]}
-    leave(tmp_path, scene, {"steps": steps, "ridges": ridges, "receptors": receptors}, normal_step=2, slip_step=4)
+    leave(tmp_path, scene, {"steps": steps, "ridges": ridges, "receptors": receptors}, charged_step=2, full_slip_step=4)
     run = Run(scene, tmp_path)
-    assert (run.normal, run.slip) == (1, 3)
+    assert (run.charged, run.full_slip) == (1, 3)
     assert [list(found) for found in run.on_ridges(1, "d_eq")] == [[0, 1], [2e-6, 2.5e-6]]
     assert run.receptors["merkel_sed"].tolist() == [[1.0, 2.0], [3.0, 4.0]]
     assert run.receptors["ridge"].tolist() == [0, 1]
@@ -87,7 +87,7 @@ def test_grid_of_runs_is_collected(monkeypatch, tmp_path):
 
     monkeypatch.setattr(command, "Run", run)
     numbers = command.collect(tmp_path)
-    assert np.shape(numbers["grid"]["slip_f_t"]) == (len(FORCES), len(VOLTAGES))
+    assert np.shape(numbers["grid"]["full_slip_f_t"]) == (len(FORCES), len(VOLTAGES))
     assert {s["figure"] for s in numbers["statements"]} == {
         "2, section 3.2",
         "4, Eq. 14",

@@ -88,4 +88,4 @@ def test_sweep_as_an_array_of_jobs(tmp_path):
     with (tmp_path / "table.csv").open(encoding="utf-8", newline="") as file:
         rows = list(csv.DictReader(file))
     assert [float(row["voltage"]) for row in rows] == [50.0, 100.0]
-    assert float(rows[1]["slip_mu_app"]) > float(rows[0]["slip_mu_app"]) > 0.25
+    assert float(rows[1]["full_slip_mu_app"]) > float(rows[0]["full_slip_mu_app"]) > 0.25

@@ -11,6 +11,7 @@ from fingerpad.io.petsc_options import OptionError
 @pytest.fixture
 def given():
     """Return a function that gives options as a command line does; they are gone afterwards."""
+    petsc_options.check()  # PETSc's help lists each kind of options once a process
     options, before = PETSc.Options(), PETSc.Options().getAll()
 
     def give(text: str) -> None:

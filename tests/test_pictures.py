@@ -12,14 +12,14 @@ from matplotlib.colors import LogNorm
 from matplotlib.image import imread
 from matplotlib.tri import Triangulation
 
-from fingerpad.io import style, titles
+from fingerpad.io import style
 from fingerpad.io.finger_picture import finger, highest_density
 from fingerpad.io.history_picture import history
 from fingerpad.io.skin_picture import SurfaceProfile, saw_teeth, surface
 from geometry import tags
 from variational.state import ContactState, Errors
 
-TITLE = titles.conditions(75.0, 200.0, 0.25)
+TITLE = style.conditions(75.0, 200.0, 0.25)
 BREAK = np.full(1, np.nan)
 
 

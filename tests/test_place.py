@@ -121,12 +121,12 @@ def test_full_disk_is_told_on_all_ranks():
 @pytest.mark.mpi
 def test_mesh_file_is_known_by_its_content(folder):
     """A project may be moved; other content is another scene."""
-    kept = [{"laws": {"mesh": {"path": path, "sha256": sum_}}} for path, sum_ in (("a", "1"), ("b", "1"), ("b", "2"))]
+    kept = [{"geometry": {"file": file, "file_sha256": sum_}} for file, sum_ in (("a", "1"), ("b", "1"), ("b", "2"))]
     with Place(folder, kept[0], MPI.COMM_WORLD) as place:
         place.take()
     with Place(folder, kept[1], MPI.COMM_WORLD):
         pass
-    with pytest.raises(PlaceError, match=r"its laws\.mesh\.sha256 was 1, and is 2 now"):
+    with pytest.raises(PlaceError, match=r"its geometry\.file_sha256 was 1, and is 2 now"):
         Place(folder, kept[2], MPI.COMM_WORLD).__enter__()
 
 
@@ -136,12 +136,12 @@ def test_model_without_a_path_is_of_all_ranks(folder, monkeypatch):
     monkeypatch.setenv("SLURM_PROCID", "1")
     for given in ({}, {"force": 0.5}):
         out = folder / str(len(given))
-        found = fp.run(model="cylinders", out=out, **given)
+        found = fp.run(Scene(**given), model="cylinders", out=out)
         folders = MPI.COMM_WORLD.allgather(found.folder)
         assert folders == [out.absolute()] * MPI.COMM_WORLD.size
         assert (out / "summary.json").exists()
         with pytest.raises(PlaceError, match="another scene"):
-            fp.run(Scene(friction=0.1), model="cylinders", out=out, **given)
+            fp.run(Scene(friction=0.1, **given), model="cylinders", out=out)
 
 
 @pytest.mark.mpi

@@ -6,9 +6,9 @@ from pathlib import Path
 import pytest
 from mpi4py import MPI
 
+from fingerpad.model.feasibility import by_rule
 from fingerpad.model.options import FingerModel, plan
 from fingerpad.model.simulation import Simulation
-from fingerpad.model.touching import by_rule
 from fingerpad.scene import Scene, from_data
 from geometry.profiles import GeometryError
 from geometry.sizing import touching_ridges
@@ -114,7 +114,7 @@ def test_run_reports_what_was_left_out(lean):
         "reason": "they are not expected to touch, which each accepted step is checked for",
     }
     assert "contact of the ridges beyond ±3 left out" in (folder / "run.log").read_text(encoding="utf-8")
-    assert summary["normal_ridges_in_contact"] == 3
+    assert summary["charged_ridges_in_contact"] == 3
     assert summary["parameters"]["mesh"]["touching_half_arc"] is None
 
 
@@ -127,5 +127,5 @@ def test_same_answer_with_fewer_unknowns(lean, tmp_path):
     """
     whole = run(from_data(LIGHT | {"mesh": MESH | {"touching_half_arc": 5e-3}}), tmp_path, COMM)
     for name in ("f_contact", "contact_length"):
-        assert lean[1][f"normal_{name}"] == pytest.approx(whole[f"normal_{name}"], rel=3e-3), name
+        assert lean[1][f"charged_{name}"] == pytest.approx(whole[f"charged_{name}"], rel=3e-3), name
     assert lean[1]["unknowns"] < 0.95 * whole["unknowns"]

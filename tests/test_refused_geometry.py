@@ -7,7 +7,7 @@ import pytest
 from mpi4py import MPI
 from pydantic import ValidationError
 
-from geometry import refusals, tags
+from geometry import sizing, tags
 from geometry.bodies import block
 from geometry.mesh import load
 from geometry.parameters import Fingertip, MeshSize
@@ -91,21 +91,21 @@ def test_parameters_are_refused(given, message):
 def test_fingertip_is_refused(given, message):
     """What crosses, and the parameter, are named."""
     with pytest.raises(GeometryError, match=message):
-        refusals.check(Profiles(Fingertip(**given)))
+        sizing.check_shape(Profiles(Fingertip(**given)))
 
 
 def test_default_is_accepted(profiles):
-    refusals.check(profiles)
+    sizing.check_shape(profiles)
 
 
 def test_least_thickness_that_is_named_is_the_least():
     """A micrometre more than the message asks for is accepted, a micrometre less is not."""
     with pytest.raises(GeometryError) as refusal:
-        refusals.check(Profiles(Fingertip(ve_thickness=100e-6)))
+        sizing.check_shape(Profiles(Fingertip(ve_thickness=100e-6)))
     least = float(str(refusal.value).split()[-2])
-    refusals.check(Profiles(Fingertip(ve_thickness=least + UM)))
+    sizing.check_shape(Profiles(Fingertip(ve_thickness=least + UM)))
     with pytest.raises(GeometryError):
-        refusals.check(Profiles(Fingertip(ve_thickness=least - UM)))
+        sizing.check_shape(Profiles(Fingertip(ve_thickness=least - UM)))
 
 
 def test_limits_that_are_named_can_be_followed():
@@ -115,25 +115,25 @@ def test_limits_that_are_named_can_be_followed():
         **{"nail_half_width": 1e-3, "nail_bed_half_width": 0.4e-3, "ridge_count": 3},
     }
     with pytest.raises(GeometryError) as refusal:
-        refusals.check(Profiles(Fingertip(**small, ridge_wavelength=5e-3)))
+        sizing.check_shape(Profiles(Fingertip(**small, ridge_wavelength=5e-3)))
     most = float(re.search(r"ridge_wavelength is ([0-9.e-]+) m or less", str(refusal.value))[1])
     profiles = Profiles(Fingertip(**small, ridge_wavelength=most))
     assert profiles.ridged_arc + most <= profiles.nail_arc < 1.01 * (profiles.ridged_arc + most)
     with pytest.raises(GeometryError) as refusal:
-        refusals.check(Profiles(Fingertip(nail_thickness=10e-6)))
+        sizing.check_shape(Profiles(Fingertip(nail_thickness=10e-6)))
     least = float(re.search(r"the nail must be ([0-9.e-]+) m thick or more", str(refusal.value))[1])
-    refusals.check(Profiles(Fingertip(nail_thickness=least)))
+    sizing.check_shape(Profiles(Fingertip(nail_thickness=least)))
 
 
 @pytest.mark.parametrize("wavelength", [460e-6, 483e-6, 500e-6])
 def test_most_ridges_that_are_named_fit(wavelength):
     """The message gives a number that is accepted, and the next odd one is not."""
     with pytest.raises(GeometryError) as refusal:
-        refusals.check(Profiles(Fingertip(ridge_count=101, ridge_wavelength=wavelength)))
+        sizing.check_shape(Profiles(Fingertip(ridge_count=101, ridge_wavelength=wavelength)))
     most = int(str(refusal.value).split()[-2])
-    refusals.check(Profiles(Fingertip(ridge_count=most, ridge_wavelength=wavelength)))
+    sizing.check_shape(Profiles(Fingertip(ridge_count=most, ridge_wavelength=wavelength)))
     with pytest.raises(GeometryError):
-        refusals.check(Profiles(Fingertip(ridge_count=most + 2, ridge_wavelength=wavelength)))
+        sizing.check_shape(Profiles(Fingertip(ridge_count=most + 2, ridge_wavelength=wavelength)))
 
 
 def test_contact_size_is_refused():

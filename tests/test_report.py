@@ -12,8 +12,10 @@ import pytest
 from fingerpad.cli import main
 from fingerpad.io.quantities import cell
 from fingerpad.io.result import Result
+from fingerpad.reduced.models import find
 from fingerpad.report import run_page, trust
 from fingerpad.report.write import NAME, write
+from fingerpad.runs.context import RunContext
 from fingerpad.runs.solve import solved
 from fingerpad.scene import Scene, SceneError
 from tests.browser import SIZES, asked
@@ -55,7 +57,7 @@ return { text: document.body.textContent, hidden, wide: document.documentElement
 def folder(tmp_path_factory) -> Path:
     """The folder of a run of the small finger to full slip, with its pictures and report."""
     place = tmp_path_factory.mktemp("report") / "run"
-    solved(small(), "full", place)
+    solved(small(), find("full"), RunContext(place))
     return place
 
 
@@ -264,9 +266,9 @@ def test_half_written_run_is_reported_as_such(copy):
         ({"summary.json": "[1, 2]"}, "its files are not whole, or not of a run"),
         ({"summary.json": '{"failure": "f_ext is too large"}'}, "was refused and has no results: f_ext is too large"),
         ({"table.csv": "a,b\n1,2\n"}, "is not the table of a sweep"),
-        ({"table.csv": "voltage,slip_mu_app,failure\n100,0.3,\n200"}, "is cut short"),
+        ({"table.csv": "voltage,full_slip_mu_app,failure\n100,0.3,\n200"}, "is cut short"),
         ({"scene.json": "{}"}, "has no accepted step yet"),
-        ({"scene.json": '{"trace": 5}', "steps.csv": "step\n"}, "has no accepted step yet"),
+        ({"scene.json": "{}", "steps.csv": "step\n"}, "has no accepted step yet"),
         ({"summary.json": "[" * 100_000}, "its files are not whole, or not of a run"),
         ({"scene.json": "[" * 100_000, "steps.csv": "step\n"}, "cannot be read"),
         ({"full/0123/asked.json": "{}"}, "has not ended (0 runs are there)"),
@@ -284,18 +286,22 @@ def test_bad_folder_is_refused_in_a_sentence(tmp_path, capsys, files, words):
 
 def test_result_without_a_coefficient_is_read_back(tmp_path):
     """As of a finger that slides while nothing presses it."""
-    solved(Scene(), "cylinders", tmp_path)
+    solved(Scene(), find("cylinders"), RunContext(tmp_path))
     summary = json.loads((tmp_path / "summary.json").read_text(encoding="utf-8"))
-    (tmp_path / "summary.json").write_text(json.dumps(summary | {"slip_mu_app": None}), encoding="utf-8")
+    summary["states"]["full_slip"]["mu_app"] = None
+    (tmp_path / "summary.json").write_text(json.dumps(summary), encoding="utf-8")
+    (tmp_path / "result.nc").unlink()
     read = Result.load(tmp_path)
-    assert math.isnan(read.full_slip.mu_app) and read.full_slip.f_t == summary["slip_f_t"]
-    assert write(tmp_path).exists() and read.to_dict()["slip_mu_app"] is None
+    assert math.isnan(read.full_slip.mu_app) and read.full_slip.f_t == summary["full_slip_f_t"]
+    assert write(tmp_path).exists() and read.to_dict()["full_slip_mu_app"] is None
 
 
 def test_run_without_an_accepted_step_is_read_back(copy):
     """Its first step failed: there is a failure and no table."""
     summary = json.loads((copy / "summary.json").read_text(encoding="utf-8"))
-    known = {key: value for key, value in summary.items() if not key.startswith(("uncharged_", "normal_", "slip_"))}
+    known = {
+        key: value for key, value in summary.items() if not key.startswith(("uncharged_", "charged_", "full_slip_"))
+    }
     failed = known | {"steps": 0, "loads": [], "states": {}, "failure": "no equilibrium"}
     (copy / "summary.json").write_text(json.dumps(failed), encoding="utf-8")
     for file in copy.glob("*.csv"):
@@ -310,8 +316,8 @@ def test_folder_that_is_not_there(tmp_path):
 
 def test_report_that_fails_does_not_cost_the_run(tmp_path, monkeypatch, capsys):
     monkeypatch.setattr(run_page, "page", lambda result: 1 / 0)
-    result = solved(Scene(), "cylinders", tmp_path)
-    assert result.full_slip.mu_app == json.loads((tmp_path / "summary.json").read_text())["slip_mu_app"]
+    result = solved(Scene(), find("cylinders"), RunContext(tmp_path))
+    assert result.full_slip.mu_app == json.loads((tmp_path / "summary.json").read_text())["full_slip_mu_app"]
     assert not (tmp_path / NAME).exists()
     assert "no report of" in capsys.readouterr().err
 
@@ -321,7 +327,7 @@ def data(page: str) -> dict:
     return json.loads(re.search(r'<script type="application/json" id="data">(.*?)</script>', page, re.DOTALL)[1])
 
 
-@pytest.mark.parametrize("model", ["full", "smooth"])
+@pytest.mark.parametrize("model", ["full", "cylinders"])
 def test_cautions_are_findings(folder, model):
     """The page is to be used with care where a limit of validity is reached."""
     found = trust.findings(replace(Result.load(folder), model=model, cautions=("the model ends here",)))

@@ -2,17 +2,10 @@
 
 import pytest
 
-from benchmarks import accuracy, harness
+from benchmarks import accuracy
 from benchmarks.accuracy import WHOLE, Case
 from benchmarks.limits import Limit
-from fingerpad.runs.batch import key
 from fingerpad.scene import Scene, start
-
-
-def test_the_same_scenes_are_drawn_each_time():
-    first, again = accuracy.drawn(), accuracy.drawn()
-    assert first == again
-    assert len({key(scene) for scene in first.values()}) == accuracy.COUNT
 
 
 def test_request_starts_from_the_sizes_of_any_scene():
@@ -25,12 +18,6 @@ def test_request_starts_from_the_sizes_of_any_scene():
         assert scene.accuracy is not None
 
 
-def test_every_loop_has_a_scene_of_its_own():
-    loops = accuracy.loops()
-    assert len({key(scene) for scene, _ in loops.values()}) == len(loops) == 25
-    assert {plain for _, plain in loops.values()} == {"default scene", *accuracy.drawn()}
-
-
 def summary(**quantities):
     """Made-up ends: value, estimate and request, by name."""
     rows = {n: {"value": v, "estimate": e, "allowed": a} for n, (v, e, a) in quantities.items()}
@@ -40,16 +27,16 @@ def summary(**quantities):
 
 
 ENDS = {
-    "slip_mu_app": Limit(0.5, 0.001, 1.0),
-    "slip_f_t": Limit(37.5, 0.1, 1.0),
-    "slip_sed_0": Limit(10.0, 0.1, 1.0),
-    "slip_sed_1": Limit(100.0, 0.1, 1.0),
+    "full_slip_mu_app": Limit(0.5, 0.001, 1.0),
+    "full_slip_f_t": Limit(37.5, 0.1, 1.0),
+    "full_slip_sed_0": Limit(10.0, 0.1, 1.0),
+    "full_slip_sed_1": Limit(100.0, 0.1, 1.0),
 }
 
 
 def test_errors_are_those_against_the_limit():
     """0.51 ± 0.02 against 0.5: an error of 2 %, an estimate of 4 %, an effectivity of 2."""
-    (found,) = accuracy.judged("", summary(slip_mu_app=(0.51, 0.02, 0.005)), ENDS)
+    (found,) = accuracy.judged("", summary(full_slip_mu_app=(0.51, 0.02, 0.005)), ENDS)
     assert (found.error, found.estimate, found.allowed, found.bar) == pytest.approx((2, 4, 1, 0.2), rel=1e-12)
     assert (found.kind, found.effectivity) == ("friction", pytest.approx(2, rel=1e-12))
 
@@ -60,10 +47,12 @@ def test_energy_density_counts_over_the_largest_site():
     An estimate without a request is judged, too.
     """
     found = accuracy.judged(
-        "", summary(slip_sed_0=(11.0, 2.0, 5.0), slip_sed_1=(100.5, 1.0, 5.0), slip_f_t=(37.0, 1.0, None)), ENDS
+        "",
+        summary(full_slip_sed_0=(11.0, 2.0, 5.0), full_slip_sed_1=(100.5, 1.0, 5.0), full_slip_f_t=(37.0, 1.0, None)),
+        ENDS,
     )
-    other = accuracy.judged("", summary(slip_sed_0=(11.0, 2.0, None), slip_mu_app=(0.5, 0.1, 0.1)), ENDS)
-    alone = accuracy.judged("", summary(slip_sed_0=(11.0, 2.0, None)), ENDS)
+    other = accuracy.judged("", summary(full_slip_sed_0=(11.0, 2.0, None), full_slip_mu_app=(0.5, 0.1, 0.1)), ENDS)
+    alone = accuracy.judged("", summary(full_slip_sed_0=(11.0, 2.0, None)), ENDS)
     assert [case.quantity for case in other] == ["µ_app, full slip"]
     assert [case.quantity for case in alone] == ["SED at ridge 0, full slip"]
     assert [(c.quantity, c.error) for c in found] == [("SED at ridge 0, full slip", pytest.approx(1, rel=1e-12))]
@@ -72,7 +61,7 @@ def test_energy_density_counts_over_the_largest_site():
 def test_cost_has_the_starts_that_failed():
     """700 factorisations times unknowns, and those of a coarser start, 20 of 10; over a default run of 1800."""
     lost = {"restarts": [{"unknowns": 10, "factorisations": 20, "processor_seconds": 1.5}]}
-    row = accuracy.row(summary(slip_mu_app=(0.5, 0.1, None)) | lost, 1800)
+    row = accuracy.row(summary(full_slip_mu_app=(0.5, 0.1, None)) | lost, 1800)
     assert row["cost"] == 0.5
 
 
@@ -98,15 +87,10 @@ def test_study_of_one_parameter_leaves_out_its_finest_run():
     """Contact lengths of two ridges, 1 % and 0.5 % off 2: the estimate of the second is the last change, 0.5 %."""
     lengths = [1.02, 1.01, 1.005, 1.0]
     rows = [
-        {"value": h, "quantities": {"slip_contact_length": 2 * x}, "lengths": {"slip_contact_length": [x, x]}}
+        {"value": h, "quantities": {"full_slip_contact_length": 2 * x}, "lengths": {"full_slip_contact_length": [x, x]}}
         for h, x in zip((40e-6, 20e-6, 10e-6, 5e-6), lengths, strict=True)
     ]
     found = list(accuracy.of_parameter("receptor", rows))
     assert [(c.scene, c.once) for c in found] == [("sites (µm): 20", True), ("sites (µm): 10", False)]
     assert [c.error for c in found] == pytest.approx([1.0, 0.5], rel=1e-9)
     assert [c.estimate for c in found] == pytest.approx([1.0, 0.5], rel=1e-9)
-
-
-def test_page_has_its_verdict():
-    text = (harness.DOCS / "accuracy.md").read_text(encoding="utf-8")
-    assert "µ_app 1 %, contact length 3 % in 10 of 10 scenes" in text

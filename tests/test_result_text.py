@@ -5,7 +5,6 @@ from dataclasses import replace
 import pytest
 
 import fingerpad as fp
-from fingerpad.io.result_text import text
 from tests.test_slices import whole
 from variational.state import ContactState
 
@@ -16,8 +15,8 @@ def slip(**values) -> ContactState:
 
 
 def test_cautions_follow_the_notes_with_a_mark():
-    lines = text(fp.Result(fp.Scene(), "smooth", None, None, slip(), notes=("a note",), cautions=("mind this",)))
-    assert lines.startswith("Result (model 'smooth')")
+    lines = str(fp.Result(fp.Scene(), "cylinders", None, None, slip(), notes=("a note",), cautions=("mind this",)))
+    assert lines.startswith("Result (model 'cylinders')")
     assert lines.splitlines()[-2:] == ["  a note", "  ! mind this"]
     assert ["friction", "force", "f_T", "(N/m)", "4.000"] in [line.split() for line in lines.splitlines()]
 
@@ -25,18 +24,18 @@ def test_cautions_follow_the_notes_with_a_mark():
 def test_states_of_two_meshes_name_them():
     """As with an accuracy, whose uncharged state is of the path's mesh."""
     coarse, fine = slip(mesh_contact=20e-6, voltage=0.0), slip(mesh_contact=5e-6)
-    told = text(fp.Result(fp.Scene(), "full", coarse, fine, fine))
+    told = str(fp.Result(fp.Scene(), "full", coarse, fine, fine))
     assert "Facets of 20 µm (uncharged normal contact), 5 µm (charged normal contact), 5 µm (full slip): " in told
-    assert "Facets of" not in text(fp.Result(fp.Scene(), "full", fine, fine, fine))
+    assert "Facets of" not in str(fp.Result(fp.Scene(), "full", fine, fine, fine))
 
 
 def test_whole_finger_comes_first_where_newtons_were_asked_for():
     run = fp.Result(fp.Scene(), "full", None, None, slip(), finger=whole())
-    assert text(run).startswith("Result\n") and text(run).endswith(str(run.finger))
-    asked = replace(run, record={"asked": {"force": 0.5}})
-    assert text(asked).startswith(str(run.finger))
-    assert "\nCross-section at the end of its last trace\n" in text(asked)
-    assert text(replace(asked, finger=None)).startswith("Result\n"), "a trace was interrupted"
+    assert str(run).startswith("Section at the centre of the finger\n") and str(run).endswith(str(run.finger))
+    asked = replace(run, scene=fp.Scene(force=0.5))
+    assert str(asked).startswith(str(run.finger))
+    assert "\nSection at the centre of the finger\n" in str(asked)
+    assert str(replace(asked, finger=None)).startswith("Result\n"), "a trace was interrupted"
 
 
 def test_cheaper_models_say_what_computed_them(tmp_path):

@@ -1,6 +1,5 @@
 """What a run says of itself: of which state, under which loads, on which mesh, and nothing of a state it rejects."""
 
-import csv
 import json
 from pathlib import Path
 from types import SimpleNamespace
@@ -10,33 +9,24 @@ import pytest
 from mpi4py import MPI
 from petsc4py import PETSc
 
-from fingerpad.accuracy.recompute import StateRecorder
+from fingerpad.accuracy.solves import StateRecorder
 from fingerpad.io import console, drawing, writing
+from fingerpad.io.drawing import Profile
 from fingerpad.io.states import RESULTS, named
-from fingerpad.io.views import Profile
-from fingerpad.model import full_slip, report
-from fingerpad.model.balance import force_error
-from fingerpad.model.options import FingerModel, plan
-from fingerpad.model.simulation import Simulation
+from fingerpad.model import report
+from fingerpad.model.stability import FullSlip
+from fingerpad.model.state import force_error
 from fingerpad.scene import from_data
-from tests.runs import run
+from tests.measures import rows_of
+from tests.runs import followed, path_of, run
+from tests.small_finger import NINE
 from variational.contact.friction import CONE_ROUNDOFF
 from variational.solvers.iteration import PREFIX
 from variational.solvers.newton import Solver
 
 MU_0 = 0.25
-SMALL = {
-    "geometry": {"ridge_count": 9},
-    "mesh": {"contact": 40e-6, "receptor": 100e-6, "interface": 200e-6, "growth": 1.0, "touching_half_arc": 1.0e-3},
-}
-LEAN = SMALL | {"output": {"errors": False, "receptors": False}}
+LEAN = NINE | {"output": {"errors": False, "receptors": False}}
 PRESS, SLIDE = {"name": "press", "f_ext": 1.0}, {"name": "slide", "bone_x": 1e-3, "until_full_slip": True}
-
-
-def rows_of(folder: Path, name: str = "steps") -> list[dict[str, str]]:
-    """Return a table of a run."""
-    with (folder / f"{name}.csv").open(encoding="utf-8", newline="") as file:
-        return list(csv.DictReader(file))
 
 
 def kept_titles(monkeypatch: pytest.MonkeyPatch) -> dict[str, str]:
@@ -70,17 +60,19 @@ def test_charged_while_it_slides(tmp_path, titles):
     charge = {"name": "charge while sliding", "f_ext": 1.0, "voltage": 100.0, "bone_x": 0.6e-3}
     summary = run(from_data(LEAN | {"history": [PRESS, SLIDE, charge]}), tmp_path, MPI.COMM_WORLD, pictures=True)
     rows = rows_of(tmp_path)
-    last = rows[-1]
+    last, seconds = rows[-1], [float(row["processor_seconds"]) for row in rows]
+    assert "accuracy" not in summary and "full_slip_mu_app_error" not in summary, "none were estimated"
+    assert 0 < seconds[0] < seconds[-1] <= summary["processor_seconds"] and seconds == sorted(seconds)
     assert summary["full_slip"] is True
-    assert summary["slip_step"] == len(rows) and summary["slip_load"] == "charge while sliding"
-    assert summary["slip_mu_app"] == float(last["mu_app"]) > 0.5
-    assert (summary["slip_voltage"], summary["slip_bone_x"]) == (100.0, pytest.approx(0.6e-3, rel=1e-12))
-    assert (summary["normal_voltage"], summary["normal_load"]) == (0.0, "press")
+    assert summary["full_slip_step"] == len(rows) and summary["full_slip_load"] == "charge while sliding"
+    assert summary["full_slip_mu_app"] == float(last["mu_app"]) > 0.5
+    assert (summary["full_slip_voltage"], summary["full_slip_bone_x"]) == (100.0, pytest.approx(0.6e-3, rel=1e-12))
+    assert (summary["charged_voltage"], summary["charged_load"]) == (0.0, "press")
     press, slide, end = summary["loads"]
     assert (press["full_slip_reached"], slide["full_slip_held"], end["full_slip_held"]) == (False, True, True)
     assert slide["end"]["mu_app"] == pytest.approx(MU_0, rel=1e-6)
     assert slide["stable"] is press["stable"] is True
-    assert end["extremes"]["mu_app"]["max_step"] == summary["slip_step"]
+    assert end["extremes"]["mu_app"]["max_step"] == summary["full_slip_step"]
     assert "$U$ = 100 V, bone at $x$ = 0.6 mm" in titles["finger_charge_while_sliding"]
     assert "$U$ = 0 V" in titles["Normal contact"] and "$U$ = 100 V" in titles["Full slip"]
     assert "$f_{ext}$ = 1 N/m, $U$ = 0 to 100 V" in titles["history"] and "$U$ = 0 to 100 V" in titles["surface"]
@@ -112,10 +104,10 @@ BACK = {"name": "back", "bone_x": 0.0}
 def test_headline_is_the_last_full_slip(tmp_path, history, load, f_ext):
     """Whatever came after the full slip, and whichever of height and force was given."""
     summary = run(from_data(LEAN | {"history": history}), tmp_path, MPI.COMM_WORLD, pictures=True)
-    assert summary["slip_load"] == load
-    assert f_ext is None or summary["slip_f_ext"] == pytest.approx(f_ext, rel=1e-9)
-    assert (summary["normal_load"], summary["normal_bone_x"]) == ("press", 0.0)
-    assert abs(summary["normal_mu_app"]) < 0.01
+    assert summary["full_slip_load"] == load
+    assert f_ext is None or summary["full_slip_f_ext"] == pytest.approx(f_ext, rel=1e-9)
+    assert (summary["charged_load"], summary["charged_bone_x"]) == ("press", 0.0)
+    assert abs(summary["charged_mu_app"]) < 0.01
     assert float(rows_of(tmp_path)[-1]["f_ext"]) == summary["f_ext"]
 
 
@@ -130,7 +122,7 @@ def test_errors_are_estimated_of_the_headline(more, load):
     """The states kept for it are the last full slip that was held and normal contact, not those of another load."""
     numerics = LEAN.get("numerics", {}) | {"step_scale": 0.5}
     scene = from_data(LEAN | {"history": [PRESS, SLIDE, *more], "numerics": numerics})
-    simulation = Simulation(FingerModel(scene, plan(scene)), MPI.COMM_WORLD, lambda step, done: keeper.record(step))
+    simulation = path_of(scene, lambda step, done: keeper.record(step))
     keeper = StateRecorder(simulation)
     simulation.run()
     found, kept = named(simulation.states), keeper.solve().states
@@ -147,10 +139,9 @@ def test_probe_of_full_slip_leaves_no_trace(monkeypatch):
     scene = from_data(LEAN | {"history": [PRESS, CHARGE, *slides]})
     probed, plain = [], []
     for rows in (probed, plain):
-        simulation = Simulation(FingerModel(scene, plan(scene)), MPI.COMM_WORLD)
-        simulation.run()
+        simulation = followed(scene)
         rows += [state.row() for state in simulation.states]
-        monkeypatch.setattr(full_slip.FullSlip, "_holds", lambda self: False)
+        monkeypatch.setattr(FullSlip, "_holds", lambda self: False)
     assert probed[-1]["slip_held"] and not plain[-1]["slip_held"]
     left = {"slip_held": None}
     assert [row | left for row in probed] == [row | left for row in plain]
@@ -173,12 +164,12 @@ def test_force_error_bounds_the_balance(tmp_path, name):
     data = LEAN | {"f_ext": 1.0, "voltage": 100.0} | COARSE_RUNS[name]
     s = run(scene := from_data(data), tmp_path, MPI.COMM_WORLD)
     assert "failure" not in s
-    cone = data.get("friction", MU_0) * s["slip_f_contact"]
-    assert abs(s["slip_f_contact"] - s["slip_f_electrostatic"] - s["slip_f_ext"]) <= s["force_error"]
-    assert abs(s["slip_f_t"] - cone) <= s["force_error"] + CONE_ROUNDOFF * cone
+    cone = data.get("friction", MU_0) * s["full_slip_f_contact"]
+    assert abs(s["full_slip_f_contact"] - s["full_slip_f_electrostatic"] - s["full_slip_f_ext"]) <= s["force_error"]
+    assert abs(s["full_slip_f_t"] - cone) <= s["force_error"] + CONE_ROUNDOFF * cone
     # Charged before it slides, in whatever formulation: some hundred nodal imbalances of the tolerance times the load.
-    assert s["normal_f_electrostatic"] > 0
-    force = s["normal_f_contact"] - s["normal_f_electrostatic"]
+    assert s["charged_f_electrostatic"] > 0
+    force = s["charged_f_contact"] - s["charged_f_electrostatic"]
     assert force == pytest.approx(s["f_ext"], abs=100 * scene.numerics.tolerance * s["f_ext"])
 
 
@@ -204,7 +195,7 @@ def test_state_that_is_no_equilibrium_is_neither_written_nor_kept(tmp_path, kspo
     summary = run(from_data(LEAN | {"history": [{"name": "press", "bone_height": -20e-6}]}), tmp_path, MPI.COMM_WORLD)
     assert "is left at a node; forces are not balanced to 1e-06" in summary["failure"]
     assert not (tmp_path / "steps.csv").exists() and not list(tmp_path.glob("*.png"))
-    assert summary["steps"] == 0 and summary["normal_f_contact"] is None and summary["loads"] == []
+    assert summary["steps"] == 0 and summary["charged_f_contact"] is None and summary["loads"] == []
 
 
 def test_rejected_state_leaves_the_one_before(tmp_path, monkeypatch):
@@ -229,7 +220,7 @@ def test_rejected_state_leaves_the_one_before(tmp_path, monkeypatch):
     summary = run(from_data(LEAN | {"history": history}), tmp_path, MPI.COMM_WORLD, pictures=True)
     assert "step 3 (charge): a force of 0.001 N/m is left at a node" in summary["failure"]
     assert [row["step"] for row in rows_of(tmp_path)] == ["1", "2"]
-    assert (summary["normal_step"], summary["normal_voltage"]) == (2, 0.0)
+    assert (summary["charged_step"], summary["charged_voltage"]) == (2, 0.0)
     assert written == [2.0]
     assert not (tmp_path / "finger_charge.png").exists()
 
@@ -239,7 +230,7 @@ def test_rejected_state_leaves_the_one_before(tmp_path, monkeypatch):
 def refined(tmp_path_factory) -> tuple[Path, dict, dict[str, str]]:
     """A small finger with an accuracy: its folder, the summary on disk and the titles of its pictures."""
     folder = tmp_path_factory.mktemp("refined")
-    scene = from_data(SMALL | {"f_ext": 1.0, "voltage": 100.0, "accuracy": {"mu_app": 0.2}})
+    scene = from_data(NINE | {"f_ext": 1.0, "voltage": 100.0, "accuracy": {"mu_app": 0.2}})
     with pytest.MonkeyPatch.context() as monkeypatch:
         titles = kept_titles(monkeypatch)
         run(scene, folder, MPI.COMM_WORLD, pictures=True)
@@ -252,14 +243,14 @@ def test_refined_states_come_with_their_errors(refined):
     assert "failure" not in summary
     found = summary["accuracy"]
     assert found["reached"]
-    assert 0 < summary["slip_mu_app_error"] <= 0.2 * summary["slip_mu_app"]
-    for name in ("normal_contact_length", "slip_contact_length"):
+    assert 0 < summary["full_slip_mu_app_error"] <= 0.2 * summary["full_slip_mu_app"]
+    for name in ("charged_contact_length", "full_slip_contact_length"):
         assert 0 < summary[f"{name}_error"] < summary[name]
-    assert set(found["quantities"]["normal_contact_length"]["shares"]) == {"contact", "bulk"}
-    assert set(found["quantities"]["slip_mu_app"]["shares"]) == {"contact", "bulk"}
+    assert set(found["quantities"]["charged_contact_length"]["shares"]) == {"contact", "bulk"}
+    assert set(found["quantities"]["full_slip_mu_app"]["shares"]) == {"contact", "bulk"}
     again = found["solves"][1]
     assert again["factorisations"] < found["solves"][0]["factorisations"] / 2
-    assert summary["slip_f_t"] == pytest.approx(0.25 * summary["slip_f_contact"], rel=1e-6)
+    assert summary["full_slip_f_t"] == pytest.approx(0.25 * summary["full_slip_f_contact"], rel=1e-6)
 
 
 def test_headline_states_are_shown_on_the_final_mesh(refined):
@@ -276,15 +267,15 @@ def test_headline_states_are_shown_on_the_final_mesh(refined):
         assert end in titles[name], name
     ridges = [row for row in rows_of(folder, "ridges_final") if row["of"] == "full_slip"]
     assert sum(float(row["f_friction"]) for row in ridges) == pytest.approx(
-        -summary["slip_f_t"], abs=summary["force_error"]
+        -summary["full_slip_f_t"], abs=summary["force_error"]
     )
     assert {float(row["mesh_contact"]) for row in ridges} == {final}
     assert {row["of"] for row in rows_of(folder, "receptors_final")} == {"charged", "full_slip"}
     with np.load(folder / "surface.npz") as arrays:
-        x, p = arrays["slip_x"], arrays["slip_p"]
+        x, p = arrays["full_slip_x"], arrays["full_slip_p"]
     known = np.isfinite(x[1:] + x[:-1])
     force = float((np.diff(x) * (p[1:] + p[:-1]) / 2)[known].sum())
-    assert force == pytest.approx(summary["slip_f_contact"], rel=0.1), "the trapezoidal rule on few facets"
+    assert force == pytest.approx(summary["full_slip_f_contact"], rel=0.1), "the trapezoidal rule on few facets"
 
 
 # -- jumps -------------------------------------------------------------------------------------------------
@@ -318,10 +309,10 @@ def test_way_through_the_air_is_no_sliding(tmp_path, titles):
     away = {"name": "away", "bone_height": 20e-6, "bone_x": place}
     loads = [away, PRESS, {"name": "charge", "voltage": 100.0}, SLIDE | {"bone_x": place + 1e-3}]
     summary = run(from_data(LEAN | {"history": loads}), tmp_path, MPI.COMM_WORLD, pictures=True)
-    assert (summary["normal_load"], summary["normal_voltage"]) == ("charge", 100.0)
+    assert (summary["charged_load"], summary["charged_voltage"]) == ("charge", 100.0)
     assert summary["uncharged_load"] == "press"
-    assert summary["normal_bone_x"] == pytest.approx(place, rel=1e-12)
-    assert summary["slip_mu_app"] > 0.5 and summary["slip_bone_x"] > place
+    assert summary["charged_bone_x"] == pytest.approx(place, rel=1e-12)
+    assert summary["full_slip_mu_app"] > 0.5 and summary["full_slip_bone_x"] > place
     assert "0.5 mm" in titles["Charged normal contact"]
 
 

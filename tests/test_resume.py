@@ -18,10 +18,11 @@ from fingerpad.cli import run as command
 from fingerpad.io.checkpoint import Checkpoint, CheckpointError
 from fingerpad.io.drawing import Drawing
 from fingerpad.io.writing import Writer
-from fingerpad.model.journal import Journal
 from fingerpad.model.simulation import Simulation
 from fingerpad.runs.batch import key, sweep
 from fingerpad.scene import SceneError
+from tests.test_history import Own
+from variational.problem import Problem
 from variational.solvers.coupling import Coupling
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -91,6 +92,7 @@ def killed_at(monkeypatch):
 LONG = [pytest.param(name, marks=pytest.mark.long) for name in list(HISTORIES)[2:]]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("history", [*list(HISTORIES)[:2], *LONG])
 def test_goes_on_to_the_last_bit(history, tmp_path, killed_at):
     """Killed twice on the way; the solves of earlier runs are not done again."""
@@ -118,6 +120,8 @@ def test_goes_on_to_the_last_bit(history, tmp_path, killed_at):
 WRAPPER = """
 import os, sys, random
 kind, number = sys.argv.pop(1), int(sys.argv.pop(1))
+from tests.test_history import Own
+from variational.problem import Problem
 from variational.solvers.coupling import Coupling
 from fingerpad.io import checkpoint, files
 def kill_at(owner, name, do=lambda *args: None):
@@ -166,6 +170,7 @@ def undisturbed(tmp_path_factory):
     return file, tables(folder / "run"), (folder / "run" / "summary.json").read_text(encoding="utf-8")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("kind", "number"), [MOMENTS[0], *(pytest.param(*m, marks=pytest.mark.long) for m in MOMENTS[1:])]
 )
@@ -185,6 +190,8 @@ def test_kill_9(undisturbed, tmp_path, kind, number):
     assert lines((out / "summary.json").read_text(encoding="utf-8")) == lines(summary)
 
 
+@pytest.mark.slow
+@pytest.mark.mpi
 def test_on_another_number_of_ranks(tmp_path, killed_at):
     """Begun on one rank and finished on all; to 1e-8 the numbers of one rank."""
     comm = MPI.COMM_WORLD
@@ -219,6 +226,7 @@ def refused(match: str, folder: Path, **more) -> None:
         fp.run(scene(**more), out=folder, resume=True)
 
 
+@pytest.mark.slow
 def test_refusals(cut_short, tmp_path_factory, capsys):
     """Of nothing to go on from, another scene, a damaged or foreign checkpoint; each in one sentence."""
     refused("has no checkpoint to go on from: its run has not come to one", tmp_path_factory.mktemp("empty"))
@@ -264,20 +272,18 @@ def test_run_that_stops_before_its_first_checkpoint(tmp_path, monkeypatch, folde
 
 
 def test_refused_options(tmp_path):
-    with pytest.raises(SceneError, match="only a full run in a folder, of one scene, can go on"):
+    with pytest.raises(SceneError, match="only a full run in a folder can go on"):
         fp.run(resume=True)
-    with pytest.raises(SceneError, match="only a full run in a folder, of one scene, can go on"):
+    with pytest.raises(SceneError, match="only a full run in a folder can go on"):
         fp.run(out=tmp_path, model="cylinders", resume=True)
-    for words in (["scene.toml"], ["--set", "voltage=1"], ["--model", "smooth"], ["--out", "x"], ["--force", "1 N"]):
+    for words in (["scene.toml"], ["--set", "voltage=1"], ["--model", "cylinders"], ["--out", "x"], ["--force", "1 N"]):
         with pytest.raises(SceneError, match="and --resume are given"):
             command.main([*words, "--resume", str(tmp_path)])
     with pytest.raises(SceneError, match=r"has no scene.json of a run, and so no run to go on with"):
         command.main(["--resume", str(tmp_path)])
     for kept, match in (
-        ('{"model": "smooth"}', "only a full one can go on"),
-        ('{"laws": {"friction": {}}}', "resume=True"),
-        ('{"trace": 5}', "has no scene.json of a run"),
-        ('{"laws": {"mesh": []}}', "has no scene.json of a run"),
+        ('{"model": "cylinders"}', "only a full one can go on"),
+        ('{"friction": {"law": "__main__:Mine"}}', "known to the program that made it alone; put it into a module"),
         ('{"mesh": ' * 100_000 + "0" + "}" * 100_000, "has no scene.json of a run"),
     ):
         (tmp_path / "scene.json").write_text(kept, encoding="utf-8")
@@ -285,33 +291,45 @@ def test_refused_options(tmp_path):
             command.main(["--resume", str(tmp_path)])
 
 
-def test_a_run_without_a_folder_keeps_nothing(monkeypatch):
-    """Its solves use the factorisations that they would always use."""
-    monkeypatch.setattr(Journal, "__init__", lambda *args: pytest.fail("a journal"))
-    fp.run(scene(history="charged at rest").replace(history=[PRESS]))
+@pytest.mark.slow
+def test_numbers_do_not_depend_on_the_folder(tmp_path, monkeypatch):
+    """To the last bit on one rank: the solver forgets at the same places. Without a folder nothing is kept."""
+    inside = fp.run(scene(), out=tmp_path)
+    monkeypatch.setattr(Checkpoint, "write", lambda *args: pytest.fail("a checkpoint"))
+    outside = fp.run(scene())
+    assert outside.values() == inside.values()
+    rows = [
+        [{k: v for k, v in state.row().items() if "seconds" not in k} for state in found.steps]
+        for found in (inside, outside)
+    ]
+    assert str(rows[0]) == str(rows[1])
 
 
+@pytest.mark.slow
 def test_checkpoint_of_another_mesh(cut_short, monkeypatch):
     """As by another version of gmsh: the places are compared, not trusted."""
     read = Checkpoint.read
 
-    def elsewhere(self, number):
-        facts, arrays = read(self, number)
-        return facts, {k: v + 1e-6 * k.startswith("body/") for k, v in arrays.items()}
+    def elsewhere(self, classes):
+        kept = read(self, classes)
+        places = kept["simulation"]["paths"]["finger"]["places"]
+        places["unknowns"] = places["unknowns"] + 1e-6
+        return kept
 
     monkeypatch.setattr(Checkpoint, "read", elsewhere)
     with pytest.raises(CheckpointError, match="of another mesh"):
         fp.run(scene(), out=cut_short, resume=True)
 
 
+@pytest.mark.slow
 def test_full_disk_under_the_checkpoint(tmp_path, monkeypatch):
     """What is there stays whole, and the run goes on from it when there is room."""
     write = Checkpoint.write
 
-    def full(self, number, facts, arrays):
-        if number == 3:
+    def full(self, state):
+        if self.number == 2:
             raise OSError(28, "No space left on device")
-        write(self, number, facts, arrays)
+        write(self, state)
 
     monkeypatch.setattr(Checkpoint, "write", full)
     with pytest.raises(OSError, match="fingerpad run --resume FOLDER goes on when there is room"):
@@ -336,3 +354,40 @@ def test_sweep_goes_on(tmp_path, killed_at, monkeypatch):
         assert "failure" not in found
         assert ("earlier" in (folder / "run.log").read_text(encoding="utf-8")) == (head is None)
         (folder / "summary.json").unlink()
+
+
+# -- history and outputs of one's own -------------------------------------------------------------------
+def test_own_history_is_kept(tmp_path, killed_at, monkeypatch):
+    """A viscous strain and an accumulated slip go on from the checkpoint to the last bit, with no other edit."""
+    plain, problems = Problem.__init__, list[Problem]()
+
+    def init(self, *args, **more):
+        plain(self, *args, **more)
+        Own.of(self)
+        problems.append(self)
+
+    def ends() -> tuple[np.ndarray, np.ndarray]:
+        whole = problems[0].history.accepted
+        problems.clear()
+        return whole["slip"], whole["strain"]
+
+    monkeypatch.setattr(Problem, "__init__", init)
+    slow = {"history": [PRESS, SLIDE | {"speed": 0.02}]}
+    killed_at(None)
+    fp.run(scene().replace(**slow), out=tmp_path / "whole")
+    reference = ends()
+    killed_at(14)
+    with pytest.raises(Killed):
+        fp.run(scene().replace(**slow), out=tmp_path / "cut")
+    problems.clear()
+    killed_at(None)
+    fp.run(scene().replace(**slow), out=tmp_path / "cut", resume=True)
+    for found, expected in zip(ends(), reference, strict=True):
+        np.testing.assert_array_equal(found, expected)
+        assert np.abs(expected).max() > 0
+
+
+def test_other_outputs_are_refused(cut_short):
+    more = fp.Output("p_mean", "Pa", lambda state: state.f_contact / state.contact_length)
+    with pytest.raises(SceneError, match="is of another list of outputs"):
+        fp.run(scene(), out=cut_short, resume=True, outputs=[more])

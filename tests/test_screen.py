@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from benchmarks.errors import stiffer
-from fingerpad.accuracy.rigid_screen import ORDER, over_stiffer, rigid, stiffened
-from fingerpad.scene import from_data
+from fingerpad.accuracy.rigid_screen import ORDER, over_stiffer, rigid
+from variational.contact.penalty import Penalty
 from variational.solvers.equations import Control
 from variational.solvers.transfer import SkinState, StateSnapshot
 
@@ -20,22 +20,21 @@ def test_law_is_extrapolated_exactly():
 
 
 def test_both_stiffnesses_are_doubled():
-    contact = from_data({}).contact
-    assert stiffened(contact).eps_n == 2 * contact.eps_n
-    assert stiffened(contact).eps_t == 2 * contact.eps_t
+    assert Penalty(3e12, 5e10).over_stiffer_screen() == Penalty(6e12, 1e11)
 
 
 def test_stiffer_springs_bear_the_same_friction():
     """Of the stuck skin: half the elastic slip of twice the stiffness; all else of the state stays."""
     line = np.array([0.0, 1e-6])
-    skin = SkinState(line, line, line, np.array([2e-7, -3e-8]), line, line)
-    state = StateSnapshot(line, line, {4: skin}, {4: 2e-6}, {4: 0.5}, line, Control(), 0.0)
+    history = {"anchor": np.array([2e-7, -3e-8]), "pressure": line}
+    skin = SkinState(line, line, line, line, history)
+    state = StateSnapshot(line, line, {4: skin}, {}, {4: 2e-6}, {4: 0.5}, line, Control(), 0.0)
     found = over_stiffer(state)
-    assert found.skin[4].elastic_slip.tolist() == [1e-7, -1.5e-8]
-    assert found.skin[4].pressure is line and found.u is line and found.gain == {4: 0.5}
+    assert found.skin[4].history["anchor"].tolist() == [1e-7, -1.5e-8]
+    assert found.skin[4].history["pressure"] is line and found.u is line and found.gain == {4: 0.5}
 
 
-@pytest.mark.parametrize("state", ["uncharged", "normal", "slip"])
+@pytest.mark.parametrize("state", ["uncharged", "charged", "full_slip"])
 def test_order_predicts_the_contact_over_a_stiffer_screen(state):
     """From 500 and 1500 MPa/mm, what 5000 changes of the default scene's contact: to a factor of two."""
     predicted, found = stiffer()[state]

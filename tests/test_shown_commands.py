@@ -11,7 +11,7 @@ import pytest
 
 import fingerpad as fp
 from fingerpad import cli
-from fingerpad.model.journal import Journal
+from fingerpad.io.checkpoint import Checkpoint
 from tests.runs import no_pictures
 from variational.roughness.selfaffine import SelfAffine
 
@@ -66,8 +66,7 @@ def small(line: str) -> list[str]:
     words = shlex.split(line)[1:]
     if "--force" in words and "cylinders" not in words:  # which know the default finger alone
         words.insert(1, "scene.toml")
-        words[words.index("--force") + 1] = "0.02 N" if "smooth" in words else "0.01 N"
-        words += ["--set", "mesh.contact=1e-5", "--set", "mesh.touching_half_arc=2.5e-3"] * ("smooth" in words)
+        words[words.index("--force") + 1] = "0.01 N"
     return words
 
 
@@ -87,7 +86,7 @@ def test_shown_command_runs(line, folder, capsys, monkeypatch):
         fp.sweep(fp.Scene(), "results/sweep", model="cylinders", voltage=[0, 200], f_ext=[25, 75])
     if "--resume" in words:  # a run that was killed when its checkpoint was whole
         with monkeypatch.context() as kept, no_pictures():
-            kept.setattr(Journal, "end", lambda self: None)
+            kept.setattr(Checkpoint, "delete", lambda self: None)
             fp.run(fp.Scene.load("scene.toml"), out=words[-1])
     with no_pictures():
         assert cli.main(words) == 0, capsys.readouterr().err

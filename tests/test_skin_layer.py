@@ -7,7 +7,7 @@ from mpi4py import MPI
 from geometry.bodies import block, ridge
 from geometry.mesh import load
 from tests.test_contact import HEIGHT, MU_F, WIDTH, make
-from tests.test_solver import walk
+from tests.test_newton import walk
 from variational.solvers import skin_layer as module
 from variational.solvers.equations import OUTSIDE, Control
 
@@ -127,6 +127,7 @@ def test_layer_that_cannot_be_factorised_is_given_up(pressed, monkeypatch):
     assert total(f.array_r[layer._rows]) <= 1e-9 * first
 
 
+@pytest.mark.slow
 def test_equilibrium_is_the_same_without_the_layer(body):
     """With it fewer factorisations lead there. Tolerance: the solve's, 1e-9 N/m over the tangent's stiffness."""
     states, factorisations = [], []

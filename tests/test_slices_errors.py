@@ -9,7 +9,7 @@ import pytest
 
 import fingerpad as fp
 from benchmarks import newtons
-from fingerpad.io.dataset import finger
+from fingerpad.io.dataset import _finger as finger
 from fingerpad.io.states import STATES
 from fingerpad.report.run_page import page
 from fingerpad.runs.sweep_columns import row
@@ -187,7 +187,7 @@ def test_everything_that_is_printed_and_kept_has_the_whole_error():
     assert error > 1e-7 and "±" in shown and shown in str(result) and shown in page(result)
     words = "±: estimated error, by mesh of the cross-section, points of the traces."
     assert words in str(result) and words in page(result)
-    assert row(result)["slip_finger_gross_area_error"] == error
+    assert row(result)["full_slip_finger_gross_area_error"] == error
     assert result.finger.to_dict()["states"]["full_slip"]["error"]["gross_area"] == error
     assert float(finger(result.finger)["finger_gross_area_error"][1][STATES.index("full_slip")]) == error
 

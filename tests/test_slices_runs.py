@@ -3,19 +3,20 @@
 import html
 import re
 import signal
+import time
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
 import fingerpad as fp
-from fingerpad.cli import main
 from fingerpad.io.place import full_scene
 from fingerpad.model.simulation import Simulation
-from fingerpad.reduced.answer import TooLight
-from fingerpad.report import parameters, run_page
+from fingerpad.reduced.models import find
+from fingerpad.report import run_page
 from fingerpad.runs import solve
-from fingerpad.scene import SceneError
+from fingerpad.runs.context import RunContext
+from fingerpad.scene import SceneError, load
 from fingerpad.slices import traces
 from fingerpad.slices.estimate import with_newtons
 from fingerpad.slices.traces import history, points
@@ -32,8 +33,14 @@ def traced(tmp_path_factory) -> fp.Result:
     """The small finger under a force in newtons, by traces of the full model, from its files."""
     folder = tmp_path_factory.mktemp("newtons")
     with no_pictures():
-        fp.run(small(**SMALL), force=f"{1e3 * FORCE} mN", out=folder)
+        fp.run(small(**SMALL).replace(force=f"{1e3 * FORCE} mN"), out=folder)
     return fp.Result.load(folder)
+
+
+@pytest.fixture(scope="module")
+def ran() -> fp.Result:
+    """The small finger under its f_ext."""
+    return fp.run(small(**SMALL))
 
 
 def test_force_is_the_one_asked_for(traced):
@@ -62,7 +69,7 @@ def test_full_slip_by_two_paths(traced):
 
     Tolerance: the small finger's states are 1e-8 apart; the coupling's tolerance of 1e-6 allows some 1e-6.
     """
-    end = traced.full_slip
+    end = fp.Result.load(traced.folder / "full_slip").full_slip
     with no_pictures():
         direct = fp.run(small(**SMALL).replace(f_ext=end.f_ext, voltage=end.voltage)).full_slip
     assert direct.ridges_in_contact == end.ridges_in_contact
@@ -70,30 +77,42 @@ def test_full_slip_by_two_paths(traced):
         assert getattr(direct, name) == pytest.approx(getattr(end, name), rel=1e-5)
 
 
-@pytest.mark.parametrize(("constant", "factor"), [("_POINT", 2), ("_MARGIN", 0.55)])
+def test_named_states_are_the_section_at_the_centre(traced):
+    """As its trace has it between its points: under the centre's force. Tolerance of friction: Newton's."""
+    for name, total in traced.finger.states.items():
+        state, at = traced.named[name], total.depth.argmax()
+        assert state.f_ext == pytest.approx(total.centre, rel=1e-9)
+        assert state.contact_length == pytest.approx(total.columns["contact_length"][at], rel=0.02)
+        assert state.bone_height == pytest.approx(-total.delta, rel=1e-9)
+    slip = traced.full_slip
+    assert slip.f_t == pytest.approx(0.25 * (slip.f_ext + slip.f_electrostatic), rel=1e-6)
+    assert not traced.steps and traced.scene.force == FORCE
+
+
+@pytest.mark.parametrize(("constant", "factor"), [("_MARGIN", 0.55)])
 def test_trace_that_was_too_short_is_made_again(tmp_path, monkeypatch, constant, factor):
-    """A first one, where the first guess of the largest force is too low, or the last one; with the same command, too.
-
-    Longer ones take the folders of shorter ones, which the last one shares with the result.
-    """
+    """To a larger force, in a folder beside; the same command takes both from there, and another force is refused."""
     monkeypatch.setattr(traces, constant, factor * getattr(traces, constant))
-    found, scene, out = [], small(**SMALL), tmp_path / "out"
+    found, scene, out = [], small(**SMALL).replace(force=FORCE), tmp_path / "out"
     with no_pictures():
-        for _ in range(2):
-            found.append(fp.run(scene, force=FORCE, out=out))
-    assert {path.name for path in out.iterdir() if path.is_dir()} >= {"uncharged", "charged"}
-    assert [each.finger.states["full_slip"].totals["f_ext"] for each in found] == pytest.approx(2 * [FORCE], rel=1e-9)
-    assert fp.Result.load(out).scene == found[-1].scene
-    for other, now in (({"force": 1.1 * FORCE}, "0.0022 N"), ({}, "not given")):
-        words = rf"holds the results of another scene \(its force was 0.002 N, and is {now} now\)"
-        with pytest.raises(SceneError, match=words):
-            fp.run(scene, out=out, **other)
+        found.append(fp.run(scene, out=out))
+        monkeypatch.setattr(Simulation, "_accepted", None)  # nothing is solved again
+        found.append(fp.run(scene, out=out))
+    assert {path.name for path in out.iterdir() if path.is_dir()} >= {"uncharged", "uncharged_2", "charged"}
+    assert found[0].finger.to_dict() == found[1].finger.to_dict()
+    assert fp.Result.load(out).scene == scene
+    for other, words in (
+        (scene.replace(force=1.1 * FORCE), r"its force was 0.002, and is 0.0022 now"),
+        (scene.replace(force=None), r"its f_ext was None, and is 75.0 now"),
+    ):
+        with pytest.raises(SceneError, match=rf"holds the results of another scene \({words}\)"):
+            fp.run(other, out=out)
 
 
-@pytest.mark.parametrize(("last", "kept"), [(False, {"uncharged"}), (True, {"uncharged", "charged", "."})])
-def test_force_that_was_interrupted(tmp_path, last, kept):
-    """Ends as other runs do, whichever trace it was in; its folder is no run that can go on, but the command can."""
-    scene, out, before = small(**SMALL), tmp_path / "out", Simulation._accepted
+@pytest.mark.parametrize("last", [False, True])
+def test_force_that_was_interrupted_goes_on(tmp_path, last):
+    """Whichever trace it was in, by the same command or by --resume; to the last bit as one that was not stopped."""
+    scene, out, before = small(**SMALL).replace(force=FORCE), tmp_path / "out", Simulation._accepted
 
     def accepted(self, *given):
         if not last or self._model.loads[-1].name == "hold":
@@ -102,33 +121,35 @@ def test_force_that_was_interrupted(tmp_path, last, kept):
 
     with no_pictures(), pytest.MonkeyPatch.context() as patch, pytest.raises(SystemExit) as stop:
         patch.setattr(Simulation, "_accepted", accepted)
-        fp.run(scene, force=FORCE, out=out)
+        fp.run(scene, out=out)
     assert stop.value.code == 143
     assert stop.value.result.finger is None
     words = "full slip" if last else "uncharged normal contact"
     assert stop.value.result.failure.startswith("stopped by SIGTERM after step 1 of the trace of " + words)
-    assert {str(path.parent.relative_to(out)) for path in out.rglob("scene.json")} == kept
-    with pytest.raises(SceneError, match="has a trace of 0.002 N on the whole finger" if last else "has no scene.json"):
-        full_scene(out)
+    assert not (out / "summary.json").exists()
+    assert full_scene(out) == scene
+    begun, runs = time.time(), {"uncharged", "charged", "full_slip"} if last else {"uncharged"}
+    assert {path.parent.name for path in out.glob("*/scene.json")} == runs
     with no_pictures():
-        assert fp.run(scene, force=FORCE, out=out).finger
+        found = fp.run(full_scene(out), out=out, resume=last)
+    for name in ("uncharged", "charged") if last else ():
+        assert (out / name / "summary.json").stat().st_mtime < begun
+    for name, total in found.finger.states.items():
+        assert total.totals["f_ext"] == pytest.approx(FORCE, rel=1e-9), name
 
 
 def test_report_of_a_force_repeats_it(traced):
-    """With the force that was given and the scene's own keys; so does a scene whose keys are lists."""
+    """With the force that was given and the scene's own keys."""
     page = html.unescape(run_page.page(traced))
-    assert "0.002 N on the whole finger, from traces of the cross-section." in page
+    assert "0.002 N on the whole finger, 100 V. Loads at its centre" in page
     command = page.partition("<code>fingerpad run ")[2].partition("</code>")[0]
-    assert command.endswith("--force '0.002 N' --out results/again") and "f_ext=" not in command
-    asked = {"force": 0.5, "parameters": fp.Scene(geometry={"ridge_profile": [1.0, -0.1]}).parameters()}
-    code = html.unescape(parameters.again({}, "full", asked))
-    assert 'from_kept(json.load(open("summary.json"))["asked"]["parameters"])' in code and "force=0.5, out=" in code
+    assert "--set force=0.002 " in command and "f_ext=" not in command
 
 
 def test_section_at_the_centre_is_on_its_scale():
     """Slices half as large as the cross-section bear half of its force; friction is that of the deepest slice."""
     scene = fp.Scene(slices={"z": [-12e-3, 12e-3], "width": [0.5, 0.5]})
-    found = fp.run(scene, model="cylinders", force=0.125)
+    found = fp.run(scene.replace(force=0.125), model="cylinders")
     slip = found.finger.states["full_slip"]
     assert found.full_slip.f_ext == pytest.approx(2 * slip.centre, rel=1e-9)
     at = slip.depth.argmax()
@@ -139,38 +160,36 @@ def test_points_of_the_traces_are_of_one_kind():
     """Each state of a trace is uncharged, charged at rest, or at full slip at the scene's voltage."""
     scene = small(**SMALL)
     for name in ("uncharged", "charged"):
-        found = points(solve.solved(history(scene, name, 1.0), "full"), name)
+        found = points(solve.solved(history(scene, name, 1.0), find("full"), RunContext()), name)
         assert len(found) > 1 and {state.voltage for state in found} == {0.0 if name == "uncharged" else scene.voltage}
         assert all(state.bone_x == 0 for state in found)
 
 
-def test_run_has_newtons_for_nothing():
+def test_run_has_newtons_for_nothing(ran):
     """The run's own states at the centre, and less beside it; F_ext over f_ext is no constant of 20 mm."""
-    result = fp.run(small(**SMALL))
-    finger = result.finger
+    finger = ran.finger
     assert set(finger.states) == {"uncharged", "charged", "full_slip"}
     slip = finger.states["full_slip"]
-    assert slip.centre <= result.full_slip.f_ext * (1 + 1e-9)
-    assert slip.mu_app > result.full_slip.mu_app
-    assert "Whole finger" in str(result)
-    turned = [replace(state, f_t=-1e-15) if state.load == "press" else state for state in result.steps]
-    again = with_newtons(replace(result, steps=tuple(turned), finger=None)).finger
+    assert slip.centre <= ran.full_slip.f_ext * (1 + 1e-9)
+    assert slip.mu_app > ran.full_slip.mu_app
+    assert "Whole finger" in str(ran)
+    turned = [replace(state, f_t=-1e-15) if state.load == "press" else state for state in ran.steps]
+    again = with_newtons(replace(ran, steps=tuple(turned), finger=None)).finger
     assert again.states["full_slip"].totals == slip.totals, "sideways roundoff leaves no state of the press out"
 
 
 def test_estimate_by_another_law_has_the_friction_of_the_run():
     """Its limit is per reference area, and the slices' forces are spread over current lengths."""
-    run = fp.run(small(f_ext=600.0, **SMALL), friction=fp.Derjaguin(0.1, 1e4))
+    run = fp.run(small(f_ext=600.0, friction=fp.Derjaguin(0.1, 1e4), **SMALL))
     assert run.finger.traces["full_slip"].columns["f_t"][-1] == pytest.approx(run.full_slip.f_t, rel=1e-12)
 
 
-def test_run_that_was_never_charged_has_one_normal_contact():
+def test_run_that_was_never_charged_has_one_normal_contact(ran):
     """A run that ended before its voltage, and one at 0 V: one state, with one area, and no word of a charge."""
-    whole = fp.run(small(**SMALL))
-    still = whole.uncharged
+    still = ran.uncharged
     for voltage in (100.0, 0.0):
-        scene = whole.scene.replace(voltage=voltage)
-        cut = replace(whole, scene=scene, charged=replace(still, error=Errors(contact_length=1e-6)), full_slip=None)
+        scene = ran.scene.replace(voltage=voltage)
+        cut = replace(ran, scene=scene, charged=replace(still, error=Errors(contact_length=1e-6)), full_slip=None)
         found = with_newtons(replace(cut, finger=None))
         assert found.finger.values("charged") == found.finger.values("uncharged")
         assert found.finger.error["charged"] == found.finger.error["uncharged"]
@@ -182,17 +201,29 @@ def test_run_that_was_never_charged_has_one_normal_contact():
 
 def test_newtons_of_the_closed_form():
     """At once, with indentations of the default finger; within 2 % of µ_app by kept runs (docs/newtons.md)."""
-    finger = fp.run(force="0.5 N", model="cylinders").finger
+    finger = fp.run(fp.Scene(force="0.5 N"), model="cylinders").finger
     assert finger.states["full_slip"].mu_app == pytest.approx(0.6014, rel=0.02)
     assert np.ptp([total.totals["f_ext"] for total in finger.states.values()]) < 1e-9
+
+
+@pytest.mark.parametrize("name", ["uncharged", "charged", "full_slip"])
+def test_trace_of_the_closed_form_is_scene_by_scene(name):
+    """Points that are computed together are those of one scene after the other, to the tolerance of roots."""
+    scene = fp.Scene(voltage=120.0)
+    found = fp.run(scene.replace(force=0.3), model="cylinders").finger.traces[name]
+    kind, voltage = ("full_slip" if name == "full_slip" else "charged"), (0.0 if name == "uncharged" else 120.0)
+    for k, f_ext in enumerate(found.columns["f_ext"]):
+        state = fp.run(scene.replace(f_ext=float(f_ext), voltage=voltage), model="cylinders").named[kind]
+        for key in ("f_t", "f_electrostatic", "contact_length"):
+            assert found.columns[key][k] == pytest.approx(getattr(state, key), rel=1e-11, abs=0)
 
 
 def test_folder_of_another_force_is_refused_in_newtons(tmp_path):
     """Of a model without a path, too, whose state in N/m nobody gave; the same force is taken again."""
     for force in ("0.5 N", 0.5):
-        fp.run(force=force, model="cylinders", out=tmp_path)
-    with pytest.raises(SceneError, match=r"another scene \(its force was 0.5 N, and is 0.6 N now\)"):
-        fp.run(force=0.6, model="cylinders", out=tmp_path)
+        fp.run(fp.Scene(force=force), model="cylinders", out=tmp_path)
+    with pytest.raises(SceneError, match=r"another scene \(its force was 0.5, and is 0.6 now\)"):
+        fp.run(fp.Scene(force=0.6), model="cylinders", out=tmp_path)
 
 
 class Stop(Exception):
@@ -207,80 +238,42 @@ def test_least_force(tmp_path):
         given.append(scene)
         raise Stop
 
-    for model in ("full", "smooth"):
-        with pytest.raises(Stop):
-            traces.whole(fp.Scene(), 1e-5, model, solve)
+    with pytest.raises(Stop):
+        traces.whole(fp.Scene(force=1e-5), find("full"), solve)
+    with pytest.raises(Stop):
+        traces.whole(fp.Scene(force=1e-5), find("cylinders"), solve)
     assert all(load.f_ext >= 1e-3 for scene in given for load in scene.loads() if load.f_ext is not None)
-    finger = fp.run(force=1e-5, model="cylinders").finger
+    finger = fp.run(fp.Scene(force=1e-5), model="cylinders").finger
     assert finger.states["full_slip"].totals["f_ext"] == pytest.approx(1e-5, rel=1e-9)
-    straight = fp.Scene(slices={"z": [-50e-3, 50e-3], "height": [0.0, 0.0]})
+    straight = fp.Scene(force=1e-5, slices={"z": [-50e-3, 50e-3], "height": [0.0, 0.0]})
     with pytest.raises(SceneError, match=r"^force is 1e-05 N, under which the centre of the finger bears 0.0001 N/m"):
-        fp.run(straight, force=1e-5, model="cylinders")
+        fp.run(straight, model="cylinders")
 
 
-def test_force_that_is_too_small_for_a_model_is_named():
-    def solve(scene, name):
-        raise TooLight("f_ext is 0.7 N/m, under which the finger touches over less than a ridge")
-
-    with pytest.raises(SceneError, match=r"^force is 0.03 N, and in its trace f_ext is 0.7 N/m, under which"):
-        traces.whole(fp.Scene(), 0.03, "smooth", solve)
-
-
-@pytest.fixture
-def smooth_scenes(monkeypatch):
-    """Folders of tables that the model 'smooth' is given, scene by scene; charged cylinders answer in its place."""
-    from fingerpad.reduced import cylinders, smooth
-
-    given = []
-
-    def answer(scene, folder, comm, console):
-        given.append(folder)
-        return replace(cylinders.solve(scene), model="smooth")
-
-    monkeypatch.setattr(smooth, "solve", answer)
-    return given
-
-
-@pytest.mark.parametrize("quiet", [False, True])
-def test_force_of_the_smooth_finger_shows_its_scenes(tmp_path, smooth_scenes, capsys, quiet):
-    """A line each, and the tables of their ridge in the folder of the results."""
-    words = ["run", "--force", "0.5 N", "--model", "smooth", "--out", str(tmp_path), *(["--quiet"] if quiet else [])]
-    assert main(words) == 0
-    lines = re.findall(r"^scene (\d+) of some 25: (.*), [\d.]+ N/m$", capsys.readouterr().out, re.MULTILINE)
-    assert smooth_scenes == 25 * [tmp_path / "ridge_tables"]
-    traced = ["trace of uncharged normal contact", "trace of charged normal contact", "trace of full slip"]
-    every = [*(what for what in traced for _ in range(8)), "centre of the finger"]
-    assert lines == ([] if quiet else [(str(k), what) for k, what in enumerate(every, 1)])
-    assert fp.Result.load(tmp_path).finger.f_ext == pytest.approx(0.5, rel=1e-9)
-
-
-def test_force_of_the_smooth_finger_that_was_interrupted(tmp_path, smooth_scenes, monkeypatch, capsys):
-    """It ends with a sentence on what is kept, and the same command goes on from there."""
-    words = ["run", "--force", "0.5 N", "--model", "smooth", "--out", str(tmp_path)]
-    with monkeypatch.context() as patch:
-        patch.setattr(traces.cylinders, "indentation", interrupt)
-        assert main(words) == 130
-    kept = f"with the ridge's finished tables in {tmp_path / 'ridge_tables'}."
-    assert capsys.readouterr().out.endswith(f"Stopped. The same command starts the traces again, {kept}\n")
-    assert (tmp_path / "ridge_tables").is_dir() and main(words) == 0
-
-
-def interrupt(*given):
-    raise KeyboardInterrupt
-
-
-@pytest.mark.parametrize("force", [0.5, None])
-def test_folder_of_other_results_is_refused_before_the_work(tmp_path, smooth_scenes, force):
+def test_folder_of_other_results_is_refused_before_the_work(tmp_path, monkeypatch):
     fp.run(model="cylinders", out=tmp_path)
+    monkeypatch.setattr(traces, "whole", None)
     with pytest.raises(SceneError, match="holds the results of another scene"):
-        fp.run(force=force, model="smooth", out=tmp_path)
-    assert not smooth_scenes and not (tmp_path / "ridge_tables").exists()
+        fp.run(fp.Scene(force=0.5), model="cylinders", out=tmp_path)
 
 
-def test_scene_with_a_history_has_no_newtons():
-    scene = fp.Scene(history=[{"name": "press", "f_ext": 1.0}])
-    with pytest.raises(SceneError, match="history is given; a force in N is that of press, charge and slide"):
-        fp.run(scene, force=0.5)
+@pytest.mark.parametrize(
+    ("other", "words"),
+    [
+        ({"f_ext": "50 N/m"}, "force is 0.5 N and f_ext is 50 N/m; give one of the two"),
+        ({"history": [{"name": "press", "f_ext": 1.0}]}, "force is 0.5 N and history is given; a force on the whole"),
+    ],
+)
+def test_force_is_exclusive(tmp_path, other, words):
+    """Beside another load or mesh it is refused; a change to one of two loads replaces the other."""
+    with pytest.raises(SceneError, match=re.escape(words)):
+        fp.Scene(force="0.5 N", **other)
+    assert fp.Scene(force=0.5).replace(f_ext=20.0) == fp.Scene(f_ext=20.0)
+    assert fp.Scene(f_ext=20.0).replace(force=0.5) == fp.Scene(force=0.5)
+    file = tmp_path / "scene.toml"
+    file.write_text("f_ext = 20", encoding="utf-8")
+    assert load(file, {"force": "0.5 N"}) == fp.Scene(force=0.5)
+    assert "f_ext" not in fp.Scene(force=0.5).parameters() and "force" not in fp.Scene().parameters()
 
 
 def test_profile_that_does_not_fit_costs_a_note_alone():
@@ -292,20 +285,19 @@ def test_profile_that_does_not_fit_costs_a_note_alone():
 
 def test_report_and_text_of_a_force_begin_with_the_whole_finger(tmp_path):
     """Its coefficient is not that of the centre slice, nor of the end of a trace."""
-    result = fp.run(force=2.0, model="cylinders", out=tmp_path)
+    result = fp.run(fp.Scene(force=2.0), model="cylinders", out=tmp_path)
     whole = result.finger.values("full_slip")
     assert whole["mu_app"] != pytest.approx(result.full_slip.mu_app, rel=0.05)
     page = (tmp_path / "report.html").read_text(encoding="utf-8")
     mu, f_t = (result.finger.shown("full_slip", key) for key in ("mu_app", "f_t"))
     assert mu.startswith(f"{whole['mu_app']:.3f}") and f"<h1>µ<sub>app</sub> = {mu}</h1>" in page
     assert f"friction force {f_t} N; 2 N on the whole finger, 200 V" in page
-    assert page.index('id="newtons"') < page.index('id="numbers"') and "under its part of the force" in page
+    assert page.index('id="newtons"') < page.index('id="numbers"') and "under its own part of the force" in page
     text = str(result)
     assert text.startswith("Whole finger, as a sum of slices")
-    assert text.index("Cross-section at the centre of the finger (model 'cylinders')") > 0
+    assert text.index("Section at the centre of the finger (model 'cylinders')") > 0
     read = fp.Result.load(tmp_path).finger
     assert read.under(1.0).to_dict() == result.finger.under(1.0).to_dict()
-    less = fp.run(force=1.0, model="cylinders").finger.values("full_slip")
+    less = fp.run(fp.Scene(force=1.0), model="cylinders").finger.values("full_slip")
     assert read.under(1.0).values("full_slip")["f_t"] == pytest.approx(less["f_t"], rel=5e-3), "traces of other points"
-    assert fp.Result.load(tmp_path).asked_force == 2.0 and str(fp.Result.load(tmp_path)) == text
-    assert fp.run(model="cylinders").asked_force is None
+    assert fp.Result.load(tmp_path).scene.force == 2.0 and str(fp.Result.load(tmp_path)) == text

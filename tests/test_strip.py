@@ -10,7 +10,8 @@ from dolfinx import fem
 from mpi4py import MPI
 from numpy.testing import assert_allclose
 
-from geometry import strip, tags
+from benchmarks.stability import strip
+from geometry import tags
 from geometry.mesh import load
 from geometry.parameters import Fingertip, MeshSize
 from geometry.profiles import GeometryError, Profiles

@@ -30,7 +30,7 @@ def started(monkeypatch):
     """Arguments of the runs that were started; each leaves a summary with the force of its scene."""
     runs = []
 
-    def run(name, arguments, limit):
+    def run(name, arguments, limit, folders):
         runs.append(arguments)
         scene = json.loads(Path(arguments[0]).read_text(encoding="utf-8"))
         if scene["f_ext"] == 666:
@@ -65,6 +65,7 @@ def test_crash_is_told_and_tried_again(started, tmp_path):
     assert len(started) == 2
 
 
+@pytest.mark.slow
 def test_run_that_was_refused_its_folder_is_tried_again(tmp_path):
     """A run of a killed sweep may still be at it; when that is gone the scene is run."""
     scene = small().replace(mesh={"contact": 40e-6}, output={"receptors": False, "errors": False})
@@ -218,7 +219,7 @@ def test_jobs_are_no_ranks_of_a_launcher(monkeypatch):
 
 
 def test_crash_says_its_last_words():
-    end = run_module("fingerpad.runs.batch", ["no scene.json", "nowhere", "5", "full"], 5.0)
+    end = run_module("fingerpad.runs.one", ["no scene.json", "nowhere", "5", "full"], 5.0)
     assert end.reason == "CRASH_1"
     assert "no scene.json" in end.message
 

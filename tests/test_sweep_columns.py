@@ -3,6 +3,7 @@
 import csv
 import json
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -10,8 +11,7 @@ import xarray
 
 import fingerpad as fp
 from fingerpad.report.write import write
-from fingerpad.runs import sweep_dataset
-from fingerpad.runs.sweep_results import Sweep
+from fingerpad.runs.sweep_results import Sweep, _stacked
 from fingerpad.slices.finger import WholeFinger
 from tests.test_loads_over_time import BY, PRESS, SLIDE, WAVE, scene
 
@@ -29,7 +29,7 @@ def folder(tmp_path_factory):
     failed = fp.Result(results[0].scene, "full", None, None, None, failure="no equilibrium")
     done = Sweep({KEY: (40.0, 80.0, 120.0)}, (*results, failed), place)
     done.to_csv(place / "table.csv")
-    assert not sweep_dataset.save(done)
+    assert not done.save()
     return done
 
 
@@ -43,7 +43,7 @@ def test_table_has_loads_over_time(folder):
         assert float(row[f"load_{NAME}_f_t_mean"]) == load.over_time.mean["f_t"]
         assert float(row[f"load_{NAME}_f_t_amplitude"]) == max(load.over_time.f_t_amplitude)
         assert float(row[f"load_{NAME}_f_t_frequency"]) == pytest.approx(2 * WAVE["frequency"])
-        assert float(row["slip_mu_app"]) == pytest.approx(0.25)  # before the drive: the same at each point
+        assert float(row["full_slip_mu_app"]) == pytest.approx(0.25)  # before the drive: the same at each point
     assert rows[2][f"load_{NAME}_mu_app_max"] == "" and rows[2]["failure"] == "no equilibrium"
     assert not any(key.startswith("load_press") for key in rows[0])  # it takes no time
 
@@ -82,13 +82,13 @@ def test_headline_of_a_sweep_is_of_its_waveform(folder, tmp_path):
     press = {"load_press_mu_app_min": -1e-18, "load_press_mu_app_max": 1e-18, "load_press_contact_length_mean": 1.0}
     rest = {f"load_rest_{key}": 0.0 for key in ("mu_app_min", "mu_app_max", "f_t_amplitude", "contact_length_mean")}
     rows = [
-        {"voltage": 1.0, "slip_contact_length": 1e-3, **press, **more, **rest, "failure": ""}
+        {"voltage": 1.0, "full_slip_contact_length": 1e-3, **press, **more, **rest, "failure": ""}
         for more in (
             {f"load_w_{key}": value for key, value in zip(WAVES, (0.2, 0.3, 0.1, 1.0), strict=True)},
             {f"load_w_{key}": "" for key in WAVES},
         )
     ]
-    rows[1] |= {"voltage": 2.0, "slip_contact_length": ""}
+    rows[1] |= {"voltage": 2.0, "full_slip_contact_length": ""}
     with (tmp_path / "table.csv").open("w", encoding="utf-8", newline="") as file:
         out = csv.DictWriter(file, list(rows[0]))
         out.writeheader()
@@ -123,7 +123,7 @@ def test_places_along_a_dimension_are_those_of_labels():
         {"ridge": (("ridge",), np.array(numbers), about), "x": (("ridge",), np.array(numbers, float), about)}
         for numbers in ([0, 1], [-1, 0])
     ]
-    found = sweep_dataset._more([*points, {}], ("voltage",), [3])
+    found = _stacked([*points, {}], ("voltage",), [3])
     assert found["ridge"][1].tolist() == [-1, 0, 1]
     dims, values, _ = found["x"]
     assert dims == ("voltage", "ridge")
@@ -132,13 +132,13 @@ def test_places_along_a_dimension_are_those_of_labels():
 
 def test_newtons_of_a_whole_finger(tmp_path):
     """A sweep whose points have one shows its friction in the last column, and has it in table and dataset."""
-    result = fp.run(force="0.5 N", model="cylinders")
+    result = replace(fp.run(fp.Scene(force="0.5 N"), model="cylinders"), scene=fp.Scene())
     assert isinstance(result.finger, WholeFinger)
     done = Sweep({"friction": (0.25,)}, (result,), tmp_path)
     totals = result.finger.states["full_slip"].totals
     row = done.rows()[0]
-    assert row["slip_finger_f_t"] == totals["f_t"] and row["normal_finger_f_ext"] == pytest.approx(0.5)
-    assert "normal_finger_f_t" not in row
+    assert row["full_slip_finger_f_t"] == totals["f_t"] and row["charged_finger_f_ext"] == pytest.approx(0.5)
+    assert "charged_finger_f_t" not in row
     heads, line = str(done).splitlines()[1:3]
     assert heads.endswith("F_T (N)") and line.endswith(result.finger.shown("full_slip", "f_t"))
     data = done.to_xarray()

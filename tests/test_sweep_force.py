@@ -2,7 +2,6 @@
 
 import csv
 import html
-import json
 import re
 import shlex
 
@@ -15,7 +14,6 @@ from fingerpad.cli import sweep as cli_sweep
 from fingerpad.report import source
 from fingerpad.report.sweep_page import _curves
 from fingerpad.report.write import write
-from fingerpad.runs import batch
 from tests.small_finger import small
 
 FORCES, VOLTAGES = (0.1, "200 mN", 0.5), (0.0, 200.0)
@@ -32,8 +30,8 @@ def test_each_point_is_the_run_under_its_force(found):
     """In the order of the axes, to the last bit, cross-section and cautions included."""
     assert found.axes == {"voltage": VOLTAGES, "force": (0.1, 0.2, 0.5)}
     for point, result in zip(found.points(), found, strict=True):
-        alone = fp.run(fp.Scene(voltage=point["voltage"]), model="cylinders", force=point["force"])
-        assert result.asked_force == point["force"] and result.cautions == alone.cautions
+        alone = fp.run(fp.Scene(**point), model="cylinders")
+        assert result.scene.force == point["force"] and result.cautions == alone.cautions
         assert result.finger.values("full_slip") == alone.finger.values("full_slip")
         assert result.full_slip.f_ext == alone.full_slip.f_ext
     assert found.array("f_t").shape == (2, 3)
@@ -53,7 +51,7 @@ def test_table_text_and_dataset_are_of_the_whole_finger(found):
     with (found.folder / "table.csv").open(encoding="utf-8", newline="") as file:
         rows = list(csv.DictReader(file))
     assert not [key for key in rows[0] if re.match(r"(slip|normal|uncharged)_(?!finger_)", key)]
-    assert float(rows[4]["slip_finger_f_t"]) == found.array("f_t")[1, 1]
+    assert float(rows[4]["full_slip_finger_f_t"]) == found.array("f_t")[1, 1]
     title, heads, *lines = str(found).splitlines()
     assert title == "Whole finger, at full slip" and heads.split()[2:7] == ["force", "(N)", "µ_app", "F_T", "(N)"]
     assert lines[4].split()[:2] == ["200", "0.2"] and found[4].finger.shown("full_slip", "f_t") in lines[4]
@@ -69,7 +67,6 @@ def test_report_has_newtons_and_says_how_to_repeat_it(found, tmp_path):
     assert f"µ<sub>app</sub> from {mu.min():.3f} to {mu.max():.3f}</h1>" in page
     assert "whole finger at full slip, over" in page and "friction force F_T (N)" in page
     assert "f_T (N/m)" not in page and "at full slip over the sweep" in page
-    assert re.search(r"f_ext</th><td>varied", page), "the force is in its place"
     code = html.unescape(re.search(r"<pre><code>(.*?)</code>", page, re.DOTALL)[1])
     words = shlex.split(code)
     over = [words[k + 1] for k, word in enumerate(words) if word == "--over"]
@@ -112,13 +109,13 @@ def test_charts_have_the_units_of_their_titles(found):
     [
         (
             {"force": [0.1], "f_ext": [75.0]},
-            "the sweep is over force, in N, and over f_ext, in N/m; give one of the two",
+            "force is 0.1 N and f_ext is 75 N/m; give one of the two",
         ),
         ({"force": [0.1, "100 mN"]}, "each value must be there once"),
         ({"force": ["75 N/m"]}, "force is '75 N/m'"),
         ({"force": [500.0]}, "force is 500"),
         ({"force": 0.1}, "force of the sweep is 0.1; it must be a list, such as [0.1]"),
-        ({"force": [0.1], "history[0].f_ext": [75.0]}, "history is given; a force in N is that of press, charge"),
+        ({"force": [0.1], "history[0].f_ext": [75.0]}, "force is 0.1 N and history is given; a force on the whole"),
     ],
 )
 def test_what_is_no_sweep_over_the_force(tmp_path, axes, words):
@@ -138,35 +135,10 @@ def test_command_and_measurements(tmp_path, capsys):
     table.write_text("# source: X 2020\nforce (mN), friction force (N)\n100, 0.09\n200, 0.15\n", encoding="utf-8")
     assert main(["compare-data", str(table), "--sweep", str(out), "--csv", str(tmp_path / "both.csv")]) == 0
     with (out / "table.csv").open(encoding="utf-8", newline="") as file:
-        low, high = (float(row["slip_finger_f_t"]) for row in csv.DictReader(file))
+        low, high = (float(row["full_slip_finger_f_t"]) for row in csv.DictReader(file))
     with (tmp_path / "both.csv").open(encoding="utf-8", newline="") as file:
-        ours = [float(row["ours"]) for row in csv.DictReader(file)]
+        ours = [float(row["computed"]) for row in csv.DictReader(file)]
     assert ours == pytest.approx([low, np.sqrt(low * high)], rel=1e-9)
-
-
-def test_option_of_a_run_is_told(capsys):
-    assert main(["sweep", "--force", "0.5 N", "--over", "voltage=0"]) == 2
-    assert "a sweep has it as values: --over force=" in capsys.readouterr().err
-
-
-def test_key_is_of_force_and_scene():
-    assert batch.key(fp.Scene(), 0.5) not in (batch.key(fp.Scene(), 0.4), batch.key(fp.Scene()))
-    assert batch.key(fp.Scene(), 0.5) != batch.key(fp.Scene(voltage=1.0), 0.5)
-
-
-def test_traces_alone_are_no_result(tmp_path):
-    """A run that was killed before its sums is run again."""
-    scene = fp.Scene()
-    place = tmp_path / batch.key(scene, 0.5)
-    place.mkdir()
-    for kept, done in (
-        ({"f_ext": 80.0}, False),
-        ({"f_ext": 80.0, "failure": "of the last trace"}, False),
-        ({"f_ext": 80.0, "asked": {}}, True),
-        ({"failure": "refused"}, True),
-    ):
-        (place / "summary.json").write_text(json.dumps(kept), encoding="utf-8")
-        assert (batch.result(scene, tmp_path, 0.5) is not None) is done
 
 
 def test_full_model_in_processes_of_its_own(tmp_path, capfd):
@@ -174,7 +146,7 @@ def test_full_model_in_processes_of_its_own(tmp_path, capfd):
 
     Tolerance: with cells renumbered, which other processes have not, a trace may have other points.
     """
-    scene, alone = small(**SMALL), fp.run(small(**SMALL), force="2 mN")
+    scene, alone = small(**SMALL), fp.run(small(**SMALL).replace(force="2 mN"))
     found = fp.sweep(scene, tmp_path, force=["2 mN"])
     assert found[0].failure == "" and "force 0.002" in capfd.readouterr().out
     assert found.array("f_t")[0] == pytest.approx(alone.finger.values("full_slip")["f_t"], rel=1e-3)

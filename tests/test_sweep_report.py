@@ -72,13 +72,13 @@ def test_points_without_a_coefficient_have_slid(tmp_path):
     """Their force is the headline, and no point is said to have no full slip."""
     sweep(Scene(), tmp_path, model="cylinders", voltage=[100, 200])
     with (tmp_path / "table.csv").open(encoding="utf-8", newline="") as file:
-        rows = [row | {"slip_mu_app": ""} for row in csv.DictReader(file)]
+        rows = [row | {"full_slip_mu_app": ""} for row in csv.DictReader(file)]
     with (tmp_path / "table.csv").open("w", encoding="utf-8", newline="") as file:
         out = csv.DictWriter(file, list(rows[0]))
         out.writeheader()
         out.writerows(rows)
     page = write(tmp_path).read_text(encoding="utf-8")
-    forces = [float(row["slip_f_t"]) for row in rows]
+    forces = [float(row["full_slip_f_t"]) for row in rows]
     assert f"f<sub>T</sub> from {min(forces):.3f} to {max(forces):.3f} N/m" in page
     assert "no full slip" not in page and "Every point was computed." in page
 
@@ -88,7 +88,7 @@ def test_files_of_an_earlier_sweep_do_not_stay_beside_a_new_table(tmp_path, monk
     words = ["sweep", "--model", "cylinders", "--over", "voltage=0,100", "--out", str(tmp_path)]
     assert main(words) == 0 and "sweep.nc, report.html, sweep.json" in capsys.readouterr().out
     monkeypatch.setattr("fingerpad.runs.sweep.attempt", lambda folder: None)
-    monkeypatch.setattr("fingerpad.runs.sweep_dataset.save", lambda sweep: "sweep.nc is missing: no room")
+    monkeypatch.setattr("fingerpad.runs.sweep_results.Sweep.save", lambda sweep: "sweep.nc is missing: no room")
     assert main(words) == 0
     assert not (tmp_path / "sweep.nc").exists() and not (tmp_path / "report.html").exists()
     assert capsys.readouterr().out.strip().endswith("table.csv, sweep.json")

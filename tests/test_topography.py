@@ -296,7 +296,7 @@ def test_instrument_files(other, tmp_path):
     np.testing.assert_allclose(found.heights, m.heights, rtol=0, atol=1e-12 * UM)
     assert found.size == pytest.approx(m.size, rel=1e-12, abs=0)
     (tmp_path / "words.vk4").write_text("no map")
-    with pytest.raises(ValueError, match="no height map of a format"):
+    with pytest.raises(ValueError, match="no format that SurfaceTopography reads"):
         scan(tmp_path / "words.vk4")
 
 

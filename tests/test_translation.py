@@ -8,13 +8,10 @@ from mpi4py import MPI
 from fingerpad.model.options import FingerModel, plan
 from fingerpad.model.simulation import Simulation
 from fingerpad.scene import from_data
+from tests.runs import followed, path_of
+from tests.small_finger import NINE
 from variational.solvers import iteration
 from variational.solvers.continuation import StepFailed
-
-FINGER = {
-    "geometry": {"ridge_count": 9},
-    "mesh": {"contact": 40e-6, "receptor": 100e-6, "interface": 200e-6, "growth": 1.0, "touching_half_arc": 1.0e-3},
-}
 
 
 def slid(away: float, f_ext: float, voltage: float, tolerance: float) -> Simulation:
@@ -26,11 +23,10 @@ def slid(away: float, f_ext: float, voltage: float, tolerance: float) -> Simulat
         {"name": "slide", "bone_x": away + 0.9e-3, "until_full_slip": True},
     ]
     data = {"history": loads[away == 0.0 :], "output": {"errors": False}}
-    scene = from_data(FINGER | data)
+    scene = from_data(NINE | data)
     # Below what a scene may ask for, where a test is of the floor.
     scene = scene.model_copy(update={"numerics": scene.numerics.model_copy(update={"tolerance": tolerance})})
-    made = Simulation(FingerModel(scene, plan(scene)), MPI.COMM_WORLD)
-    made.run()
+    made = followed(scene)
     return made
 
 
@@ -75,12 +71,12 @@ def test_light_press_at_200_v_after_5_mm():
 
 def test_translated_body_bears_no_force():
     """Off the screen, 10 mm aside: every nodal force is zero to the last bit."""
-    scene = from_data(FINGER | {"f_ext": 1.0})
-    made = Simulation(FingerModel(scene, plan(scene)), MPI.COMM_WORLD)
+    scene = from_data(NINE | {"f_ext": 1.0})
+    made = path_of(scene)
     u = np.tile([10e-3, 3e-3], (len(made.finger.problem.displacement()), 1))
     made.finger.solver.set_displacement(u, np.array([10e-3, 3e-3]))
     np.testing.assert_array_equal(made.finger.problem.displacement(), u)
-    made.finger.problem.set_history(made.finger.problem.history)
+    made.finger.problem.history.accept({})
     np.testing.assert_array_equal(fem.assemble_vector(made.finger.problem.residual).array, 0.0)
 
 
@@ -105,7 +101,7 @@ def test_points_of_little_friction_come_to_stick():
 
     Without softened springs the first touch is cut to steps of a thousandth.
     """
-    finger = {"geometry": {"ridge_count": 5}, "mesh": FINGER["mesh"] | {"contact": 30e-6, "touching_half_arc": 0.6e-3}}
+    finger = {"geometry": {"ridge_count": 5}, "mesh": NINE["mesh"] | {"contact": 30e-6, "touching_half_arc": 0.6e-3}}
     scene = from_data(finger | {"friction": 0.002, "history": [{"name": "press", "f_ext": 0.2}]})
     needed, rows = plan(scene).with_both_halves(), []
     made = Simulation(FingerModel(scene, needed), MPI.COMM_WORLD, lambda step, done: rows.append(step.state.row()))

@@ -1,145 +1,188 @@
-"""Laws of one name and other code are told apart, and so are the folders and tables that are kept of them."""
+"""Laws of one's own are imported from Python's path alone, and laws of one name and other code are two laws."""
 
-import importlib.util
 import json
+import os
 import subprocess
 import sys
-from functools import partial
+from pathlib import Path
 
-import numpy as np
 import pytest
 
-from fingerpad.reduced import ridge_cell
-from fingerpad.scene import Scene
-from fingerpad.scene.law_source import digest
-from fingerpad.scene.laws import Laws, used
+import fingerpad as fp
+from fingerpad.io.result import Result
+from fingerpad.scene import Scene, SceneError, load
+from fingerpad.scene.law_code import digest
+from fingerpad.scene.laws import used
+from tests.small_finger import small
 from variational.roughness.bam import BearingArea
-from variational.roughness.closure import AirGap, Closure
 
 MINE = """
-import numpy as np
-from variational.roughness.closure import AirGap, Closure
-GAP = {constant}
-def gap(p):
-    return {inside} + 0 * np.asarray(p, dtype=float)
-class Base(Closure):
-    def __call__(self, p_c):
-        return AirGap({base} * gap(p_c))
-class ConstantGap(Base):
-    def state(self, p_c, voltage):
-        return {text!r}
+from dataclasses import dataclass
+import fingerpad as fp
+from variational.coefficients import parameter
+
+@dataclass(frozen=True)
+class Mine(fp.Friction):
+    k: float = parameter(0.1, 10.0)
+    tau: float = parameter(0, 1e6, "Pa", default=1e3)
+
+    def limit(self, p):
+        return {factor} * self.k * p
 """
-PLAIN = {"constant": 1.0, "inside": "2e-6 * GAP", "base": 1.0, "text": ""}
+SCENE = """
+friction = {law = "mylaws:Mine", k = 2, tau = "5 kPa"}
+"""
+COARSE = {"mesh": {"contact": 40e-6}, "output": {"errors": False, "receptors": False}}
 
 
-class Given(Closure):
-    """A closure that holds whatever it is given."""
-
-    def __init__(self, **values):
-        self.__dict__.update(values)
-
-    def __call__(self, p_c):
-        return AirGap(2e-6 + 0 * np.asarray(p_c, dtype=float))
-
-    def scaled(self, p_c):
-        return 2 * p_c
-
-
-def imported(folder, **changes):
-    """Import the user's file anew, as a new process does after an edit."""
-    folder.mkdir(parents=True)
-    file = folder / "mine.py"
-    file.write_text(MINE.format(**(PLAIN | changes)), encoding="utf-8")
-    spec = importlib.util.spec_from_file_location("mine", file)
-    module = importlib.util.module_from_spec(spec)
-    sys.modules["mine"] = module
-    spec.loader.exec_module(module)
-    return module.ConstantGap
+@pytest.fixture
+def place(tmp_path, monkeypatch):
+    """A folder on Python's path with a law, and the scene of that law in another one."""
+    (tmp_path / "path").mkdir()
+    (tmp_path / "path" / "mylaws.py").write_text(MINE.format(factor=0.1), encoding="utf-8")
+    (tmp_path / "scene.toml").write_text(SCENE, encoding="utf-8")
+    monkeypatch.setenv("PYTHONPATH", str(tmp_path / "path"))
+    monkeypatch.syspath_prepend(tmp_path / "path")
+    monkeypatch.delitem(sys.modules, "mylaws", raising=False)
+    yield tmp_path
+    sys.modules.pop("mylaws", None)
 
 
-def described(closure):
-    return json.dumps(Laws(closure=closure).parameters(), sort_keys=True, allow_nan=False)
+def edited(place: Path) -> None:
+    """Change the law and forget it, as a new process does."""
+    (place / "path" / "mylaws.py").write_text(MINE.format(factor=0.1111), encoding="utf-8")
+    sys.modules.pop("mylaws", None)
 
 
-@pytest.mark.parametrize("change", [{"constant": 1.5}, {"inside": "3e-6 * GAP"}, {"base": 1.5}, {"text": "edited"}])
-def test_edited_closure_is_another(tmp_path, change):
-    """In the class, in its base, in a function that it calls or a constant: each is told from the file before."""
-    edits = (("old", {}), ("same", {}), ("new", change))
-    old, same, new = (described(imported(tmp_path / name, **more)()) for name, more in edits)
-    assert old == same != new
+def command(place: Path, *words: str, cwd: Path | None = None, **more: str) -> subprocess.CompletedProcess[str]:
+    env = os.environ | {"PYTHONPATH": os.pathsep.join([str(place / "path"), os.getcwd()])} | more
+    run = [sys.executable, "-m", "fingerpad", *map(str, words)]
+    return subprocess.run(run, capture_output=True, text=True, check=False, env=env, cwd=cwd)
 
 
-def test_tables_of_an_edited_closure_are_not_those_before(tmp_path):
-    scenes = [
-        Scene().with_laws(closure=imported(tmp_path / name, inside=inside)())
-        for name, inside in (("old", "2e-6"), ("new", "3e-6"))
-    ]
-    old, new = (ridge_cell._made_of(scene) for scene in scenes)
-    assert old != new
+# -- import paths ----------------------------------------------------------------------------------------------
+def test_law_of_a_scene_file_has_units_and_ranges_of_its_own(place):
+    law = Scene.load(place / "scene.toml").friction_law()
+    assert (type(law).__name__, law.k, law.tau, law.limit(10.0)) == ("Mine", 2.0, 5e3, 2.0)
+    with pytest.raises(SceneError, match="friction.k is 20; it must be from 0.1 to 10"):
+        load(place / "scene.toml", {"friction.k": 20})
+    with pytest.raises(SceneError, match="friction.tau is '5 mm'; its unit is not a unit of pressure"):
+        load(place / "scene.toml", {"friction.tau": "5 mm"})
 
 
-def test_file_edited_after_its_import_does_not_change_a_law(tmp_path):
-    """The law is the code that runs, and its tables are not those of the code that the file has now."""
-    law = imported(tmp_path / "old")()
-    before = described(law)
-    old = imported(tmp_path / "late")
-    now = imported(tmp_path / "new", inside="3e-6 * GAP")
-    assert described(law) == before
-    assert described(old()) != described(now())
+@pytest.mark.parametrize(
+    ("path", "sentence"),
+    [
+        ("nolaws:Mine", "Python finds no module nolaws; put its folder on PYTHONPATH"),
+        ("mylaws:Yours", "the module mylaws has no Yours"),
+        ("mylaws:fp", "it must be a Friction"),
+        ("os:path", "the module is one of Python's own"),
+        ("broken:Mine", "the module cannot be imported: no law here"),
+        ("__main__:Mine", "the class is known to the program that made it alone; put it into a module"),
+        ("mylaws", "or a law of your own, as 'module:Class'"),
+    ],
+)
+def test_path_that_names_no_law_is_refused(place, path, sentence):
+    (place / "path" / "broken.py").write_text("raise RuntimeError('no law here')", encoding="utf-8")
+    with pytest.raises(SceneError) as error:
+        Scene(friction={"law": path, "k": 2.0})
+    assert f"friction.law is {path!r}; " in str(error.value) and sentence in str(error.value)
 
 
-def test_words_of_a_law_have_no_hash(tmp_path):
-    scene = Scene().with_laws(closure=imported(tmp_path / "one")())
-    assert used(scene)["closure"] == "ConstantGap()"
-    assert used(Scene().with_laws(closure=Given(f=digest)))["closure"].startswith("Given(f=")
-    assert digest(Given) not in " ".join(used(Scene().with_laws(closure=Given(f=Given))).values())
+def test_no_code_beside_a_scene_is_imported(place):
+    """Neither in the scene's folder nor in the current one, unless PYTHONPATH names it."""
+    (place / "mylaws.py").write_text("raise SystemExit('run')", encoding="utf-8")
+    words = ("estimate", place / "scene.toml")
+    done = command(place, *words, cwd=place, PYTHONPATH=os.getcwd())
+    assert done.returncode == 2 and "Python finds no module mylaws; put its folder on PYTHONPATH" in done.stderr
+    (place / "mylaws.py").write_text(MINE.format(factor=0.1), encoding="utf-8")
+    done = command(place, *words, cwd=place, PYTHONPATH=os.pathsep.join([os.getcwd(), str(place)]))
+    assert done.returncode == 0 and "Friction Mine(k=2, tau=5000)." in done.stdout
 
 
-def test_law_without_a_source_counts_in_its_process_alone():
+# -- every way of a run ----------------------------------------------------------------------------------------
+def test_law_works_from_the_command_line(place):
+    """A run, the run of its scene.json, and a report; the model is light, and friction that of the law."""
+    done = command(place, "run", place / "scene.toml", "--model", "cylinders", "--out", place / "one")
+    assert done.returncode == 0, done.stderr
+    again = command(place, "run", place / "one" / "scene.json", "--out", place / "two")
+    assert again.returncode == 0, again.stderr
+    one, two = (json.loads((place / name / "summary.json").read_text()) for name in ("one", "two"))
+    assert one["full_slip_mu_app"] == two["full_slip_mu_app"] == pytest.approx(0.2 * one["full_slip_f_contact"] / 75.0)
+    assert one["parameters"] == two["parameters"] and one["parameters"]["friction"]["law"] == "mylaws:Mine"
+    assert one["laws"]["friction"] == "Mine(k=2, tau=5000)"
+
+
+def test_results_are_read_where_the_law_is_not(place):
+    """Its code is not imported: a folder of results is from anywhere. What computes with the law imports it."""
+    fp.run(Scene.load(place / "scene.toml"), model="cylinders", out=place / "one")
+    edited(place)
+    read = Result.load(place / "one")
+    assert "mylaws" not in sys.modules and used(read.scene)["friction"] == "mylaws:Mine(k=2, tau=5000)"
+    with pytest.raises(SceneError, match="friction is of the law 'mylaws:Mine', which is not imported"):
+        read.scene.friction_law()
+    with pytest.raises(SceneError, match="friction.law is 'mylaws:Mine', whose file was changed since"):
+        fp.run(read.scene, model="cylinders")
+    assert fp.run(read.scene.replace(friction=0.2), model="cylinders").full_slip is not None
+
+
+def test_sweep_in_processes_takes_a_law(place):
+    """Its processes import the law; one of this program alone is refused before any of them starts."""
+    scene = small(friction=Scene.load(place / "scene.toml").friction, **COARSE)
+    found = fp.sweep(scene, place / "sweep", voltage=[0.0], **{"friction.k": [1.0, 2.0]}, quiet=True)
+    assert [each.failure for each in found] == ["", ""]
+    one, two = (each.full_slip.f_t for each in found)
+    assert two == pytest.approx(2 * one, rel=0.02)
+
+    with pytest.raises(SceneError, match="friction is a Local, which the processes of a sweep cannot have"):
+        fp.sweep(scene.replace(friction=_local()), place / "other", voltage=[0.0, 1.0])
+
+
+def test_changed_law_is_not_resumed(place):
+    scene = small(friction=Scene.load(place / "scene.toml").friction, voltage=0.0, **COARSE)
+    fp.run(scene, out=place / "run")
+    assert "has reached its end" in command(place, "run", "--resume", place / "run").stderr
+    edited(place)
+    done = command(place, "run", "--resume", place / "run")
+    assert done.returncode == 2 and "friction.law is 'mylaws:Mine', whose file was changed since" in done.stderr
+    with pytest.raises(SceneError, match="friction is a Local, which a run that goes on cannot have"):
+        fp.run(scene.replace(friction=_local()), out=place / "run", resume=True)
+
+
+def _local() -> fp.Friction:
+    from dataclasses import dataclass
+
+    @dataclass(frozen=True)
+    class Local(fp.Friction):
+        """A law that no other process can import."""
+
+        def limit(self, p):
+            return 0.3 * p
+
+    return Local()
+
+
+# -- hashes ----------------------------------------------------------------------------------------------------
+def test_tables_of_an_edited_law_are_not_those_before(place):
+    before = Scene.load(place / "scene.toml")
+    old = before.parameters()
+    edited(place)
+    assert Scene.load(place / "scene.toml").parameters() != old == before.parameters()
+
+
+def test_law_without_a_file_counts_in_its_process_alone():
     """Code of a session: the same key twice in one process, another one in the next."""
     code = (
-        "from fingerpad.scene.laws import Laws\n"
-        "from variational.roughness.closure import AirGap, Closure\n"
-        "class Mine(Closure):\n"
-        "    def __call__(self, p_c): return AirGap(2e-6 + 0 * p_c)\n"
-        "one, two = Laws(closure=Mine()).parameters(), Laws(closure=Mine()).parameters()\n"
-        "assert one == two\n"
-        "print(one)\n"
+        "from dataclasses import dataclass\nimport fingerpad as fp\n"
+        "@dataclass(frozen=True)\nclass Mine(fp.Friction):\n    def limit(self, p): return 0.3 * p\n"
+        "one, two = (fp.Scene(friction=Mine()).parameters()['friction'] for _ in range(2))\n"
+        "assert one == two\nprint(one)\n"
     )
     found = {subprocess.run([sys.executable, "-c", code], capture_output=True, text=True).stdout for _ in range(2)}
     assert len(found) == 2
-    assert all("source code" in text for text in found)
+    assert all("__main__:Mine" in text for text in found)
 
 
-def test_laws_of_the_program_have_no_source():
+def test_laws_of_the_program_have_no_hash():
     """So that what is kept of them stays when they are moved or their comments change."""
     assert digest(BearingArea) == ""
-    assert "source code" not in Laws(closure=BearingArea(0.5e-6)).parameters()["closure"]
-
-
-def test_functions_that_a_law_holds_are_told_apart():
-    one, other = (lambda p: 2 * p), (lambda p: 3 * p)
-    bound = [Given(mine=Given(gain=gain).scaled) for gain in (1.0, 2.0)]
-    partials = [Given(mine=partial(max, value)) for value in (1.0, 2.0)]
-    slotted = [Given(mine=value) for value in (1j, 2j)]
-    found = [described(law) for law in (Given(mine=one), Given(mine=other), *bound, *partials, *slotted)]
-    assert len(set(found)) == len(found)
-
-
-def test_law_that_holds_itself_is_described():
-    law = Given()
-    law.mine = law
-    assert "itself" in described(law)
-
-
-def test_numbers_that_are_not_finite_are_text():
-    """JSON has none; what is written stays readable by any program."""
-    found = json.loads(described(Given(most=np.inf, least=-np.inf, none=np.array([np.nan, 1.0]))))
-    assert {k: found["closure"][k] for k in ("most", "least", "none")} == {
-        "most": "inf", "least": "-inf", "none": ["nan", 1.0],
-    }  # fmt: skip
-
-
-def test_scenes_whose_laws_hold_arrays_are_compared():
-    scenes = [Scene().with_laws(closure=Given(gaps=np.array([1e-6, last]))) for last in (2e-6, 2e-6, 3e-6)]
-    assert scenes[0] == scenes[1] != scenes[2]

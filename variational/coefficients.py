@@ -6,10 +6,29 @@ UFL coefficients in the place of the numbers.
 
 import copy
 from collections.abc import Mapping
-from dataclasses import fields, is_dataclass
+from dataclasses import MISSING, field, fields, is_dataclass
 from typing import Any, ClassVar, Self
 
 import numpy as np
+
+OF_SCENE = {"of scene": True}
+"""Metadata of a field that a scene gives by itself, such as the thickness of its insulators; no key of the law."""
+
+
+def parameter(
+    low: float, high: float, unit: str = "", *, zero: bool = False, sides: int = 1, default: Any = MISSING
+) -> Any:
+    """Return the field of a law's number, with what scenes, their schema and their reference read of it.
+
+    Args:
+        low: smallest value that a scene may give, of the amount where ``sides`` is 2.
+        high: largest value.
+        unit: in SI; empty for a number without.
+        zero: whether zero is allowed too.
+        sides: 2 where the sign is free.
+        default: of the field; without it, the number must be given.
+    """
+    return field(default=default, metadata={"range": (low, high, unit, zero, sides)})
 
 
 class LawError(ValueError):

@@ -1,4 +1,4 @@
-"""Kinematics of finite strain in the plane."""
+"""Kinematics of finite strain; the dimension is that of what is given."""
 
 import ufl
 from ufl.classes import Label
@@ -9,25 +9,28 @@ GRADIENT, STRETCH = Label(10**9), Label(10**9 + 1)
 
 
 def deformation_gradient(H):
-    """Return F = I + H, shape (2, 2), for a displacement gradient H."""
-    return ufl.Identity(2) + H
+    """Return F = I + H for a displacement gradient H, square of the dimension."""
+    return ufl.Identity(H.ufl_shape[0]) + H
 
 
 def displacement_gradient(F):
-    """Return H = F - I, shape (2, 2)."""
-    return F - ufl.Identity(2)
+    """Return H = F - I."""
+    return F - ufl.Identity(F.ufl_shape[0])
 
 
 def dilation(H):
-    """Return J - 1 = tr H + det H of a displacement gradient, (2, 2), without the difference of J and 1."""
-    return ufl.tr(H) + ufl.det(H)
+    """Return J - 1 = tr H + det H of a displacement gradient H without the difference of J and 1."""
+    second = (ufl.tr(H) ** 2 - ufl.tr(H * H)) / 2 if H.ufl_shape[0] > 2 else 0
+    return ufl.tr(H) + second + ufl.det(H)
 
 
 def cofactor(F):
-    """Return J F^-T, shape (2, 2), which carries reference to current area vectors (Nanson)."""
+    """Return J F^-T, which carries reference to current area vectors (Nanson)."""
+    if F.ufl_shape[0] > 2:
+        return ufl.det(F) * ufl.inv(F).T
     return ufl.as_matrix([[F[1, 1], -F[1, 0]], [-F[0, 1], F[0, 0]]])
 
 
 def current_height(mesh, u):
-    """Return the height of a material point above the screen y = 0 (m)."""
-    return ufl.SpatialCoordinate(mesh)[1] + u[1]
+    """Return the height of a material point above the screen (m), its last coordinate."""
+    return ufl.SpatialCoordinate(mesh)[len(u) - 1] + u[len(u) - 1]

@@ -30,9 +30,10 @@ from dolfinx import fem
 
 from variational import jit, kinematics
 from variational.attraction import electroadhesion
-from variational.contact.formulation import Contact, Formulation, History, Skin
+from variational.contact.formulation import Contact, Formulation, Skin
 from variational.contact.friction import Friction, law_of
 from variational.element import ELEMENTS, at_centroid
+from variational.history import History, SkinField
 from variational.materials import stress
 from variational.materials.material import Material
 from variational.pressure import LayerwisePressure
@@ -49,7 +50,7 @@ class Interface:
     """How contact and friction enter the weak form."""
     friction: Friction | None
     """Law of friction; given as a number it is the friction coefficient of Coulomb's law. None or zero leaves friction
-    and its history out of the forms."""
+    out of the forms."""
     h_0: float
     """Effective insulator thickness (m)."""
     attraction: electroadhesion.Attraction | None = electroadhesion.ELECTROSTATIC
@@ -81,12 +82,13 @@ class Problem:
         u: displacement w + bone (m), UFL.
         pressure: the mixed element's pressure, None for the others.
         voltage, eta: constants (V; Pa/m, the shift of the Jacobian).
+        dt: constant, the duration of the present step (s); 0 where loads change at once.
         guess: constant, what points on the friction cone are first taken for: STICKS or SLIPS.
         ease: constant, part of the tangential stiffness of the contact that acts: 1 but on the way to an equilibrium.
         d_eq: equivalent air gap (m), one value a cell, read on the ridges.
-        anchor: accepted friction history (m), see :mod:`variational.contact.friction`; None without friction.
-        multiplier: accepted contact pressure (Pa), read by an augmented Lagrangian.
-        history: what the two were last accepted with, and where.
+        anchor: imposed friction history (m), see :mod:`variational.contact.friction`; None without friction.
+        multiplier: imposed contact pressure (Pa), read by an augmented Lagrangian.
+        history: fields that accepted steps leave to the next one, these two among them.
         contact: the projected tractions.
         opening: length (m) that is negative in contact.
         laws, pressures, densities: each group of layers' material with its numbers as fields, volumetric pressure (Pa),
@@ -135,7 +137,7 @@ class Problem:
             return fem.Constant(mesh, np.float64(value))
 
         self.voltage, self.eta, self.guess = constant(0.0), constant(0.0), constant(STICKS)
-        self.ease = constant(1.0)
+        self.ease, self.dt = constant(1.0), constant(0.0)
         friction = None if interface.friction is None else interface.friction.with_constants(constant)
         h_0 = constant(interface.h_0)
 
@@ -162,7 +164,7 @@ class Problem:
                 self.pressures[tags] = law.pressure(at_centroid(H, self._centroids()))
         self.densities = {tags: law.density(F, self.pressures[tags]) for tags, law in self.laws.items()}
 
-        self.y = kinematics.current_height(mesh, self.u)
+        self.x, self.y = ufl.SpatialCoordinate(mesh)[0] + self.u[0], kinematics.current_height(mesh, self.u)
         attraction = interface.attraction
         self.p_el = attraction.pressure(self.y, self.d_eq, self.voltage, h_0) if attraction else ufl.zero()
         normal = ufl.FacetNormal(mesh)
@@ -199,9 +201,11 @@ class Problem:
             pairs = ((residual, unknown, dp), (defect, w, du), (defect, unknown, dp))
             self.pressure_residual = fem.form(defect, jit_options=jit.OPTIONS)
             self.pressure_jacobian = fem.form([ufl.derivative(*pair) for pair in pairs], jit_options=jit.OPTIONS)
-        nothing = np.zeros((len(surface.pairs), len(surface.weights)))
-        self.history = History(nothing, nothing, surface.evaluate(surface.compile([ufl.SpatialCoordinate(mesh)[0]]))[0])
-        self.imposed = self.history
+        self.history = History(surface)
+        unloaded = surface.evaluate(surface.compile([ufl.SpatialCoordinate(mesh)[0]]))[0]
+        self.history.add(SkinField("anchor", self.contact.new_anchor, self.anchor, follows=self.u[0]))
+        self.history.add(SkinField("pressure", self.contact.p_n, self.multiplier))
+        self.history.add(SkinField("x", self.x, follows=self.x), unloaded)
 
     def _laws(self, solids: Mapping[int, Material], cellwise: fem.FunctionSpace) -> dict[tuple[int, ...], Material]:
         """Return the law of each group of layers, one kernel a law: numbers are fields with one value a cell."""
@@ -260,18 +264,6 @@ class Problem:
     def displacement(self) -> np.ndarray:
         """Return the displacement (m) of this rank's nodes, ghosts included, shape (nodes, 2)."""
         return np.asarray(self.w.x.array.reshape(-1, 2) + self.bone.value)
-
-    def set_history(self, history: History) -> None:
-        """Accept what a step left."""
-        self.history = history
-        self.correct_history(history)
-
-    def correct_history(self, history: History) -> None:
-        """Impose anchors and multipliers that are not accepted yet."""
-        self.imposed = history
-        if self.anchor is not None:
-            self.surface.set_history(self.anchor, history.anchor)
-        self.surface.set_history(self.multiplier, history.pressure)
 
     def set_air_gaps(self, d_eq: np.ndarray) -> None:
         """Give each ridge its equivalent air gap (m), shape (ridges,)."""

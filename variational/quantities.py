@@ -1,9 +1,8 @@
 """What a tribologist looks at, reduced over the surface and all ranks."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
-import ufl
 from numpy.typing import NDArray
 
 from variational.contact.formulation import SurfaceState
@@ -39,22 +38,28 @@ class Observer:
     """Evaluates the surface of a problem."""
 
     def __init__(self, problem: Problem, mirrored: bool = False) -> None:
-        """Compile what is evaluated.
+        """Take the problem.
 
         Args:
             problem: whose surface is evaluated.
             mirrored: it is that of the half of a body whose other half is the mirror image.
         """
         self.problem, self.surface, self._mirrored = problem, problem.surface, mirrored
-        x = ufl.SpatialCoordinate(problem.mesh)[0] + problem.u[0]
         c, area = problem.contact, problem.area
-        self._compiled = self.surface.compile(
-            [x, problem.y, problem.opening, c.new_anchor, c.p_n, c.t_t, problem.p_el, area[0], area[1]]
-        )
+        self._evaluated = [problem.x, problem.y, problem.opening, c.new_anchor, c.p_n, c.t_t, problem.p_el, *area]
+        self._rules: dict[str, int] = {}  # of history: place among what is compiled
 
     def state(self) -> SurfaceState:
-        """Evaluate the surface in the problem's current state."""
-        return SurfaceState(*self.surface.evaluate(self._compiled))
+        """Evaluate the surface in the problem's current state, with what it leaves in the history; collective."""
+        skin = self.problem.history.skin
+        if len(skin) > len(self._rules):
+            found = [*self._evaluated]
+            found += [field.update for field in skin if field.update not in found]
+            self._rules = {field.name: found.index(field.update) for field in skin}
+            self._compiled = self.surface.compile(found)
+        values = self.surface.evaluate(self._compiled)
+        history = {name: values[k] for name, k in self._rules.items()}
+        return replace(SurfaceState(*values[: len(self._evaluated)]), history=history)
 
     def ridge_loads(self, state: SurfaceState | None = None, by_gap: bool = False) -> RidgeLoads:
         """Return the ridges' resultants.

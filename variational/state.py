@@ -6,7 +6,7 @@ forces, energies and stiffnesses are per out-of-plane length, since the models a
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, field, fields
 from typing import Any
 
 import numpy as np
@@ -28,7 +28,7 @@ class Errors:
 
     def known(self) -> dict[str, float]:
         """Return the changes that were estimated, by quantity."""
-        return {field.name: value for field in fields(self) if not math.isnan(value := getattr(self, field.name))}
+        return {f.name: value for f in fields(self) if not math.isnan(value := getattr(self, f.name))}
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,6 +49,21 @@ class RidgeStates:
     """Mean contact pressure over the length in contact (Pa), zero without contact."""
     d_eq: Array
     """Equivalent air gap (m), NaN where no load has a voltage."""
+    note: tuple[str, ...] = ()
+    """Remark on the place of each ridge on the closure, mostly empty."""
+
+
+@dataclass(frozen=True, eq=False)
+class Sites:
+    """Strain energy densities (J/m³ of reference volume) at receptor sites; shape (ridges,) each."""
+
+    number: NDArray[np.int64]
+    """Of the ridge, as in :class:`RidgeStates`; ridges that cannot touch have sites too."""
+    merkel: Array
+    """At the tip of the intermediate ridge."""
+    left: Array
+    """At the Meissner site in the papilla to the left, x smaller."""
+    right: Array
 
 
 @dataclass(frozen=True, eq=False)
@@ -134,7 +149,13 @@ class ContactState:
     time: float = math.nan
     """Time since the start of the run's first load over time (s); NaN where no load of the run is one."""
     ridges: RidgeStates | None = None
+    sites: Sites | None = None
     skin: Skin | None = None
+    """Of the named states."""
+    changes: tuple[float, ...] = ()
+    """Relative change of the air gaps in each coupling iteration of the step."""
+    own: Mapping[str, float] = field(default_factory=dict)
+    """Values by name of outputs that are computed from a state; each is an attribute too."""
     error: Errors = Errors()
     """Estimated discretisation errors."""
     penalty: Errors = Errors()
@@ -158,46 +179,47 @@ class ContactState:
 
     def _ridges(self) -> RidgeStates:
         if self.ridges is None:
-            raise ValueError("the state has no values by ridge; they are kept of the named states of a run in memory")
+            raise ValueError("the state has no values by ridge; models without a path and unfinished runs have none")
         return self.ridges
 
+    def __getattr__(self, name: str) -> float:
+        """Return an output of one's own by its name."""
+        own = self.__dict__.get("own", {})  # not yet there while a copy is made
+        if name in own:
+            return float(own[name])
+        raise AttributeError(f"a state has no {name!r}")
+
     @classmethod
-    def from_row(cls, row: Mapping[str, str]) -> "ContactState":
-        """Return the state of a row of ``steps.csv``; columns that are missing, in older files, are not known.
+    def from_row(cls, row: Mapping[str, Any]) -> "ContactState":
+        """Return the state of a row of ``steps.csv``, of texts or values; unknown columns are outputs of one's own.
 
         Raises:
             ValueError: a column that must be there is not, or is no number.
         """
         try:
-            found = {field.name: _read(row[field.name], field.type) for field in _FIELDS if field.name in row}
-            kept = [field.name in row for field in fields(StepRecord)]
-            record = {f.name: _read(row[f.name], f.type) for f in fields(StepRecord)} if all(kept) else None
-            size, time = (float(row.get(name, math.nan)) for name in ("mesh_contact", "time"))
-            return cls(**found, mesh_contact=size, time=time, record=None if record is None else StepRecord(**record))
+            known = {f.name: _read(row[f.name], f.type) for f in (*_FIELDS, *_LAST) if f.name in row}
+            record = {f.name: _read(row[f.name], f.type) for f in fields(StepRecord) if f.name in row}
+            own = {name: float(row[name]) for name in row if name not in known and name not in record}
+            return cls(**known, record=StepRecord(**record) if record else None, own=own)
         except TypeError as error:
             raise ValueError(f"a row of steps has too few columns: {error}") from None
 
     def row(self) -> dict[str, Any]:
         """Return conditions, results and the record of the step as one flat row, as ``steps.csv`` holds it."""
-        row: dict[str, Any] = {name: getattr(self, name) for name in _FLAT}
-        if self.record is not None:
-            row |= {field.name: getattr(self.record, field.name) for field in fields(StepRecord)}
-        if not math.isnan(self.mesh_contact):
-            seconds = {"processor_seconds": row.pop("processor_seconds")} if self.record is not None else {}
-            row |= {"mesh_contact": self.mesh_contact} | seconds
-        if not math.isnan(self.time):
-            row["time"] = self.time
-        return row
+        row: dict[str, Any] = {f.name: getattr(self, f.name) for f in _FIELDS}
+        record = {} if self.record is None else vars(self.record)
+        last = {f.name: value for f in _LAST if not math.isnan(value := getattr(self, f.name))}
+        return row | record | last | dict(self.own)
 
 
 CONDITIONS = ("step", "load", "f_ext", "voltage", "bone_x")
 RESULTS = ("f_t", "mu_app", "f_electrostatic", "f_contact", "bone_height", "ridges_in_contact", "contact_length")
-_FIELDS = fields(ContactState)[: [field.name for field in fields(ContactState)].index("record")]
-_FLAT = tuple(field.name for field in _FIELDS)
+_FIELDS = fields(ContactState)[: [f.name for f in fields(ContactState)].index("record")]
+_LAST = tuple(f for f in fields(ContactState) if f.name in ("mesh_contact", "time"))  # columns where they are known
 
 
-def _read(text: str, kind: Any) -> Any:
-    """Return the value of a text, of the type of a field."""
+def _read(text: Any, kind: Any) -> Any:
+    """Return a value, or that of a text, as the type of a field."""
     if kind is bool:
-        return text == "True"
+        return text in ("True", True)
     return kind(text) if kind in (int, float) else text

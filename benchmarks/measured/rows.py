@@ -3,8 +3,8 @@
 What is compared is the quantity that was measured. The apparent area is the gross area of the whole finger, a sum of
 slices (:mod:`benchmarks.measured.finger`). The real area is the contact length of the ridges, of the paper's page
 (docs/paper.json: default mesh). Attraction is of docs/models.json, at a contact size of 10 µm. The stated error is the
-difference of the two meshes, or of the full model and the smooth finger where one mesh alone has a number. Of trends
-the other mesh, or the smooth finger, has a count.
+difference of the two meshes. Whole fingers of the finer mesh have its contact lengths and counts of ridges, over the
+indentations of the coarser one. Of trends the other mesh has a count.
 """
 
 from collections.abc import Callable, Mapping
@@ -29,6 +29,7 @@ from benchmarks.measured.verdict import (
 )
 from benchmarks.runs import FORCES, VOLTAGES
 from fingerpad.scene import Scene
+from fingerpad.scene.laws import coefficient
 
 Array = NDArray[np.float64]
 Numbers = dict[str, float]
@@ -42,17 +43,15 @@ class Grid(NamedTuple):
     """Kept numbers over force and voltage; arrays of shape (forces, voltages), SI units."""
 
     fine: Mapping[str, Array]
-    """Default mesh: ``normal_…`` and ``slip_…`` of ``f_t``, ``contact_length`` and ``ridges_in_contact``."""
+    """Default mesh: ``charged_…`` and ``full_slip_…`` of ``f_t``, ``contact_length`` and ``ridges_in_contact``."""
     coarse: Mapping[str, Array]
     """Contact size of 10 µm: the same, and ``f_electrostatic``."""
-    smooth: Mapping[str, Array]
-    """The smooth finger: likewise."""
     gaps: tuple[float, float]
     """Least and largest air gap (m) of all runs with a voltage."""
     full_finger: finger.Sums
     """The whole finger in newtons, from the full model at a contact size of 10 µm."""
-    smooth_finger: finger.Sums
-    """The same from the smooth finger."""
+    fine_finger: finger.Sums
+    """The same with the contact lengths and counts of ridges of the default mesh."""
 
 
 DRAWN, DRAWN_FORCES = ("f_t", "contact_length"), (10.0, 75.0)  # N/m, of the curves over the voltage
@@ -63,16 +62,14 @@ def grid(paper: Mapping[str, Any], known: Mapping[str, Any]) -> Grid:
     """Return the grid from the numbers of docs/paper.json and docs/models.json."""
     fine = {name: np.array(values) for name, values in paper["grid"].items()}
     low, high = fine["gaps_range"]
-    full, smooth = (_of(known, model) for model in ("full", "smooth"))
-    fingers = (finger.sums(known, model) for model in ("full", "smooth"))
-    return Grid(fine, full, smooth, (float(low), float(high)), *fingers)
+    return Grid(fine, _of(known), (float(low), float(high)), finger.sums(known), finger.sums(known, fine))
 
 
-def _of(known: Mapping[str, Any], model: str) -> dict[str, Array]:
-    """Return a model's numbers over force and voltage."""
+def _of(known: Mapping[str, Any]) -> dict[str, Array]:
+    """Return the full model's numbers over force and voltage."""
     found = {}
-    for name in (f"{state}_{key}" for state in ("normal", "slip") for key in _KEPT):
-        values = [[models.value(known["scenes"][models.name(f, u)], model, name) for u in VOLTAGES] for f in FORCES]
+    for name in (f"{state}_{key}" for state in ("charged", "full_slip") for key in _KEPT):
+        values = [[models.value(known["scenes"][models.name(f, u)], "full", name) for u in VOLTAGES] for f in FORCES]
         found[name] = np.array(values, dtype=float)
     return found
 
@@ -101,14 +98,16 @@ def _trend(g: Grid, holds: Callable[[Mapping[str, Array]], NDArray[np.bool_]], *
 
 
 def _friction_slip(g: Grid) -> Row:
-    f_t = g.fine["slip_f_t"]
-    return _trend(g, lambda a: a["slip_f_t"][:, -1] > a["slip_f_t"][:, 0], least=(f_t[:, -1] / f_t[:, 0]).min() - 1)
+    f_t = g.fine["full_slip_f_t"]
+    return _trend(
+        g, lambda a: a["full_slip_f_t"][:, -1] > a["full_slip_f_t"][:, 0], least=(f_t[:, -1] / f_t[:, 0]).min() - 1
+    )
 
 
 # -- of the whole finger -------------------------------------------------------------------------------------
 def _apparent(g: Grid, state: str, before: str, holds: Callable[[Array], NDArray[np.bool_]]) -> Row:
     """Judge the change of the gross area from a state to another, as ``full_slip_0``, at each force (N)."""
-    change, other = (f[f"{state}_gross_area"] / f[f"{before}_gross_area"] - 1 for f in (g.full_finger, g.smooth_finger))
+    change, other = (f[f"{state}_gross_area"] / f[f"{before}_gross_area"] - 1 for f in (g.full_finger, g.fine_finger))
     numbers = {"low": change.min(), "high": change.max(), "error": np.abs(change - other).max()}
     counts = {"holds": holds(change).sum(), "other": holds(other).sum(), "loads": change.size}
     return numbers | counts, by_share(float(holds(change).mean()))
@@ -127,8 +126,8 @@ def _area_load(g: Grid) -> Row:
         areas = [np.diff(np.log(sums[f"charged_0_{name}"])) for name in ("gross_area", "contact_area")]
         return np.asarray((areas[0] >= np.log1p(CHANGED)) & (areas[1] > 0))
 
-    full, smooth = grow(g.full_finger), grow(g.smooth_finger)
-    return {"holds": full.sum(), "other": smooth.sum(), "loads": full.size}, by_share(float(full.mean()))
+    full, fine = grow(g.full_finger), grow(g.fine_finger)
+    return {"holds": full.sum(), "other": fine.sum(), "loads": full.size}, by_share(float(full.mean()))
 
 
 def _force_depth(g: Grid) -> Row:
@@ -139,9 +138,8 @@ def _force_depth(g: Grid) -> Row:
         for form in (forms.exponential, forms.power)
     }
     (each, largest), (other_each, other_largest) = ([fit.misfit for fit in fits[form]] for form in fits)
-    again = forms.of_each(forms.exponential, g.smooth_finger["charged_0_depth"], force).misfit
     numbers = {"each": each, "largest": largest, "other_each": other_each, "other_largest": other_largest}
-    return numbers | {"error": abs(each - again)}, by_form((each, largest), (other_each, other_largest))
+    return numbers, by_form((each, largest), (other_each, other_largest))
 
 
 def _area_power(g: Grid) -> Row:
@@ -149,7 +147,7 @@ def _area_power(g: Grid) -> Row:
     force, area = np.array(finger.NEWTONS), g.full_finger["charged_0_gross_area"]
     theirs = force >= 0.5
     misfit, other = (forms.of_each(form, force[theirs], area[theirs]).misfit for form in (forms.power, forms.line))
-    whole = [forms.of_each(forms.power, force, f["charged_0_gross_area"]) for f in (g.full_finger, g.smooth_finger)]
+    whole = [forms.of_each(forms.power, force, f["charged_0_gross_area"]) for f in (g.full_finger, g.fine_finger)]
     exponent = whole[0].parameter
     numbers = {"misfit": misfit, "line": other, "exponent": exponent, "all": whole[0].misfit}
     numbers |= {"all_line": forms.of_each(forms.line, force, area).misfit}
@@ -157,7 +155,7 @@ def _area_power(g: Grid) -> Row:
 
 
 def _ridges(g: Grid) -> Row:
-    found, other = (f["charged_0_contact_area"] / f["charged_0_gross_area"] for f in (g.full_finger, g.smooth_finger))
+    found, other = (f["charged_0_contact_area"] / f["charged_0_gross_area"] for f in (g.full_finger, g.fine_finger))
     low, high = float(found.min()), float(found.max())
     numbers = {"low": low, "high": high, "error": float(np.abs(found - other).max())}
     return numbers, by_factor(low, high, 0.67, 0.67, RATIO)
@@ -166,12 +164,12 @@ def _ridges(g: Grid) -> Row:
 # -- over the load -------------------------------------------------------------------------------------------
 def _shear(a: Mapping[str, Array]) -> Array:
     """Return the relative change of the contact length from rest to full slip at 0 V, shape (forces,)."""
-    return np.asarray(a["slip_contact_length"][:, 0] / a["normal_contact_length"][:, 0] - 1)
+    return np.asarray(a["full_slip_contact_length"][:, 0] / a["charged_contact_length"][:, 0] - 1)
 
 
 def _friction_load(g: Grid) -> dict[str, Row]:
     """Judge by µ without voltage over the load whether it depends on the load, falls, and by how much."""
-    mu = g.fine["slip_f_t"][:, 0] / np.array(FORCES)
+    mu = g.fine["full_slip_f_t"][:, 0] / np.array(FORCES)
     factor, fall = float(mu.max() / mu.min()), float(1 - mu[-1] / mu[0])
     depends = factor - 1 > SIMILAR
     verdicts = {
@@ -187,13 +185,15 @@ def _gap_sliding(g: Grid) -> Row:
     """Impedance of equal plates: attraction F over length L gives the capacitance, in proportion to (F L)^(1/2)."""
 
     def rise(a: Mapping[str, Array]) -> Array:
-        plates = [np.sqrt(a[f"{s}_f_electrostatic"] * a[f"{s}_contact_length"])[:, 1:] for s in ("normal", "slip")]
+        plates = [
+            np.sqrt(a[f"{s}_f_electrostatic"] * a[f"{s}_contact_length"])[:, 1:] for s in ("charged", "full_slip")
+        ]
         return np.asarray(plates[0] / plates[1] - 1)
 
     found = rise(g.coarse)
-    low, high, error = float(found.min()), float(found.max()), float(np.abs(found - rise(g.smooth)).max())
+    low, high = float(found.min()), float(found.max())
     seen = max(low, 1e-9), max(high, 1e-9)
-    return {"low": low, "high": high, "error": error}, by_factor(seen[0], seen[1], 1.0, 10.0, RATIO)
+    return {"low": low, "high": high}, by_factor(seen[0], seen[1], 1.0, 10.0, RATIO)
 
 
 # -- runs of this page ---------------------------------------------------------------------------------------
@@ -249,13 +249,13 @@ def _without_numbers(verdict: str) -> Row:
 
 def numbers(g: Grid, runs: Mapping[str, Any]) -> dict[str, Row]:
     """Return our numbers and the verdict of every row, by its key, in the order of ``rows.csv``."""
-    mu_0 = Scene().friction
+    mu_0 = coefficient(Scene()) or 0.0
     low, high = (1e6 * each for each in g.gaps)
     of_load = _friction_load(g)
     return {
-        "friction_voltage": _power(g, "slip_f_t", VOLTAGES[1:]),
-        "friction_range": _power(g, "slip_f_t", *AMPLITUDES),
-        "area_voltage": _power(g, "slip_contact_length", *AMPLITUDES),
+        "friction_voltage": _power(g, "full_slip_f_t", VOLTAGES[1:]),
+        "friction_range": _power(g, "full_slip_f_t", *AMPLITUDES),
+        "area_voltage": _power(g, "full_slip_contact_length", *AMPLITUDES),
         "frequency": _without_numbers(HIT),
         "frequency_wide": _without_numbers(MISS),
         "cut_off": _without_numbers(HIT),
@@ -289,5 +289,7 @@ def numbers(g: Grid, runs: Mapping[str, Any]) -> dict[str, Row]:
 
 def curves(g: Grid) -> dict[str, list[float]]:
     """Return what the page draws: values at full slip over the voltages, by name and force; depth (m) and force (N)."""
-    shown = {f"{name} {f:g}": g.fine[f"slip_{name}"][FORCES.index(f)].tolist() for name in DRAWN for f in DRAWN_FORCES}
+    shown = {
+        f"{name} {f:g}": g.fine[f"full_slip_{name}"][FORCES.index(f)].tolist() for name in DRAWN for f in DRAWN_FORCES
+    }
     return shown | {"depth": g.full_finger["charged_0_depth"].tolist(), "force": list(finger.NEWTONS)}

@@ -36,7 +36,7 @@ def collect(out: Path) -> dict[str, Any]:
         runs = {pair: at(*pair) for pair in grid}
         gathered = friction.gather(runs)
         numbers["grid"] = {name: values.tolist() for name, values in gathered.items()}
-        return friction.statements(gathered, friction.paths(runs), known()["slip_mu_app"])
+        return friction.statements(gathered, friction.paths(runs), known()["full_slip_mu_app"])
 
     def of_claim() -> list[Statement]:
         high = at(scenes.MAP, 200.0)

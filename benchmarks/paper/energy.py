@@ -60,7 +60,7 @@ def changes(run: Run) -> dict[str, float]:
     """Return by how much the voltage changes a layer's energy near the contact, in normal contact (relative)."""
     before, after = run.arrays("finger_press"), run.arrays("finger_charge")
     centre = (before["x"] + before["u"])[before["triangles"]].mean(axis=1)
-    touching, _ = run.on_ridges(run.normal, "p_c")
+    touching, _ = run.on_ridges(run.charged, "p_c")
     near = np.abs(centre[:, 0]) < (np.abs(touching).max() + 0.5) * run.scene.geometry.ridge_wavelength
     found = {}
     for name in (_OUTER, *_BELOW):
@@ -80,13 +80,13 @@ def maps(plain: Run, charged: Run) -> list[Statement]:
 
 def _in_contact(run: Run) -> NDArray[np.bool_]:
     """Return which sites' ridges are in contact in normal contact and at full slip, shape (sites,)."""
-    rows = (np.isin(run.receptors["ridge"], run.on_ridges(row, "p_c")[0]) for row in (run.normal, run.slip))
+    rows = (np.isin(run.receptors["ridge"], run.on_ridges(row, "p_c")[0]) for row in (run.charged, run.full_slip))
     return np.logical_and(*rows)
 
 
 def _layers(run: Run) -> Statement:
     mine, r = _in_contact(run), run.receptors["merkel_sed"]
-    sites = np.abs(r[run.normal][mine] / r[run.pressed][mine] - 1)
+    sites = np.abs(r[run.charged][mine] / r[run.pressed][mine] - 1)
     sc, ve, dermis = changes(run).values()
     layers = {"sc": sc, "ve": ve, "dermis": dermis, "merkel": np.median(sites), "largest": sites.max()}
     return statement("layers", layers, ve < 0.1 * sc and sites.max() < 0.05, ve < 0.5 * sc)
@@ -94,9 +94,9 @@ def _layers(run: Run) -> Statement:
 
 def _maxima(run: Run) -> Statement:
     """Judge the field about each ridge in normal contact: whole by all of the skin, in part below its outer layer."""
-    ridges = run.on_ridges(run.normal, "p_c")[0]
+    ridges = run.on_ridges(run.charged, "p_c")[0]
     found = {"skin": 0, "below": 0, "dermis": 0}
-    for c in (Column(run, run.normal, ridge) for ridge in ridges):
+    for c in (Column(run, run.charged, ridge) for ridge in ridges):
         skin, below = (int(np.argmax(np.where(c.layers(of), c.sed, 0.0))) for of in ((_OUTER, *_BELOW), _BELOW))
         found["skin"] += c.distance[skin] < _NEAR
         found["below"] += c.distance[below] < _NEAR
@@ -110,7 +110,7 @@ def _fall(plain: Run, charged: Run) -> Statement:
     counts, most = dict[str, int](), []
     for name, run in (("plain", plain), ("charged", charged)):
         sed = run.receptors["merkel_sed"][:, _in_contact(run)]
-        fallen = sed[run.slip] < 0.95 * sed[run.normal]
+        fallen = sed[run.full_slip] < 0.95 * sed[run.charged]
         counts |= {name: int(fallen.sum()), f"{name}_of": fallen.size}
         most.append(fallen.mean() > 0.5)
     return statement("fall", counts, all(most), any(most))
@@ -121,13 +121,13 @@ def _second(plain: Run, charged: Run, both: NDArray[np.bool_]) -> list[Statement
     ridges = plain.receptors["ridge"][both]
     found, numbers, trends = {}, {"of": len(ridges)}, {}
     for name, run in (("plain", plain), ("charged", charged)):
-        for state, row in (("normal", run.normal), ("slip", run.slip)):
+        for state, row in (("normal", run.charged), ("slip", run.full_slip)):
             found[state] = np.array([Column(run, row, ridge).base() for ridge in ridges])
             numbers[f"{name}_{state}"] = (found[state][:, 0] > _HIGHER * found[state][:, 1]).sum()
         sed, meissner = run.receptors["merkel_sed"], run.receptors["meissner_left"] + run.receptors["meissner_right"]
-        trends[f"{name}_site"] = np.median(sed[run.slip][both] / sed[run.normal][both])
+        trends[f"{name}_site"] = np.median(sed[run.full_slip][both] / sed[run.charged][both])
         trends[f"{name}_base"] = np.median(found["slip"][:, 0] / found["normal"][:, 0])
-        trends[f"{name}_papilla"] = meissner[run.slip][both].mean() / meissner[run.normal][both].mean()
+        trends[f"{name}_papilla"] = meissner[run.full_slip][both].mean() / meissner[run.charged][both].mean()
     appear, before = ([numbers[f"{name}_{state}"] for name in ("plain", "charged")] for state in ("slip", "normal"))
     more = [trends["charged_site"] < trends["plain_site"]]
     more += [trends[f"charged_{part}"] > trends[f"plain_{part}"] for part in ("base", "papilla")]

@@ -6,6 +6,8 @@ from numpy.typing import NDArray
 from benchmarks.paper.statement import HALF, Statement, statement
 from benchmarks.runs import Array, Run
 from fingerpad.scene import Scene
+from fingerpad.scene.laws import coefficient
+from variational.roughness.bam import BearingArea
 
 Which = NDArray[np.bool_]
 Ridge = tuple[Array, Array, Array, Array]
@@ -30,9 +32,9 @@ def section(run: Run, stiffer: Run) -> list[Statement]:
         run: to full slip.
         stiffer: to the same normal contact, with stiffer springs where points stick.
     """
-    normal, partial, slip = (touching(run, state) for state in ("normal", "partial", "slip"))
+    normal, partial, slip = (touching(run, state) for state in ("charged", "partial", "full_slip"))
     # The paper normalises by f_ext / L_R.
-    scale = run.steps["f_ext"][run.normal] / run.steps["contact_length"][run.normal]
+    scale = run.steps["f_ext"][run.charged] / run.steps["contact_length"][run.charged]
     x, _, _, t = map(np.concatenate, zip(*normal, strict=True))
     even = np.linalg.norm(t + np.interp(-x, x, t)) / np.linalg.norm(t) / 2  # shear at x and at -x
     shear = {"even": even, "most": np.abs(t).max() / scale}
@@ -40,7 +42,7 @@ def section(run: Run, stiffer: Run) -> list[Statement]:
         _central(run),
         _tension([*normal, *partial, *slip], scale),
         statement("symmetric", shear, even < 0.05 and shear["most"] > 0.05, even < 0.2),
-        _edges(*([_slips(each, *ridge) for ridge in touching(each, "normal")] for each in (run, stiffer))),
+        _edges(*([_slips(each, *ridge) for ridge in touching(each, "charged")] for each in (run, stiffer))),
         _leading(np.concatenate([x for x, *_ in partial]), np.concatenate([_slips(run, *ridge) for ridge in partial])),
     ]
 
@@ -58,13 +60,13 @@ def _tension(ridges: list[Ridge], scale: float) -> Statement:
 
 
 def _slips(run: Run, x: Array, p: Array, p_el: Array, t: Array) -> Which:
-    return np.abs(t) >= run.scene.friction * p * _CONE
+    return np.abs(t) >= (coefficient(run.scene) or 0.0) * p * _CONE
 
 
 def _central(run: Run) -> Statement:
     """Judge normal contact and full slip: the middle third of the ridges in contact, and two on either side."""
     means, inside = dict[str, float](), list[bool]()
-    for state in ("normal", "slip"):
+    for state in ("charged", "full_slip"):
         d_eq = run.on_ridges(getattr(run, state), "d_eq")[1]
         third = len(d_eq) // 3
         central, outer = d_eq[third:-third], np.r_[d_eq[:2], d_eq[-2:]]
@@ -96,7 +98,7 @@ def _leading(x: Array, slips: Which) -> Statement:
 def microscale() -> list[Statement]:
     """Return the statements on the least air gap and on the threshold of stickiness, in both readings."""
     scene = Scene()
-    bam = scene.roughness.bearing_area(scene.h_0)
+    bam = BearingArea(scene.h_0)
     least, estimate, exact = float(bam.air_gap(0.0)), bam.threshold(approximate=True), bam.threshold()
     near = abs(estimate / 155 - 1) < 0.01 and abs(exact / 155 - 1) < 0.1
     return [
@@ -161,10 +163,10 @@ def claim(with_voltage: Run, rougher: Run) -> Statement:
     It is whole where all Merkel and Meissner sites agree, and in part by the median of the Merkel sites.
     """
     runs, ridges = (with_voltage, rougher), with_voltage.receptors["ridge"]
-    mine = np.isin(ridges, [ridge for run in runs for ridge in run.on_ridges(run.slip, "p_c")[0]])
+    mine = np.isin(ridges, [ridge for run in runs for ridge in run.on_ridges(run.full_slip, "p_c")[0]])
 
     def difference(name: str) -> Array:
-        by_voltage, by_friction = (run.receptors[name][run.slip][mine] for run in runs)
+        by_voltage, by_friction = (run.receptors[name][run.full_slip][mine] for run in runs)
         return by_friction / by_voltage - 1
 
     off, papillae = difference("merkel_sed"), np.r_[difference("meissner_left"), difference("meissner_right")]

@@ -18,13 +18,13 @@ Grid = Mapping[str, Array]
 """``f_ext`` (N/m), shape (forces,); ``voltage`` (V), shape (voltages,); ``gaps_range`` (m), the least and the largest
 air gap of all runs with a voltage, shape (2,); the others have shape (forces, voltages)."""
 COLUMNS = ("f_t", "contact_length", "ridges_in_contact")
-STATES = ("normal", "slip")
+STATES = ("charged", "full_slip")
 _HIGH, _LOW = 200.0, 50.0  # V
 _GAPS = (1.7e-6, 3e-6)  # m, the paper's range
 
 
 def gather(runs: Mapping[tuple[float, float], Run]) -> dict[str, Array]:
-    """Return the grid of all runs by force and voltage, before sliding (``normal_…``) and at full slip (``slip_…``).
+    """Return the grid of all runs by force and voltage, before sliding (``charged_…``) and at ``full_slip_…``.
 
     ``gaps`` counts the ridges in contact in both states, and ``gaps_within`` those with the paper's air gaps; there
     is no air gap without voltage. ``moved`` counts the ridges that come or leave in sliding.
@@ -70,7 +70,7 @@ def paths(runs: Mapping[tuple[float, float], Run]) -> dict[str, float]:
     found = {}
     for (force, voltage), run in runs.items():
         if force == TRANSITION:
-            lengths = run.steps["contact_length"][run.normal : run.slip + 1]
+            lengths = run.steps["contact_length"][run.charged : run.full_slip + 1]
             before, after = _ridges(run)
             found[f"rise_{voltage:g}"] = float(np.diff(lengths).max(initial=0) / lengths[0])
             found[f"left_{voltage:g}"] = float(sum(ridge < 0 for ridge in before - after))
@@ -90,8 +90,8 @@ class Reduction:
 
 def reduction(grid: Grid) -> Reduction:
     """Fit the reduction of contact length over the mean shear stress."""
-    stress = grid["slip_f_t"] / grid["slip_contact_length"]
-    lost = 1 - grid["slip_contact_length"] / grid["normal_contact_length"]
+    stress = grid["full_slip_f_t"] / grid["full_slip_contact_length"]
+    lost = 1 - grid["full_slip_contact_length"] / grid["charged_contact_length"]
     x, y = stress.ravel(), lost.ravel()
     slope = float(x @ y / (x @ x))
     left = float(((y - slope * x) ** 2).sum() / ((y - y.mean()) ** 2).sum())
@@ -104,7 +104,7 @@ def paint(figure: Figure, grid: Grid) -> None:
     found = reduction(grid)
     for k, voltage in enumerate(grid["voltage"]):
         look = {"color": style.voltage(voltage), "marker": "o", "ms": 4}
-        left.plot(grid["f_ext"], grid["slip_f_t"][:, k] / grid["f_ext"], label=f"{voltage:g} V", **look)
+        left.plot(grid["f_ext"], grid["full_slip_f_t"][:, k] / grid["f_ext"], label=f"{voltage:g} V", **look)
         right.plot(found.stress[:, k] / 1e3, 100 * found.lost[:, k], ls="none", **look)
     x = np.array([0, found.stress.max()])
     fit = f"fit through the origin, R² = {found.r_squared:.2f}"
@@ -163,8 +163,8 @@ def _air_gaps(grid: Grid) -> Statement:
 def _friction(grid: Grid, limit: Limit) -> list[Statement]:
     f = grid["f_ext"]
     ends = {"least": f[0], "most": f[-1]}
-    gain, little = _gain(grid, "slip_f_t", _HIGH), _gain(grid, "slip_f_t", _LOW)
-    coarse = float(grid["slip_f_t"][_row(grid, MAP), _column(grid, _HIGH)] / MAP)
+    gain, little = _gain(grid, "full_slip_f_t", _HIGH), _gain(grid, "full_slip_f_t", _LOW)
+    coarse = float(grid["full_slip_f_t"][_row(grid, MAP), _column(grid, _HIGH)] / MAP)
     off = abs(limit.value / 0.55 - 1)
     mu_app = {"mu_app": limit.value, "bar": limit.bar, "coarse": coarse}
     doubled, few, falls = gain > 2, little < 1.05, np.diff(gain) < 0
@@ -184,14 +184,14 @@ def _friction(grid: Grid, limit: Limit) -> list[Statement]:
 def _pressure(grid: Grid) -> Statement:
     """Judge contact force and mean pressure at full slip under the loads of Fig. 2, over those at 0 V: 5 % count."""
     row, voltage = _row(grid, SECTION[0]), SECTION[1]
-    force, length = (float(_gain(grid, f"slip_{name}", voltage)[row]) for name in ("f_t", "contact_length"))
+    force, length = (float(_gain(grid, f"full_slip_{name}", voltage)[row]) for name in ("f_t", "contact_length"))
     numbers = {"force": force - 1, "mean": force / length - 1}
     return statement("pressure", numbers, numbers["mean"] > 0.05, at=SECTION[0], voltage=voltage)
 
 
 def _raised(grid: Grid) -> Statement:
     """Judge the contact length and the largest tangential force at Fig. 8A's load, at every voltage."""
-    row, of = _row(grid, TRANSITION), ("normal_contact_length", "slip_contact_length", "slip_f_t")
+    row, of = _row(grid, TRANSITION), ("charged_contact_length", "full_slip_contact_length", "full_slip_f_t")
     rises = {name: grid[name][row] / grid[name][row, 0] - 1 for name in of}
     numbers = {name: rise[-1] for name, rise in rises.items()}
     return statement("raised", numbers, all((rise[1:] > 0).all() for rise in rises.values()), at=TRANSITION)
@@ -202,8 +202,8 @@ def _lengths(grid: Grid) -> list[Statement]:
     both = np.concatenate(list(gains.values()))
     within = (both > 1.2) & (both <= 1.4)
     counts = {"under": (both <= 1.2).sum(), "over": (both > 1.4).sum(), "within": within.sum(), "of": both.size}
-    ranges = _range(gains["normal"] - 1, "normal_low", "normal_high") | _range(gains["slip"] - 1)
-    of_friction = (gains["slip"] - 1) / (_gain(grid, "slip_f_t", _HIGH) - 1)
+    ranges = _range(gains["charged"] - 1, "normal_low", "normal_high") | _range(gains["full_slip"] - 1)
+    of_friction = (gains["full_slip"] - 1) / (_gain(grid, "full_slip_f_t", _HIGH) - 1)
     ridges = {state: grid[f"{state}_ridges_in_contact"] for state in STATES}
     average = {state: grid[f"{state}_contact_length"] / ridges[state] for state in STATES}
     low, high = _column(grid, 0.0), _column(grid, _HIGH)
@@ -211,8 +211,8 @@ def _lengths(grid: Grid) -> list[Statement]:
     longer = np.concatenate([length[:, high] > length[:, low] for length in average.values()])
     gone = sum(int((n[:, high] < n[:, low]).sum()) for n in ridges.values())
     sources = {"new": new.sum(), "longer": longer.sum(), "both": (new & longer).sum(), "of": new.size, "gone": gone}
-    lost = (ridges["normal"] - ridges["slip"])[:, [low, high]]
-    change = (average["slip"] / average["normal"] - 1)[:, [low, high]]
+    lost = (ridges["charged"] - ridges["full_slip"])[:, [low, high]]
+    change = (average["full_slip"] / average["charged"] - 1)[:, [low, high]]
     same, one_or_two, moved = abs(change) < 0.05, (lost == 1) | (lost == 2), grid["moved"][:, [low, high]] > 0
     pairs = [f"{grid['f_ext'][k]:g} N/m and {(0.0, _HIGH)[n]:g} V" for k, n in np.argwhere(~same & ~moved)]
     over = {"over": (~same).sum(), "of": same.size, "moving": (~same & moved).sum(), "still": ", ".join(pairs)}

@@ -48,5 +48,5 @@ def stiffer() -> Scene:
 
 def rougher(high: Run) -> Scene:
     """Return the scene of section 5's claim: no voltage, and the friction coefficient that voltage led to."""
-    friction = round(float(high.steps["mu_app"][high.slip]), 4)
+    friction = round(float(high.steps["mu_app"][high.full_slip]), 4)
     return plain({"f_ext": MAP, "voltage": 0.0, "friction": friction} | _PATH)

@@ -14,7 +14,6 @@ from geometry.bodies import ridge
 from geometry.mesh import TaggedMesh, load
 from variational.body import Body
 from variational.compat import cell_geometry
-from variational.contact.formulation import History
 from variational.contact.penalty import Penalty
 from variational.materials.ogden import Ogden
 from variational.problem import Interface
@@ -74,13 +73,13 @@ def solve(case: Case, body: TaggedMesh, skin: np.ndarray) -> Answer:
     answer = Answer("fingerpad", f"{importlib.metadata.version('fenics-dolfinx')} (dolfinx)", "this project")
     answer.ready()
     for before, now in case.steps():
-        h, moved = problem.history, (now.x - before.x) * _MM
-        problem.set_history(History(h.anchor - moved, h.pressure, h.x))
+        moved = (now.x - before.x) * _MM
+        problem.history.accept(problem.history.translated(-moved))
         solver.x.array_w[-2] -= moved  # of the bone and all that is relative to it: no point slips at first
         solver.new_load(Control(0.0, now.y * _MM), 0.0, slipping=bool(now.x))
         solver.solve()
         s = observer.state()
-        problem.set_history(History(s.anchor, s.p_n, s.x))
+        problem.history.accept(s.history)
         displacement = problem.displacement()[nodes] / _MM + (now.x, 0.0)
         f_n, f_t = solver.reaction[1] * _MM, observer.ridge_loads(s).f_friction[0] * _MM
         answer.report(now, f_n, f_t, displacement, s.x.ravel() / _MM + now.x, s.p_n.ravel() / 1e6, s.t_t.ravel() / 1e6)

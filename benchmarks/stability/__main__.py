@@ -18,7 +18,6 @@ from typing import Any
 from benchmarks.harness import keep, kept, made, parser
 from benchmarks.stability import page, plan, scenes
 from benchmarks.stability.plan import Case, Outcome
-from fingerpad.cli.arguments import positive
 from fingerpad.runs import processes
 from fingerpad.runs.processes import Pool
 
@@ -107,8 +106,8 @@ def main(given: Sequence[str] | None = None) -> int:
     """Run what is missing, keep its numbers and draw the page; or make one row."""
     rows = [name for group in (plan.neighbours(), *plan.named().values()) for name in group.cases]
     asked = parser(__doc__, "stability")
-    asked.add_argument("--limit", type=positive(float), default=120.0, help="seconds of processor time for one run")
-    asked.add_argument("--hours", type=positive(float), default=6.0, help="after which no run of the map is started")
+    asked.add_argument("--limit", type=float, default=120.0, help="seconds of processor time for one run")
+    asked.add_argument("--hours", type=float, default=6.0, help="after which no run of the map is started")
     asked.add_argument("--part", choices=("map", "random"), help="run this part alone, and keep the other's numbers")
     asked.add_argument("--row", choices=rows, metavar="NAME", help=f"this row alone, printed: {', '.join(rows)}")
     args = asked.parse_args(given)

@@ -22,9 +22,10 @@ import ufl
 from dolfinx import fem
 from mpi4py import MPI
 
+from benchmarks.stability import strip
 from benchmarks.stability.plan import FORMULATIONS, Case, Outcome
 from fingerpad.runs.processes import limit_processor_time
-from geometry import strip, tags
+from geometry import tags
 from geometry.mesh import load
 from geometry.parameters import Fingertip, MeshSize
 from variational import compat

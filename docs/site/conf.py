@@ -13,7 +13,7 @@ import reference
 from percent import Percent
 from pydantic import BaseModel
 
-import fingerpad.started  # noqa: F401
+import fingerpad.startup  # noqa: F401
 
 project, author = "fingerpad", "The fingerpad developers"
 version = re.search(r'^version = "(.*)"', (ROOT / "pyproject.toml").read_text(), re.MULTILINE)[1]

@@ -30,12 +30,11 @@ from typing import Any
 
 from mpi4py import MPI
 
-from fingerpad.accuracy.recompute import Solve, quantities, words
 from fingerpad.accuracy.rigid_screen import rigid
-from fingerpad.accuracy.solves import Solves
+from fingerpad.accuracy.solves import Solve, Solves, quantities, words
 from fingerpad.io.interrupt import Interrupted
-from fingerpad.io.quantities import in_words, scaled
-from fingerpad.io.states import PREFIXES
+from fingerpad.io.quantities import QUANTITIES
+from fingerpad.io.states import WORDS
 from fingerpad.model.options import FingerModel
 from fingerpad.model.simulation import RestartRequired
 from fingerpad.richardson import MeshParameter, errors, plus_minus, to_refine
@@ -59,6 +58,7 @@ class Refinement:
         failure: why the accuracy asked for is not reached, else empty.
         notes: remarks on the estimate.
         penalty: change of each quantity by a rigid screen, where contact is a penalty.
+        stiffer: the contact over a screen of twice the stiffness; None where the screen is rigid.
         to_come: solves that are still to come, the one that starts now among them; more where they are not enough.
     """
 
@@ -99,6 +99,7 @@ class Refinement:
         self.failure, self.notes = "", list[str]()
         self._met = not self.asked
         self.penalty: dict[str, float] = {}
+        self.stiffer = model.contact.over_stiffer_screen()
         self.to_come = 0
         receptors = "sed" in self.asked or (not self.asked and model.options.receptors)
         keys = [key for key in _SIZES if key != "receptor" or receptors]
@@ -131,24 +132,22 @@ class Refinement:
                 self.failure = f"the accuracy asked for could not be established: {error}"
             else:
                 self._note(f"discretisation errors could not be estimated: {error}")
-        if self.solves.restart is None and self._has_penalty() and self.base.states:
+        if self.solves.restart is None and self.stiffer is not None and self.base.states:
             self.to_come = 1
             self._stiffen()
         return self.solves.restart
 
-    def _has_penalty(self) -> bool:
-        return self.model.contact.formulation == "penalty"
-
     def _stiffen(self) -> None:
         """Solve again over a screen of twice the stiffness."""
+        assert self.stiffer is not None
         try:
-            found = self.solves.over_stiffer_screen(self.base)
+            found = self.solves.over_stiffer_screen(self.base, self.stiffer)
         except (StepFailed, GeometryError) as error:
             self._note(f"the effect of the penalty could not be estimated: {error}")
             return
         self.penalty = rigid(self.base.values(), found.values())
-        changes = {name: scaled(name, value) for name, value in self.penalty.items() if "_sed_" not in name}
-        listed = [f"{in_words(name)} by {value:.2g} {unit}".rstrip() for name, (value, unit) in changes.items()]
+        changes = {name: _scaled(name, value) for name, value in self.penalty.items() if "_sed_" not in name}
+        listed = [f"{_in_words(name)} by {value:.2g} {unit}".rstrip() for name, (value, unit) in changes.items()]
         self._show(f"penalty: a rigid screen would change {', '.join(listed)}")
 
     def _note(self, text: str) -> None:
@@ -159,7 +158,7 @@ class Refinement:
         todo = list(self.parameters)
         for _ in range(1 + _ROUNDS):
             for k, key in enumerate(todo):
-                self.to_come = len(todo) - k + self._has_penalty()
+                self.to_come = len(todo) - k + (self.stiffer is not None)
                 self._halve(key)
             self._report()
             todo = to_refine(self.parameters, self.allowed())
@@ -173,7 +172,7 @@ class Refinement:
         found = {}
         for name, state in self.base.states.items():
             for quantity, value in quantities(name, state).items():
-                key = f"{PREFIXES.get(name, name)}_{quantity}"
+                key = f"{name}_{quantity}"
                 if "sed" in self.asked and quantity.startswith("sed_"):
                     found[key] = self.asked["sed"] * max(state.sed.values(), default=0.0)
                 elif quantity in self.asked:
@@ -223,10 +222,10 @@ class Refinement:
         for name, error in found.items():
             if "_sed_" in name:
                 continue
-            (value, unit), (spread, _) = scaled(name, values[name]), scaled(name, error)
-            limit = f", {scaled(name, allowed[name])[0]:.2g} allowed" if name in allowed else ""
+            (value, unit), (spread, _) = _scaled(name, values[name]), _scaled(name, error)
+            limit = f", {_scaled(name, allowed[name])[0]:.2g} allowed" if name in allowed else ""
             number = f"{plus_minus(value, spread)} {unit}".rstrip()
-            self._show(f"{in_words(name)}: {number} (estimated discretisation error){limit}")
+            self._show(f"{_in_words(name)}: {number} (estimated discretisation error){limit}")
 
     def summary(self) -> dict[str, Any]:
         """Return how errors were found, ready for JSON; collective."""
@@ -273,6 +272,21 @@ def with_errors(refinement: Refinement, path: Mapping[str, ContactState]) -> dic
 
 def errors_of(name: str, changes: Mapping[str, float]) -> Errors:
     """Return the changes of a named state's quantities, of those by key; densities at receptors are left out."""
-    prefix = f"{PREFIXES[name]}_"
     known = {field.name for field in fields(Errors)}
-    return Errors(**{k: v for key, v in changes.items() if (k := key.removeprefix(prefix)) in known and k != key})
+    return Errors(**{k: v for key, v in changes.items() if (k := key.removeprefix(f"{name}_")) in known and k != key})
+
+
+def _in_words(key: str) -> str:
+    """Return a key such as ``full_slip_mu_app`` in words: quantity and state."""
+    name = next((name for name in WORDS if key.startswith(f"{name}_")), None)
+    if name is None:
+        return key
+    quantity = key.removeprefix(f"{name}_")
+    words = QUANTITIES[quantity].words if quantity in QUANTITIES else quantity
+    return f"{words} at {WORDS[name]}"
+
+
+def _scaled(key: str, value: float) -> tuple[float, str]:
+    """Return the value of a key such as ``full_slip_contact_length`` (in SI) in the unit of tables, and this unit."""
+    known = [q for name, q in QUANTITIES.items() if key == name or key.endswith(f"_{name}")]
+    return (value * known[0].scale, known[0].unit) if known else (value, "")

@@ -26,21 +26,16 @@ error of the mesh.
 from collections.abc import Mapping
 from dataclasses import replace
 
-from fingerpad.scene.parameters import Contact
 from variational.solvers.transfer import StateSnapshot
 
 ORDER = 0.75
 """In one over the stiffness, of what the penalty changes."""
 
 
-def stiffened(contact: Contact) -> Contact:
-    """Return a penalty of twice the stiffness, normal and tangential."""
-    return contact.model_copy(update={"eps_n": 2 * contact.eps_n, "eps_t": 2 * contact.eps_t})
-
-
 def over_stiffer(snapshot: StateSnapshot) -> StateSnapshot:
     """Return a state whose springs, of twice the stiffness, bear the same friction."""
-    skin = {j: replace(ridge, elastic_slip=ridge.elastic_slip / 2) for j, ridge in snapshot.skin.items()}
+    halved = {j: {**ridge.history, "anchor": ridge.history["anchor"] / 2} for j, ridge in snapshot.skin.items()}
+    skin = {j: replace(ridge, history=halved[j]) for j, ridge in snapshot.skin.items()}
     return replace(snapshot, skin=skin)
 
 

@@ -1,21 +1,165 @@
 """The states of a path solved for again: on other meshes, with other steps, over a stiffer screen; and their cost."""
 
+import math
+import time
 from collections.abc import Callable, Mapping
-from dataclasses import replace
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
 from mpi4py import MPI
+from numpy.typing import ArrayLike, NDArray
 
-from fingerpad.accuracy.recompute import Solve, State, StateRecorder, solve_again
-from fingerpad.accuracy.rigid_screen import over_stiffer, stiffened
+from fingerpad.accuracy.rigid_screen import over_stiffer
+from fingerpad.io.drawing import View
+from fingerpad.io.states import WORDS, before_sliding
 from fingerpad.model.finger import Step
-from fingerpad.model.memory import refuse_beyond
 from fingerpad.model.options import FingerModel
+from fingerpad.model.record import Viewer
 from fingerpad.model.simulation import RestartRequired, Simulation
 from fingerpad.scene import Load
 from geometry.parameters import MeshSize
+from variational.contact.formulation import Formulation
+from variational.receptors import Receptors
 from variational.solvers.continuation import StepFailed
+from variational.solvers.transfer import StateSnapshot, take_snapshot
+from variational.state import ContactState
+
+Array = NDArray[np.float64]
+
+
+def words(name: str) -> str:
+    """Return a state's name in words."""
+    return WORDS.get(name, name)
+
+
+@dataclass(frozen=True)
+class State:
+    """A state that can be solved again, the same on every rank."""
+
+    snapshot: StateSnapshot
+    direction: int
+    """The way the bone slides at full slip, zero in normal contact."""
+    state: ContactState
+    lengths: Array
+    """Length in contact (m) of every ridge of the finger, shape (ridges,)."""
+    sed: dict[int, float]
+    """Strain energy density (J/m^3) at the Merkel sites of the ridges that can touch."""
+
+
+@dataclass(frozen=True)
+class Solve:
+    """States on one mesh, and what they cost."""
+
+    states: dict[str, State]
+    """By ``charged`` and ``full_slip``."""
+    mesh: MeshSize
+    unknowns: int
+    factorisations: int
+    processor_seconds: float
+    """Of this rank."""
+    views: dict[str, View] = field(default_factory=dict)
+    """What tables and pictures show of states that were solved again, by name."""
+
+    def values(self) -> dict[str, float]:
+        """Return the quantities of interest, by the prefix of the state and the name of the quantity."""
+        return {
+            f"{name}_{quantity}": value
+            for name, state in self.states.items()
+            for quantity, value in quantities(name, state).items()
+        }
+
+    def parts(self) -> dict[str, ArrayLike]:
+        """Return the same, contact lengths by ridge, shape (ridges,)."""
+        lengths = {f"{name}_contact_length": state.lengths for name, state in self.states.items()}
+        return {**self.values(), **lengths}
+
+
+def quantities(name: str, state: State) -> dict[str, float]:
+    """Return the quantities of interest of a named state, in SI; friction is that of full slip.
+
+    Without a force that presses the finger there is no coefficient.
+    """
+    wanted = ("f_t", "mu_app", "contact_length") if name == "full_slip" else ("contact_length",)
+    values = {quantity: float(getattr(state.state, quantity)) for quantity in wanted}
+    found = {quantity: value for quantity, value in values.items() if not math.isnan(value)}
+    return found | {f"sed_{j}": value for j, value in state.sed.items()}
+
+
+class StateRecorder:
+    """Keeps the two states of a path as it goes: normal contact, and the last full slip that was held."""
+
+    def __init__(self, simulation: Simulation) -> None:
+        """Find the Merkel sites of the ridges that can touch."""
+        self._simulation = simulation
+        self._start = time.process_time()
+        finger = simulation.finger
+        ridges, profiles = finger.problem.surface.ridge_numbers, finger.profiles
+        sites = profiles.merkel_sites()[[profiles.ridges.index(j) for j in ridges]]
+        self._sites = Receptors(finger.problem, sites)
+        self._begun: State | None = None  # the last full slip, held or not
+        self.states: dict[str, State] = {}
+        self.views: dict[str, View] = {}
+
+    def record(self, step: Step) -> None:
+        """Record an accepted step; collective."""
+        states, state = self._simulation.states, step.state
+        if state.ridges_in_contact > 0 and not step.touches and len(before_sliding(states)) == len(states):
+            self.keep("charged")
+        if state.slip_began == state.step:
+            self._begun = self._state(1 if state.f_t >= 0 else -1)
+        if state.slip_held and self._begun is not None:
+            self.states["full_slip"] = self._begun
+
+    def kept(self) -> dict[str, Any]:
+        """Return what another process needs to go on with the path."""
+        return {"states": self.states, "begun": self._begun}
+
+    def resume(self, kept: Mapping[str, Any]) -> None:
+        """Go on from what another process kept."""
+        self.states, self._begun = kept["states"], kept["begun"]
+
+    def keep(self, name: str) -> None:
+        """Keep the present state; collective."""
+        direction = 1 if self._simulation.finger.solver.reaction[0] <= 0 else -1
+        self.states[name] = self._state(direction * (name == "full_slip"))
+
+    def _state(self, direction: int) -> State:
+        f = self._simulation.finger
+        loads = f.ridge_loads()
+        lengths = np.zeros(f.profiles.finger.ridge_count)
+        lengths[np.array(f.ridges) + len(lengths) // 2] = loads.length
+        sed = {j: float(density) for j, density in zip(f.problem.surface.ridge_numbers, self._sites.sed(), strict=True)}
+        present = self._simulation.present(loads).state
+        return State(take_snapshot(f.coupling, f.continuation.surface_state), direction, present, lengths, sed)
+
+    def solve(self) -> Solve:
+        """Return what was kept."""
+        f, seconds = self._simulation.finger, time.process_time() - self._start
+        return Solve(self.states, f.size, f.unknowns, f.solver.counts.factorisations, seconds, self.views)
+
+
+def solve_again(model: FingerModel, states: Mapping[str, State], comm: MPI.Comm, views: bool = False) -> Solve:
+    """Solve for states of a finger on a model's mesh; collective.
+
+    Args:
+        model: with the mesh, and the parts that the states have.
+        states: as they were found on another mesh.
+        comm: communicator of the mesh.
+        views: whether tables and pictures are to show the states (:attr:`Solve.views`).
+
+    Raises:
+        StepFailed: see :meth:`fingerpad.model.simulation.Simulation.re_equilibrate`.
+    """
+    simulation = Simulation(model, comm)
+    recorder, finger = StateRecorder(simulation), simulation.finger
+    for name, state in states.items():
+        simulation.re_equilibrate(state.snapshot, words(name), state.direction)
+        recorder.keep(name)
+        if views:
+            recorder.views[name] = Viewer(finger).view(simulation.present(finger.ridge_loads()))
+    finger.solver.iteration.free()
+    return recorder.solve()
 
 
 class Solves:
@@ -48,16 +192,22 @@ class Solves:
             states: as they were found on another mesh.
 
         Raises:
-            GeometryError: the mesh would need too much memory.
+            GeometryError: the mesh needs too much memory.
             StepFailed: a state was not found.
         """
-        model = self._model
-        refuse_beyond(model.geometry, mesh, model.numerics, model.options)
-        return self._again(model.changed(mesh=mesh), states)
+        return self._again(self._model.changed(mesh=mesh), states)
 
-    def over_stiffer_screen(self, base: Solve) -> Solve:
-        """Return states over a screen of twice the stiffness; collective; raises as :meth:`on_mesh`."""
-        model = self._model.changed(mesh=base.mesh, contact=stiffened(self._model.contact))
+    def over_stiffer_screen(self, base: Solve, contact: Formulation) -> Solve:
+        """Return states over a screen of twice the stiffness; collective.
+
+        Args:
+            base: the states.
+            contact: over that screen.
+
+        Raises:
+            StepFailed: a state was not found.
+        """
+        model = self._model.changed(mesh=base.mesh, contact=contact)
         states = {name: replace(s, snapshot=over_stiffer(s.snapshot)) for name, s in base.states.items()}
         return self._again(model, states)
 

@@ -3,6 +3,7 @@
  *   Cylinder, RidgeState    variational/attraction/cylinder.py
  *   fitted, given, solve    fingerpad/reduced/cylinders.py
  *   refuse                  fingerpad/scene/materials.py and contradictions.py
+ *   pchip, trace, whole     fingerpad/slices/trace.py, total.py and traces.py
  * The numbers of the default finger come from Python (fingerpad/calculator/fields.py). tests/test_calculator.py compares
  * the answers of both. Equations are those of Forsbach et al. 2023. SI units, forces per metre of finger. */
 "use strict";
@@ -120,61 +121,63 @@ const closedForm = (function () {
 
   // -- one ridge: cylinder.py ----------------------------------------------------------------------------
   const PRESSURES = geomspace(10, 1e7, 181);
-  const BEYOND = geomspace(1e-9, 1e6, 451);
+  const [LEAST, LARGEST] = [1e-9, 1e6]; // of m - 1
 
-  /** Return the root of m^2 - 1 and the factors of a^2 / 2R and 4 sigma a / pi E*, for m - 1 given. */
-  function shapes(beyond) {
-    const m = 1 + beyond, width = Math.sqrt(beyond * (2 + beyond)), angle = Math.asinh(width);
-    return [width, m * width - angle, width * angle - m * Math.log1p(beyond)];
-  }
-  const SHAPES = BEYOND.map(shapes);
 
   class Cylinder {
     constructor(radius, modulus, h_0, closure) {
       Object.assign(this, { radius, modulus, h_0, closure });
     }
     under_load(f, voltage) {
-      return this.branch((sigma, d_eq) => this.from_load(f, sigma, d_eq), f, voltage);
+      const stiffness = (Math.PI * this.modulus) / (2 * this.radius);
+      const half_width = (beyond, sigma) => { // the root of the force's equation, quadratic in a; and its slope over m
+        const width = Math.sqrt(beyond * (2 + beyond)), pull = 2 * sigma * width;
+        const both = Math.sqrt(pull * pull + 2 * stiffness * f);
+        return [(pull + both) / stiffness, ((2 * sigma * (1 + beyond)) / width) * ((1 + pull / both) / stiffness)];
+      };
+      return this.branch((sigma, d_eq) => {
+        const beyond = this.edge(half_width, sigma, d_eq);
+        if (!(beyond > LEAST && beyond < LARGEST))
+          throw new NoEquilibriumError(
+            `no contact bears ${show(f)} N/m under an attraction of ${show(sigma, 3)} Pa; try a smaller voltage ` +
+              "or another force");
+        return [half_width(beyond, sigma)[0], beyond];
+      }, f, voltage);
     }
     over_length(length, f, voltage) {
-      const a = length / 2;
-      return this.branch((sigma, d_eq) => [a, this.from_half_width(a, sigma, d_eq)], f, voltage);
+      const half = [length / 2, 0];
+      return this.branch((sigma, d_eq) => {
+        const beyond = this.edge(() => half, sigma, d_eq);
+        if (beyond >= LARGEST)
+          throw new NoEquilibriumError(
+            `a contact of ${show(length, 3)} m is too short for an attraction that reaches ` +
+              `${show(this.h_0 + 2 * d_eq, 3)} m; try a longer one`);
+        return [half[0], beyond];
+      }, f, voltage);
     }
-    opening(a, shape, sigma) {
-      return (a ** 2 / (2 * this.radius)) * shape[1] + ((4 * sigma * a) / (Math.PI * this.modulus)) * shape[2];
-    }
-    from_half_width(a, sigma, d_eq) {
-      const reach = this.h_0 + 2 * d_eq, last = BEYOND.length - 1;
-      if (this.opening(a, SHAPES[last], sigma) < reach)
-        throw new NoEquilibriumError(
-          `a contact of ${show(2 * a, 3)} m is too short for an attraction that reaches ${show(reach, 3)} m; ` +
-            "try a longer one");
-      return root((b) => this.opening(a, shapes(b), sigma) - reach, 0, BEYOND[last]);
-    }
-    from_load(f, sigma, d_eq) {
-      const reach = this.h_0 + 2 * d_eq;
-      const pull = (4 * sigma) / (Math.PI * this.modulus), rim = (2 / this.radius) * reach;
-      const stiffness = (Math.PI * this.modulus) / (4 * this.radius);
-      const half_width = (shape) => { // the positive root of the gap's equation, quadratic in a
-        const b = pull * shape[2];
-        return (2 * reach) / (b + Math.sqrt(b * b + rim * shape[1]));
+    /** Return m - 1 where the gap at c, which grows with m, is the reach of the attraction; an end beyond all. */
+    edge(half_width, sigma, d_eq) {
+      const reach = this.h_0 + 2 * d_eq, { radius } = this, pull = (4 * sigma) / (Math.PI * this.modulus);
+      const opening = (y) => { // the logarithm of the gap over the reach, and its slope over y = ln(m - 1)
+        const beyond = Math.exp(y), m = 1 + beyond, width = Math.sqrt(beyond * (2 + beyond));
+        const angle = Math.asinh(width), log = Math.log1p(beyond);
+        const round = m * width - angle, pulled = width * angle - m * log, [a, slope] = half_width(beyond, sigma);
+        const gap = ((a * a) / (2 * radius)) * round + pull * a * pulled;
+        const grows = slope * ((a / radius) * round + pull * pulled) + ((a * a) / radius) * width + pull * a * ((m / width) * angle - log);
+        return [Math.log(gap / reach), (beyond * grows) / gap];
       };
-      const force = (shape) => {
-        const a = half_width(shape);
-        return stiffness * a * a - 2 * sigma * a * shape[0];
-      };
-      let before = force(SHAPES[0]), k = 0;
-      for (; k < BEYOND.length - 1; k++) {
-        const next = force(SHAPES[k + 1]);
-        if (before >= f && next < f) break;
-        before = next;
+      let low = Math.log(LEAST), high = Math.log(LARGEST), y = 0;
+      if (opening(high)[0] < 0) return LARGEST;
+      if (opening(low)[0] > 0) return LEAST;
+      for (let k = 0; k < 100; k++) { // Newton's method between bounds
+        const [value, slope] = opening(y), next = y - value / slope;
+        if (value < 0) low = y;
+        else high = y;
+        const small = Math.abs(next - y) <= 1e-9 + 1e-15 * Math.exp(-y);
+        y = small || (next > low && next < high) ? next : (low + high) / 2;
+        if (small) break;
       }
-      if (k === BEYOND.length - 1)
-        throw new NoEquilibriumError(
-          `no contact bears ${show(f)} N/m under an attraction of ${show(sigma, 3)} Pa; try a smaller voltage ` +
-            "or another force");
-      const beyond = root((b) => force(shapes(b)) - f, BEYOND[k], BEYOND[k + 1]);
-      return [half_width(shapes(beyond)), beyond];
+      return Math.exp(y);
     }
     /** Return the branch in contact: the root of highest pressure. */
     branch(shape, f, voltage) {
@@ -261,7 +264,7 @@ const closedForm = (function () {
     }
     const n = known.ridges.full_slip, f_contact = n * ridge.f_contact, f_t = p.friction * f_contact; // Coulomb's law
     return {
-      mu_app: f_t / p.f_ext, f_t, f_contact, f_electrostatic: n * ridge.f_attraction,
+      mu_app: f_t / p.f_ext, f_ext: p.f_ext, f_t, f_contact, f_electrostatic: n * ridge.f_attraction,
       contact_length: n * ridge.length, ridges_in_contact: n, p_c: ridge.p_c, d_eq: ridge.d_eq,
       others: ridge.others, closure: closure_of(p),
     };
@@ -275,5 +278,108 @@ const closedForm = (function () {
     return new Cylinder(radius, hertz_modulus(radius, f, length / n), h_0, closure).under_load(f, p.voltage);
   }
 
-  return { NoEquilibriumError, solve, given, refuse, show, erfc };
+  // -- the whole finger: slices/ ---------------------------------------------------------------------------
+  /** Return monotone cubics through points, as SciPy's PchipInterpolator. */
+  function pchip(x, y) {
+    const n = x.length, h = x.slice(1).map((v, k) => v - x[k]), m = h.map((v, k) => (y[k + 1] - y[k]) / v);
+    const end = (h_0, h_1, m_0, m_1) => {
+      const d = ((2 * h_0 + h_1) * m_0 - h_0 * m_1) / (h_0 + h_1);
+      if (Math.sign(d) !== Math.sign(m_0)) return 0;
+      return Math.sign(m_0) !== Math.sign(m_1) && Math.abs(d) > 3 * Math.abs(m_0) ? 3 * m_0 : d;
+    };
+    const d = x.map((_, k) => {
+      if (k === 0) return end(h[0], h[1], m[0], m[1]);
+      if (k === n - 1) return end(h[n - 2], h[n - 3], m[n - 2], m[n - 3]);
+      if (m[k - 1] * m[k] <= 0) return 0;
+      const a = 2 * h[k] + h[k - 1], b = h[k] + 2 * h[k - 1];
+      return (a + b) / (a / m[k - 1] + b / m[k]);
+    });
+    return (v) => {
+      let k = 0;
+      while (k < n - 2 && v >= x[k + 1]) k++;
+      const t = (v - x[k]) / h[k], c = (3 * m[k] - 2 * d[k] - d[k + 1]) * h[k], b = (d[k] + d[k + 1] - 2 * m[k]) * h[k];
+      return y[k] + t * (d[k] * h[k] + t * (c + t * b));
+    };
+  }
+
+  /** Return the trace of a state up to a force per metre: its last indentation, and its columns at an indentation. */
+  function trace(p, state, top) {
+    const kind = state === "full_slip" ? state : "charged", voltage = state === "uncharged" ? 0 : p.voltage;
+    const forces = geomspace(top * data.traces.light, top, data.traces.forces), columns = {};
+    const add = (name, value) => (columns[name] = columns[name] || []).push(value);
+    for (const f_ext of forces) {
+      const known = fitted(f_ext), n = known.ridges[kind], ridge = ridge_of({ ...p, f_ext, voltage }, known, kind);
+      add("depth", interpolate(f_ext, data.indentations[kind]));
+      add("f_ext", f_ext);
+      add("f_electrostatic", n * ridge.f_attraction);
+      add("contact_length", n * ridge.length);
+      add("gross_width", (n - 1) * data.wavelength + ridge.length);
+    }
+    const { depth } = columns, x = depth.map(Math.log), slopes = {}, cubics = {};
+    for (const name of ["f_ext", "f_electrostatic", "contact_length", "gross_width"]) {
+      const [a, b] = columns[name];
+      slopes[name] = a > 0 && b > 0 ? Math.max(Math.log(b / a) / (x[1] - x[0]), 0) : 0;
+      if (columns[name].some((v) => v > 1e-12 * top)) cubics[name] = pchip(x, columns[name].map(Math.log));
+    }
+    const pulls = cubics.f_electrostatic ? [slopes.f_electrostatic] : [];
+    slopes.contact_length = Math.min(slopes.contact_length, slopes.f_ext, ...pulls);
+    slopes.gross_width = Math.min(slopes.gross_width, slopes.contact_length);
+    const last = x[x.length - 1];
+    return {
+      deepest: depth[depth.length - 1],
+      at(name, indentation) {
+        if (!cubics[name] || indentation <= 0) return 0;
+        const v = Math.min(Math.log(indentation), last);
+        return Math.exp(cubics[name](Math.max(v, x[0])) + slopes[name] * Math.min(v - x[0], 0));
+      },
+    };
+  }
+
+  /** Return the sum of a column over the slices of a finger (m) lowered by delta, a Gauss rule over its contact. */
+  function sum(made, name, delta) {
+    const half = Math.sqrt(2 * data.slices.radius * delta), { nodes, weights } = data.slices;
+    return nodes.reduce((found, node, k) => {
+      const phi = (Math.PI / 2) * node, z = half * Math.sin(phi);
+      const thickness = ((half * Math.PI) / 2) * Math.cos(phi) * weights[k];
+      return found + thickness * made.at(name, delta - z ** 2 / (2 * data.slices.radius));
+    }, 0);
+  }
+
+  /** Return the whole finger under p.force (N) in its last state, full slip with friction; and the section at its centre. */
+  function whole(p) {
+    const { start, margin, more, tries, shortest, largest } = data.traces;
+    const states = ["uncharged", ...(p.voltage ? ["charged"] : []), ...(p.friction ? ["full_slip"] : [])];
+    let top = start.line * (p.force / start.point) ** start.power * margin, made, delta, centre;
+    for (const state of states) {
+      for (let k = 0; ; k++) {
+        const asked = Math.min(Math.max(top, shortest), largest);
+        try {
+          made = trace(p, state, asked);
+        } catch (error) {
+          if (error instanceof NoEquilibriumError) error.message = `${data.words[state] || state}: ${error.message}`;
+          throw error;
+        }
+        const end = data.slices.length ** 2 / (8 * data.slices.radius), high = Math.min(made.deepest, end);
+        const excess = (d) => sum(made, "f_ext", d) - p.force;
+        if (excess(high) >= 0) {
+          delta = root(excess, 0, high);
+          break;
+        }
+        if (high === end)
+          throw new NoEquilibriumError(`the finger is ${show(1e3 * data.slices.length)} mm long, and its contact would be longer`);
+        if (k === tries - 1 || asked === largest)
+          throw new NoEquilibriumError(`no trace of the cross-section reaches ${show(p.force)} N`);
+        top *= more;
+      }
+      centre = made.at("f_ext", delta);
+      top = centre * margin;
+    }
+    if (centre < data.traces.smallest) throw new NoEquilibriumError(`the centre of the finger bears ${show(centre, 2)} N/m alone`);
+    const total = Object.fromEntries([["f_electrostatic", "f_electrostatic"], ["contact_area", "contact_length"],
+      ["gross_area", "gross_width"]].map(([name, column]) => [name, sum(made, column, delta)]));
+    const f_t = p.friction * (p.force + total.f_electrostatic); // Coulomb's law
+    return { mu_app: f_t / p.force, f_t, ...total, indentation: delta, centre, section: solve({ ...p, f_ext: centre }) };
+  }
+
+  return { NoEquilibriumError, solve, given, whole, refuse, show, erfc };
 })();

@@ -5,20 +5,24 @@ What is said here of a field is how it is shown: its words, its unit and the end
 
 from collections.abc import Iterator
 from dataclasses import asdict, dataclass
-from typing import Any
+from typing import Any, get_args
 
+from numpy.polynomial.legendre import leggauss
 from pydantic import BaseModel, WrapValidator
 
 from fingerpad.io.states import WORDS
 from fingerpad.reduced import cylinders
-from fingerpad.reduced.answer import STATES
-from fingerpad.reduced.known import KNOWN_ERROR, KNOWN_FORCES, KNOWN_RUNS, KNOWN_VOLTAGES
+from fingerpad.reduced.cylinder_errors import KNOWN_ERROR, KNOWN_FORCES, KNOWN_RUNS, KNOWN_VOLTAGES
+from fingerpad.reduced.model import STATES
 from fingerpad.scene import Scene
 from fingerpad.scene.contradictions import LARGEST_GAP
+from fingerpad.scene.law_keys import keys_of
 from fingerpad.scene.laws import skin_modulus
-from geometry.bounds import Range
+from fingerpad.slices import traces
 from geometry.parameters import Fingertip, MeshSize
+from geometry.units import Range
 from variational.attraction.insulator import VACUUM_PERMITTIVITY
+from variational.contact.friction import Coulomb
 
 
 @dataclass(frozen=True)
@@ -44,9 +48,11 @@ class Field:
     """Whether only whole numbers are allowed."""
 
 
+_FORCE = 0.5  # N, of the field that a scene has no default of
 _SHOWN = (
     Field("voltage", "voltage U", "V", 1.0, (0.0, 250.0), "Load"),
     Field("f_ext", "normal force f_ext, per metre of finger", "N/m", 1.0, (5.0, 150.0), "Load"),
+    Field("force", "normal force F_ext on the whole finger", "N", 1.0, (0.05, 1.0), "Load"),
     Field("friction", "friction coefficient µ_0 without voltage", "", 1.0, (0.05, 1.0), "Load"),
     Field("electric.d_i", "thickness d_i", "µm", 1e6, (0.1, 10.0), "Coating of the screen"),
     Field("electric.eps_i", "relative permittivity ε_i", "", 1.0, (1.0, 30.0), "Coating of the screen"),
@@ -65,8 +71,8 @@ def fields() -> Iterator[Field]:
     for field in _SHOWN:
         model, _, name = field.key.rpartition(".")
         table: Any = getattr(Scene(), model) if model else Scene()
-        allowed = bounds(type(table), name)
-        value = _in_unit(getattr(table, name), field.per)
+        allowed = bounds(type(table), name) if field.key != "friction" else bounds(Coulomb, "mu_f")
+        value = _in_unit(_FORCE if name == "force" else getattr(table, name), field.per)
         low, high = (_in_unit(end, field.per) for end in (allowed.low, allowed.high))
         yield Field(**asdict(field) | {"low": low, "high": high, "zero": allowed.zero, "value": value})
 
@@ -83,10 +89,13 @@ def contact() -> Iterator[Field]:
     yield Field("ridges", "ridges in contact", "", 1.0, (1.0, 25.0), group, low, high, False, ridges, True)
 
 
-def bounds(model: type[BaseModel], name: str) -> Range:
-    """Return the range of a key of a table."""
+def bounds(model: type, name: str) -> Range:
+    """Return the range of a key of a table, or of a law."""
+    if not issubclass(model, BaseModel):
+        return Range(*keys_of(model)[name].metadata["range"])
     field = model.model_fields[name]
-    parts = (*field.metadata, *getattr(field.annotation, "__metadata__", ()))
+    choices = (field.annotation, *get_args(field.annotation))  # of a key that may be left out, too
+    parts = (*field.metadata, *(part for each in choices for part in getattr(each, "__metadata__", ())))
     return next(p.func for p in parts if isinstance(p, WrapValidator) and isinstance(p.func, Range))
 
 
@@ -97,7 +106,8 @@ def _in_unit(value: float, per: float) -> float:
 
 def data() -> dict[str, Any]:
     """Return all numbers that the page has from Python, ready for JSON; SI units but for those of the fields."""
-    scene, error = Scene(), KNOWN_ERROR["cylinders"]["full_slip"]
+    scene, error = Scene(), KNOWN_ERROR["full_slip"]
+    nodes, weights = (each.tolist() for each in leggauss(scene.slices.count))
     return {
         "fields": [asdict(field) for field in (*fields(), *contact())],
         "eps_0": VACUUM_PERMITTIVITY,
@@ -108,6 +118,10 @@ def data() -> dict[str, Any]:
         "forces": cylinders.FORCES,
         "lengths": cylinders.LENGTHS,
         "ridges": cylinders.RIDGES,
+        "indentations": cylinders.INDENTATIONS,
+        "wavelength": scene.geometry.ridge_wavelength,
+        "slices": {"radius": scene.slices.radius, "length": scene.slices.length, "nodes": nodes, "weights": weights},
+        "traces": traces.CONSTANTS,
         "words": {state: WORDS[state] for state in STATES},
         "known": {"error": error, "runs": KNOWN_RUNS, "forces": KNOWN_FORCES, "voltages": KNOWN_VOLTAGES},
     }

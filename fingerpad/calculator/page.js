@@ -2,7 +2,7 @@
 (function () {
   const { show } = closedForm;
   const find = (id) => document.getElementById(id);
-  const POINTS = 41; // of a curve
+  const POINTS = 41, POINTS_OF_FINGERS = 13; // of a curve
   const fields = data.fields, by_key = Object.fromEntries(fields.map((field) => [field.key, field]));
   const defaults = values_of((field) => field.value);
   const FOOTPRINT = ["length", "ridges"];
@@ -32,17 +32,19 @@
       groups.get(group).append(...content);
     };
     for (const field of fields) {
-      if (field.key === "length") add(field.group, choice("default", "the default finger, its contact from full runs", true),
-        choice("given", "a contact as measured, at this force and voltage", false));
+      if (field.key === "length") add(field.group, choice("finger", "default", "the default finger, its contact from full runs", true),
+        choice("finger", "given", "a contact as measured, at this force and voltage", false));
+      if (field.key === "f_ext") add(field.group, choice("load", "metre", "force per metre of finger, at its centre", true),
+        choice("load", "whole", "force on the whole finger, in newtons", false));
       add(field.group, field_box(field));
     }
     const reset = create("button", { type: "button", id: "defaults" }, "Back to the defaults");
-    reset.onclick = () => { find("fields").reset(); find("finger_default").checked = true; fields.forEach(slide); update(); };
+    reset.onclick = () => { find("fields").reset(); for (const id of ["finger_default", "load_metre"]) find(id).checked = true; fields.forEach(slide); update(); };
     find("fields").append(reset);
   }
 
-  function choice(name, words, checked) {
-    const input = create("input", { type: "radio", name: "finger", id: "finger_" + name, defaultChecked: checked });
+  function choice(group, name, words, checked) {
+    const input = create("input", { type: "radio", name: group, id: `${group}_${name}`, defaultChecked: checked });
     return create("label", { className: "choice" }, input, " " + words);
   }
 
@@ -91,7 +93,8 @@
 
   /** Return the values in the fields, null where one is refused, which is said beside it. */
   function read() {
-    const given = find("finger_given").checked;
+    const given = find("finger_given").checked, newtons = find("load_whole").checked && !given;
+    find("load_whole").disabled = given; // one contact is no finger
     let whole = true;
     const say = (key, text) => {
       find(key + "_refused").textContent = text;
@@ -100,14 +103,14 @@
       if (text) whole = false;
     };
     for (const field of fields) {
-      const unread = FOOTPRINT.includes(field.key) && !given;
+      const unread = (FOOTPRINT.includes(field.key) && !given) || field.key === (newtons ? "f_ext" : "force");
       for (const id of [field.key, field.key + "_slider"]) find(id).disabled = unread;
       say(field.key, unread ? "" : refused(field, find(field.key).value));
     }
     if (!whole) return null;
     const values = values_of((field) => Number(find(field.key).value)), said = closedForm.refuse(values);
     if (said) say("roughness.p_floor", `p_floor is ${show(values["roughness.p_floor"], 12)} Pa; ${said}.`);
-    return whole ? { values, given } : null;
+    return whole ? { values: { ...values, newtons }, given } : null;
   }
 
   // -- answers -------------------------------------------------------------------------------------------
@@ -115,7 +118,7 @@
 
   function answer(values, given) {
     try {
-      return closedForm.solve(values, footprint(values, given));
+      return values.newtons ? closedForm.whole(values) : closedForm.solve(values, footprint(values, given));
     } catch (error) {
       if (error instanceof closedForm.NoEquilibriumError) return error.message;
       throw error;
@@ -125,14 +128,15 @@
   const inside = (values) => within(values.f_ext, data.known.forces) && within(values.voltage, data.known.voltages);
   const within = (value, [low, high]) => value >= low && value <= high;
   const changed = (values) => [...new Set(fields.map((field) => field.key)
-    .filter((key) => !FOOTPRINT.includes(key) && key !== "f_ext" && key !== "voltage" && values[key] !== defaults[key])
+    .filter((key) => !FOOTPRINT.includes(key) && !["f_ext", "force", "voltage"].includes(key) && values[key] !== defaults[key])
     .map((key) => key.split(".")[0]))];
   /** Return whether the error of an answer is known: at the loads of the full runs, with all else as they have it. */
-  const known_at = (values, given) => !given && inside(values) && changed(values).length === 0;
+  const known_at = (values, given) => !given && !values.newtons && inside(values) && changed(values).length === 0;
 
   function curve(values, given, key, highest, lowest) {
-    const even = Array.from({ length: POINTS }, (_, k) => lowest + ((highest - lowest) * k) / (POINTS - 1));
-    const ends = key === "voltage" ? data.known.voltages : data.known.forces; // where the line ceases to be solid
+    const most = (values.newtons ? POINTS_OF_FINGERS : POINTS) - 1;
+    const even = Array.from({ length: most + 1 }, (_, k) => lowest + ((highest - lowest) * k) / most);
+    const ends = { voltage: data.known.voltages, f_ext: data.known.forces }[key] || []; // where the line ceases to be solid
     const places = new Set([...even, ...ends.filter((x) => x > lowest && x < highest)]);
     return [...places].sort((a, b) => a - b).map((x) => {
       const here = { ...values, [key]: x }, found = answer(here, given);
@@ -150,10 +154,20 @@
     ["d_eq", "equivalent air gap", "µm", 1e6, 3],
   ];
 
+  const ROWS_OF_FINGERS = [
+    ["mu_app", "friction coefficient µ_app of the whole finger", "", 1, 3],
+    ["f_t", "friction force", "N", 1, 3],
+    ["f_electrostatic", "attraction", "N", 1, 3],
+    ["contact_area", "contact area of the ridges", "mm²", 1e6, 2],
+    ["gross_area", "gross area of contact", "mm²", 1e6, 1],
+    ["indentation", "indentation", "mm", 1e3, 3],
+  ];
+
   function show_point(found, values, given) {
     const sure = known_at(values, given), body = find("point").tBodies[0];
-    find("point").caption.textContent = `At this point${sure ? "" : ": error not known"}`;
-    body.replaceChildren(...ROWS.map(([key, words, unit, per, digits, error]) => {
+    const head = values.newtons ? "Whole finger, as a sum of slices" : "Section at the centre of the finger";
+    find("point").caption.textContent = head + (sure ? "" : ": error not known");
+    body.replaceChildren(...(values.newtons ? ROWS_OF_FINGERS : ROWS).map(([key, words, unit, per, digits, error]) => {
       const value = found[key] * per, band = error && sure ? ` ± ${(value * data.known.error[error]).toFixed(digits)}` : "";
       const cell = create("td", { id: "value_" + key }, `${value.toFixed(digits)}${band} ${unit}`.trim());
       cell.dataset.value = String(found[key]);
@@ -164,9 +178,15 @@
   function remarks(found, values, given) {
     const percent = (value) => `${(100 * value).toFixed(1)} %`, { error, runs, forces, voltages } = data.known;
     const where = `${forces.map(Number).join(" to ")} N/m and ${voltages.map(Number).join(" to ")} V`, said = [];
+    if (values.newtons) {
+      const section = found.section.mu_app.toFixed(3);
+      said.push(`Section at the centre of the finger, second: ${show(found.centre, 3)} N/m, where µ_app is ${section}.`);
+      found = found.section;
+      values = { ...values, f_ext: found.f_ext };
+    }
     if (given) said.push("The contact is as given along both curves; the error of this answer is not known.");
     else {
-      said.push(`Known error: µ_app and friction within ${percent(error.mu_app)}, attraction within ` +
+      said.push(`Known error of ${values.newtons ? "the section" : "these numbers"}: µ_app and friction within ${percent(error.mu_app)}, attraction within ` +
         `${percent(error.f_electrostatic)}, contact length within ${percent(error.contact_length)} of ${runs} full runs at ${where}.`);
       if (!inside(values)) said.push("This point is outside of that; its error is not known.");
       const keys = changed(values);
@@ -181,34 +201,37 @@
   }
 
   function draw(values, given, found) {
-    const most_u = Math.max(data.known.voltages[1], values.voltage), most_f = Math.max(data.known.forces[1], values.f_ext);
-    const least_f = Math.min(data.known.forces[0], values.f_ext), mu = "friction coefficient µ_app";
+    const by = values.newtons ? "force" : "f_ext", unit = by_key[by].unit, force = values[by];
+    const ends = values.newtons ? by_key.force.slider : data.known.forces;
+    const most_u = Math.max(data.known.voltages[1], values.voltage), most_f = Math.max(ends[1], force);
+    const least_f = Math.min(ends[0], force), mu = `µ_app of the ${values.newtons ? "whole finger" : "section"}`;
     const axes = [
-      ["over_voltage", "voltage", most_u, 0, "voltage U (V)", `force of ${show(values.f_ext)} N/m`],
-      ["over_force", "f_ext", most_f, least_f, "normal force f_ext (N/m)", `voltage of ${show(values.voltage)} V`],
+      ["over_voltage", "voltage", most_u, 0, "voltage U (V)", `force of ${show(force)} ${unit}`],
+      ["over_force", by, most_f, least_f, values.newtons ? "force on the finger F_ext (N)" : "normal force f_ext (N/m)", `voltage of ${show(values.voltage)} V`],
     ];
     const same = !given && changed(values).length === 0, rows = [];
     for (const [id, key, highest, lowest, x, at] of axes) {
       const points = curve(values, given, key, highest, lowest);
-      const other = same ? [] : curve({ ...defaults, f_ext: values.f_ext, voltage: values.voltage }, false, key, highest, lowest);
+      const other = same ? [] : curve({ ...defaults, [by]: force, newtons: values.newtons, voltage: values.voltage }, false, key, highest, lowest);
       const mark = found && { x: values[key], y: found.mu_app };
       const title = `${mu} over ${x} at a ${at}`;
       plot.draw(find(id), { x, y: mu, points, other: other.filter((p) => p.y !== null), mark, error: data.known.error.mu_app, title });
       const missing = points.filter((p) => p.y === null).length;
-      find("caption_" + (key === "f_ext" ? "force" : "voltage")).textContent = `Over ${x} at a ${at}. ` +
+      find("caption_" + (key === "voltage" ? "voltage" : "force")).textContent = `Over ${x} at a ${at}. ` +
         (points.some((p) => p.known) ? "Shaded: known error; dashed: error not known." : "The curve is dashed, since its error is not known.") +
         (same ? "" : " Dotted: the default friction, coating, roughness and finger.") +
         (missing ? ` ${missing} of ${points.length} points have no equilibrium and are left out.` : "");
-      rows.push(...points.map((p) => [key === "voltage" ? values.f_ext : p.x, key === "voltage" ? p.x : values.voltage, p.y]));
+      rows.push(...points.map((p) => [key === "voltage" ? force : p.x, key === "voltage" ? p.x : values.voltage, p.y]));
     }
-    const head = ["f_ext (N/m)", "U (V)", "µ_app"].map((text) => create("th", { scope: "col" }, text));
+    const head = [values.newtons ? "F_ext (N)" : "f_ext (N/m)", "U (V)", "µ_app"].map((text) => create("th", { scope: "col" }, text));
     find("curves").replaceChildren(create("table", {}, create("thead", {}, create("tr", {}, ...head)), create("tbody", {},
       ...rows.map((row) => create("tr", {}, ...row.map((v, k) =>
         create("td", {}, v === null ? "none" : k < 2 ? show(v, 5) : v.toFixed(4))))))));
   }
 
   function command(values, given) {
-    const set = fields.filter((field) => !FOOTPRINT.includes(field.key) && values[field.key] !== defaults[field.key]);
+    const set = fields.filter(({ key }) => key === "force" ? values.newtons
+      : !FOOTPRINT.includes(key) && values[key] !== defaults[key] && !(values.newtons && key === "f_ext"));
     if (!given)
       return ["fingerpad estimate", ...set.map((field) => `--set ${field.key}=${values[field.key]}`)].join(" ");
     const tables = {};
@@ -238,7 +261,8 @@
     if (text) find("notes").textContent = "";
     else remarks(found, values, given);
     const sure = known_at(values, given) ? "" : ", error not known";
-    find("always").textContent = text ? "No answer at this point." : `µ_app ${find("value_mu_app").textContent}${sure}`;
+    const of = values.newtons ? "Whole finger: " : "";
+    find("always").textContent = text ? "No answer at this point." : `${of}µ_app ${find("value_mu_app").textContent}${sure}`;
     find("command").textContent = command(values, given);
     draw(values, given, text ? null : found);
   }
@@ -252,7 +276,7 @@
   document.documentElement.className = "js";
   add_fields();
   find("fields").onsubmit = (event) => event.preventDefault();
-  for (const name of ["default", "given"]) find("finger_" + name).onchange = update;
+  for (const id of ["finger_default", "finger_given", "load_metre", "load_whole"]) find(id).onchange = update;
   for (const id of ["fields", "answers", "always"]) find(id).hidden = false;
   fields.forEach(slide);
   update();

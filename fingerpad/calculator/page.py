@@ -8,8 +8,9 @@ from importlib.resources import files
 from fingerpad.calculator.fields import data
 from fingerpad.installed import version
 from fingerpad.io.quantities import PER_LENGTH
-from fingerpad.reduced import cylinders, known
+from fingerpad.reduced import cylinder_errors, cylinders
 from fingerpad.scene import Scene
+from fingerpad.scene.materials import BEARING_AREA
 from fingerpad.scene.remarks import LEAKAGE
 
 _TABLE = (20.0, 50.0, 75.0, 100.0, 150.0), (0.0, 50.0, 100.0, 150.0, 200.0)  # N/m, V
@@ -23,9 +24,9 @@ def page() -> str:
         for name in ("page.css", "closed_form.js", "plot.js", "page.js")
     )
     values = {
-        "error": f"{100 * known.KNOWN_ERROR['cylinders']['full_slip']['mu_app']:.1f} %",
-        "runs": str(known.KNOWN_RUNS),
-        "where": known.where(),
+        "error": f"{100 * cylinder_errors.KNOWN_ERROR['full_slip']['mu_app']:.1f} %",
+        "runs": str(cylinder_errors.KNOWN_RUNS),
+        "where": cylinder_errors.where(),
         "leakage": html.escape(LEAKAGE),
         "table": _table(),
         "defaults": _defaults(),
@@ -59,7 +60,7 @@ def _table() -> str:
 def _defaults() -> str:
     """Return the values that the table is of."""
     scene = Scene()
-    coating, rough = scene.electric, scene.roughness
+    coating, rough = scene.electric, BEARING_AREA
     return (
         f"Friction coefficient without voltage {scene.friction:g}; coating of {coating.d_i * 1e6:g} µm with a relative "
         f"permittivity of {coating.eps_i:g}; roughness of {rough.h_rms * 1e6:g} µm (root mean square), wavelengths up "

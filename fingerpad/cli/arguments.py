@@ -6,14 +6,15 @@ import os
 import re
 import shlex
 import sys
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable, Sequence
 from difflib import get_close_matches
 from pathlib import Path
 from typing import Any, NamedTuple, NoReturn
 
+from fingerpad.cli import COMMANDS, ranges
 from fingerpad.io import terminal
-from fingerpad.model.check import check
-from fingerpad.scene import Scene, load, override
+from fingerpad.model.feasibility import check
+from fingerpad.scene import Scene, from_data, load, override
 from fingerpad.scene.keys import every
 from fingerpad.scene.messages import SceneError, clip, ends
 from geometry.units import to_si
@@ -38,18 +39,18 @@ PICTURE = Kind("a picture", (".png", ".pdf", ".svg", ".jpg", ".jpeg", ".eps", ".
 class Parser(argparse.ArgumentParser):
     """A parser that refuses by :class:`SceneError` and prints on rank 0 alone."""
 
-    def __init__(self, program: str, description: str, examples: str) -> None:
+    def __init__(self, command: str, examples: str) -> None:
         """Start with the options that all subcommands have.
 
         Args:
-            program: what is typed before the options.
-            description: a line or two on what it does.
+            command: name of the subcommand; its description is that of :data:`fingerpad.cli.COMMANDS`.
             examples: command lines, one a line.
         """
         lines = "\n".join(f"  {line.strip()}" for line in examples.strip().splitlines())
+        what = COMMANDS.get(command, "")
         super().__init__(
-            prog=program,
-            description=description,
+            prog=f"fingerpad {command}",
+            description=f"{what[:1].upper()}{what[1:]}.",
             epilog=f"examples:\n{lines}",
             formatter_class=argparse.RawDescriptionHelpFormatter,
             allow_abbrev=False,
@@ -76,6 +77,20 @@ class Parser(argparse.ArgumentParser):
         self.add_argument(
             "--set", action="append", default=[], metavar="KEY=VALUE", help="a key of the scene; one --set for each key"
         )
+
+    def add_ranges(self, *keys: str) -> None:
+        """Add an option for several values of each of these keys, which :func:`several` reads."""
+        for key in every(Scene):
+            if key.name in keys:
+                what = f"{key.meaning.partition('. ')[0].rstrip('.')}; several as 0,100 or 0:200:5, also with a unit"
+                self.add_argument(f"--{key.name.replace('_', '-')}", metavar="RANGE", help=what)
+
+    def add_table(self, table: str) -> None:
+        """Add an option for each optional key of a table of a scene."""
+        for key in every(Scene):
+            if key.name.startswith(f"{table}.") and not key.required:
+                pair: dict[str, Any] = {"nargs": 2, "metavar": ("X", "Y")} if key.allowed.startswith("list") else {}
+                self.add_argument(f"--{key.name.removeprefix(table)[1:]}", **pair, help=key.meaning)
 
     def add_out(self, default: str, what: str) -> None:
         """Add the folder that results go to."""
@@ -171,6 +186,19 @@ def changes(given: Sequence[str]) -> dict[str, Any]:
     return found
 
 
+def several(args: argparse.Namespace, scene: Scene, key: str) -> list[float]:
+    """Return the values of an option of :meth:`Parser.add_ranges`; the scene's own without it.
+
+    Raises:
+        SceneError: a value that the key cannot have, or the key is given by ``--set`` too.
+    """
+    option, text = f"--{key.replace('_', '-')}", getattr(args, key)
+    refuse_twice(args, key, option)
+    if text is None:
+        return [getattr(scene, key)]
+    return [getattr(from_data({key: value}), key) for value in ranges.read(option, text)]
+
+
 def refuse_twice(args: argparse.Namespace, key: str, option: str) -> None:
     """Refuse a key of the scene that ``--set`` gives beside an option of its own.
 
@@ -222,7 +250,7 @@ def _instead(word: str, options: Iterable[str], petsc: bool) -> str:
 
 def _key(name: str) -> str | None:
     """Return the key of a scene that a name may have been meant for, with its table or without."""
-    whole = [key.name for key in every() if "[" not in key.name]
+    whole = [key.name for key in every(Scene) if "[" not in key.name]
     names = {key.rpartition(".")[2]: key for key in reversed(whole)} | {key: key for key in whole}
     near = get_close_matches(name, names, n=1, cutoff=0.8)
     return names[near[0]] if near else None
@@ -235,29 +263,20 @@ def path(text: str) -> Path:
     return Path(text)
 
 
-def positive(kind: type[int] | type[float]) -> Callable[[str], float]:
-    """Return a type of arguments: positive numbers of a kind."""
-
-    def read(text: str) -> float:
-        try:
-            value = kind(text)
-        except ValueError:
-            value = kind(0)
-        if not 0 < value < math.inf:
-            words = "whole number" if kind is int else "number"
-            raise argparse.ArgumentTypeError(f"{clip(text)} is not allowed; it must be a {words} greater than 0")
-        return value
-
-    return read
+def positive(text: str) -> int:
+    """Return a positive whole number."""
+    if not re.fullmatch(r"0*[1-9]\d{0,17}", text):
+        raise argparse.ArgumentTypeError(f"{clip(text)} is not allowed; it must be a whole number greater than 0")
+    return int(text)
 
 
-def length(text: str) -> float:
-    """Return a positive length in m, of a text with a unit or in m."""
+def quantity(text: str, unit: str = "m") -> float:
+    """Return a positive number in a unit, of a text with a unit or without."""
     try:
         value = float(text)
     except ValueError:
         try:
-            value = to_si(text, "m")
+            value = to_si(text, unit)
         except ValueError as error:
             raise argparse.ArgumentTypeError(f"{clip(text)} is not allowed; {error}") from None
     if not 0 < value < math.inf:

@@ -14,11 +14,7 @@ _EXAMPLES = """
 
 def main(argv: Sequence[str]) -> int:
     """Write the page; return the exit code."""
-    parser = Parser(
-        "fingerpad calculator",
-        "Write a page that draws friction over force and voltage by the closed form, for any browser, offline.",
-        _EXAMPLES,
-    )
+    parser = Parser("calculator", _EXAMPLES)
     head = (files("fingerpad.calculator") / "page.html").read_text(encoding="utf-8").partition("{{")[0]
     kind = Kind("a page", (".html",), head)
     parser.add_file("--out", kind, "file of the page (default: calculator.html)", "calculator.html")

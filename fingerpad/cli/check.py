@@ -6,16 +6,15 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from fingerpad.cli.arguments import Parser, echo, scene_of
-from fingerpad.io.folder import check_folder
-from fingerpad.io.left import about, between
-from fingerpad.model import expected as cost
-from fingerpad.model.memory import MEASURED, Budget, estimate
-from fingerpad.model.options import ModelOptions, plan
-from fingerpad.model.touching import by_rule
-from fingerpad.scene import Load, Scene
+from fingerpad.io.files import check_folder
+from fingerpad.io.pace import about
+from fingerpad.model.feasibility import by_rule, memory, refuse_mesh, unknowns
+from fingerpad.model.options import FingerModel, ModelOptions, plan
+from fingerpad.reduced.cylinder_errors import outside, where
+from fingerpad.scene import Load, Scene, SceneError
 from fingerpad.scene.laws import used
 from fingerpad.scene.remarks import leakage, remarks
-from geometry.sizing import touching_ridges
+from geometry.profiles import GeometryError
 
 if TYPE_CHECKING:
     from fingerpad.cli.section import Section
@@ -28,40 +27,59 @@ _EXAMPLES = """
 
 def main(argv: Sequence[str]) -> int:
     """Describe a run; return the exit code."""
-    parser = Parser(
-        "fingerpad check", "Compute what a run contains, omits and costs, and draw its mesh; solve nothing.", _EXAMPLES
-    )
+    parser = Parser("check", _EXAMPLES)
     parser.add_scene()
     parser.add_out("results", "folder of the picture mesh.png (default: results)")
     args = parser.read(argv)
     scene = scene_of(args)
     check_folder(args.out)
     needed = plan(scene)
-    own = _own_mesh(scene, needed)
+    mesh = _mesh(scene, needed)
     for title, lines in (
         ("Loads, in order", _loads(scene)),
         ("Laws, numbers in SI units", (f"{name.replace('_', ' ')}: {law}" for name, law in used(scene).items())),
-        ("Model", _model(scene, needed) if own is None else _model_of_file(scene, own)),
+        ("Model", _model(scene, needed)),
+        ("Mesh", _size(scene, mesh)),
         ("Omitted", (f"{omission.what}: {omission.reason}" for omission in needed.omitted)),
-        (f"Cost, within a factor of {cost.FACTOR:g} where it is known", _cost(scene, needed, own)),
     ):
         shown = list(lines) or ["nothing"]
         echo("\n".join([title, *(f"  {line}" for line in shown)]))
-    echo(_picture(scene, needed, args.out, own))
-    if cost.beyond_loads(scene):
-        echo("The scene is valid; whether its loads can be reached is not known.")
-    else:
-        echo("The scene can be run.")
+    echo(_picture(scene, args.out, mesh))
+    echo(_verdict(scene))
     return 0
 
 
-def _own_mesh(scene: Scene, needed: ModelOptions) -> "Section | None":
-    """Return the mesh of a scene's file, checked; None where it has none."""
-    if scene.laws.mesh is None:
-        return None
-    from fingerpad.cli import section  # gmsh
+def _mesh(scene: Scene, needed: ModelOptions) -> "Section | None":
+    """Return the mesh that a run would have, or that of the scene's file; None where there is no gmsh.
 
-    return section.section(scene, needed)
+    Raises:
+        SceneError: it cannot be made, or a run on it needs more memory than is allowed.
+    """
+    if scene.geometry.file is None and importlib.util.find_spec("gmsh") is None:
+        return None
+    from fingerpad.cli import section
+
+    found = section.section(scene, needed)
+    if scene.geometry.file is None:
+        try:
+            refuse_mesh(len(found.points), len(found.triangles), FingerModel(by_rule(scene), needed))
+        except GeometryError as error:
+            raise SceneError(str(error)) from None
+    return found
+
+
+def _verdict(scene: Scene) -> str:
+    """Return whether the scene can be run, and that nothing is known of loads that were never tried."""
+    force = voltage = 0.0
+    for load in scene.loads():
+        force = load.f_ext if load.f_ext is not None else force
+        voltage = load.wave.peak if load.wave is not None else voltage if load.level is None else load.level
+        if outside(force, voltage):
+            return (
+                f"The scene is valid; whether its loads can be reached is not known: {load.name} has {force:g} N/m and "
+                f"{voltage:g} V, and tried were {where()}."
+            )
+    return "The scene can be run."
 
 
 def _loads(scene: Scene) -> Iterator[str]:
@@ -87,74 +105,50 @@ def _aims(load: Load) -> Iterator[str]:
 
 def _model(scene: Scene, needed: ModelOptions) -> Iterator[str]:
     yield from (*remarks(scene), *leakage(scene))
-    found, touching = estimate(scene, needed), by_rule(scene)
-    ridges = touching_ridges(touching.geometry, touching.mesh)
-    if scene.contact.formulation == "augmented":
-        times = f"some {cost.FORMULATIONS['augmented']:.0f} times the factorisations of the penalty"
-        yield f"contact by a method for comparison, which takes {times} and may miss equilibria that it finds"
-    given = scene.mesh.touching_half_arc is not None
-    how = "as mesh.touching_half_arc gives" if given else "by a rule of thumb; a run takes more where they come near"
-    size = touching.mesh
-    sizes = {"in contact": size.contact, "at the Merkel sites": size.receptor, "elsewhere at most": size.coarsest}
-    if not needed.receptors:
-        del sizes["at the Merkel sites"]
-    yield f"elements of {', '.join(f'{value * 1e6:.4g} µm {where}' for where, value in sizes.items())}"
-    yield f"some {about(found.triangles)} triangles of element {scene.numerics.element}"
-    yield f"some {about(found.unknowns)} unknowns, within a factor of 1.5"
-    yield f"{len(ridges)} of {scene.geometry.ridge_count} ridges can touch, {how}"
-    yield f"{_memory(found)}, of the {scene.numerics.memory * 1e-9:.3g} GB allowed"
+    if caution := scene.contact.law.caution:
+        yield caution
+    if scene.geometry.file is None:
+        size = scene.mesh
+        sizes = {"in contact": size.contact, "at the Merkel sites": size.receptor, "elsewhere at most": size.coarsest}
+        if not needed.receptors:
+            del sizes["at the Merkel sites"]
+        yield f"elements of {', '.join(f'{value * 1e6:.4g} µm {where}' for where, value in sizes.items())}"
+    if scene.accuracy is not None:
+        yield "finer meshes follow, to the accuracy asked for"
 
 
-def _model_of_file(scene: Scene, own: "Section") -> Iterator[str]:
-    found = estimate(scene, triangles=len(own.triangles))
-    yield f"{len(own.triangles)} triangles of element {scene.numerics.element}, the shortest edge {_um(own.shortest)}"
-    yield f"the lowest point is {_um(own.lowest[1])} above the screen"
-    yield f"some {about(found.unknowns)} unknowns, within a factor of 1.5"
-    yield f"{own.ridges} ridges can touch, as the file has them"
-    yield f"{_memory(found)}; a mesh of a file is not refused for it"
-
-
-def _memory(found: Budget) -> str:
-    beyond = found.unknowns > MEASURED
-    measured = f" (extrapolated: measured up to {about(MEASURED)} unknowns)" if beyond else ""
-    return f"some {found.memory * 1e-9:.2g} GB of memory{measured}"
+def _size(scene: Scene, mesh: "Section | None") -> Iterator[str]:
+    if mesh is None:
+        yield "not made, since gmsh is not installed"
+        return
+    own = scene.geometry.file is not None
+    number = unknowns(len(mesh.points), len(mesh.triangles), scene.numerics.element)
+    yield f"{len(mesh.triangles)} triangles of element {scene.numerics.element}, {number} unknowns"
+    if own:
+        yield f"the shortest edge is {_um(mesh.shortest)}, the lowest point {_um(mesh.lowest[1])} above the screen"
+        how = "as the file has them"
+    elif scene.mesh.touching_half_arc is not None:
+        how = "as mesh.touching_half_arc gives"
+    else:
+        how = "by a rule of thumb; a run takes more where they come near"
+    count = "" if own else f" of {scene.geometry.ridge_count}"
+    yield f"{mesh.ridges}{count} ridges can touch, {how}"
+    allowed = f"of the {scene.numerics.memory * 1e-9:.3g} GB allowed"
+    allowed = "for which a mesh of a file is not refused" if own else allowed
+    yield f"about {about(memory(number) * 1e-9)} GB of memory, {allowed}"
+    yield "time: a run prints what is left of its path; measured times are in docs/performance.md"
 
 
 def _um(length: float) -> str:
     return f"{length * 1e6:.3g} µm"
 
 
-def _cost(scene: Scene, needed: ModelOptions, own: "Section | None") -> Iterator[str]:
-    unknowns = estimate(scene, needed, None if own is None else len(own.triangles)).unknowns
-    found = cost.expected(scene, needed, unknowns)
-    few, many = (about(found.factorisations * factor) for factor in (1 / cost.FACTOR, cost.FACTOR))
-    loads, mesh = cost.beyond_loads(scene), cost.beyond_mesh(unknowns)
-    yield f"the work is not known: {loads}" if loads else f"{few} to {many} factorisations"
-    if loads or mesh:
-        yield f"the time is not known: {mesh or 'the work is not'}"
-    else:
-        yield f"{_within(found.seconds)} of processor time, on a machine like that of docs/performance.md:"
-        yield f"  {_within(found.path)} for the path of the loads"
-        if found.errors:
-            yield f"  {_within(found.errors)} for the error estimate"
-        yield f"  {_within(found.beside)} for set-up, tables and pictures"
-    yield f"{cost.COMPILING:.0f} s more the first time, when the forms are compiled"
-    if scene.accuracy is not None:
-        yield "and that of finer meshes, to the accuracy asked for: perhaps several times as much"
-
-
-def _within(seconds: float) -> str:
-    """Return a time within the factor of the rule, as a range in words."""
-    return between(seconds / cost.FACTOR, seconds * cost.FACTOR)
-
-
-def _picture(scene: Scene, needed: ModelOptions, folder: Path, own: "Section | None") -> str:
+def _picture(scene: Scene, folder: Path, mesh: "Section | None") -> str:
     """Draw the mesh; return what was drawn, or why nothing was."""
-    missing = [name for name in ("gmsh", "matplotlib") if importlib.util.find_spec(name) is None]
-    if missing:
-        return f"The mesh is not drawn, since {missing[0]} is not installed."
+    if mesh is None or importlib.util.find_spec("matplotlib") is None:
+        return f"The mesh is not drawn, since {'gmsh' if mesh is None else 'matplotlib'} is not installed."
     from fingerpad.cli import section
 
     folder.mkdir(parents=True, exist_ok=True)
-    section.draw(folder / "mesh.png", own or section.section(scene, needed), by_rule(scene))
+    section.draw(folder / "mesh.png", mesh, by_rule(scene))
     return f"Mesh drawn: {folder / 'mesh.png'}"

@@ -1,192 +1,158 @@
-"""``fingerpad compare-data``: tables of measurements beside a run or a sweep."""
+"""``fingerpad compare-data``: :func:`fingerpad.measurements.compare.compare` on the command line, and its picture."""
 
 import math
 import os
 from collections.abc import Iterator, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from fingerpad.cli import ours, tables
+from fingerpad.cli import tables
 from fingerpad.cli.arguments import Parser, echo, path
-from fingerpad.cli.curves import Array, Ours, reach
-from fingerpad.cli.measured import Measured, read
 from fingerpad.io.states import WORDS
-from fingerpad.io.titles import plain
+from fingerpad.io.style import plain
 from fingerpad.scene.messages import SceneError, clip
 
 if TYPE_CHECKING:
+    import pandas as pd
     from matplotlib.axes import Axes
+
+    from fingerpad.measurements.computed import Computed
 
 _EXAMPLES = """
     fingerpad compare-data mine.csv --sweep results/sweep --out mine.png --csv compared.csv
     fingerpad compare-data data/measured/ayyildiz2018.csv --run results/mine
+    fingerpad compare-data lab.csv --column "Fn=force (N)" --column "CoF=friction (1)" --run results/mine
 """
 _SCALES = {"m": ("mm", 1e3), "m^2": ("mm²", 1e6), "N/m": ("N/m", 1.0), "N": ("N", 1.0), "1": ("", 1.0)}
 _ABOUT = ("table", "state", "quantity", "unit", "force_unit")  # of a row in a file, which has rows of every table
-_VALUES = ("force", "voltage", "measured", "spread", "ours", "error", "ratio")
+_VALUES = ("force", "voltage", "measured", "spread", "computed", "error", "difference", "relative_difference")
 _COLUMNS = tuple(tables.Column(key, key) for key in (*_ABOUT, *_VALUES))
 _NAMED = 4  # curves in the legend of a picture
 _DRAWN = 201  # places of a curve
 
 
 def main(argv: Sequence[str]) -> int:
-    """Compare tables of measurements with ours; return the exit code."""
-    parser = Parser(
-        "fingerpad compare-data",
-        "Print measurements beside a finished run or sweep, and their misfit as a ratio; draw both.",
-        _EXAMPLES,
+    """Compare tables of measurements with results; return the exit code."""
+    parser = Parser("compare-data", _EXAMPLES)
+    parser.add_argument("tables", nargs="+", type=path, metavar="TABLE", help="CSV with names and units in its header")
+    parser.add_argument(
+        "--column",
+        action="append",
+        default=[],
+        metavar="HEAD=NAME",
+        help="a column of the tables by the name and unit it has here, as 'Fn=force (N)'; 'Fn=' leaves it out",
     )
-    parser.add_argument("tables", nargs="+", type=path, metavar="TABLE", help="CSV with a header of units and a source")
-    which = parser.add_mutually_exclusive_group(required=True)
-    which.add_argument("--run", nargs="+", type=path, metavar="DIR", help="folders of runs")
-    which.add_argument("--sweep", type=path, metavar="DIR", help="folder of a sweep over f_ext, voltage or both")
-    tables.add_files(parser, _COLUMNS, "picture of tables and ours", "--out")
+    parser.add_argument("--state", metavar="STATE", help="uncharged, charged or full slip, if the tables name none")
+    words = "folders of runs, or the folder of a sweep over force, voltage or both"
+    where = {"dest": "results", "metavar": "DIR", "help": words}
+    parser.add_argument("--run", "--sweep", nargs="+", type=path, required=True, **where)
+    tables.add_files(parser, _COLUMNS, "picture of measured and computed values", "--out")
     args = parser.read(argv)
-    measured = [read(file) for file in args.tables]
-    found = ours.read(args.run or [args.sweep], sweep=args.sweep is not None)
-    compared = [_Compared(table, ours.ours(found, table)) for table in measured]
-    echo("\n\n".join("\n".join(each.lines()) for each in compared))
-    rows = [row for each in compared for row in each.rows()]
-    tables.write_files(args, _COLUMNS, rows, lambda file, _: draw(file, compared))
+    from fingerpad.measurements import compare, computed, table  # pandas
+
+    measured = [table.read(file, _mapping(args.column), args.state) for file in args.tables]
+    known = [computed.computed(args.results, each) for each in measured]
+    compared = [compare.beside(*pair) for pair in zip(measured, known, strict=True)]
+    echo("\n\n".join("\n".join(_lines(each)) for each in compared))
+    rows = [row for each in compared for row in _rows(each)]
+    tables.write_files(args, _COLUMNS, rows, lambda file, _: _draw(file, compared, known))
     return 0
 
 
-class _Compared:
-    """A table of measurements with ours at the same conditions."""
-
-    def __init__(self, table: Measured, known: Ours) -> None:
-        """Interpolate ours; SceneError where no row of the table is within ours."""
-        self.table, self.known = table, known
-        self.force, self.voltage = ours.conditions(table, known)
-        self.measured, self.spread = np.array(table.values), np.array(table.spread)
-        self.ours, self.error = known.at(self.force, self.voltage), known.error(self.force, self.voltage)
-        self.ratio = self.ours / self.measured
-        if np.isnan(self.ours).all():
-            has = reach(known, table.force_unit)
-            raise SceneError(f"no row of {clip(str(table.file), 80)} is within ours, which has {has}")
-        if not self.within.any():
-            none = int(np.isnan(self.ours).sum())
-            rows = f"{len(self.ours)} rows of {clip(str(table.file), 80)}"
-            beyond = f", and {none} of them are not within ours" if none else ""
-            raise SceneError(f"ours has no {table.quantity} above 0 in the {rows}{beyond}")
-
-    @property
-    def within(self) -> NDArray[np.bool_]:
-        """Return which rows are within ours and have a ratio."""
-        return np.isfinite(self.ratio) & (self.ratio > 0)
-
-    def rows(self) -> list[dict[str, str | float | None]]:
-        """Return the rows by name, in SI units; None for what is missing."""
-        table = self.table
-        file = os.path.join(os.curdir, table.file)  # ./=a.csv: a cell =a.csv would be a formula
-        about = (file, WORDS[table.state], table.quantity, table.unit, table.force_unit)
-        values = (self.force, self.voltage, self.measured, self.spread, self.ours, self.error, self.ratio)
-        found = ([float(v) if np.isfinite(v) else None for v in row] for row in zip(*values, strict=True))
-        return [dict(zip((*_ABOUT, *_VALUES), (*about, *row), strict=True)) for row in found]
-
-    def lines(self) -> Iterator[str]:
-        """Yield the table and the misfit as text."""
-        unit, scale = _SCALES[self.table.unit]
-        columns = [
-            tables.Column("force", "force", self.table.force_unit),
-            tables.Column("voltage", "voltage", "V"),
-            tables.Column("measured", "measured", unit, scale),
-            tables.Column("spread", "spread", unit, scale),
-            tables.Column("ours", "ours", unit, scale),
-            *([tables.Column("error", "±", unit, scale, ".2g")] if np.isfinite(self.error).any() else []),
-            tables.Column("ratio", "ours/measured", digits=".3g"),
-        ]
-        yield f"{self.table.quantity} at {WORDS[self.table.state]}: {clip(self.table.source, 200)}"
-        more = [f"{name} {self.table.about[name]}" for name in ("doi", "url", "people") if name in self.table.about]
-        yield from [clip("; ".join(more), 200)] if more else []
-        yield tables.text(columns, self.rows())
-        if np.isfinite(self.error).any():
-            yield "±: estimated discretisation error of ours, of the mesh alone."
-        yield from self._misfit()
-
-    def _misfit(self) -> Iterator[str]:
-        log, count = np.log(self.ratio[self.within]), int(self.within.sum())
-        mean, most = float(np.exp(log.mean())), float(np.exp(np.abs(log).max()))
-        yield f"Misfit: ours over measured {mean:.3g} (geometric mean of {count}), at most a factor of {most:.3g}."
-        if count > 1:
-            shape = float(np.exp(np.abs(log - log.mean()).max()))
-            yield f"Shape alone, ours scaled by one factor ({1 / mean:.3g}): at most a factor of {shape:.3g}."
-        if (spread := self.within & np.isfinite(self.spread)).any():
-            known = np.isfinite(self.error[spread])
-            allowed = self.spread[spread] + np.where(known, self.error[spread], 0.0)
-            near = np.abs(self.ours - self.measured)[spread] <= allowed
-            which = "" if spread.sum() == count else " rows that have a spread"
-            plus = " plus the error of ours" if known.any() else ""
-            yield f"Within the spread{plus}: {near.sum()} of {spread.sum()}{which}."
-        if count < len(self.ratio):
-            none, total = int(np.isnan(self.ours).sum()), len(self.ratio)
-            yield from [f"Not compared, since ours has no result there: {none} of {total} rows."] if none else []
-            zero = total - count - none
-            yield from [f"Not compared, since ours is 0 there: {zero} of {total} rows."] if zero else []
+def _mapping(given: Sequence[str]) -> dict[str, str]:
+    """Return the names of columns by their heads."""
+    found = {}
+    for text in given:
+        head, equals, name = text.rpartition("=")
+        if not equals:
+            raise SceneError(f"--column is {clip(repr(text))}; it must be HEAD=NAME, such as 'Fn=force (N)'")
+        found[head] = name
+    return found
 
 
-def draw(file: Path, compared: Sequence[_Compared]) -> None:
-    """Draw each table over ours, in a panel of its own."""
+def _rows(compared: "pd.DataFrame") -> list[dict[str, str | float | None]]:
+    """Return the rows by name, in SI units; None for what is missing."""
+    about = {key: compared.attrs[key] for key in _ABOUT}
+    about["table"] = os.path.join(os.curdir, about["table"])  # ./=a.csv: a cell =a.csv would be a formula
+    about["state"] = WORDS[about["state"]]
+    values = compared.astype(object).where(compared.notna(), None)
+    return [about | row for row in values.to_dict("records")]
+
+
+def _lines(compared: "pd.DataFrame") -> Iterator[str]:
+    """Yield table and misfit as text."""
+    about, found, errors = compared.attrs, compared.attrs["misfit"], compared.error.notna().any()
+    unit, scale = _SCALES[about["unit"]]
+    columns = [
+        tables.Column("force", "force", about["force_unit"]),
+        tables.Column("voltage", "voltage", "V"),
+        *(tables.Column(key, key, unit, scale) for key in ("measured", "spread", "computed")),
+        *([tables.Column("error", "±", unit, scale, ".2g")] if errors else []),
+        tables.Column("difference", "difference", unit, scale, ".3g"),
+        tables.Column("relative_difference", "relative", "%", 100.0, ".3g"),
+    ]
+    yield f"{about['quantity']} at {WORDS[about['state']]}: {clip(about['source'], 200)}"
+    more = [f"{name} {about[name]}" for name in ("doi", "url", "people") if name in about]
+    yield from [clip("; ".join(more), 200)] if more else []
+    yield tables.text(columns, _rows(compared))
+    if about["ignored"]:
+        yield f"Columns not read: {clip(', '.join(about['ignored']), 200)}."
+    if errors:
+        yield "±: estimated discretisation error of the computed value, of the mesh alone."
+    count, mean = found["rows"], found["ratio"]
+    rows = f"(geometric mean of {count})"
+    yield f"Misfit: computed over measured {mean:.3g} {rows}, at most a factor of {found['factor']:.3g}."
+    if count > 1:
+        factor = f"at most a factor of {found['shape_factor']:.3g}"
+        yield f"Shape alone, computed values scaled by one factor ({1 / mean:.3g}): {factor}."
+    if spreads := found["spreads"]:
+        which = "" if spreads == count else " rows that have a spread"
+        plus = " plus the error of the computed value" if errors else ""
+        yield f"Within the spread{plus}: {found['within']} of {spreads}{which}."
+    total, none = len(compared), int(compared.computed.isna().sum())
+    if none:
+        yield f"Not compared, since no value is computed there: {none} of {total} rows."
+    if zero := total - count - none:
+        yield f"Not compared, since the computed value is 0 there: {zero} of {total} rows."
+
+
+def _draw(file: Path, compared: Sequence["pd.DataFrame"], known: Sequence["Computed"]) -> None:
+    """Draw each table over the computed values, in a panel of its own."""
     from fingerpad.cli import plot  # Matplotlib
 
-    with plot.panels(file, "Measured, and ours as lines", len(compared)) as (_, panels):
-        for ax, each in zip(panels, compared, strict=True):
-            _panel(ax, each)
+    with plot.panels(file, "Measured points and computed lines", len(compared)) as (_, panels):
+        for each in zip(panels, compared, known, strict=True):
+            _panel(*each)
 
 
-class _Curve(NamedTuple):
-    """Ours over voltages or forces, as the table has it; shape (places,) each."""
-
-    along: Array
-    values: Array
-    error: Array
-    computed: NDArray[np.bool_]
-    """Whether a value is not interpolated."""
-
-    @classmethod
-    def of(cls, known: Ours, axis: Array, held: float, over_voltage: bool) -> "_Curve":
-        """Return ours along an axis, where the other condition is held."""
-        along = np.union1d(axis, np.linspace(axis[0], axis[-1], _DRAWN))
-        level = np.full(len(along), held)
-        at = (level, along) if over_voltage else (along, level)
-        return cls(along, known.at(*at), known.error(*at), known.computed(*at))
-
-
-def _panel(ax: "Axes", each: _Compared) -> None:
+def _panel(ax: "Axes", rows: "pd.DataFrame", known: "Computed") -> None:
     from fingerpad.cli import plot
     from fingerpad.io import style
+    from fingerpad.measurements.computed import CLOSE
 
-    unit, scale = _SCALES[each.table.unit]
-    over_voltage = len(np.unique(each.voltage)) > len(np.unique(each.force))
-    x, other = (each.voltage, each.force) if over_voltage else (each.force, each.voltage)
-    known, name = (each.known.voltage, each.table.force_unit) if over_voltage else (each.known.force, "V")
-    for k, held in enumerate(np.unique(other)):
-        mine, colour = other == held, style.CATEGORIES[k % len(style.CATEGORIES)]
-        found = _Curve.of(each.known, known, held, over_voltage)
-        along, curve, error = found.along, scale * found.values, scale * found.error
-        plot.curve(ax, k, along, curve, f"ours, {held:g} {name}" if k < _NAMED else "_")
-        ax.fill_between(along, curve - error, curve + error, color=colour, alpha=0.2, lw=0)
-        at = found.computed
-        ax.errorbar(along[at], curve[at], error[at], fmt=".", ms=9, capsize=2, color=colour)
-        spread = None if np.isnan(each.spread).all() else scale * each.spread[mine]
-        ax.errorbar(
-            x[mine],
-            scale * each.measured[mine],
-            spread,
-            fmt=style.MARKERS[k % len(style.MARKERS)],
-            color=colour,
-            mfc="white",
-            ms=7,
-            capsize=3,
-            label=f"measured, {held:g} {name}" if k < _NAMED else "_",
-        )
-    force = "force (N)" if each.table.whole else "force per length (N/m)"
+    about, points = rows.attrs, known.points
+    unit, scale = _SCALES[about["unit"]]
+    over_voltage = rows.voltage.nunique() > rows.force.nunique()
+    x, other, name = ("voltage", "force", about["force_unit"]) if over_voltage else ("force", "voltage", "V")
+    axis = np.union1d(points[x], np.linspace(points[x].min(), points[x].max(), _DRAWN))
+    for k, (held, mine) in enumerate(rows.groupby(other)):
+        colour, label = style.CATEGORIES[k % len(style.CATEGORIES)], f"{held:g} {name}"
+        level = np.full(len(axis), held)
+        curve, error = (scale * values for values in known.at(*((level, axis) if over_voltage else (axis, level))))
+        plot.curve(ax, k, axis, curve, f"computed, {label}" if k < _NAMED else "_")
+        ax.fill_between(axis, curve - error, curve + error, color=colour, alpha=0.2, lw=0)
+        at = points[np.isclose(points[other], held, rtol=CLOSE if over_voltage else 1e-6, atol=0.0)]
+        ax.errorbar(at[x], scale * at.value, scale * at.error, fmt=".", ms=9, capsize=2, color=colour)
+        spread = None if rows.spread.isna().all() else scale * mine.spread
+        look: dict[str, Any] = {"fmt": style.MARKERS[k % len(style.MARKERS)], "color": colour, "mfc": "white"}
+        look["label"] = f"measured, {label}" if k < _NAMED else "_"
+        ax.errorbar(mine[x], scale * mine.measured, spread, ms=7, capsize=3, **look)
+    force = "force (N)" if about["force_unit"] == "N" else "force per length (N/m)"
     ax.set(xlabel="voltage (V)" if over_voltage else force)
-    ax.set(ylabel=f"{each.table.quantity} ({unit or '–'})", title=plain(clip(each.table.source, 40)))
+    ax.set(ylabel=f"{about['quantity']} ({unit or '–'})", title=plain(clip(about["source"], 40)))
     ax.set_ylim(bottom=0)
     if math.isclose(*ax.get_xlim(), rel_tol=0.05):  # a single force, but for roundoff
-        ax.set_xlim(0, 2 * x.mean())
+        ax.set_xlim(0, 2 * rows[x].mean())
     ax.legend()

@@ -4,15 +4,19 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from fingerpad.cli import ranges, tables
-from fingerpad.cli.arguments import Parser, echo, refuse_twice, scene_of
+from fingerpad.cli import tables
+from fingerpad.cli.arguments import Parser, echo, scene_of, several
 from fingerpad.io.quantities import PER_LENGTH
+from fingerpad.io.result import Result
 from fingerpad.model.cautions import on_states
-from fingerpad.reduced import cylinders, known
-from fingerpad.reduced.answer import refuse_others
-from fingerpad.scene import Scene, from_data
+from fingerpad.reduced import cylinder_errors, cylinders
+from fingerpad.runs.context import RunContext
+from fingerpad.runs.solve import solved
+from fingerpad.scene import Scene
+from fingerpad.scene.laws import coefficient, used
 from fingerpad.scene.messages import SceneError
 from fingerpad.scene.remarks import LEAKAGE, remarks
+from fingerpad.slices import solid
 
 _COLUMNS = (
     tables.Column("f_ext", "force", "N/m"),
@@ -23,7 +27,19 @@ _COLUMNS = (
     tables.Column("contact_length", "contact", "mm", 1e3, ".3f"),
     tables.Column("ridges_in_contact", "ridges", digits=".0f"),
 )
+_NEWTONS = (
+    tables.Column("force", "force", "N"),
+    tables.Column("voltage", "voltage", "V"),
+    tables.Column("mu_app", "mu_app", digits=".3f"),
+    tables.Column("f_t", "friction", "N", digits=".4f"),
+    tables.Column("f_electrostatic", "attraction", "N", digits=".4f"),
+    tables.Column("contact_area", "ridge area", "mm²", 1e6, ".2f"),
+    tables.Column("gross_area", "gross area", "mm²", 1e6, ".1f"),
+    tables.Column("f_ext", "centre", "N/m", digits=".4g"),
+    tables.Column("mu_app_of_section", "its mu_app", digits=".3f"),
+)
 _EXAMPLES = """
+    fingerpad estimate --force "0.1, 0.3, 0.5 N" --voltage 0,100,200
     fingerpad estimate --f-ext 20:75:3 --voltage 0:200:41 --plot mu.png
     fingerpad estimate --set friction=0.3 --f-ext 50 --voltage 0,100,200 --csv mu.csv
 """
@@ -31,79 +47,91 @@ _EXAMPLES = """
 
 def main(argv: Sequence[str]) -> int:
     """Estimate friction over a grid; return the exit code."""
-    parser = Parser(
-        "fingerpad estimate",
-        "Compute friction at full slip by a closed form: every ridge in contact is the same charged cylinder.",
-        _EXAMPLES,
-    )
+    parser = Parser("estimate", _EXAMPLES)
     parser.add_scene()
-    parser.add_argument("--f-ext", metavar="RANGE", help="forces (N/m): 75, or 20,50,75 or 20:75:3, or with units")
-    parser.add_argument("--voltage", metavar="RANGE", help="voltages (V), written likewise")
+    parser.add_ranges("force", "f_ext", "voltage")
     tables.add_files(parser, _COLUMNS, "picture: one curve a force")
     args = parser.read(argv)
-    refuse_twice(args, "f_ext", "--f-ext")
-    refuse_twice(args, "voltage", "--voltage")
+    if args.force is not None and args.f_ext is not None:
+        raise SceneError("--force is given and --f-ext too; give newtons on the whole finger or N/m at its centre")
     scene = scene_of(args, meshed=False)
-    refuse_others(scene, "cylinders")
-    forces, voltages = (_axis(scene, key, getattr(args, key)) for key in ("f_ext", "voltage"))
-    rows, lost = grid(scene, forces, voltages)
-    echo("Friction at full slip by a closed form, every ridge in contact the same charged cylinder.")
-    echo(f"Friction coefficient {scene.friction:g}.\n")
-    echo(tables.text(_COLUMNS, rows))
-    echo("\nmu_app is friction over force, at full slip; contact is the length of skin on the screen.")
+    cylinders.Cylinders().check(scene)
+    key = "force" if args.force is not None or (scene.force is not None and args.f_ext is None) else "f_ext"
+    forces, voltages = (several(args, scene, each) for each in (key, "voltage"))
+    rows, lost = grid(scene, forces, voltages, key)
+    columns = _COLUMNS if key == "f_ext" else _NEWTONS
+    of = "Friction" if key == "f_ext" else "Friction of the whole finger"
+    echo(f"{of} at full slip by a closed form, every ridge in contact the same charged cylinder.")
+    mu_0 = coefficient(scene)
+    echo(f"Friction coefficient {mu_0:g}.\n" if mu_0 is not None else f"Friction {used(scene)['friction']}.\n")
+    echo(tables.text(columns, rows))
+    if key == "f_ext":
+        echo("\nmu_app is friction over force, at full slip; contact is the length of skin on the screen.")
+    else:
+        echo("\nmu_app is friction over force of the whole finger, at full slip; the last two columns are of the")
+        echo("section at the centre of the finger.")
     states = [row["state"] for row in rows if "state" in row]
     limits = (f"{text[0].upper()}{text[1:]}." for text in on_states(states, scene.closure()))
     said = (*([LEAKAGE] if any(voltages) else []), *(f"{text}." for text in remarks(scene)), *limits)
-    for note in (PER_LENGTH, *_known(scene, rows), *said, *lost):
+    notes = [PER_LENGTH] if key == "f_ext" else solid.remarks(forces)
+    for note in (*notes, *_known(scene, rows), *said, *lost):
         echo(note)
-    tables.write_files(args, _COLUMNS, rows, draw)
+    tables.write_files(args, columns, rows, draw)
     return 0
 
 
-def _axis(scene: Scene, key: str, text: str | None) -> list[float]:
-    """Return the values of a key, checked; the scene's own if none are given."""
-    if text is None:
-        return [getattr(scene, key)]
-    values = ranges.read(f"--{key.replace('_', '-')}", text)
-    return [getattr(_with(scene, **{key: value}), key) for value in values]
+def grid(
+    scene: Scene, forces: Sequence[float], voltages: Sequence[float], key: str = "f_ext"
+) -> tuple[list[dict[str, Any]], list[str]]:
+    """Return a row for each force and voltage, and a message for each point that was refused.
 
-
-def _with(scene: Scene, **values: float | str) -> Scene:
-    return from_data(scene.parameters() | values)
-
-
-def grid(scene: Scene, forces: Sequence[float], voltages: Sequence[float]) -> tuple[list[dict[str, Any]], list[str]]:
-    """Return a row for each force (N/m) and voltage (V), and a message for each point that was refused.
+    Args:
+        scene: of all points.
+        forces: N/m, or N on the whole finger.
+        voltages: (V).
+        key: of the forces, ``f_ext`` or ``force``.
 
     Raises:
         SceneError: every point is refused.
     """
-    rows, lost = [], []
-    for f_ext in forces:
+    rows, lost, model, unit = [], [], cylinders.Cylinders(), "N/m" if key == "f_ext" else "N"
+    for force in forces:
         for voltage in voltages:
-            row: dict[str, Any] = {"f_ext": f_ext, "voltage": voltage}
+            row: dict[str, Any] = {key: force, "voltage": voltage}
             try:
-                found = cylinders.solve(_with(scene, f_ext=f_ext, voltage=voltage))
-                row |= {c.key: getattr(found.full_slip, c.key) for c in _COLUMNS if c.key not in row}
-                row["state"] = found.full_slip
+                found = solved(scene.replace(**{key: force, "voltage": voltage}), model, RunContext())
+                row |= _row(found)
             except SceneError as error:
-                lost.append(f"At {f_ext:g} N/m and {voltage:g} V: {error}.")
+                lost.append(f"At {force:g} {unit} and {voltage:g} V: {error}.")
             rows.append(row)
     if len(lost) == len(rows):
         raise SceneError(lost[0].partition(": ")[2].rstrip("."))
     return rows, lost
 
 
+def _row(found: Result) -> dict[str, Any]:
+    """Return what the columns show of a result."""
+    slip, finger = found.full_slip, found.finger
+    if finger is None:
+        return {c.key: getattr(slip, c.key) for c in _COLUMNS} | {"state": slip}
+    last = list(finger.states)[-1]
+    values = {c.key: finger.values(last)[c.key] for c in _NEWTONS if c.key in finger.values(last)}
+    section = slip or found.charged
+    assert section is not None
+    return values | {"f_ext": section.f_ext, "mu_app_of_section": section.mu_app, "state": section}
+
+
 def _known(scene: Scene, rows: Sequence[Mapping[str, Any]]) -> list[str]:
     """Return what is known of the error of these rows."""
-    bands = known.KNOWN_ERROR["cylinders"]["full_slip"]
+    bands = cylinder_errors.KNOWN_ERROR["full_slip"]
     mu, length, pull = (f"within {100 * bands[key]:.1f} %" for key in ("mu_app", "contact_length", "f_electrostatic"))
-    runs = f"{known.KNOWN_RUNS} full runs at {known.where()}"
-    said = [f"Known error: mu_app and friction {mu}, attraction {pull}, contact {length} of {runs}."]
-    beyond = sum(known.outside(row["f_ext"], row["voltage"]) for row in rows)
+    runs = f"{cylinder_errors.KNOWN_RUNS} full runs at {cylinder_errors.where()}"
+    of = "" if "force" not in rows[0] else " of the section"
+    said = [f"Known error{of}: mu_app and friction {mu}, attraction {pull}, contact {length} of {runs}."]
+    beyond = sum(cylinder_errors.outside(row["f_ext"], row["voltage"]) for row in rows if "f_ext" in row)
     if beyond:
         said.append(f"{beyond} of {len(rows)} points are outside of that; their error is not known.")
-    if keys := known.changed(scene):
+    if keys := cylinder_errors.changed(scene):
         said.append(f"Those runs have the default {', '.join(keys)}; here the error is not known.")
     return said
 
@@ -113,15 +141,21 @@ def draw(file: Path, rows: Sequence[Mapping[str, Any]]) -> None:
     from fingerpad.cli import plot
     from fingerpad.io import style
 
-    forces, voltages = (list(dict.fromkeys(row[key] for row in rows)) for key in ("f_ext", "voltage"))
-    over, each = ("voltage", "f_ext") if len(voltages) > 1 or len(forces) == 1 else ("f_ext", "voltage")
-    label = {"voltage": "{:g} V", "f_ext": "{:g} N/m"}
-    axis = {"voltage": "voltage U (V)", "f_ext": "normal force per length $f_{ext}$ (N/m)"}
-    with plot.panels(file, "Friction at full slip, closed form") as (_, (ax,)):
-        for k, value in enumerate(forces if each == "f_ext" else voltages):
+    key = "force" if "force" in rows[0] else "f_ext"
+    forces, voltages = (list(dict.fromkeys(row[each] for row in rows)) for each in (key, "voltage"))
+    over, each = ("voltage", key) if len(voltages) > 1 or len(forces) == 1 else (key, "voltage")
+    label = {"voltage": "{:g} V", "f_ext": "{:g} N/m", "force": "{:g} N"}
+    axis = {
+        "voltage": "voltage U (V)",
+        "f_ext": "normal force per length $f_{ext}$ (N/m)",
+        "force": "force on the whole finger $F_{ext}$ (N)",
+    }
+    of = " of the whole finger" if key == "force" else ""
+    with plot.panels(file, f"Friction{of} at full slip, closed form") as (_, (ax,)):
+        for k, value in enumerate(voltages if each == "voltage" else forces):
             points = [row for row in rows if row[each] == value and "mu_app" in row]
             colour = style.voltage(value, max(voltages, key=abs)) if each == "voltage" else None
             x, mu = ([point[key] for point in points] for key in (over, "mu_app"))
             plot.curve(ax, k, x, mu, label[each].format(value), colour)
         ax.set(xlabel=axis[over], ylabel=r"apparent friction coefficient $\mu_{app}$ (–)")
-        ax.legend(title={"f_ext": "$f_{ext}$", "voltage": "U"}[each])
+        ax.legend(title={"f_ext": "$f_{ext}$", "force": "$F_{ext}$", "voltage": "U"}[each])

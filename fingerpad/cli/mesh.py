@@ -14,17 +14,13 @@ _EXAMPLES = """
 
 def main(argv: Sequence[str]) -> int:
     """Write a mesh; return the exit code."""
-    parser = Parser(
-        "fingerpad mesh",
-        "Compute the mesh of the whole unloaded finger; write it for gmsh, in m, with names of its parts.",
-        _EXAMPLES,
-    )
+    parser = Parser("mesh", _EXAMPLES)
     parser.add_scene()
     parser.add_file("--out", _MESH, "file for gmsh (default: finger.msh)", "finger.msh")
     parser.add_file("--plot", PICTURE, "picture of the mesh")
     args = parser.read(argv)
     scene = scene_of(args)
-    if scene.laws.mesh is not None:
+    if scene.geometry.file is not None:
         raise SceneError("geometry.file is given, which is a mesh already; fingerpad check draws it")
     from fingerpad.cli import section
 

@@ -1,5 +1,6 @@
 """``fingerpad microscale``: air gap, attraction and real area of contact of a rough ridge over its pressure."""
 
+from argparse import ArgumentTypeError
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -7,12 +8,11 @@ from typing import Any
 import numpy as np
 
 from fingerpad.cli import ranges, tables
-from fingerpad.cli.arguments import Parser, echo, refuse_twice, scene_of
+from fingerpad.cli.arguments import Parser, echo, quantity, scene_of, several
 from fingerpad.model.cautions import on_closure
-from fingerpad.scene import Scene, from_data
+from fingerpad.scene import Scene
 from fingerpad.scene.messages import SceneError
 from fingerpad.scene.remarks import remarks
-from geometry.units import to_si
 from variational.roughness.bam import STICKING, BearingArea
 
 _PRESSURES = "1e3:1e6:13:log"
@@ -33,31 +33,25 @@ _EXAMPLES = """
 
 def main(argv: Sequence[str]) -> int:
     """Print the microscale over pressure; return the exit code."""
-    parser = Parser(
-        "fingerpad microscale",
-        "Compute air gap, attraction and real area of contact of a rough ridge over its mean contact pressure.",
-        _EXAMPLES,
-    )
+    parser = Parser("microscale", _EXAMPLES)
     parser.add_scene()
-    parser.add_argument("--voltage", metavar="RANGE", help="voltages (V): 200, or 0,100, or 0:200:5, or with units")
+    parser.add_ranges("voltage")
     parser.add_argument("--p", metavar="RANGE", default=_PRESSURES, help=f"pressures (Pa); default {_PRESSURES}")
     tables.add_files(parser, _COLUMNS, "picture")
     args = parser.read(argv)
-    refuse_twice(args, "voltage", "--voltage")
     scene = scene_of(args, meshed=False)
     if args.voltage is None and scene.history is not None:
         raise SceneError("history is given, whose loads have their own voltages; name those wanted by --voltage")
-    voltages = [scene.voltage] if args.voltage is None else _voltages(args.voltage)
-    rows = table(scene, voltages, _pressures(args.p))
-    closure = scene.roughness.bearing_area(scene.h_0)
+    rows = table(scene, several(args, scene, "voltage"), _pressures(args.p))
+    closure = bearing_area(scene)
     echo(
-        f"A ridge of rms roughness {scene.roughness.h_rms * 1e6:.3g} µm, largest wavelength "
-        f"{scene.roughness.wavelength * 1e6:.3g} µm; insulators: h_0 = {scene.h_0 * 1e6:.3g} µm.\n"
+        f"A ridge of rms roughness {closure.h_rms * 1e6:.3g} µm, largest wavelength "
+        f"{closure.wavelength * 1e6:.3g} µm; insulators: h_0 = {scene.h_0 * 1e6:.3g} µm.\n"
     )
     echo(tables.text(_COLUMNS, rows))
     echo("\npressure: mean contact pressure of the ridge; external: that less the attraction, what the finger presses")
     echo("with; separation: mean, of skin and screen; air gap: equivalent one; real area: of the nominal area.")
-    echo(f"The air gap stays constant below {scene.roughness.p_floor * 1e-3:g} kPa (roughness.p_floor) and above")
+    echo(f"The air gap stays constant below {closure.p_floor * 1e-3:g} kPa (roughness.p_floor) and above")
     echo(f"{closure.full_pressure * 1e-3:.4g} kPa, the pressure at zero separation.")
     echo(_sticking(closure))
     for text in remarks(scene):
@@ -68,21 +62,11 @@ def main(argv: Sequence[str]) -> int:
     return 0
 
 
-def _voltages(text: str) -> list[float]:
-    return [from_data({"voltage": value}).voltage for value in ranges.read("--voltage", text)]
-
-
 def _pressures(text: str) -> list[float]:
-    found = []
-    for value in ranges.read("--p", text):
-        try:
-            p = to_si(value, "Pa") if isinstance(value, str) else float(value)
-        except ValueError as error:
-            raise SceneError(f"--p has the value {value}; {error}") from None
-        if not p > 0:
-            raise SceneError(f"--p has the value {value}; pressures are numbers greater than 0, in Pa")
-        found.append(p)
-    return found
+    try:
+        return [quantity(str(value), "Pa") for value in ranges.read("--p", text)]
+    except ArgumentTypeError as error:
+        raise SceneError(f"--p: {error}") from None
 
 
 def _sticking(closure: BearingArea) -> str:
@@ -94,14 +78,26 @@ def _sticking(closure: BearingArea) -> str:
     return f"From {voltage:.3g} V a ridge would stick: to pull it off takes {stress} or more (a convention)."
 
 
+def bearing_area(scene: Scene) -> BearingArea:
+    """Return the closure of a scene.
+
+    Raises:
+        SceneError: it is another model than the bearing area's, which alone has a separation and a real area.
+    """
+    closure = scene.closure()
+    if not isinstance(closure, BearingArea):
+        raise SceneError(f"roughness is a {type(closure).__name__}; the microscale is that of the law 'BearingArea'")
+    return closure
+
+
 def table(scene: Scene, voltages: Sequence[float], pressures: Sequence[float]) -> list[dict[str, Any]]:
     """Return a row for each voltage (V) and mean contact pressure (Pa), in SI units.
 
     Pressures beyond the one at zero mean separation, where the law of repulsion ends, are held there as in a run.
     """
-    closure = scene.roughness.bearing_area(scene.h_0)
+    closure = bearing_area(scene)
     p_c = np.array(pressures)
-    u_bar = closure.separation(np.clip(p_c, scene.roughness.p_floor, closure.full_pressure)) + 0.0  # no negative zero
+    u_bar = closure.separation(np.clip(p_c, closure.p_floor, closure.full_pressure)) + 0.0  # no negative zero
     d_eq, area = closure(p_c).d_eq, closure.contact_area(u_bar)
     rows = []
     for voltage in voltages:

@@ -38,7 +38,7 @@ This page is written by `fingerpad params --markdown` from the program's own def
 
 def main(argv: Sequence[str]) -> int:
     """Print keys; return the exit code."""
-    parser = Parser("fingerpad params", "Print every key of a scene: unit, default, range and meaning.", _EXAMPLES)
+    parser = Parser("params", _EXAMPLES)
     parser.add_argument("filter", nargs="?", default="", metavar="FILTER", help="keys with this in their name")
     form = parser.add_mutually_exclusive_group()
     form.add_argument("--toml", action="store_true", help="as a complete scene file of the defaults, with comments")
@@ -48,7 +48,7 @@ def main(argv: Sequence[str]) -> int:
     if args.schema:
         echo(json.dumps(schema(), indent=1, ensure_ascii=False))
         return 0
-    found = [key for key in every() if args.filter.lower() in key.name.lower()]
+    found = [key for key in every(Scene) if args.filter.lower() in key.name.lower()]
     if not found:
         raise SceneError(f"no key of a scene has {clip(args.filter)} in its name; fingerpad params lists all of them")
     echo(toml(found) if args.toml else page(found) if args.markdown else table(found))
@@ -71,7 +71,6 @@ def table(found: Sequence[Key]) -> str:
 
 def toml(found: Sequence[Key]) -> str:
     """Return a scene file of the defaults; keys without one, and those another choice would read, are comments."""
-    unread = {f"contact.{name}" for name in Scene().contact.unread()}
     lines = ["# A scene of fingerpad with every key at its default. SI units; forces per metre of finger (N/m)."]
     table = ""
     for key in found:
@@ -81,7 +80,7 @@ def toml(found: Sequence[Key]) -> str:
             plain = where.replace("[]", "")
             lines += ["", f"# [[{plain}]]" if many else f"[{plain}]" if _read(found, where) else f"# [{plain}]"]
         lines += textwrap.wrap(key.meaning, _WIDTH, initial_indent="# ", subsequent_indent="# ")
-        off = key.default is None or key.name in unread or "[]" in key.name
+        off = key.default is None or bool(key.law) or "[]" in key.name
         given = f"{'# ' * off}{name} ={'' if key.default is None else ' ' + _value(key.default)}"
         lines.append(f"{given}  # {', '.join(filter(None, (key.unit, key.allowed)))}")
     return "\n".join(lines)

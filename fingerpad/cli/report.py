@@ -13,11 +13,7 @@ _EXAMPLES = """
 
 def main(argv: Sequence[str]) -> int:
     """Write the report of a folder; return the exit code."""
-    parser = Parser(
-        "fingerpad report",
-        "Write report.html into the folder of a run or of a sweep: one file that needs no network.",
-        _EXAMPLES,
-    )
+    parser = Parser("report", _EXAMPLES)
     parser.add_argument("folder", type=path, metavar="DIR", help="folder of a run or of a sweep")
     args = parser.read(argv)
     file = write(args.folder)

@@ -1,25 +1,26 @@
 """``fingerpad run``: press, charge and slide a finger, from a scene to tables, pictures and fields."""
 
-import math
-from argparse import ArgumentTypeError, Namespace
+from argparse import Namespace
 from collections.abc import Sequence
 from pathlib import Path
 
 from fingerpad.cli.arguments import Parser, echo, path, refuse_twice, scene_of
 from fingerpad.ctrl_c import raises
-from fingerpad.io.folder import check_folder
+from fingerpad.io.files import check_folder
 from fingerpad.io.place import full_scene
+from fingerpad.reduced.models import MODELS, find
 from fingerpad.report.write import NAME
-from fingerpad.runs.solve import MODELS, solved
+from fingerpad.runs.context import RunContext
+from fingerpad.runs.solve import solved
 from fingerpad.scene import Scene
-from fingerpad.scene.messages import SceneError, clip
-from fingerpad.scene.reading import model_of
+from fingerpad.scene.messages import SceneError
+from fingerpad.scene.reading import DEFAULT_MODEL, model_of
 
 _OUT = Path("results")
 
 _EXAMPLES = """
     fingerpad run --set f_ext="50 N/m" --set voltage=150 --out results/mine
-    fingerpad run --force "0.5 N" --model smooth --out results/newtons
+    fingerpad run --force "0.5 N" --out results/newtons
     mpirun -n 2 fingerpad run scene.toml --out results/scene -fingerpad_snes_monitor
     fingerpad run --resume results/scene
 """
@@ -27,25 +28,19 @@ _EXAMPLES = """
 
 def main(argv: Sequence[str]) -> int:
     """Run a scene; return the exit code."""
-    parser = Parser(
-        "fingerpad run",
-        "Compute contact and friction of a finger that is pressed, charged and slid: tables, pictures, fields.",
-        _EXAMPLES,
-    )
+    parser = Parser("run", _EXAMPLES)
     parser.add_scene()
     parser.add_out(str(_OUT), "folder of the results (default: results)")
     parser.add_argument(
         "--model",
         choices=MODELS,
-        help="every ridge (full), a smooth finger with the law of one ridge, or a closed form (default: full, or that "
-        "of the run whose scene.json is given)",
+        help="every ridge (full) or a closed form (default: full, or that of the run whose scene.json is given)",
     )
     parser.add_argument("--resume", type=path, metavar="DIR", help="go on with a run that was cut short in this folder")
     parser.add_argument(
         "--force",
-        type=_force,
         metavar="FORCE",
-        help="force on the whole finger, as '0.5 N', in place of f_ext: sums slices over traces of the model",
+        help="force on the whole finger (N), as --set force: slices are summed over traces of the model",
     )
     parser.add_argument("--quiet", action="store_true", help="print the result alone: no steps, no progress bar")
     args, petsc = parser.read_with_petsc(argv)
@@ -53,13 +48,16 @@ def main(argv: Sequence[str]) -> int:
     if args.resume is not None:
         scene, args.out = _cut_short(args), args.resume
     else:
-        refuse_twice(args, "f_ext", "--force")
-        scene = scene_of(args, meshed=args.model != "cylinders")
+        refuse_twice(args, "force", "--force")
+        args.set = [*args.set, *([] if args.force is None else [f"force={args.force}"])]
+        scene = scene_of(args, meshed=find(args.model).meshes)
     check_folder(args.out)
-    if args.model == "cylinders":
+    model, shown = find(args.model), not args.quiet
+    context = RunContext(args.out, lines=shown, bar=shown, resume=args.resume is not None)
+    if not model.meshes:
         if petsc:
-            raise SceneError(f"{petsc[0]} is given and --model is cylinders, which solves nothing by PETSc")
-        echo(str(solved(scene, args.model, args.out, force=args.force)))
+            raise SceneError(f"{petsc[0]} is given and --model is {model.name}, which solves nothing by PETSc")
+        echo(str(solved(scene, model, context)))
         _say_report(args)
         return 0
     from fingerpad.startup import start
@@ -69,32 +67,11 @@ def main(argv: Sequence[str]) -> int:
     from fingerpad.runs.full import exit_code
 
     with raises():
-        result = solved(
-            scene,
-            args.model,
-            args.out,
-            lines=not args.quiet,
-            bar=not args.quiet,
-            force=args.force,
-            resume=args.resume is not None,
-        )
-    if args.quiet or args.model != "full":
-        echo(str(result))
-    elif args.force is not None:
-        echo(f"\n{result.finger or result.failure}")
+        result = solved(scene, model, context)
+    if args.quiet or not model.path or scene.force is not None:  # else the run has printed it
+        echo(f"\n{result}" if result.finger or scene.force is None else result.failure)
     _say_report(args)
     return exit_code(result)
-
-
-def _force(text: str) -> str:
-    """Return a force that the run reads, and refuse a number alone, which could be N or N/m."""
-    try:
-        number = float(text)
-    except ValueError:
-        return text
-    if not math.isfinite(number):
-        return text
-    raise ArgumentTypeError(f"{clip(text)} has no unit; give one, as in '{clip(text)} N'")
 
 
 def _say_report(args: Namespace) -> None:
@@ -113,7 +90,7 @@ def _cut_short(args: Namespace) -> Scene:
         "SCENE": args.scene,
         "--set": args.set,
         "--force": args.force,
-        "--model": args.model != "full",
+        "--model": args.model != DEFAULT_MODEL,
         "--out": args.out != _OUT,
     }
     for name, value in given.items():

@@ -10,8 +10,8 @@ from uuid import uuid4
 import numpy as np
 from numpy.typing import NDArray
 
+from fingerpad.model.feasibility import by_rule
 from fingerpad.model.options import ModelOptions
-from fingerpad.model.touching import by_rule
 from fingerpad.scene import Scene
 from fingerpad.scene.messages import SceneError
 from geometry import tags
@@ -79,8 +79,8 @@ def section(scene: Scene, needed: ModelOptions) -> Section:
     Raises:
         SceneError: the finger cannot be meshed, or the file has no such mesh.
     """
-    if scene.laws.mesh is not None:
-        return _of_file(Path(scene.laws.mesh))
+    if scene.geometry.file is not None:
+        return _of_file(Path(scene.geometry.file))
     with meshed(scene, needed.receptors, not needed.both_halves) as gmsh:
         return _read(gmsh)
 
@@ -145,7 +145,7 @@ def draw(file: Path, found: Section, scene: Scene) -> None:
         (f"ridge 0, of {period * 1e3:.3g} mm", (1.5 * deep, 2 * deep)),
         (f"tip of ridge 0: facets of {size * 1e6:.3g} µm", (20 * size, 25 * size)),
     )
-    if scene.laws.mesh is not None:
+    if scene.geometry.file is not None:
         centre, size = found.lowest[0], found.shortest
         views = (
             ("whole mesh", None),

@@ -9,13 +9,13 @@ from typing import Any
 from fingerpad.cli import ranges
 from fingerpad.cli.arguments import Parser, changes, echo, positive
 from fingerpad.ctrl_c import raises
-from fingerpad.io.folder import check_folder
+from fingerpad.io.files import check_folder
+from fingerpad.reduced.models import MODELS
 from fingerpad.runs import batch  # noqa: F401  # before Ctrl-C raises
-from fingerpad.runs.solve import MODELS
 from fingerpad.runs.sweep import FILES, sweep
 from fingerpad.scene import from_data, override
 from fingerpad.scene.messages import SceneError, clip, show
-from fingerpad.scene.reading import flat, put, read_study
+from fingerpad.scene.reading import DEFAULT_MODEL, flat, put_all, read_study
 
 _EXAMPLES = """
     fingerpad sweep --over voltage=0:200:5 --over f_ext=25,75 --jobs 2 --out results/sweep
@@ -26,20 +26,14 @@ _EXAMPLES = """
 
 def main(argv: Sequence[str]) -> int:
     """Run a study; return the exit code."""
-    parser = Parser(
-        "fingerpad sweep",
-        "Compute a scene over values of its keys; runs that are in the folder are not repeated.",
-        _EXAMPLES,
-    )
+    parser = Parser("sweep", _EXAMPLES)
     parser.add_scene()
     words = "values of a key: 0,50 or first:last:count, with a unit at the end or on each value; or words"
     parser.add_argument("--over", action="append", default=[], metavar="KEY=RANGE", help=words)
     parser.add_out("results/sweep", "folder of all runs and of table.csv (default: results/sweep)")
-    parser.add_argument("--jobs", type=positive(int), default=2, metavar="N", help="runs at a time (default: 2)")
-    parser.add_argument("--model", choices=MODELS, default="full", help="model to run (default: full)")
+    parser.add_argument("--jobs", type=positive, default=2, metavar="N", help="runs at a time (default: 2)")
+    parser.add_argument("--model", choices=MODELS, default=DEFAULT_MODEL, help="model to run (default: %(default)s)")
     parser.add_argument("--quiet", action="store_true", help="print the table alone: no line a run, no progress bar")
-    if any(word.partition("=")[0] == "--force" for word in argv):
-        raise SceneError("--force is an option of fingerpad run; a sweep has it as values: --over force='0.1, 0.5 N'")
     args = parser.read(argv)
     check_folder(args.out)
     base, axes = study(args.scene, args.set, args.over)
@@ -87,10 +81,10 @@ def study(file: Path | None, given: Sequence[str], over: Sequence[str]) -> tuple
         axes[key] = _words(values) or ranges.read(f"--over {key}", values)
     if not axes:
         raise SceneError("nothing is varied; give a table [sweep] in the scene file or --over KEY=RANGE")
-    for key, value in changes(given).items():
-        if key in axes:
-            raise SceneError(f"--set {key} is given and {key} is varied; give one of the two")
-        put(data, key, value)
+    set_ = changes(given)
+    if both := next((key for key in set_ if key in axes), None):
+        raise SceneError(f"--set {both} is given and {both} is varied; give one of the two")
+    put_all(data, set_)
     return data, axes
 
 

@@ -2,56 +2,35 @@
 
 import argparse
 import math
+import re
 from collections.abc import Iterator, Sequence
 from pathlib import Path
+from typing import Any
 
-from fingerpad.cli.arguments import PICTURE, Parser, echo, path, positive
-from fingerpad.io.titles import plain
-from fingerpad.scene import Scene, from_data
+from pydantic import ValidationError
+
+from fingerpad.cli.arguments import PICTURE, Parser, echo, path
+from fingerpad.io.style import plain
+from fingerpad.scene import Scene, from_data, override
+from fingerpad.scene.materials import Topography
 from fingerpad.scene.messages import SceneError, clip
+from fingerpad.scene.refusals import first_error
 from fingerpad.scene.remarks import missing_waves, ridges_as_roughness
-from variational.roughness.heightfile import Found, NoUnit, scan
-from variational.roughness.heightheader import UNITS
+from variational.roughness.heightfile import Found, scan
 from variational.roughness.spectrum import HURST, Fit, power_spectrum, roughness_table
 from variational.roughness.topography import distribution
 
 _EXAMPLES = """
-    fingerpad topography skin.csv --unit um --size 100 100
-    fingerpad topography points.xyz --unit mm --missing -9999 --plot skin.png
+    fingerpad topography skin.csv --unit um --size "100 um" "100 um" --plot skin.png
+    fingerpad topography skin.vk4
 """
-_OPTIONS = {  # words of the reader's refusals
-    "give the lengths along x and y too": "give --size or --pixel too",
-    "give that of the heights": "give --unit",
-    "missing=": "--missing=",
-    "and unit is": "and --unit is",
-    "and size_unit is": "and --size-unit is",
-}
 
 
 def main(argv: Sequence[str]) -> int:
     """Print the table of roughness that a height map gives; return the exit code."""
-    parser = Parser(
-        "fingerpad topography",
-        "Compute the roughness of a scene from a height map: text, NumPy or an instrument's.",
-        _EXAMPLES,
-    )
-    parser.add_argument("file", type=path, metavar="FILE", help="matrix of heights, or points x y z")
-    units = ", ".join(unit for unit in UNITS if unit.isascii())
-    parser.add_argument("--unit", choices=[*UNITS], metavar="UNIT", help=f"of the heights: {units}")
-    sizes = parser.add_mutually_exclusive_group()
-    sizes.add_argument(
-        "--size",
-        nargs=2,
-        type=positive(float),
-        metavar=("X", "Y"),
-        help="lengths of the map: X from the first line of the file to the last, Y along a line",
-    )
-    sizes.add_argument("--pixel", nargs=2, type=positive(float), metavar=("X", "Y"), help="lengths of a pixel instead")
-    parser.add_argument(
-        "--size-unit", choices=[*UNITS], metavar="UNIT", help="of these lengths (default: that of the heights)"
-    )
-    words = "mark of missing pixels, beside nan and empty places; nan if there are no others"
-    parser.add_argument("--missing", metavar="MARK", help=words)
+    parser = Parser("topography", _EXAMPLES)
+    parser.add_argument("file", type=path, metavar="FILE", help="matrix of heights, or a file of an instrument")
+    parser.add_table("roughness.topography")
     parser.add_file("--plot", PICTURE, "picture of map, heights and spectrum")
     args = parser.read(argv)
     found = _scan(args)
@@ -74,23 +53,18 @@ def _scan(args: argparse.Namespace) -> Found:
     Raises:
         SceneError: it cannot be read.
     """
+    given: dict[str, Any] = {name: getattr(args, name, None) for name in Topography.model_fields}
+    for name in ("size", "pixel"):
+        if given[name] is not None:
+            given[name] = [override(f"{name}={length}")[1] for length in given[name]]
     try:
-        size, pixel = (None if given is None else (given[0], given[1]) for given in (args.size, args.pixel))
-        return scan(args.file, size, args.unit, args.size_unit, args.missing, pixel)
-    except NoUnit:
-        text = f"{clip(str(args.file), 80)} holds numbers without a unit; give --unit, um for example"
-        raise SceneError(text) from None
+        return scan(**dict(Topography.model_validate(given | {"file": str(args.file)})))
     except OSError as error:
         raise SceneError(f"{clip(str(args.file), 80)} cannot be read: {error.strerror or error}") from None
+    except ValidationError as error:
+        raise SceneError(f"--{first_error(error, Topography, ())}") from None
     except (ValueError, ImportError) as error:
-        raise SceneError(_with_options(str(error))) from None
-
-
-def _with_options(text: str) -> str:
-    """Return a refusal of the reader with the options of this command in place of its arguments."""
-    for words, option in _OPTIONS.items():
-        text = text.replace(words, option)
-    return text
+        raise SceneError(re.sub(r"'(unit|size|pixel|missing)'", r"--\1", str(error))) from None
 
 
 def _report(file: Path, found: Found, table: dict[str, float], fit: Fit) -> Iterator[str]:

@@ -1,16 +1,17 @@
-"""The checkpoint of a run: files from which the run goes on after it was cut short.
+"""The checkpoint of a run: its last accepted state and all of its tables, from which it goes on after it was cut short.
 
-``checkpoint/head.json`` in the folder of results says of which scene and by which program; the parts ``0001.npz``, …
-hold what was computed since the part before, as arrays and JSON, without pickle. A part is written beside, flushed to
-the disk and put in place, so that after a power cut each part is there as a whole or not at all. The folder goes when
-the run reaches its end. adios4dolfinx keeps fields only, which are the smaller half of what a run goes on from.
+``checkpoint/head.json`` in the folder of results says of which scene and by which program; ``0001.npz``, ... hold
+arrays and JSON, without pickle, each the whole of what a run goes on from. One is written beside, flushed to the disk
+and put in place, so that after a power cut it is there as a whole or not at all; the last two stay. The folder goes
+when the run reaches its end. adios4dolfinx keeps fields only, which are the smaller half of what a run goes on from.
 """
 
 import hashlib
 import json
 import os
 import zipfile
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
+from dataclasses import fields, is_dataclass
 from pathlib import Path
 from typing import Any
 
@@ -23,6 +24,7 @@ from fingerpad.scene import SceneError
 Arrays = dict[str, NDArray[Any]]
 _FORMAT = 1
 _FACTS = "facts"
+_STAY = 2  # checkpoints, of which the earlier serves where the last is damaged
 
 
 class CheckpointError(SceneError):
@@ -30,7 +32,11 @@ class CheckpointError(SceneError):
 
 
 class Checkpoint:
-    """Parts in a folder, of one scene and one program; all of it on rank 0."""
+    """States of one run in a folder, of one scene and one program; all of it on rank 0.
+
+    Attributes:
+        number: of the last one, 0 before there is one.
+    """
 
     def __init__(self, results: Path, parameters: Mapping[str, Any], versions: Mapping[str, str]) -> None:
         """Name the folder; nothing is touched.
@@ -43,22 +49,24 @@ class Checkpoint:
         self._results, self._folder = results, results / "checkpoint"
         scene = hashlib.sha256(json.dumps(parameters, sort_keys=True).encode()).hexdigest()
         self._head = {"format": _FORMAT, "scene": scene, **versions}
+        self.number = 0
 
-    def _part(self, number: int) -> Path:
+    def _file(self, number: int) -> Path:
         return self._folder / f"{number:04d}.npz"
 
-    def count(self) -> int:
-        """Return the number of parts."""
-        return next(number for number in range(1_000_000) if not self._part(number + 1).exists())
+    def _last(self) -> int:
+        """Return the number of the last state in the folder."""
+        return max((int(file.stem) for file in self._folder.glob("[0-9]*.npz") if file.stem.isdecimal()), default=0)
 
     def check(self) -> None:
-        """Refuse to go on where that is not possible.
+        """Find the last state; refuse to go on where that is not possible.
 
         Raises:
             CheckpointError: why not.
         """
         results = f"{str(self._results)[-80:]}"
-        if self.count() == 0:
+        last = self._last()
+        if last == 0:
             why = "reached its end" if self._ended() else "not come to one; run again with --out"
             raise CheckpointError(f"{results} has no checkpoint to go on from: its run has {why}")
         file = self._folder / "head.json"
@@ -72,16 +80,16 @@ class Checkpoint:
                     f"the checkpoint in {results} is of another {name} ({str(head.get(name))[:12]}, and "
                     f"{str(value)[:12]} now), which may compute other numbers; run again without --resume"
                 )
-        for number in range(1, self.count() + 1):
-            try:
-                with zipfile.ZipFile(self._part(number)) as part:
-                    damaged = part.testzip() is not None or f"{_FACTS}.npy" not in part.namelist()
-            except (OSError, zipfile.BadZipFile, ValueError):
-                damaged = True
-            if damaged:
-                raise CheckpointError(
-                    f"{self._part(number)} is not whole; delete it, and those after it, to go on from what is before it"
-                )
+        try:
+            with zipfile.ZipFile(self._file(last)) as state:
+                damaged = state.testzip() is not None or f"{_FACTS}.npy" not in state.namelist()
+        except (OSError, zipfile.BadZipFile, ValueError):
+            damaged = True
+        if damaged:
+            raise CheckpointError(
+                f"{self._file(last)} is not whole; delete it, to go on from the one before it if there is one"
+            )
+        self.number = last
 
     def _ended(self) -> bool:
         """Return whether the run has written its results, and was not stopped before."""
@@ -91,37 +99,99 @@ class Checkpoint:
             return False
         return not summary.get("interrupted")
 
-    def read(self, number: int) -> tuple[Any, Arrays]:
-        """Return the JSON and the arrays of a part."""
-        with np.load(self._part(number), allow_pickle=False) as file:
-            arrays = dict(file)
-        return json.loads(arrays.pop(_FACTS).tobytes()), arrays
+    def read(self, classes: Iterable[type]) -> dict[str, Any]:
+        """Return the last state, after :meth:`check`.
 
-    def write(self, number: int, facts: Any, arrays: Arrays) -> None:
-        """Write a part; with the first, those of an earlier run go."""
-        if number == 1:
+        Args:
+            classes: the dataclasses that it may hold.
+
+        Raises:
+            CheckpointError: it holds something else.
+        """
+        file = self._file(self.number)
+        try:
+            with np.load(file, allow_pickle=False) as stream:
+                arrays = dict(stream)
+            facts = json.loads(arrays.pop(_FACTS).tobytes())
+            found: dict[str, Any] = _restored(facts, arrays, {cls.__name__: cls for cls in classes})
+        except (KeyError, TypeError, ValueError, RecursionError) as error:
+            raise CheckpointError(f"{file} holds no state of a run ({error!r}); run again without --resume") from error
+        return found
+
+    def write(self, state: Mapping[str, Any]) -> None:
+        """Write a state; the last but one goes, and with the first of a run those of an earlier run."""
+        if self.number == 0:
             self.delete()
             self._folder.mkdir()
             replace_json(self._folder / "head.json", self._head)
-        file = self._part(number)
+        parts: dict[str, list[NDArray[Any]]] = {}
+        facts = json.dumps(_plain(state, parts, {})).encode()
+        arrays: dict[str, Any] = {name: np.concatenate(each) for name, each in parts.items()}
+        arrays[_FACTS] = np.frombuffer(facts, dtype=np.uint8)
+        file = self._file(self.number + 1)
         beside = file.with_suffix(".part")
-        whole: dict[str, Any] = {_FACTS: np.frombuffer(json.dumps(facts).encode(), dtype=np.uint8), **arrays}
         remove(beside)
         try:
             with beside.open("xb") as stream:
-                np.savez(stream, **whole)
+                np.savez(stream, **arrays)
                 stream.flush()
                 os.fsync(stream.fileno())
             beside.replace(file)
         except OSError:
             beside.unlink(missing_ok=True)
             raise
+        self.number += 1
         folder = os.open(self._folder, os.O_RDONLY)
         try:
             os.fsync(folder)
         finally:
             os.close(folder)
+        self._file(self.number - _STAY).unlink(missing_ok=True)
 
     def delete(self) -> None:
-        """Delete all parts."""
+        """Delete all of it."""
         remove(self._folder)
+
+
+def _plain(value: Any, parts: dict[str, list[NDArray[Any]]], sizes: dict[str, int]) -> Any:
+    """Return a value ready for JSON, with its arrays put into one a type; arrays, dataclasses, dictionaries, numbers.
+
+    Args:
+        value: what is to be kept.
+        parts: arrays so far, flat, by their type.
+        sizes: number of their values.
+    """
+    if isinstance(value, np.ndarray):
+        kind = value.dtype.name
+        parts.setdefault(kind, []).append(value.ravel())
+        sizes[kind] = sizes.get(kind, 0) + value.size
+        return {"array": [kind, sizes[kind] - value.size, value.shape]}
+    if isinstance(value, np.generic):
+        return value.item()
+    if is_dataclass(value) and not isinstance(value, type):
+        whole = {field.name: _plain(getattr(value, field.name), parts, sizes) for field in fields(value)}
+        return {type(value).__name__: whole}
+    if isinstance(value, Mapping):
+        return {"dict": [[_plain(each, parts, sizes) for each in pair] for pair in value.items()]}
+    if isinstance(value, tuple):
+        return {"tuple": [_plain(each, parts, sizes) for each in value]}
+    if isinstance(value, list):
+        return [_plain(each, parts, sizes) for each in value]
+    return value
+
+
+def _restored(value: Any, arrays: Arrays, classes: Mapping[str, type]) -> Any:
+    """Return what :func:`_plain` was given."""
+    if isinstance(value, list):
+        return [_restored(each, arrays, classes) for each in value]
+    if not isinstance(value, dict):
+        return value
+    ((kind, inner),) = value.items()
+    if kind == "array":
+        name, start, shape = inner
+        return arrays[name][start : start + int(np.prod(shape))].reshape(shape)
+    if kind == "dict":
+        return dict(_restored(each, arrays, classes) for each in inner)
+    if kind == "tuple":
+        return tuple(_restored(each, arrays, classes) for each in inner)
+    return classes[kind](**{name: _restored(each, arrays, classes) for name, each in inner.items()})

@@ -1,12 +1,12 @@
 """The output of a run in a terminal: one line a step under a legend, and a progress bar; on rank 0."""
 
 import math
-from collections.abc import Collection, Mapping
+from collections.abc import Collection
 
 from mpi4py import MPI
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 
-from fingerpad.io.left import Pace
+from fingerpad.io.pace import Pace
 from fingerpad.io.quantities import PER_LENGTH, cell
 from fingerpad.io.terminal import watched
 from variational.state import ContactState
@@ -14,9 +14,10 @@ from variational.state import ContactState
 _LEGEND = (
     "f_ext: external force on the bone; U: voltage; bone x, bone y: its place; f_T: friction; µ_app = f_T / f_ext",
     "f_el: attraction; contact: sum of the lengths in contact; iter.: Newton iterations; fact.: factorisations",
+    "path left: time left of the loads, by the pace so far",
     PER_LENGTH,
 )
-_HEADER = "step load     f_ext     U  bone x   bone y      f_T   µ_app    f_el ridges  contact  iter. fact.  time left"
+_HEADER = "step load     f_ext     U  bone x   bone y      f_T   µ_app    f_el ridges  contact  iter. fact.  path left"
 _UNITS = "           (N/m)   (V)    (mm)     (mm)    (N/m)          (N/m)           (mm)"
 
 
@@ -43,7 +44,7 @@ class Console:
         )
         self._progress.disable |= not (bar and watched())
         self._task = self._progress.add_task("starting", total=1.0, left="")
-        self.expect({"": 1.0}, 0.0)
+        self.expect(1)
         if not self._progress.disable:
             self._progress.start()
 
@@ -55,39 +56,29 @@ class Console:
             except (BrokenPipeError, SystemExit):  # the latter is rich's
                 self._lines = False
 
-    def expect(
-        self,
-        loads: Mapping[str, float],
-        after: float,
-        slipping: Collection[str] = (),
-        mu_0: float = 0,
-        whole: bool = True,
-        unsure: int | None = None,
-    ) -> None:
-        """Take what is expected of a path that starts now.
+    def expect(self, loads: int, slipping: Collection[str] = (), mu_0: float = 0.0, first: int = 0) -> None:
+        """Take what a path that starts now is made of.
 
         Args:
-            loads: time of each load (s), by its name.
-            after: time of what comes after the loads (s).
+            loads: number of its loads.
             slipping: names of the loads that end with full slip.
             mu_0: friction coefficient.
-            whole: whether this is all; else what follows takes a time that cannot be told, and the time left is of the
-                path alone.
-            unsure: number of the first load whose time is no more than a guess; None without one.
+            first: number of the load from which on its pace counts, see :class:`fingerpad.io.pace.Pace`.
         """
-        self._pace, self._slipping, self._mu_0 = Pace([*loads.values()], after, unsure=unsure), slipping, mu_0
-        self._of = "" if whole else ", path alone"
+        self._pace, self._slipping, self._mu_0 = Pace(loads, first), slipping, mu_0
 
     def phase(self, text: str, part: float | None = None) -> None:
         """Show what is being done besides steps: in the bar, or as a line where there is none.
 
         Args:
             text: what is being done.
-            part: of what comes after the path that is done; without it, the time left is not known.
+            part: of it that is done; 0 where it begins. Without it, the time left is not known.
         """
+        if part == 0:
+            self._pace = Pace()
         if part is not None:
-            self._pace.after_path(part)
-        left = "" if part is None else f"time left: {self._pace.left()}"
+            self._pace.at(part)
+        left = "" if not part else f"time left: {self._pace.left()}"
         if self._progress.disable:
             self.show("; ".join(filter(None, (text, left))))
         self._progress.update(self._task, completed=self._pace.part, description=text, left=left)
@@ -106,8 +97,8 @@ class Console:
         """
         assert s.record is not None
         most = self._mu_0 * s.f_contact if s.load in self._slipping else 0.0
-        self._pace.on_path(done, abs(s.f_t) / most if most > 0 else 0.0)
-        left, mu = self._pace.left() + self._of, cell("mu_app", s.mu_app)
+        self._pace.at(done, abs(s.f_t) / most if most > 0 else 0.0)
+        left, mu = self._pace.left(), cell("mu_app", s.mu_app)
         self.show(
             f"{s.step:4d} {s.load[:7]:7s} {s.f_ext:7.3f} {s.voltage:z5.1f} {s.bone_x * 1e3:z7.4f} "
             f"{s.bone_height * 1e3:z8.5f} {s.f_t:z8.4f} {mu:>7s} {s.f_electrostatic:7.3f} "
@@ -116,7 +107,7 @@ class Console:
         )
         loads = f"{s.load}: {s.f_ext:.1f} N/m, {s.voltage:.0f} V, x {s.bone_x * 1e3:.2f} mm"
         words = loads if math.isnan(s.mu_app) else f"{loads}, µ_app {s.mu_app:z.3f}"
-        self._progress.update(self._task, completed=self._pace.part, description=words, left=f"time left: {left}")
+        self._progress.update(self._task, completed=self._pace.part, description=words, left=f"path left: {left}")
 
     def close(self) -> None:
         """Take the progress bar away."""

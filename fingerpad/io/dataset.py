@@ -1,77 +1,77 @@
-"""A result as one xarray dataset, and as ``result.nc`` beside the tables.
+"""A result as one xarray dataset, as ``result.nc`` beside the tables, and read back from there.
 
-The dataset holds what the tables hold, with the same names, values and SI units; every variable has ``units`` and
-``long_name``. The file is NetCDF 3 with 64-bit offsets, by SciPy: every program for NetCDF reads it, and it loads no
-HDF5 beside that of dolfinx.
+The dataset holds what the tables hold, with the same names, values and SI units. Its variables are those of
+:mod:`fingerpad.io.quantities`, each with ``units`` and ``long_name``. The file is NetCDF 3 with 64-bit offsets, by
+SciPy: every program for NetCDF reads it, and it loads no HDF5 beside that of dolfinx.
 """
 
-import csv
 import json
 import math
-from collections.abc import Callable, Hashable, Iterable, Mapping, Sequence
-from dataclasses import fields
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import fields, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from scipy.io import netcdf_file
+from numpy.typing import NDArray
 
-from fingerpad.io import columns
-from fingerpad.io.columns import Column
-from fingerpad.io.files import replace
-from fingerpad.io.load_variables import loads
-from fingerpad.io.states import STATES
-from fingerpad.io.variables import Variable, Variables, array, described
-from fingerpad.scene.messages import SceneError, clip
+from fingerpad.io import files
+from fingerpad.io.quantities import CHANGES, FINGER, RIDGES, SITES, SKIN, SLICES, SPECTRUM, STABILITY, STEPS, Output
+from fingerpad.io.states import STATES, UNLOADED
 from fingerpad.scene.reading import flat
-from variational.state import ContactState, Errors, Skin
+from variational.state import ContactState, Errors, RidgeStates, Sites, Skin
 
 if TYPE_CHECKING:
     import xarray
 
-    from fingerpad.io.result import Result
+    from fingerpad.io.answer import Answer
     from fingerpad.slices.finger import WholeFinger
 
 FILE = "result.nc"
 COORDINATES = ("step", "load", "state", "ridge", "side", "iteration", "harmonic")
-Row = Mapping[str, Any]
-_MISSING = -1  # of whole numbers of a state that is not there
-_RIDGE_TABLES = ("ridges", "ridges_final", "receptors", "receptors_final")
+Variables = dict[str, tuple[tuple[str, ...], Any, dict[str, str]]]
+"""Dimensions, values, and attributes by name."""
+OF_RIDGES = {name: "length" if name == "contact_length" else name for name in RIDGES}
+OF_SITES = {"merkel_sed": "merkel", "meissner_left": "left", "meissner_right": "right"}
+"""Attribute of :class:`RidgeStates`, and of :class:`Sites`, by quantity."""
 
 
-def dataset(result: "Result") -> "xarray.Dataset":
-    """Return a result as a dataset; ``docs/results.md`` lists its dimensions.
-
-    Args:
-        result: of any model. Values by ridge and site are read from its folder, where it has one.
+def dataset(result: "Answer") -> "xarray.Dataset":
+    """Return a result of any model as a dataset; ``docs/results.md`` lists its dimensions.
 
     Returns:
-        The dataset, in SI units; NaN where a table has no value.
+        The dataset, in SI units; NaN where a state has no value.
 
     Raises:
-        OSError: a table of the folder cannot be read.
         ImportError: xarray is not installed.
     """
     import xarray  # brings pandas: a second that reading numbers does not need
 
-    found = states(result.named)
-    if result.steps:
-        tables = {name: _table(result, name) for name in (*_RIDGE_TABLES, "coupling")}
-        steps = [state.step for state in result.steps]
-        numbers = sorted({int(row["ridge"]) for name in _RIDGE_TABLES for row in tables[name]})
-        found |= _steps(result.steps) | loads(result)
-        found["ridge"] = _ridges(numbers)
-        for end, dim, key, labels in (("", "step", "step", steps), ("_final", "state", "of", list(STATES))):
-            found |= _by_ridge(tables[f"ridges{end}"], (dim, key, labels), numbers, f"ridge{end}_", columns.RIDGES)
-            found |= _sites(tables[f"receptors{end}"], (dim, key, labels), numbers, end.removeprefix("_"))
-        found |= _coupling(tables["coupling"], steps)
-    found |= _skin(result.named) | finger(result.finger)
+    found = variables(result)
     coords = {name: value for name, value in found.items() if name in COORDINATES}
     data = {name: value for name, value in found.items() if name not in COORDINATES}
     return xarray.Dataset(data, coords, attributes(result))
 
 
-def save(result: "Result") -> str:
+def variables(result: "Answer") -> Variables:
+    """Return the variables and coordinates of a result."""
+    named = [result.named.get(name) for name in STATES]
+    every = [*result.steps, *filter(None, named)]
+    numbers = sorted({int(j) for s in every for each in (s.ridges, s.sites) if each is not None for j in each.number})
+    known = STEPS | {each.name: each for each in result.outputs}
+    found: Variables = {"state": (("state",), np.array(STATES, object), _about("named state"))}
+    found |= _of_states(named, "state", "state_", known, numbers) | _verdicts(named)
+    if result.steps:
+        found |= _of_states(result.steps, "step", "", known, numbers)
+        found |= _coupling(result.steps) | _loads(result, known)
+    if numbers:
+        found["ridge"] = ("ridge",), np.array(numbers, np.int32), _about("number of the ridge, 0 central")
+    if any("side" in dims for dims, _, _ in found.values()):
+        found["side"] = ("side",), np.array(["left", "right"], object), _about("side of the ridge")
+    return found | _skin(result.named) | _finger(result.finger)
+
+
+def save(result: "Answer") -> str:
     """Write ``result.nc`` into the folder of a result; on one rank.
 
     Returns:
@@ -81,45 +81,42 @@ def save(result: "Result") -> str:
     return write(result.folder / FILE, lambda: dataset(result))
 
 
-def skins(folder: Path) -> dict[str, Skin]:
-    """Return the skin of the named states that ``result.nc`` of a folder holds; none where it cannot be read."""
-    try:
-        with netcdf_file(folder / FILE, mmap=False) as file:
-            if "skin_ridge" not in file.variables:
-                return {}
-            ridge, *values = (np.array(file.variables[f"skin_{name}"][:]) for name in ("ridge", *columns.SKIN))
-    except (OSError, ValueError, TypeError, KeyError, IndexError):  # no file, or not a whole one
-        return {}
-    found = {}
-    for name, numbers, *parts in zip(STATES, ridge, *values, strict=True):
-        facets = np.isfinite(numbers)
-        points = np.isfinite(parts[0]).any(axis=0)
-        if facets.any():
-            arrays = {key: part[facets][:, points] for key, part in zip(columns.SKIN, parts, strict=True)}
-            found[name] = Skin(ridge=numbers[facets].astype(int), **arrays)
-    return found
-
-
 def write(file: Path, make: "Callable[[], xarray.Dataset]") -> str:
     """Write a dataset; what was there stays until all of it is written; return as of :func:`save`.
 
     Args:
         file: the path.
-        make: makes the dataset; its errors count as those of writing.
+        make: makes the dataset.
     """
     try:
-        data = make().to_netcdf(engine="scipy", format="NETCDF3_64BIT")
-        replace(file, bytes(data))
+        files.replace(file, bytes(make().to_netcdf(engine="scipy", format="NETCDF3_64BIT")))
     except ImportError as error:
         return f"{file.name} was not written: {error}; pip install xarray"
     except OSError as error:
         return f"{file.name} was not written: {error.strerror or error}; all other files are complete"
-    except (ValueError, TypeError, KeyError) as error:  # of what NetCDF cannot hold
-        return f"{file.name} was not written: NetCDF cannot hold it ({error}); all other files are complete"
     return ""
 
 
-def attributes(result: "Result") -> dict[str, Any]:
+def read(folder: Path, own: Sequence[str]) -> tuple[tuple[ContactState, ...], dict[str, ContactState]] | None:
+    """Return the steps and the named states that ``result.nc`` of a folder holds; None where it cannot be read.
+
+    Args:
+        folder: of a run.
+        own: names of outputs that are computed from a state.
+    """
+    try:
+        import xarray
+
+        data = xarray.load_dataset(folder / FILE, engine="scipy")
+        arrays = {str(name): np.asarray(value.values) for name, value in data.variables.items()}
+        steps = tuple(_state(arrays, "", k, own) for k in range(len(arrays.get("step", ()))))
+        there = [(k, name) for k, name in enumerate(STATES) if arrays["state_step"][k] >= 0]
+        return steps, {name: _named_state(arrays, k, own) for k, name in there}
+    except (ImportError, OSError, ValueError, TypeError, KeyError, IndexError, EOFError):  # no file, or no whole one
+        return None
+
+
+def attributes(result: "Answer") -> dict[str, Any]:
     """Return the attributes of a dataset: model, versions, and every parameter by its dotted key and as JSON."""
     parameters = result.record.get("parameters") or result.scene.parameters()  # the former with laws that are not read
     found: dict[str, Any] = {"title": "fingerpad: a fingertip on a touchscreen", "model": result.model}
@@ -139,103 +136,124 @@ def _attribute(value: Any) -> Any:
     return value if isinstance(value, str) or (numbers and plain) else json.dumps(value)
 
 
-def states(named: Mapping[str, ContactState]) -> Variables:
-    """Return the named states along ``state``; NaN, or -1 of a whole number, where a state is missing."""
-    found: Variables = {"state": (("state",), np.array(STATES, object), described(Column("1", "named state")))}
-    for name, column in (columns.STATES | columns.STABILITY).items():
-        whole = name in ("step", "ridges_in_contact", "stable")
-        values = [_number(getattr(named[key], name) if key in named else None, whole) for key in STATES]
-        found[f"state_{name}"] = ("state",), np.array(values, np.int32 if whole else np.float64), described(column)
-    for kind, words in columns.CHANGES.items():
-        for field in fields(Errors):
-            values = [getattr(getattr(named[key], kind), field.name) if key in named else math.nan for key in STATES]
-            column = columns.STEPS[field.name]
-            about = described(Column(column.unit, f"{words} of the {column.meaning}"))
-            found[f"state_{field.name}_{kind}"] = ("state",), np.array(values, np.float64), about
-    return found
+def _about(meaning: str, unit: str = "1") -> dict[str, str]:
+    return {"units": unit, "long_name": meaning}
 
 
-def _number(value: Any, whole: bool) -> float:
-    return (_MISSING if whole else math.nan) if value is None else value
+def filled(shape: Sequence[int], kind: np.dtype[Any]) -> NDArray[Any]:
+    """Return an array of values that are missing: NaN, an empty text, and -1 of whole numbers and switches."""
+    if kind.kind in "OUS":
+        return np.full(shape, "", object)
+    return np.full(shape, np.nan) if kind.kind == "f" else np.full(shape, -1, np.int32)
 
 
-def _steps(steps: Sequence[ContactState]) -> Variables:
-    """Return the columns of ``steps.csv`` along ``step``; the name of the load is ``load_name``."""
-    found: Variables = {}
-    rows = [state.row() for state in steps]
-    for name in rows[0]:
-        values = [row[name] for row in rows]
-        found["load_name" if name == "load" else name] = ("step",), array(values), described(columns.STEPS[name])
-    return found
-
-
-Axis = tuple[str, str, Sequence[Hashable]]
-"""A dimension, the column of a table that names its places, and the places in order."""
-
-
-def _by_ridge(
-    rows: Sequence[Row], axis: Axis, numbers: Sequence[int], prefix: str, known: Mapping[str, Column]
+# -- writing -----------------------------------------------------------------------------------------------
+def _of_states(
+    states: Sequence[ContactState | None], dim: str, prefix: str, known: Mapping[str, Output], numbers: Sequence[int]
 ) -> Variables:
-    """Return columns of a table of ridges along a dimension and ``ridge``; nothing without a row."""
-    if not rows:
-        return {}
-    dim, key, labels = axis
-    rank, place = {str(label): k for k, label in enumerate(labels)}, {number: k for k, number in enumerate(numbers)}
+    """Return all of states along a dimension, ridges and receptor sites too; missing where there is no state."""
+    rows = [None if state is None else state.row() for state in states]
+    first = next(filter(None, rows), UNLOADED.row() | {name: math.nan for name in known if name not in STEPS})
     found: Variables = {}
-    for name, column in known.items():
-        text = name == "state"
-        values = np.full((len(labels), len(numbers)), "" if text else np.nan, object if text else np.float64)
-        for row in rows:
-            where = rank[str(row[key])], place[int(row["ridge"])]
-            values[where] = row[name] if text else float(row[name])
-        found[f"{prefix}{'note' if text else name}"] = (dim, "ridge"), values, described(column)
+    for name, example in first.items():
+        values = np.array([example if row is None else row.get(name, math.nan) for row in rows])
+        if None in rows:
+            there = [row is not None for row in rows]
+            values, present = filled([len(rows)], values.dtype), values
+            values[there] = present[there]
+        kind = {"i": np.int32, "U": object}.get(values.dtype.kind, values.dtype)
+        about = known.get(name, Output(name, "")).about()
+        found["load_name" if prefix + name == "load" else prefix + name] = (dim,), values.astype(kind), about
+    place = {number: k for k, number in enumerate(numbers)}
+    groups = (("ridges", f"{prefix}ridge_", RIDGES, OF_RIDGES), ("sites", prefix, SITES, OF_SITES))
+    for group, start, outputs, names in groups:
+        given = [(k, each) for k, s in enumerate(states) if s is not None and (each := getattr(s, group)) is not None]
+        for name, output in outputs.items() if given else ():
+            values = filled([len(states), len(numbers)], np.dtype("O" if name == "note" else "f8"))
+            for k, each in given:
+                if len(mine := getattr(each, names[name])):
+                    values[k, [place[int(j)] for j in each.number]] = mine
+            found[start + name] = (dim, "ridge"), values, output.about()
+    if f"{prefix}meissner_left" in found:
+        (dims, left, _), (_, right, _) = (found.pop(f"{prefix}meissner_{side}") for side in ("left", "right"))
+        about = SITES["merkel_sed"].about() | {"long_name": "strain energy density at the Meissner sites of the ridge"}
+        found[f"{prefix}meissner_sed"] = (*dims, "side"), np.stack([left, right], axis=-1), about
     return found
 
 
-def _sites(rows: Sequence[Row], axis: Axis, numbers: Sequence[int], end: str) -> Variables:
-    """Return the energy densities at Merkel sites, one a ridge, and at Meissner sites, one on each ``side``."""
-    flat = _by_ridge(rows, axis, numbers, "", columns.RECEPTORS)
-    if not flat:
+def _verdicts(named: Sequence[ContactState | None]) -> Variables:
+    """Return stability, and estimated errors and changes, of the named states."""
+    found: Variables = {}
+    for name, output in STABILITY.items():
+        kind, missing = (np.int32, -1) if name == "stable" else (np.float64, np.nan)
+        given = [None if state is None else getattr(state, name) for state in named]
+        found[f"state_{name}"] = (
+            ("state",), np.array([missing if value is None else value for value in given], kind), output.about(),
+        )  # fmt: skip
+    for kind_, words in CHANGES.items():
+        for field in fields(Errors):
+            changes = [math.nan if state is None else getattr(getattr(state, kind_), field.name) for state in named]
+            about = STEPS[field.name].about(f"{words} of the ")
+            found[f"state_{field.name}_{kind_}"] = ("state",), np.array(changes), about
+    return found
+
+
+def _coupling(steps: Sequence[ContactState]) -> Variables:
+    """Return the changes of the coupling iterations along ``step`` and ``iteration``; nothing without any."""
+    count = max(len(state.changes) for state in steps)
+    if not count:
         return {}
-    end = f"_{end}" if end else ""
-    dims, left, about = flat["meissner_left"]
-    both = np.stack([left, flat["meissner_right"][1]], axis=-1)
-    about = about | {"long_name": "strain energy density at the Meissner sites of the ridge, per reference volume"}
-    sides = ("side",), np.array(["left", "right"], object), described(Column("1", "side of the ridge"))
-    return {f"merkel{end}_sed": flat["merkel_sed"], f"meissner{end}_sed": ((*dims, "side"), both, about), "side": sides}
-
-
-def sites(result: "Result") -> Variables:
-    """Return the energy densities at the sites in the named states, of a result in a folder; nothing without any."""
-    rows: list[Row] = [*_table(result, "receptors_final")]  # on the final mesh, with an accuracy asked for
-    if not rows:
-        steps = [(name, str(state.step)) for name, state in result.named.items()]  # at 0 V two names are of one step
-        all_steps = _table(result, "receptors")
-        rows = [{**row, "of": name} for name, step in steps for row in all_steps if row["step"] == step]
-    rows = [row for row in rows if None not in row.values()]  # the last may be cut short
-    numbers = sorted({int(row["ridge"]) for row in rows})
-    return {"ridge": _ridges(numbers)} | _sites(rows, ("state", "of", list(STATES)), numbers, "") if rows else {}
-
-
-def _ridges(numbers: Sequence[int]) -> Variable:
-    return ("ridge",), np.array(numbers, np.int32), described(Column("1", "number of the ridge, 0 central"))
-
-
-def _coupling(rows: Sequence[Row], steps: Sequence[int]) -> Variables:
-    """Return the columns of ``coupling.csv`` along ``step`` and ``iteration``."""
-    if not rows:
-        return {}
-    place = {step: k for k, step in enumerate(steps)}
-    count = max(int(row["iteration"]) for row in rows)
     values = np.full((len(steps), count), np.nan)
-    for row in rows:
-        values[place[int(row["step"])], int(row["iteration"]) - 1] = float(row["change"])
-    change = Column("1", "relative change of the air gaps in the coupling iteration")
+    for k, state in enumerate(steps):
+        values[k, : len(state.changes)] = state.changes
     numbers = np.arange(1, count + 1, dtype=np.int32)
     return {
-        "iteration": (("iteration",), numbers, described(Column("1", "number of the coupling iteration"))),
-        "coupling_change": (("step", "iteration"), values, described(change)),
-    }
+        "iteration": (("iteration",), numbers, _about("number of the coupling iteration")),
+        "coupling_change": (
+            ("step", "iteration"), values, _about("relative change of the air gaps in the coupling iteration"),
+        ),
+    }  # fmt: skip
+
+
+def _loads(result: "Answer", known: Mapping[str, Output]) -> Variables:
+    """Return the results of the loads along ``load``; lengths, means and spectra are NaN where a load takes no time."""
+    loads = result.loads
+    found: Variables = {}
+
+    def add(name: str, values: Sequence[Any], about: dict[str, str]) -> None:
+        array = np.array(values)
+        kind = {"U": object, "i": np.int32}.get(array.dtype.kind, array.dtype)
+        found[name] = ("load",), array.astype(kind), about
+
+    add("load", [load.name for load in loads], STEPS["load"].about())
+    add("load_last_step", [load.end.step for load in loads], _about("last step of the load"))
+    for name in ("full_slip_reached", "full_slip_held"):
+        words = f"whether full slip was {name.rpartition('_')[2]} in the load"
+        add(f"load_{name}", [getattr(load, name) for load in loads], _about(words))
+    quantities = dict.fromkeys(name for load in loads for name in load.extremes)
+    for name in quantities:
+        for end, words in (("min", "least"), ("max", "largest")):
+            values = [getattr(load.extremes.get(name), end, math.nan) for load in loads]
+            add(f"load_{name}_{end}", values, known[name].about(f"{words} value in the load: "))
+    passed = [load.over_time for load in loads]
+    if not any(passed):
+        return found
+    for name, words in (("start", "time at which the load begins"), ("seconds", "length of the load")):
+        add(f"load_{name}", [getattr(each, name, math.nan) for each in passed], _about(words, "s"))
+    for name in next(filter(None, passed)).mean:
+        values = [math.nan if each is None else each.mean[name] for each in passed]
+        add(f"load_{name}_mean", values, known[name].about("mean over time in the load: "))
+    harmonics = max(len(each.frequency) for each in passed if each is not None)
+    if harmonics:
+        numbers = np.arange(1, harmonics + 1, dtype=np.int32)
+        found["harmonic"] = ("harmonic",), numbers, _about("multiple of the frequency of the waveform")
+        for name, output in SPECTRUM.items():
+            table = np.full((len(loads), harmonics), np.nan)
+            for k, each in enumerate(passed):
+                if each is not None and each.frequency:
+                    table[k, : len(each.frequency)] = getattr(each, name)
+            found[f"load_{name}"] = ("load", "harmonic"), table, output.about()
+    return found
 
 
 def _skin(named: Mapping[str, ContactState]) -> Variables:
@@ -245,59 +263,77 @@ def _skin(named: Mapping[str, ContactState]) -> Variables:
         return {}
     facets, points = (max(skin.x.shape[k] for skin in skins.values()) for k in (0, 1))
     found: Variables = {}
-    for name, column in columns.SKIN.items():
+    for name, output in SKIN.items():
         values = np.full((len(STATES), facets, points), np.nan)
         for key, skin in skins.items():
             values[STATES.index(key), : skin.x.shape[0], : skin.x.shape[1]] = getattr(skin, name)
-        found[f"skin_{name}"] = ("state", "facet", "point"), values, described(column)
+        found[f"skin_{name}"] = ("state", "facet", "point"), values, output.about()
     ridge = np.full((len(STATES), facets), np.nan)
     for key, skin in skins.items():
         ridge[STATES.index(key), : len(skin.ridge)] = skin.ridge
-    found["skin_ridge"] = ("state", "facet"), ridge, described(Column("1", "number of the ridge of the facet"))
+    found["skin_ridge"] = ("state", "facet"), ridge, _about("number of the ridge of the facet")
     return found
 
 
-def finger(whole: "WholeFinger | None") -> Variables:
+def _finger(whole: "WholeFinger | None") -> Variables:
     """Return the whole finger along ``state``, and its slices along ``state`` and ``slice``; NaN if missing."""
     if whole is None:
         return {}
     count = max(len(total.z) for total in whole.states.values())
-    sums = {name: np.full(len(STATES), np.nan) for key in columns.FINGER for name in (key, f"{key}_error")}
-    slices = {name: np.full((len(STATES), count), np.nan) for name in columns.SLICES}
-    for state, total in whole.states.items():
-        for name, value in whole.values(state).items():
-            sums[name][STATES.index(state)] = value
-        for name, value in whole.error[state].items():
-            sums[f"{name}_error"][STATES.index(state)] = value
-        for name, along in total.slices().items():
-            slices[name][STATES.index(state), : len(along)] = along
     found: Variables = {}
-    for name, column in columns.FINGER.items():
-        found[f"finger_{name}"] = ("state",), sums[name], described(column)
-        about = described(Column(column.unit, f"estimated error of the {column.meaning}"))
-        found[f"finger_{name}_error"] = ("state",), sums[f"{name}_error"], about
-    for name, column in columns.SLICES.items():
-        found[f"slice_{name}"] = ("state", "slice"), slices[name], described(column)
+    for name, output in FINGER.items():
+        for end, words in (("", ""), ("_error", "estimated error of the ")):
+            found[f"finger_{name}{end}"] = ("state",), np.full(len(STATES), np.nan), output.about(words)
+    for name, output in SLICES.items():
+        found[f"slice_{name}"] = ("state", "slice"), np.full((len(STATES), count), np.nan), output.about()
+    for state, total in whole.states.items():
+        k = STATES.index(state)
+        for name, value in whole.values(state).items():
+            found[f"finger_{name}"][1][k] = value
+        for name, value in whole.error[state].items():
+            found[f"finger_{name}_error"][1][k] = value
+        for name, along in total.slices().items():
+            found[f"slice_{name}"][1][k, : len(along)] = along
     return found
 
 
-def _table(result: "Result", name: str) -> list[dict[str, Any]]:
-    """Return a table of the folder, or without one the ridges in contact that the steps have; empty if missing."""
-    if result.folder is not None:
-        try:
-            with (result.folder / f"{name}.csv").open(encoding="utf-8", newline="") as file:
-                return list(csv.DictReader(file))
-        except FileNotFoundError:
-            return []
-        except (csv.Error, UnicodeDecodeError) as error:
-            raise SceneError(f"{name}.csv in {clip(str(result.folder), 80)} cannot be read: {error}") from None
-    return list(_in_memory(result.steps)) if name == "ridges" else []
+# -- reading -----------------------------------------------------------------------------------------------
+def _state(arrays: Mapping[str, NDArray[Any]], prefix: str, k: int, own: Sequence[str]) -> ContactState:
+    """Return the state at a place of the dimension whose variables begin with a prefix.
+
+    Args:
+        arrays: values by variable.
+        prefix: ``state_`` of the named states; empty of the steps.
+        k: the place.
+        own: names of outputs that are computed from a state.
+    """
+    names = {name: "load_name" if prefix + name == "load" else prefix + name for name in (*STEPS, *own)}
+    row = {name: arrays[there][k] for name, there in names.items() if there in arrays}
+    more: dict[str, Any] = {}
+    number = arrays.get("ridge", np.arange(0))
+    if f"{prefix}ridge_contact_length" in arrays:
+        columns = {OF_RIDGES[name]: arrays[f"{prefix}ridge_{name}"][k] for name in RIDGES}
+        there = np.isfinite(columns["length"])
+        values = {name: column[there] for name, column in columns.items()}
+        more["ridges"] = RidgeStates(number[there].astype(int), **values | {"note": tuple(map(str, values["note"]))})
+    if f"{prefix}merkel_sed" in arrays:
+        there = np.isfinite(arrays[f"{prefix}merkel_sed"][k])
+        left, right = arrays[f"{prefix}meissner_sed"][k][there].T
+        more["sites"] = Sites(number[there].astype(int), arrays[f"{prefix}merkel_sed"][k][there], left, right)
+    if not prefix and "coupling_change" in arrays:
+        more["changes"] = tuple(map(float, arrays["coupling_change"][k][np.isfinite(arrays["coupling_change"][k])]))
+    return replace(ContactState.from_row(row), **more)
 
 
-def _in_memory(steps: Iterable[ContactState]) -> Iterable[dict[str, Any]]:
-    for step in steps:
-        if step.ridges is not None:
-            for k in np.flatnonzero(step.ridges.length > 0):
-                values = {name: getattr(step.ridges, name)[k] for name in ("f_contact", "f_friction", "p_c", "d_eq")}
-                values |= {"contact_length": step.ridges.length[k], "f_electrostatic": step.ridges.f_electrostatic[k]}
-                yield values | {"step": step.step, "ridge": step.ridges.number[k], "state": ""}
+def _named_state(arrays: Mapping[str, NDArray[Any]], k: int, own: Sequence[str]) -> ContactState:
+    """Return a named state by its place, with its stability, errors and skin."""
+    stable, least, gain = (arrays[f"state_{name}"][k] for name in STABILITY)
+    more: dict[str, Any] = {"stable": None if stable < 0 else bool(stable)}
+    more |= {name: None if np.isnan(value) else float(value) for name, value in (("lambda_min", least), ("gain", gain))}
+    for kind in CHANGES:
+        more[kind] = Errors(**{f.name: float(arrays[f"state_{f.name}_{kind}"][k]) for f in fields(Errors)})
+    if "skin_ridge" in arrays and (facets := np.isfinite(arrays["skin_ridge"][k])).any():
+        points = np.isfinite(arrays["skin_x"][k]).any(axis=0)
+        values = {name: arrays[f"skin_{name}"][k][facets][:, points] for name in SKIN}
+        more["skin"] = Skin(ridge=arrays["skin_ridge"][k][facets].astype(int), **values)
+    return replace(_state(arrays, "state_", k, own), **more)

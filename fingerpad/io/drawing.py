@@ -10,21 +10,54 @@ import numpy as np
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from fingerpad.io import finger_picture, history_picture, skin_picture, time_picture, titles
+from fingerpad.io import finger_picture, history_picture, skin_picture, style
 from fingerpad.io.files import replace
 from fingerpad.io.over_time import without_parts_of_jumps
 from fingerpad.io.skin_picture import SurfaceProfile
-from fingerpad.io.states import PREFIXES, WORDS, before_sliding, called, named, partial_slip
-from fingerpad.io.views import Profile, View
-from variational.state import ContactState
+from fingerpad.io.states import WORDS, before_sliding, called, named, partial_slip
+from geometry.parameters import MeshSize
+from variational.state import ContactState, Skin
 
 if TYPE_CHECKING:
     from variational.output import Snapshot
 
+Array = NDArray[np.float64]
 _PATH, _FINAL = "path on the starting mesh", "final mesh"
 
 
-Skin = Profile | Mapping[str, NDArray[np.float64]]
+@dataclass(frozen=True)
+class Profile:
+    """The skin that can touch."""
+
+    ridge: NDArray[np.int64]
+    """Position of each facet's ridge among all, shape (facets,)."""
+    values: Array
+    """Current place (m), pressure, shear and attraction (Pa), and current area, shape (7, facets, points)."""
+    d_eq: Array
+    """Equivalent air gap (m) of each ridge, shape (ridges,)."""
+
+    def skin(self, numbers: NDArray[np.int64]) -> Skin:
+        """Return the same with tractions per current area, for the numbers of the ridges, shape (ridges,)."""
+        x, y, p_n, t_t, p_el, area_x, area_y = self.values
+        stretch = np.hypot(area_x, area_y)
+        return Skin(numbers[self.ridge], x, y, p_n / stretch, t_t / stretch, p_el)
+
+
+@dataclass(frozen=True)
+class View:
+    """All that is shown of a state."""
+
+    state: ContactState
+    """Without a record of a step."""
+    mesh: MeshSize
+    profile: Profile | None
+    """None on ranks other than 0, as the next."""
+    snapshot: "Snapshot | None"
+    merkel: Array | None
+    """Current places (m) of the Merkel sites, shape (sites, 2), None where they are not wanted."""
+
+
+Along = Profile | Mapping[str, Array]
 """The skin of a state, or the arrays of its :class:`SurfaceProfile` by name, as a file has them."""
 
 
@@ -33,7 +66,7 @@ class End(NamedTuple):
 
     state: ContactState
     snapshot: "Snapshot"
-    sites: NDArray[np.float64] | None
+    sites: Array | None
     """Current places (m) of the Merkel sites, shape (sites, 2); None where there are none."""
 
 
@@ -44,7 +77,7 @@ class Drawing:
     mu_0: float | None
     """Friction coefficient; None where the law of friction is not Coulomb's."""
     states: Sequence[ContactState]
-    profiles: Mapping[int, Skin]
+    profiles: Mapping[int, Along]
     """The skin by step."""
     ends: Mapping[str, End]
     """By load."""
@@ -105,13 +138,13 @@ class Drawing:
         if not self._slides():
             raise ValueError("the run has no history of sliding; the bone never moved sideways with skin on the screen")
         shown = [state.row() for state in self.states[len(before_sliding(self.states)) - 1 :]]
-        conditions = _joined(titles.conditions_of(shown, self.mu_0), self._path_note())
+        conditions = _joined(style.conditions_of(shown, self.mu_0), self._path_note())
         return history_picture.history(path, shown, conditions, self.mu_0, self.named)
 
     def _skin(
         self, path: Path | None, profiles: Mapping[str, SurfaceProfile], states: Sequence[ContactState]
     ) -> Figure:
-        conditions = titles.conditions_of([state.row() for state in states], self.mu_0)
+        conditions = style.conditions_of([state.row() for state in states], self.mu_0)
         return skin_picture.surface(path, list(profiles.values()), conditions)
 
     def _surface(self, path: Path, profiles: Mapping[str, SurfaceProfile], states: Sequence[ContactState]) -> None:
@@ -139,8 +172,8 @@ class Drawing:
         states = self._timed()
         if not states:
             raise ValueError("the run has no load over time; give one a speed, a duration or a waveform")
-        conditions = titles.conditions_of([state.row() for state in states], self.mu_0)
-        return time_picture.over_time(path, states, _joined(conditions, self._path_note()))
+        conditions = style.conditions_of([state.row() for state in states], self.mu_0)
+        return history_picture.over_time(path, states, _joined(conditions, self._path_note()))
 
     def _path_note(self) -> str:
         return "" if self.starting_size is None else _note(_PATH, self.starting_size)
@@ -175,28 +208,28 @@ class Drawing:
         title: str,
         state: ContactState,
         snapshot: "Snapshot",
-        sites: NDArray[np.float64] | None,
+        sites: Array | None,
         note: str,
         ridges: Mapping[int, float],
     ) -> Figure:
-        conditions = titles.conditions(state.f_ext, state.voltage, self.mu_0, state.bone_x)
+        conditions = style.conditions(state.f_ext, state.voltage, self.mu_0, state.bone_x)
         snapshots = [end.snapshot for end in self.ends.values()]
         snapshots += [view.snapshot for view in self.finer.values() if view.snapshot is not None]
         highest = max(map(finger_picture.highest_density, snapshots))
-        words = _joined(f"{titles.plain(title)}: {conditions}", note)
+        words = _joined(f"{style.plain(title)}: {conditions}", note)
         return finger_picture.finger(path, snapshot, sites, words, ridges, highest)
 
     def _shown(self) -> "dict[str, tuple[str, ContactState, View | None]]":
         """Return the states along whose skin is drawn: title, state, and its view on the final mesh if there is one."""
         found, partial = named(self.states), partial_slip(self.states)
-        shown = {"normal": (_title("charged", found["charged"]), found["charged"])} if "charged" in found else {}
+        shown = {"charged": (_title("charged", found["charged"]), found["charged"])} if "charged" in found else {}
         if partial is not None:
             shown["partial"] = ("Partial slip", partial)
         if "full_slip" in found:
-            shown["slip"] = _title("full_slip", found["full_slip"]), found["full_slip"]
+            shown["full_slip"] = _title("full_slip", found["full_slip"]), found["full_slip"]
         elif self._slides():
-            shown["slip"] = "Last state", self.states[-1]
-        final = {PREFIXES[name]: view for name, view in self.finer.items() if view.profile is not None}
+            shown["full_slip"] = "Last state", self.states[-1]
+        final = {name: view for name, view in self.finer.items() if view.profile is not None}
         return {
             name: (title, final[name].state if name in final else state, final.get(name))
             for name, (title, state) in shown.items()
@@ -219,7 +252,7 @@ class Drawing:
         return profiles
 
 
-def _keep(path: Path, state: ContactState, snapshot: "Snapshot", sites: NDArray[np.float64] | None) -> None:
+def _keep(path: Path, state: ContactState, snapshot: "Snapshot", sites: Array | None) -> None:
     shown: dict[str, Any] = {} if sites is None else {"merkel": sites}
     _put(path, {"bone_x": np.array(state.bone_x), **shown, **vars(snapshot)})
 
@@ -249,7 +282,7 @@ def _numbers(profile: Profile, state: ContactState) -> NDArray[np.int64]:
     return np.arange(count) - count // 2 if state.ridges is None else state.ridges.number
 
 
-def _places(profile: Skin | None, state: ContactState) -> dict[int, float]:
+def _places(profile: Along | None, state: ContactState) -> dict[int, float]:
     """Return the current abscissa (m) of the lowest point of each ridge that can touch, by its number."""
     if profile is None:
         return {}
@@ -258,17 +291,17 @@ def _places(profile: Skin | None, state: ContactState) -> dict[int, float]:
     return {k: float(along["x"][point]) for k, point in lowest.items()}
 
 
-def _known(values: NDArray[np.float64]) -> NDArray[np.float64]:
+def _known(values: Array) -> Array:
     return np.unique(values[np.isfinite(values)])
 
 
-def _along(profile: Skin, title: str, state: ContactState, note: str) -> SurfaceProfile:
+def _along(profile: Along, title: str, state: ContactState, note: str) -> SurfaceProfile:
     """Return the skin sorted along each ridge, a NaN between ridges."""
     given = {k: getattr(state, k) for k in ("f_ext", "voltage", "bone_x", "contact_length")}
     return SurfaceProfile(title=title, note=note, **_arrays(profile, state), **given)
 
 
-def _arrays(profile: Skin, state: ContactState) -> dict[str, Any]:
+def _arrays(profile: Along, state: ContactState) -> dict[str, Any]:
     """Return the arrays of a :class:`SurfaceProfile` by name."""
     if not isinstance(profile, Profile):
         return dict(profile)

@@ -1,4 +1,4 @@
-"""Files that are there as a whole or not at all, and tables of whole rows.
+"""Files that are there as a whole or not at all, tables of whole rows, and folders that results can go to.
 
 No symbolic link is written through: a file takes the place of one of its name, and what the link leads to stays.
 """
@@ -17,7 +17,11 @@ from pathlib import Path
 from typing import Any, BinaryIO
 from uuid import uuid4
 
+from fingerpad.scene.messages import SceneError, clip
+
 _MOST_BYTES = 200_000_000  # of a file that is read; a summary of a thousand loads has two millions
+_FILES = 160  # bytes that the longest name of a file in a folder of results takes of a path
+_PATH = 80  # characters of a path in a sentence
 _MOST_DEPTH = 50  # of what it holds, which has some ten
 
 
@@ -104,18 +108,34 @@ def _finite(data: Any) -> Any:
 class Table:
     """Writes a CSV file row by row: each is on disk, whole, when :meth:`write` returns."""
 
-    def __init__(self, file: Path, columns: Mapping[str, Any]) -> None:
-        """Start the file with its header; an earlier one goes."""
+    def __init__(self, file: Path, begin: Mapping[str, Any] | str) -> None:
+        """Start the file; an earlier one goes.
+
+        Args:
+            file: the file.
+            begin: a row, of which the names are the header, or the text of a table that is to go on.
+        """
         remove(file)
-        self._file = file.open("xb", buffering=0)
-        self._columns = list(columns)
-        self.write(dict(zip(self._columns, self._columns, strict=True)))
+        self._path, self._file = file, file.open("x+b", buffering=0)
+        if isinstance(begin, str):
+            self._columns = next(csv.reader(io.StringIO(begin)))
+            self._append(begin.encode())
+        else:
+            self._columns = list(begin)
+            self.write(dict(zip(self._columns, self._columns, strict=True)))
+
+    def text(self) -> str:
+        """Return all of it."""
+        return self._path.read_bytes().decode()
 
     def write(self, row: Mapping[str, Any]) -> None:
         """Append a row; where there is no room for all of it, none of it stays."""
         text = io.StringIO()
         csv.DictWriter(text, self._columns).writerow(row)
-        data, start = text.getvalue().encode(), self._file.tell()
+        self._append(text.getvalue().encode())
+
+    def _append(self, data: bytes) -> None:
+        start = self._file.tell()
         try:
             while data:
                 data = data[self._file.write(data) :]
@@ -126,3 +146,54 @@ class Table:
     def close(self) -> None:
         """Close the file."""
         self._file.close()
+
+
+def check_folder(folder: Path, option: str = "--out") -> None:
+    """Refuse a folder that cannot be made or written to; nothing is made.
+
+    Args:
+        folder: to be made or written to.
+        option: what it was given by.
+
+    Raises:
+        SceneError: why not.
+    """
+    name, text = f"{option} {clip(str(folder), _PATH)}", str(folder)
+    try:
+        text.encode("utf-8")
+    except UnicodeEncodeError:
+        raise SceneError(f"{name} is not UTF-8; give a folder whose name is") from None
+    if "\0" in text:
+        raise SceneError(f"{name} has a zero byte in it; give a folder whose name has none")
+    try:
+        absolute = Path(os.path.abspath(folder))
+        there = next(place for place in (absolute, *absolute.parents) if os.path.lexists(place))
+        longest, whole = (
+            os.pathconf(there if there.is_dir() else "/", kind) for kind in ("PC_NAME_MAX", "PC_PATH_MAX")
+        )
+    except OSError as error:
+        raise SceneError(f"{name} cannot be a folder: {error.strerror}") from None
+    if max(len(os.fsencode(part)) for part in absolute.parts) > longest:
+        raise SceneError(f"{name} is too long; a name can have {longest} bytes")
+    if len(os.fsencode(absolute)) + _FILES > whole:
+        raise SceneError(f"{name} is too long; a path can have {whole} bytes, of which files take {_FILES}")
+    if not there.is_dir():
+        which = "it" if there == absolute else clip(str(there), _PATH)
+        raise SceneError(f"{name} cannot be a folder, since {which} is a file; give another one")
+    if not os.access(there, os.W_OK | os.X_OK):
+        raise SceneError(f"{name} cannot be written to: {clip(str(there), _PATH)} is read-only; give another one")
+
+
+def below(folder: Path, name: str) -> Path:
+    """Return a folder of the program inside a folder of results.
+
+    Raises:
+        SceneError: it is a symbolic link, by which files would be written and deleted elsewhere.
+    """
+    found = folder / name
+    if found.is_symlink():
+        raise SceneError(
+            f"{name} in {clip(str(folder), _PATH)} is a symbolic link, and results are to be in the folder itself; "
+            "delete it, or choose another folder"
+        )
+    return found

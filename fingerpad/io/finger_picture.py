@@ -59,7 +59,7 @@ def finger(
         path: of the PNG file; None for the figure alone.
         snapshot: state of the body, see :func:`variational.output.gather_mesh`.
         sites: current positions of Merkel sites (m), shape (n, 2), or None.
-        title: what state it is, see :mod:`fingerpad.io.titles`.
+        title: what state it is, see :mod:`fingerpad.io.style`.
         ridges: current abscissa (m) of numbered ridges, number 0 at the centre.
         highest: upper end of the colours (Pa), for one scale over several pictures; :func:`highest_density` by default.
     """

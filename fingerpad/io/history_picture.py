@@ -1,4 +1,4 @@
-"""Picture of the history of sliding: friction, contact length and ridges in contact over the bone's displacement."""
+"""Pictures of a history: friction and contact over the bone's displacement, and over time."""
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -14,7 +14,8 @@ from fingerpad.io.states import called
 from variational.state import ContactState
 
 Array = NDArray[np.float64]
-_MM = 1e3
+_MM, _MS = 1e3, 1e3
+_SHORT = 1.0  # s, below which the axis of time is in ms
 _RUBS = 1e-6  # of mu_0: a coefficient below is roundoff
 
 
@@ -32,7 +33,7 @@ def history(
         rows: accepted steps in order, with ``bone_x`` (m), ``f_t`` and ``f_ext`` (N/m), ``mu_app``,
             ``contact_length`` (m), ``ridges_in_contact`` and, true where ridges jumped, ``jump``. What precedes
             sliding is left out but for its last row.
-        title: what run it is, see :mod:`fingerpad.io.titles`.
+        title: what run it is, see :mod:`fingerpad.io.style`.
         mu_0: friction coefficient, drawn as the limit without attraction.
         named: states by name; those with an estimated discretisation error are drawn with error bars.
     """
@@ -103,3 +104,34 @@ def _draw_apparent(ax: Axes, x: Array, f_ext: Array, mu_app: Array, mu_0: float 
         ax.plot([], [], color="0.4", lw=1, ls="--", label=words)
         for sign in np.unique(np.sign(mu_app[np.abs(mu_app) > _RUBS * mu_0])) if mu_0 else ():
             other.axhline(sign * mu_0 * load, color="0.4", lw=1, ls="--")
+
+
+def over_time(path: Path | str | None, states: Sequence[ContactState], title: str) -> Figure:
+    """Draw voltage, friction force and contact length over time.
+
+    Args:
+        path: of the PNG file; None for the figure alone.
+        states: accepted states in order, with their times.
+        title: what run it is, see :mod:`fingerpad.io.style`.
+    """
+    time = np.array([state.time for state in states])
+    short = time[-1] - time[0] < _SHORT
+    t = (_MS if short else 1.0) * time
+    rows = (
+        ("voltage $U$ (V)", [state.voltage for state in states], style.VERMILION),
+        ("friction force\n$f_T$ (N/m)", [state.f_t for state in states], style.BLACK),
+        ("contact length\n$L_R$ (mm)", [_MM * state.contact_length for state in states], style.BLUE),
+    )
+    jumps = t[[state.record is not None and state.record.jump for state in states]]
+    with style.look():
+        figure = style.figure(7.5)
+        figure.suptitle(title)
+        axes = figure.subplots(3, 1, sharex=True)
+        for ax, (label, values, colour) in zip(axes, rows, strict=True):
+            ax.plot(t, values, "o-", ms=3, color=colour)
+            ax.set_ylabel(label)
+            for jump in jumps:
+                ax.axvline(jump, color="0.4", lw=1, ls=":", zorder=0)
+        words = "; dotted lines: part of the skin jumps" if len(jumps) else ""
+        axes[-1].set_xlabel(f"time ({'ms' if short else 's'}){words}")
+        return style.save(figure, path)

@@ -10,8 +10,6 @@ import stat
 import sys
 import threading
 import time
-from collections.abc import Iterator
-from contextlib import contextmanager
 from types import FrameType, TracebackType
 from typing import Any
 
@@ -81,33 +79,17 @@ class Interrupt:
         for number, handler in self._before.items():
             signal.signal(number, handler)
 
-    @contextmanager
-    def ends_the_program(self) -> Iterator[None]:
-        """Make a stop inside the block what its signal is to a Python program.
-
-        Raises:
-            KeyboardInterrupt: for SIGINT.
-            SystemExit: for another signal, with 128 and its number.
-        """
-        try:
-            yield
-        except Interrupted as stopped:
-            if stopped.signal == signal.SIGINT:
-                raise KeyboardInterrupt(str(stopped)) from None
-            raise SystemExit(128 + stopped.signal) from None
-
-    def stop_if_asked(self, step: int = 0, kept: str = "", alone: bool = False) -> None:
-        """Stop after an accepted step; collective, unless this rank computes alone.
+    def stop_if_asked(self, step: int = 0, kept: str = "") -> None:
+        """Stop after an accepted step; collective.
 
         Args:
             step: its number.
             kept: what is kept of the run, and how it goes on, in words.
-            alone: whether only a signal of this rank counts.
 
         Raises:
             Interrupted: a signal came.
         """
-        number = self._signal if alone else int(self._comm.allreduce(self._signal, op=MPI.MAX))
+        number = int(self._comm.allreduce(self._signal, op=MPI.MAX))
         if number:
             raise Interrupted(signal.Signals(number), step, kept)
 

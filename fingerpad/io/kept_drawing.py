@@ -10,9 +10,8 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 
-from fingerpad.io.drawing import Drawing, End
-from fingerpad.io.states import PREFIXES, WORDS, by_load
-from fingerpad.io.views import View
+from fingerpad.io.drawing import Drawing, End, View
+from fingerpad.io.states import WORDS, by_load
 
 _PICTURES = ("surface", "finger")
 
@@ -40,15 +39,13 @@ class KeptDrawing(Drawing):
                 ends[load] = End(end, *_finger(finger))
             if along := skin_of(self.folder / f"surface_{words}.npz", "end"):
                 profiles[end.step] = along
-        names = {prefix: name for name, prefix in PREFIXES.items()}
-        for prefix, (_, state, _) in self._shown().items():
-            skin: Any = skin_of(self.folder / "surface.npz", prefix)
-            name = names.get(prefix, "")
+        for name, (_, state, _) in self._shown().items():
+            skin: Any = skin_of(self.folder / "surface.npz", name)
             finger = finger_of(self.folder / f"finger_{WORDS.get(name, '').replace(' ', '_')}.npz")
             if skin and finger and self.final_size is not None:
                 mesh: Any = SimpleNamespace(contact=self.final_size)
                 there = replace(self.named[name], bone_x=float(finger.get("bone_x", state.bone_x)))
-                finer[name] = View(there, mesh, skin, *_finger(finger), [], [])
+                finer[name] = View(there, mesh, skin, *_finger(finger))
             elif skin:
                 profiles[state.step] = skin
         return Drawing(self.mu_0, self.states, profiles, ends, finer, self.starting_size, self.named)

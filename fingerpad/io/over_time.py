@@ -15,18 +15,16 @@ Fritsch, Carlson, SIAM J. Numer. Anal. 17 (1980), doi 10.1137/0717021.
 """
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from fingerpad.io.quantities import EXTREMES
 from fingerpad.scene.waveform import Waveform
 from variational.state import ContactState
-
-if TYPE_CHECKING:
-    from fingerpad.io.states import LoadResult
 
 NOTE = (
     "Loads over time are quasi-static: no inertia, no viscous skin, and no leakage of charge, which lowers the "
@@ -37,12 +35,8 @@ HARMONICS, SAMPLED = 6, 4
 """Number of amplitudes in the spectrum of a wave, and of samples that friction has in a period of the last of them. A
 file, which may be a carrier under a slow envelope, has as many amplitudes as its samples allow, and no fewer."""
 _MOST = 200  # amplitudes
-QUANTITIES = ("mu_app", "f_t", "contact_length", "f_electrostatic")
-"""Quantities of which extremes and means are kept."""
 Array = NDArray[np.float64]
 _POINTS, _WEIGHTS = np.polynomial.legendre.leggauss(20)
-_MEANS = {"f_t": ("f_T", "N/m", 1.0), "contact_length": ("L_R", "mm", 1e3)}
-_SURE = 0.02  # of the largest amount in the load: change of a mean with every second step that is not told
 _NEAR = 1e-9  # of a period: two times that are one
 
 
@@ -89,7 +83,8 @@ def over_time(states: Sequence[ContactState], wave: Waveform | None) -> OverTime
     last = int(np.flatnonzero(times <= start + _NEAR * seconds)[-1])  # of those that take no time, as a first touch
     states, time = states[last:], times[last:] - start
     corners = [] if wave is None else wave.corners(seconds)
-    values = {name: np.array([getattr(state, name) for state in states]) for name in QUANTITIES}
+    names = (*EXTREMES, *states[-1].own)
+    values = {name: np.array([getattr(state, name, math.nan) for state in states]) for name in names}
     mean = {
         name: math.nan if np.isnan(value).any() else float(_rule(time, value, corners)[1].sum()) / seconds
         for name, value in values.items()
@@ -131,29 +126,6 @@ def _change(time: Array, value: Array, mean: float) -> float:
     if len(few) == len(time):
         return float(abs(value[-1] - value[0]) / 2)
     return abs(float(_rule(time[few], value[few], ())[1].sum()) / float(time[-1] - time[0]) - mean)
-
-
-def long_steps(loads: "Iterable[LoadResult]", least: float) -> list[str]:
-    """Return a sentence for each load at a constant voltage whose steps are too long for its means.
-
-    Args:
-        loads: of a run.
-        least: friction force (N/m) up to which there is none.
-    """
-    found = list[str]()
-    for load in loads:
-        changes = {} if load.over_time is None else load.over_time.mean_change
-        for key, (words, unit, factor) in _MEANS.items():
-            ends = load.extremes.get(key)
-            most = 0.0 if ends is None else max(abs(ends.min), abs(ends.max))
-            change = changes.get(key, 0.0)
-            if change > _SURE * most and (key != "f_t" or load.rubs(least)):
-                found.append(
-                    f"In the load {load.name} the mean {words} over time would change by {factor * change:.2g} {unit} "
-                    "with every second step alone: its steps are too long for it; give a smaller numerics.step_scale."
-                )
-                break
-    return found
 
 
 def spectrum(

@@ -17,19 +17,7 @@ from variational.element import ELEMENTS
 from variational.solvers.iteration import DEFAULTS, PREFIX
 
 _DIRECT = ("lu", "cholesky")
-# What an option that PETSc did not read may have been meant for; any other that PETSc reads is allowed as well.
-_KNOWN = sorted(
-    {
-        *DEFAULTS,
-        *("ksp_atol", "ksp_converged_reason", "ksp_max_it", "ksp_monitor", "ksp_rtol", "ksp_view"),
-        *("pc_factor_levels", "pc_factor_mat_ordering_type", "pc_factor_shift_type", "pc_view"),
-        *("snes_atol", "snes_converged_reason", "snes_divergence_tolerance", "snes_linesearch_damping"),
-        *("snes_linesearch_max_it", "snes_linesearch_monitor", "snes_linesearch_order", "snes_max_funcs"),
-        *("snes_monitor", "snes_view"),
-        *(f"mat_mumps_icntl_{number}" for number in range(1, 59)),
-        *(f"mat_mumps_cntl_{number}" for number in range(1, 8)),
-    }
-)
+_KNOWN: set[str] = set()  # options that PETSc's own help has listed, which it does once a process
 
 
 class OptionError(SceneError):
@@ -52,16 +40,20 @@ def check(comm: MPI.Comm = MPI.COMM_SELF, element: str = "P2") -> None:
     Raises:
         OptionError: PETSc refuses a value, has no such package, or does not read an option.
     """
-    options = PETSc.Options(PREFIX)
+    options, all_options = PETSc.Options(PREFIX), PETSc.Options()
     for name, value in DEFAULTS.items():
         if not options.hasName(name):
             options.setValue(name, value)
-    snes = PETSc.SNES().create(comm)
+    all_options.setValue("help", "")
     try:
         with _silent():
-            _solve(snes, blocks=not ELEMENTS[element].mixed)
+            for each in (MPI.COMM_SELF, comm)[: comm.size]:  # the first one's help is printed, on every rank
+                snes = PETSc.SNES().create(each)
+                _solve(snes, blocks=not ELEMENTS[element].mixed)
     except PETSc.Error as error:
         raise OptionError(_refusal(error)) from None
+    finally:
+        all_options.delValue("help")
     if snes.getKSP().getPC().getType() in _DIRECT:  # others may have options for what two equations do not have
         refuse_unread()
 
@@ -92,7 +84,7 @@ def refuse_unread() -> None:
     """Refuse the solver's options that PETSc has not read; to be called when it has solved.
 
     Raises:
-        OptionError: the first of them and the nearest known one.
+        OptionError: the first of them and the nearest one of PETSc's own help.
     """
     used = ctypes.CDLL(PETSc.__file__).PetscOptionsUsed  # which petsc4py does not offer
     for option, value in in_use().items():
@@ -101,9 +93,9 @@ def refuse_unread() -> None:
         if name == option or name in DEFAULTS or used(None, option[1:].encode(), ctypes.byref(was_read)):
             continue
         if not was_read.value:
-            near = difflib.get_close_matches(name, _KNOWN, 1, 0.0)[0]
+            near = difflib.get_close_matches(option, sorted(_KNOWN), 1, 0.0)
             given = f"{option} {value}".strip()[:100]
-            raise OptionError(f"PETSc does not read the option {given}; the nearest known one is -{PREFIX}{near}")
+            raise OptionError(f"PETSc does not read the option {given}; the nearest known one is {near[0]}")
 
 
 def _refusal(error: PETSc.Error) -> str:
@@ -118,16 +110,19 @@ def _refusal(error: PETSc.Error) -> str:
 
 @contextlib.contextmanager
 def _silent() -> Iterator[None]:
-    """Keep what PETSc's monitors print from the terminal."""
-    flush = ctypes.CDLL(None).fflush
+    """Keep what PETSc prints from the terminal, and what its help lists."""
+    flush, text = ctypes.CDLL(None).fflush, io.StringIO()
     flush(None)
     kept = os.dup(1)
-    try:
-        with tempfile.TemporaryFile() as nowhere:
-            os.dup2(nowhere.fileno(), 1)
-            with contextlib.redirect_stdout(io.StringIO()):  # which petsc4py prints to if somebody else has done so
+    with tempfile.TemporaryFile() as file:
+        try:
+            os.dup2(file.fileno(), 1)
+            with contextlib.redirect_stdout(text):  # which petsc4py prints to if somebody else has done so
                 yield
+        finally:
             flush(None)
-    finally:
-        os.dup2(kept, 1)
-        os.close(kept)
+            os.dup2(kept, 1)
+            os.close(kept)
+            file.seek(0)
+            text.write(file.read().decode(errors="replace"))
+            _KNOWN.update(re.findall(rf"-{PREFIX}\w+", text.getvalue()))

@@ -17,8 +17,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, BinaryIO, TypeVar
 
 from fingerpad.io.files import lock_file, read_object, remove, replace_json
-from fingerpad.scene import Scene, SceneError, from_kept
+from fingerpad.scene import Scene, SceneError, from_data
 from fingerpad.scene.messages import ends
+from fingerpad.scene.reading import DEFAULT_MODEL
 
 if TYPE_CHECKING:
     from mpi4py import MPI
@@ -41,13 +42,11 @@ LEFT = (
     *("displacement.bp", "stress.bp", "sed.bp", "finger_*.npz", "finger_*.png", "surface*.npz", "surface*.png"),
     *("history.png", "time.png", "footprint.png", "report.html", "report.html*.part"),
 )
-TRACE = "trace"
-"""Key of ``scene.json`` where the scene is a trace of a force on the whole finger."""
 T = TypeVar("T")
 _NO_LOCKS = (errno.ENOLCK, errno.ENOSYS, errno.ENOTSUP)  # some network file systems
 
 
-_MODEL = {"model": "full"}  # of parameters that name none
+_MODEL = {"model": DEFAULT_MODEL}  # of parameters that name none
 
 
 class Serial:
@@ -94,8 +93,7 @@ class Place:
         folder: Path,
         parameters: Mapping[str, Any],
         comm: "MPI.Comm | Serial",
-        model: str = "full",
-        asked: Mapping[str, Any] | None = None,
+        model: str = DEFAULT_MODEL,
     ) -> None:
         """Choose a folder; nothing is touched before :meth:`take`, except that the folder is made.
 
@@ -103,16 +101,12 @@ class Place:
             folder: of the results.
             parameters: of the scene that they are of.
             comm: communicator of the run.
-            model: whose results they are, see :data:`fingerpad.runs.solve.MODELS`.
-            asked: of which the scene is a trace, if it is one: ``force`` (N) on the whole finger and ``parameters`` of
-                the scene that was given. A trace makes way for another one to a larger force.
+            model: whose results they are, see :data:`fingerpad.reduced.models.MODELS`.
         """
         self.folder, self._comm = folder, comm
         self._parameters = json.loads(json.dumps(parameters))  # as they are read back
-        if model != "full":
+        if model != DEFAULT_MODEL:
             self._parameters["model"] = model
-        if asked is not None:
-            self._parameters[TRACE] = json.loads(json.dumps(asked))
         self._lock: BinaryIO | None = None
 
     def __enter__(self) -> "Place":
@@ -159,9 +153,8 @@ class Place:
                     "delete it, or choose another folder"
                 )
         kept = self._kept()
-        same = kept is not None and kept.get(TRACE, "") == self._parameters.get(TRACE)
-        if kept is not None and identity(kept) != identity(self._parameters) and not same:
-            what = difference(identity(_given(kept)), identity(_given(self._parameters)))
+        if kept is not None and identity(kept) != identity(self._parameters):
+            what = difference(identity(kept), identity(self._parameters))
             raise PlaceError(
                 f"{ends(self.folder)} holds the results of another scene ({what}); "
                 "choose another folder, or delete the folder"
@@ -196,59 +189,35 @@ def full_scene(folder: Path) -> Scene:
     """Return the scene whose full run is in a folder.
 
     Raises:
-        PlaceError: there is none, or it is of another model, or has laws of its own.
-        SceneError: its mesh is gone or was changed.
+        PlaceError: there is none, or it is of another model.
+        SceneError: its mesh, or the file of a law of one's own, is gone or was changed.
     """
     try:
         kept = _whole(read_object(folder / "scene.json"))
     except (OSError, ValueError):
         raise PlaceError(f"{ends(folder)} has no scene.json of a run, and so no run to go on with") from None
-    if TRACE in kept:
-        raise PlaceError(
-            f"{ends(folder)} has a trace of {kept[TRACE]['force']:g} N on the whole finger, which is one part of the "
-            "answer; give the command with --force again"
-        )
     if "model" in kept:
         raise PlaceError(f"{ends(folder)} has a run of the model {kept['model']!r}; only a full one can go on")
-    if kept.get("laws", {}).keys() - {"mesh"}:
-        raise PlaceError(
-            f"the run in {ends(folder)} has laws of its own; go on with it from Python, by fp.run with the same ones "
-            "and resume=True"
-        )
-    return from_kept(kept)
+    return from_data(kept)
 
 
 def _whole(parameters: Any) -> dict[str, Any]:
-    """Return parameters of a scene that a file holds, whose laws and trace are as a run writes them.
+    """Return parameters of a scene that a file holds.
 
     Raises:
         ValueError: they are something else.
     """
-    found = parameters if isinstance(parameters, dict) else {"laws": None}
-    laws, trace = found.get("laws", {}), found.get(TRACE, {"force": 0.0, "parameters": {}})
-    mesh = laws.get("mesh", {"path": "", "sha256": ""}) if isinstance(laws, dict) else None
-    sound = isinstance(mesh, dict) and all(isinstance(mesh.get(key), str) for key in ("path", "sha256"))
-    sound &= isinstance(trace, dict) and isinstance(trace.get("force"), int | float)
-    if not (sound and isinstance(trace.get("parameters"), dict)):
+    if not isinstance(parameters, dict):
         raise ValueError("no parameters of a scene")
-    return found
-
-
-def _given(parameters: dict[str, Any]) -> dict[str, Any]:
-    """Return what a user gave: of a trace the force and the scene that it is of."""
-    asked = parameters.get(TRACE)
-    if asked is None:
-        return {"force": "not given"} | parameters
-    model = {key: parameters[key] for key in ("model",) if key in parameters}
-    return {"force": f"{asked['force']!r} N"} | asked["parameters"] | model
+    return parameters
 
 
 def identity(parameters: Mapping[str, Any]) -> dict[str, Any]:
     """Return what results depend on: the scene's parameters without the place of a mesh file, whose hash stays."""
-    laws = dict(parameters.get("laws", {}))
-    if "mesh" in laws:
-        laws["mesh"] = {key: value for key, value in laws["mesh"].items() if key != "path"}
-    return {**parameters, "laws": laws} if laws else dict(parameters)
+    shape = parameters.get("geometry")
+    if not isinstance(shape, dict) or "file" not in shape:
+        return dict(parameters)
+    return {**parameters, "geometry": {key: value for key, value in shape.items() if key != "file"}}
 
 
 def difference(old: Mapping[str, Any], new: Mapping[str, Any], table: str = "") -> str:

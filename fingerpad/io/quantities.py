@@ -1,88 +1,282 @@
-"""The quantities of a state in words and in the units of tables: N/m, mm, kPa."""
+"""The quantities of a result, each described once: name, unit, meaning, dimensions, how it is computed and printed.
+
+Tables, ``result.nc``, JSON, text, reports and sweeps are made from these lists. An output of the package is one entry
+of :data:`OUTPUTS`; one of a user is the same, given to ``fingerpad.run(scene, outputs=[Output(…)])``.
+"""
 
 import math
-from typing import NamedTuple
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, fields, replace
+from typing import Any
 
-from fingerpad.io.states import PREFIXES, WORDS
 from fingerpad.richardson import plus_minus
+from fingerpad.scene.messages import SceneError, show
+from geometry.units import in_si
+from variational.state import ContactState, StepRecord
 
 _NOTHING = 1e-6  # in the units of tables: below it all is roundoff
+_PRINTED = {"": ("1", 1.0), "mm": ("m", 1e3), "mm²": ("m^2", 1e6)}
+"""Units of tables that are not those of files, which are SI units, and the factor from SI."""
 
 
-class Quantity(NamedTuple):
-    """How a quantity is printed."""
+@dataclass(frozen=True)
+class Output:
+    """A quantity of a state, of a ridge or of the skin.
 
-    words: str
+    One's own is computed from each accepted state: ``Output("p_mean", "kPa", lambda state: state.p_c.mean())``.
+    """
+
+    name: str
+    """In files and tables, and as an attribute of states."""
     unit: str
-    scale: float
-    """Factor from SI to the unit."""
-    digits: int
+    """In which it is printed. Files have it in SI."""
+    compute: Callable[[ContactState], float] | None = None
+    """Returns the value in SI from a :class:`ContactState`; None for what a state has by itself."""
+    meaning: str = ""
+    """In words, for files."""
+    words: str = ""
+    """With which it is printed, by default its name; the last of them is a symbol, such as µ_app."""
+    digits: int = 3
     """Digits after the point, where no error is estimated."""
+
+    @property
+    def si(self) -> str:
+        """Unit in files; 1 for a number without a unit."""
+        return _of_unit(self.unit)[0]
+
+    @property
+    def scale(self) -> float:
+        """Factor from SI to the unit."""
+        return _of_unit(self.unit)[1]
 
     @property
     def symbol(self) -> str:
         """The last of the words where it is a symbol, such as µ_app, else all words."""
-        last = self.words.split()[-1]
-        return last if len(last) == 1 or "_" in last else self.words
+        words = self.words or self.name
+        last = words.split()[-1]
+        return last if len(last) == 1 or "_" in last else words
 
     @property
     def title(self) -> str:
         """Words and unit."""
-        return f"{self.words} ({self.unit})" if self.unit else self.words
+        return f"{self.words or self.name} ({self.unit})" if self.unit else self.words or self.name
 
-    def shown(self, value: float, error: float = math.nan) -> str:
+    def shown(self, value: float | None, error: float | None = None) -> str:
         """Return a value in the unit of tables, with its error where the error reaches the digits shown.
 
         Args:
-            value: value in SI; NaN where it is not computed.
-            error: error in SI; NaN where it is not estimated.
+            value: in SI; None or NaN where it is not computed.
+            error: in SI; None or NaN where it is not estimated.
         """
-        if math.isnan(value):
+        if value is None or math.isnan(value):
             return "–"
-        if not math.isnan(error) and error * self.scale >= 0.5 * 10.0**-self.digits:
+        if error is not None and error * self.scale >= 0.5 * 10.0**-self.digits:
             return plus_minus(value * self.scale, error * self.scale)
         shown = value * self.scale
         small = _NOTHING < abs(shown) < 0.5 * 10.0**-self.digits
         return f"{shown:.2g}" if small else f"{shown:z.{self.digits}f}"  # z: no minus before a zero
 
+    def about(self, prefix: str = "") -> dict[str, str]:
+        """Return the attributes of its variable in a dataset: its unit in SI, and its meaning after a prefix."""
+        return {"units": self.si, "long_name": prefix + (self.meaning or self.words or self.name)}
 
-QUANTITIES = {
-    "f_ext": Quantity("external force f_ext", "N/m", 1.0, 2),
-    "voltage": Quantity("voltage U", "V", 1.0, 1),
-    "mu_app": Quantity("apparent friction µ_app", "", 1.0, 4),
-    "f_t": Quantity("friction force f_T", "N/m", 1.0, 3),
-    "f_electrostatic": Quantity("attraction f_el", "N/m", 1.0, 3),
-    "f_contact": Quantity("contact force f_c", "N/m", 1.0, 3),
-    "contact_length": Quantity("contact length L_R", "mm", 1e3, 4),
-    "ridges_in_contact": Quantity("ridges in contact", "", 1.0, 0),
-    "bone_height": Quantity("height of the bone", "mm", 1e3, 4),
-}
+    def to_dict(self) -> dict[str, Any]:
+        """Return all but how it is computed, ready for JSON."""
+        return {f.name: getattr(self, f.name) for f in fields(self) if f.name != "compute"}
+
+    def of(self, state: ContactState) -> float:
+        """Return the value of a state (SI).
+
+        Raises:
+            SceneError: it cannot be computed, or is no number.
+        """
+        assert self.compute is not None
+        try:
+            return float(self.compute(state))
+        except Exception as error:
+            what = f"{type(error).__name__}: {error}"
+            raise SceneError(
+                f"the output {self.name} of step {state.step} cannot be computed ({what}); its function must return a "
+                "number from a ContactState"
+            ) from error
+
+
+def _of_unit(unit: str) -> tuple[str, float]:
+    """Return the SI unit of a unit of tables, and the factor from SI."""
+    if unit in _PRINTED or unit in _SI:
+        return _PRINTED.get(unit, (unit, 1.0))
+    return in_si(unit)
+
+
+def _listed(*rows: tuple[Any, ...]) -> dict[str, Output]:
+    """Return quantities that states have, by name: of each its name, unit, meaning, and words and digits of tables."""
+    return {name: Output(name, unit, None, *more) for name, unit, *more in rows}
+
+
+FIELDS = _listed(
+    ("displacement", "m", "displacement, plane"),
+    ("stress", "Pa", "Cauchy stress, 3 x 3, row by row"),
+    ("sed", "J/m^3", "strain energy density per reference volume"),
+)
+"""Variables of the files for ParaView, each in the file of its name."""
+STEPS = _listed(
+    ("step", "", "number of the accepted step"),
+    ("load", "", "name of the load"),
+    ("load_number", "", "number of the load, from 1"),
+    ("f_ext", "N/m", "external normal force on the bone per metre of finger", "external force f_ext", 2),
+    ("voltage", "V", "instantaneous voltage", "voltage U", 1),
+    ("bone_x", "m", "horizontal position of the bone"),
+    ("bone_height", "mm", "change of the bone's height from the unloaded position", "height of the bone", 4),
+    ("f_t", "N/m", "friction force on the bone per metre of finger", "friction force f_T", 3),
+    (
+        "mu_app", "", "apparent friction coefficient f_t / f_ext; none where no force presses",
+        "apparent friction µ_app", 4,
+    ),
+    ("f_contact", "N/m", "contact force of the screen per metre of finger", "contact force f_c", 3),
+    ("f_electrostatic", "N/m", "electrostatic attraction per metre of finger", "attraction f_el", 3),
+    ("ridges_in_contact", "", "number of ridges in contact", "ridges in contact", 0),
+    ("contact_length", "mm", "sum of the lengths in contact", "contact length L_R", 4),
+    ("slipping", "", "part of the points in contact that slip"),
+    ("all_slip", "", "whether all points in contact slip one way"),
+    ("slip_began", "", "first step of the full slip that the state belongs to; 0 without full slip"),
+    ("slip_held", "", "whether this full slip was held over a further 0.2 mm"),
+    ("penetration", "m", "largest depth of the skin in the screen"),
+    ("imbalance", "", "largest nodal force left, relative to the largest f_ext of all loads, or to 1 N/m without one"),
+    ("floor", "", "residual at which the last solve ended at roundoff, on the same scale; 0 if converged"),
+    ("stored", "J/m", "stored energy per metre of finger"),
+    ("dissipation", "J/m", "energy dissipated by friction in the step per metre of finger"),
+    (
+        "energy_released", "J/m",
+        "energy released by a jump per metre of finger; in a step without a jump the error of the work's quadrature",
+    ),
+    ("released_error", "J/m", "error of the energy released by a jump"),
+    ("newton_iterations", "", "Newton iterations of the step"),
+    ("factorisations", "", "factorisations of the step"),
+    ("coupling_iterations", "", "coupling iterations of the step"),
+    ("cutbacks", "", "number of times that the step was cut"),
+    ("jump", "", "whether skin or an air gap moved without the loads"),
+    ("processor_seconds", "s", "processor time of all ranks since the start of the run"),
+    ("mesh_contact", "m", "contact size of the mesh"),
+    ("time", "s", "time since the start of the first load over time"),
+)  # fmt: skip
+"""Of a state, in the order of ``steps.csv``."""
+STABILITY = _listed(
+    ("stable", "", "whether the state is stable: 1 yes, 0 no, -1 not examined"),
+    ("lambda_min", "Pa/m", "least eigenvalue of the tangent at frozen air gaps"),
+    ("gain", "", "largest gain of a ridge's loop over the two scales"),
+)
+"""Of a named state."""
+RIDGES = _listed(
+    ("contact_length", "m", "length of the ridge in contact"),
+    ("f_contact", "N/m", "contact force of the ridge per metre of finger"),
+    ("f_friction", "N/m", "friction force on the ridge per metre of finger, positive towards x > 0"),
+    ("f_electrostatic", "N/m", "attraction of the ridge per metre of finger"),
+    ("p_c", "Pa", "mean contact pressure of the ridge over its length in contact"),
+    ("d_eq", "m", "equivalent air gap of the ridge"),
+    ("note", "", "remark on the place of the ridge on the closure; mostly empty"),
+)
+"""Of the ridges of a state."""
+SITES = _listed(
+    ("merkel_sed", "J/m^3", "strain energy density at the Merkel site of the ridge, per reference volume"),
+    ("meissner_left", "J/m^3", "strain energy density at the left Meissner site of the ridge"),
+    ("meissner_right", "J/m^3", "strain energy density at the right Meissner site of the ridge"),
+)
+"""Of the receptor sites of a state, by ridge."""
+SKIN = _listed(
+    ("x", "m", "current abscissa of the skin"),
+    ("y", "m", "current height of the skin above the screen"),
+    ("p_n", "Pa", "contact pressure per current area"),
+    ("t_t", "Pa", "shear traction on the skin per current area, positive towards x > 0"),
+    ("p_el", "Pa", "electrostatic pressure per current area"),
+)
+"""Of the skin of a named state, by facet and point."""
+SPECTRUM = _listed(
+    ("frequency", "Hz", "frequency of the amplitude of friction"),
+    ("f_t_amplitude", "N/m", "amplitude of the friction force at the frequency per metre of finger"),
+)
+"""Of a load over time, by harmonic."""
+FINGER = _listed(
+    ("f_ext", "N", "external normal force on the whole finger", "external force F_ext", 4),
+    ("mu_app", "", "apparent friction coefficient of the whole finger", "apparent friction µ_app", 4),
+    ("f_t", "N", "friction force on the whole finger", "friction force F_T", 4),
+    ("f_electrostatic", "N", "electrostatic attraction of the whole finger", "attraction F_el", 4),
+    ("gross_area", "mm²", "area between the outermost touching ridges of the slices", "gross area", 1),
+    ("contact_area", "mm²", "area in contact, of the ridges", "ridge contact area", 2),
+    ("indentation", "mm", "lowering of the bone at z = 0", "indentation δ", 3),
+    (
+        "effective_width", "mm", "external force of the finger over that of its centre, the slice that touches first",
+        "F_ext over f_ext of the centre", 2,
+    ),
+)  # fmt: skip
+"""Of the whole finger in a named state."""
+SLICES = _listed(
+    ("z", "m", "place of the slice along the finger"),
+    ("thickness", "m", "thickness of the slice, its weight in the sum"),
+    ("indentation", "m", "indentation of the slice"),
+    ("f_ext", "N/m", "external normal force of the slice per metre of finger"),
+    ("f_t", "N/m", "friction force of the slice per metre of finger"),
+    ("f_electrostatic", "N/m", "electrostatic attraction of the slice per metre of finger"),
+    ("contact_length", "m", "length of the slice in contact, of the ridges"),
+    ("gross_width", "m", "width between the outermost touching ridges of the slice"),
+    ("pressure", "Pa", "mean contact pressure of the slice over its length in contact"),
+)
+"""Of the slices of a whole finger."""
+OUTPUTS: tuple[Output, ...] = ()
+"""Outputs of the package that are computed from a state, as those of a user are. A new one is an entry here."""
+
+_SI = {"N/m", "V", "N", "m", "Pa", "J/m", "J/m^3", "s", "Hz", "Pa/m"}
+_PRINTED_FIRST = ("f_ext", "voltage", "mu_app", "f_t", "f_electrostatic", "f_contact", "contact_length")
+QUANTITIES = {name: STEPS[name] for name in (*_PRINTED_FIRST, "ridges_in_contact", "bone_height")}
+"""The quantities of a state that are printed, in this order."""
+CHANGES = {"error": "estimated discretisation error", "penalty": "estimated change for a rigid screen"}
+EXTREMES = ("mu_app", "f_t", "contact_length", "f_electrostatic")
+"""Quantities of a load of which extremes and means are kept, beside outputs of one's own."""
+SWEPT = (*EXTREMES, "ridges_in_contact")
+"""Quantities of a named state in the table of a sweep, likewise."""
+FRICTION = ("mu_app", "f_t")
+"""Quantities that are printed at full slip alone."""
 PER_LENGTH = (
     "N/m: force per metre of finger out of the plane of the cross-section; 75 N/m at the centre of the default finger "
     "are about 0.5 N in all."
 )
-
 PLUS_MINUS = (
     "±: estimated discretisation error; what the finger and the model assume is not in it (docs/assumptions.md)."
 )
 
 
+def checked(outputs: Any) -> tuple[Output, ...]:
+    """Return outputs of the package and of a user.
+
+    Args:
+        outputs: of the user.
+
+    Raises:
+        SceneError: one is no output, or has a name that a state has.
+    """
+    given = list(outputs) if isinstance(outputs, Iterable) else [outputs]
+    if isinstance(outputs, Output) or not all(isinstance(each, Output) for each in given):
+        raise SceneError(f"outputs is {show(outputs)}; it must be a list of fingerpad.Output")
+    names = {f.name for each in (ContactState, StepRecord) for f in fields(each)} | set(dir(ContactState))
+    every = tuple(dict.fromkeys((*OUTPUTS, *given)))
+    for each in every:
+        if not (isinstance(each.name, str) and each.name.isidentifier()) or each.name in names:
+            raise SceneError(f"an output is called {show(each.name)}; it must have a name of its own, such as 'p_mean'")
+        if not isinstance(each.unit, str) or not callable(each.compute):
+            raise SceneError(f"the output {each.name} must have a unit, such as 'kPa', and a function of a state")
+        names.add(each.name)
+    return every
+
+
+def valued(state: ContactState, outputs: Iterable[Output]) -> ContactState:
+    """Return a state with the values of outputs."""
+    return replace(state, own={**state.own, **{each.name: each.of(state) for each in outputs if each.compute}})
+
+
+def read(kept: Sequence[dict[str, Any]]) -> tuple[Output, ...]:
+    """Return outputs that a file describes, see :meth:`Output.to_dict`; how they are computed is not known."""
+    return tuple(Output(**each) for each in kept)
+
+
 def cell(key: str, value: float, error: float = math.nan) -> str:
-    """Return a quantity of :data:`QUANTITIES` as :meth:`Quantity.shown` does."""
+    """Return a quantity of :data:`QUANTITIES` as :meth:`Output.shown` does."""
     return QUANTITIES[key].shown(value, error)
-
-
-def in_words(key: str) -> str:
-    """Return a key such as ``slip_mu_app`` in words: quantity and state."""
-    name = next((name for name, prefix in PREFIXES.items() if key.startswith(f"{prefix}_")), None)
-    if name is None:
-        return key
-    quantity = key.removeprefix(f"{PREFIXES[name]}_")
-    words = QUANTITIES[quantity].words if quantity in QUANTITIES else quantity
-    return f"{words} at {WORDS[name]}"
-
-
-def scaled(key: str, value: float) -> tuple[float, str]:
-    """Return the value of a key such as ``slip_contact_length`` (in SI) in the unit of tables, and this unit."""
-    known = [q for name, q in QUANTITIES.items() if key == name or key.endswith(f"_{name}")]
-    return (value * known[0].scale, known[0].unit) if known else (value, "")

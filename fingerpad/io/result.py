@@ -2,17 +2,31 @@
 
 import csv
 import math
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, fields, replace
+from collections.abc import Iterable, Mapping
+from dataclasses import asdict, dataclass, fields, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from fingerpad.io import terminal
+from fingerpad.io import dataset, terminal
+from fingerpad.io.answer import Answer, Cost
 from fingerpad.io.files import read_object
-from fingerpad.io.states import PREFIXES, STATES, LoadResult, load_results
-from fingerpad.scene import Scene, SceneError, as_kept
+from fingerpad.io.quantities import (
+    CHANGES,
+    PER_LENGTH,
+    PLUS_MINUS,
+    QUANTITIES,
+    STABILITY,
+    Output,
+    cell,
+    checked,
+    valued,
+)
+from fingerpad.io.quantities import read as read_outputs
+from fingerpad.io.states import STATES, LoadResult, called, load_results
+from fingerpad.scene import SceneError, as_kept
 from fingerpad.scene.laws import coefficient
 from fingerpad.scene.messages import clip
+from fingerpad.scene.reading import DEFAULT_MODEL
 from variational.state import CONDITIONS, RESULTS, ContactState, Errors
 
 if TYPE_CHECKING:
@@ -20,86 +34,15 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from fingerpad.io.drawing import Drawing
-    from fingerpad.slices.finger import WholeFinger
 
-_STABILITY = ("stable", "lambda_min", "gain")
-_CHANGES = ("error", "penalty")
 KINDS = ("surface", "finger", "history", "footprint", "time")
 """Pictures of a result."""
-
-
-@dataclass(frozen=True)
-class Cost:
-    """Time, memory and work of a result."""
-
-    processor_seconds: float = 0.0
-    """Processor time of all ranks (s), meshes, microscale and compiled forms included."""
-    wall_seconds: float = 0.0
-    """Elapsed time (s)."""
-    newton_iterations: int = 0
-    factorisations: int = 0
-    unknowns: int = 0
-    """Unknowns of the largest linear system; with an accuracy, of the final mesh."""
-    memory_mb: float = 0.0
-    """Memory of all ranks (MB)."""
-    ranks: int = 1
+_SECTION = "Section at the centre of the finger"
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Result:
-    """Result of a model for a scene; the same on every rank, except for pictures, which rank 0 draws."""
-
-    scene: Scene
-    model: str
-    """``full``, ``smooth`` or ``cylinders``."""
-    uncharged: ContactState | None
-    """Uncharged normal contact; None where a history or a model does not have this state, as for the next two. All
-    three are defined in :mod:`fingerpad.io.states`."""
-    charged: ContactState | None
-    """Charged normal contact, the last state in contact before the bone moves sideways; of a run at 0 V uncharged."""
-    full_slip: ContactState | None
-    """Full slip, held over a further 0.2 mm."""
-    steps: tuple[ContactState, ...] = ()
-    """Accepted states in order; empty for a model without a loading path."""
-    loads: tuple[LoadResult, ...] = ()
-    """Each load in order, with the state at its end."""
-    cost: Cost = Cost()
-    failure: str = ""
-    """Reason why a load or an accuracy could not be reached, else empty."""
-    interrupted: str = ""
-    """Name of the signal that ended the run, else empty."""
-    notes: tuple[str, ...] = ()
-    """Remarks on the result: sources and omissions."""
-    cautions: tuple[str, ...] = ()
-    """Why the numbers may be further off than their errors say: limits of validity that the scene reaches."""
-    record: dict[str, Any] = field(default_factory=dict)
-    """Further content of ``summary.json``: omissions, restarts, refinement, laws, provenance."""
-    folder: Path | None = None
-    """Folder of tables, plots and fields, an absolute path; None where nothing was written."""
-    drawing: "Drawing | None" = None
-    """Data of the pictures; None for a model without them."""
-    finger: "WholeFinger | None" = None
-    """The whole finger in N and mm²; None where a history or a model does not give it."""
-
-    def __post_init__(self) -> None:
-        """Keep the folder where the program may go to another one, in which the same name is another run's."""
-        if self.folder is not None:
-            object.__setattr__(self, "folder", self.folder.absolute())
-
-    @property
-    def named(self) -> dict[str, ContactState]:
-        """Named states that are not None, by their names in :data:`fingerpad.io.states.STATES`."""
-        return {name: state for name in STATES if (state := getattr(self, name)) is not None}
-
-    @property
-    def last(self) -> ContactState | None:
-        """The last accepted state; without a loading path the last named state."""
-        return self.steps[-1] if self.steps else (self.full_slip or self.charged or self.uncharged)
-
-    @property
-    def asked_force(self) -> float | None:
-        """Force on the whole finger (N) that the run was asked for; None of a run of a cross-section."""
-        return (self.record.get("asked") or {}).get("force")
+class Result(Answer):
+    """Result of a model for a scene: its answer with pictures, text and files."""
 
     def plot(self, kind: str = "surface", path: str | Path | None = None) -> "Figure | None":
         """Draw the skin, the deformed finger, the history of sliding, or the footprint of the whole finger.
@@ -126,11 +69,9 @@ class Result:
             return footprint(self.finger, None if path is None else Path(path)) if terminal.rank() == 0 else None
         if self.drawing is not None:
             return self.drawing.figure(kind, None if path is None else Path(path))
-        if self.model != "full":
-            raise ValueError(f"the model {self.model!r} has no skin to draw; use model='full'")
-        if terminal.rank() == 0:
-            raise ValueError("the result has no states to draw")
-        return None
+        if not self.steps:
+            raise ValueError(f"the result of the model {self.model!r} has no steps to draw; those of model='full' have")
+        return None  # on the other ranks
 
     def to_xarray(self) -> "xarray.Dataset":
         """Return steps, loads, ridges, sites and named states as one dataset with units, as ``result.nc`` has it.
@@ -138,41 +79,59 @@ class Result:
         Raises:
             ImportError: xarray is not installed.
         """
-        from fingerpad.io import dataset  # it takes a Result
-
         return dataset.dataset(self)
+
+    def with_outputs(self, outputs: Iterable[Output]) -> "Result":
+        """Return the result with further outputs, computed from its states; files are not written again.
+
+        Raises:
+            SceneError: one is no output, or cannot be computed.
+        """
+        new = checked(outputs)
+        named: dict[str, Any] = {name: valued(state, new) for name, state in self.named.items()}
+        steps = tuple(valued(state, new) for state in self.steps)
+        loads = tuple(load_results(steps, self.scene.loads(), lambda k, end: self.loads[k].stable)) if steps else ()
+        kept = tuple(each for each in self.outputs if each.name not in {one.name for one in new})
+        return replace(self, steps=steps, loads=loads, outputs=(*kept, *new), **named)
 
     # -- files -----------------------------------------------------------------------------------------
     def values(self) -> dict[str, Any]:
-        """Return conditions and results of the named states, flat: ``slip_mu_app``; None where a state is missing."""
+        """Return what is known of the named states, flat: ``full_slip_mu_app``; None where a state is missing."""
         found: dict[str, Any] = {}
         for name in STATES:
-            state, prefix = getattr(self, name), PREFIXES[name]
-            names = (*CONDITIONS, *RESULTS, *_STABILITY)
-            found |= {f"{prefix}_{key}": None if state is None else _plain(getattr(state, key)) for key in names}
-            for kind in _CHANGES if state is not None else ():
-                found |= {f"{prefix}_{key}_{kind}": value for key, value in getattr(state, kind).known().items()}
-        return found
+            state = getattr(self, name)
+            found |= {f"{name}_{key}": None if state is None else getattr(state, key) for key in self._kept()}
+            for kind in CHANGES if state is not None else ():
+                found |= {f"{name}_{key}_{kind}": value for key, value in getattr(state, kind).known().items()}
+        return {key: None if value != value else value for key, value in found.items()}
+
+    def _kept(self) -> tuple[str, ...]:
+        """Return the names of the quantities of a named state in ``summary.json``."""
+        return *CONDITIONS, *RESULTS, *STABILITY, *(each.name for each in self.outputs)
 
     def to_dict(self) -> dict[str, Any]:
         """Return the content of ``summary.json``, ready for JSON; SI units."""
-        last = self.last
+        last, values = self.last, self.values()
+        nested = {
+            name: {key: values[f"{name}_{key}"] for key in self._kept()}
+            | {kind: getattr(state, kind).known() for kind in CHANGES}
+            for name, state in self.named.items()
+        }
         found: dict[str, Any] = {
             "model": self.model,
             "f_ext": 0.0 if last is None else last.f_ext,
             "voltage": 0.0 if last is None else last.voltage,
             "full_slip": self.full_slip is not None,
-            **{f.name: getattr(self.cost, f.name) for f in fields(Cost)},
-            **self.values(),
-            "states": {name: _nested(state) for name, state in self.named.items()},
+            **asdict(self.cost),
+            **values,
+            "states": nested,
             "loads": [load.to_dict() for load in self.loads],
             "parameters": self.scene.parameters(),
             **self.record,
         }
-        for name in ("failure", "interrupted"):
-            found |= {name: getattr(self, name)} if getattr(self, name) else {}
-        for name in ("notes", "cautions"):
-            found |= {name: list(getattr(self, name))} if getattr(self, name) else {}
+        found |= {name: text for name in ("failure", "interrupted") if (text := getattr(self, name))}
+        found |= {name: list(kept) for name in ("notes", "cautions") if (kept := getattr(self, name))}
+        found |= {"outputs": [each.to_dict() for each in self.outputs]} if self.outputs else {}
         return found | ({"finger": self.finger.to_dict()} if self.finger is not None else {})
 
     @classmethod
@@ -182,64 +141,55 @@ class Result:
         Raises:
             SceneError: its parameters are no valid scene.
         """
-        parameters = summary["parameters"]
-        scene = as_kept(parameters)
-        cost = Cost(**{f.name: summary.get(f.name, f.default) for f in fields(Cost)})
-        used = {f.name for f in fields(Cost)} | {"parameters", "states", "loads", "failure", "interrupted", "notes"}
-        used |= {"cautions", "model", "f_ext", "voltage", "full_slip", "finger"}
-        names = (*CONDITIONS, *RESULTS, *_STABILITY, *(f"{f.name}_{kind}" for f in fields(Errors) for kind in _CHANGES))
-        used |= {f"{prefix}_{name}" for prefix in PREFIXES.values() for name in names}
-        record = {key: value for key, value in summary.items() if key not in used}
-        if "laws" in parameters:  # objects of Python, of which only the names are kept
-            record["parameters"] = parameters
-        uncharged, charged, full_slip = (_state(summary, PREFIXES[name]) for name in STATES)
         from fingerpad.slices.finger import WholeFinger  # it takes names of this module's wing
 
-        return cls(
-            scene,
-            summary.get("model", "full"),
-            uncharged,
-            charged,
-            full_slip,
-            cost=cost,
+        parameters, named = summary["parameters"], summary.get("states", {})
+        bare = cls(as_kept(parameters), summary.get("model", DEFAULT_MODEL), None, None, None)
+        states: dict[str, Any] = {name: _state(name, named[name]) for name in STATES if name in named}
+        bare = replace(
+            bare,
+            **states,
+            cost=Cost(**{f.name: summary.get(f.name, f.default) for f in fields(Cost)}),
             failure=summary.get("failure", ""),
             interrupted=summary.get("interrupted", ""),
             notes=tuple(summary.get("notes", ())),
             cautions=tuple(summary.get("cautions", ())),
-            record=record,
+            outputs=read_outputs(summary.get("outputs", ())),
             folder=folder,
-            finger=WholeFinger.from_dict(summary["finger"], scene.slices) if "finger" in summary else None,
+            finger=WholeFinger.from_dict(summary["finger"], bare.scene.slices) if "finger" in summary else None,
         )
+        used = {*bare.to_dict(), "failure", "interrupted", "notes", "cautions", "outputs", "finger"}
+        used |= {f"{name}_{field.name}_{kind}" for name in STATES for field in fields(Errors) for kind in CHANGES}
+        record = {key: value for key, value in summary.items() if key not in used}
+        if "laws" in parameters:  # objects of Python, of which only the names are kept
+            record["parameters"] = parameters
+        return replace(bare, record=record)
 
     @classmethod
     def load(cls, folder: str | Path) -> "Result":
-        """Return the result of a run from its folder; the skin of its named states is that of ``result.nc`` there.
+        """Return the result of a run from its folder: its states from ``result.nc``, all else from ``summary.json``.
+
+        Where there is no whole ``result.nc``, the states are those of ``steps.csv`` and ``summary.json``, without
+        ridges, sites and skin.
 
         Raises:
             SceneError: the folder holds no result that can be read.
         """
-        from fingerpad.io import dataset  # it takes a Result
-        from fingerpad.io.kept_drawing import KeptDrawing  # Matplotlib, which reading numbers does not need
-
         folder, name = Path(folder), clip(str(folder), 80)
         try:
             summary = read_object(folder / "summary.json")
             if set(summary) == {"failure"}:
                 raise SceneError(f"the run in {name} was refused and has no results: {summary['failure']}")
             found = cls.from_dict(summary, folder)
-            skins = dataset.skins(folder)
-            known = {name: replace(state, skin=skins.get(name)) for name, state in found.named.items()}
-            found = replace(found, **{name: known.get(name) for name in STATES})  # type: ignore[arg-type]
-            if found.model != "full" or not (summary.get("steps") or (folder / "steps.csv").exists()):
+            if (kept := dataset.read(folder, [each.name for each in found.outputs])) is not None:
+                found = replace(found, steps=kept[0], **kept[1])  # type: ignore[arg-type]
+            elif (folder / "steps.csv").exists():
+                found = replace(found, steps=steps_of(folder))
+            if not found.steps:
                 return found  # of no path, or of one without an accepted step
-            with (folder / "steps.csv").open(encoding="utf-8", newline="") as file:
-                steps = tuple(ContactState.from_row(row) for row in csv.DictReader(file))
-            mu_0 = None if "laws" in found.record.get("parameters", {}) else coefficient(found.scene)
-            asked = found.scene.accuracy is not None
-            meshes = (summary.get("path_mesh"), summary.get("accuracy", {}).get("mesh")) if asked else (None, None)
-            path, final = (mesh["contact"] if mesh else None for mesh in meshes)
-            drawing = KeptDrawing(mu_0, steps, {}, {}, {}, path, found.named, folder.absolute(), final)
-            return replace(found, steps=steps, loads=tuple(_loads(steps, found.scene, summary)), drawing=drawing)
+            stable = [load.get("stable") for load in summary.get("loads", ())]
+            loads = load_results(found.steps, found.scene.loads(), lambda k, end: (*stable, *[None] * (k + 1))[k])
+            return replace(found, loads=tuple(loads), drawing=_drawing(found, folder))
         except (OSError, ValueError, KeyError, TypeError, AttributeError, csv.Error) as error:  # JSON of other things
             if isinstance(error, SceneError) and name in str(error):
                 raise
@@ -248,45 +198,116 @@ class Result:
             raise SceneError(f"run {name} cannot be read: its files are not whole, or not of a run ({error})") from None
 
     def __str__(self) -> str:
-        """Return the text at the end of a run, see :func:`fingerpad.io.result_text.text`."""
-        from fingerpad.io.result_text import text  # it takes a Result
-
-        return text(self)
+        """Return the text *Result* at the end of a run: the named states side by side, with units and errors."""
+        return _text(self)
 
     __repr__ = __str__
     """In a notebook, too: the values of all steps are hundreds of pages."""
 
 
-def _loads(steps: Sequence[ContactState], scene: Scene, summary: Mapping[str, Any]) -> Iterator[LoadResult]:
-    """Return the result of each load of a run; the stability of its end comes from the summary."""
-    stable = [load.get("stable") for load in summary.get("loads", ())]
-    return load_results(steps, scene.loads(), lambda k, end: stable[k] if k < len(stable) else None)
+def steps_of(folder: Path) -> tuple[ContactState, ...]:
+    """Return the states of ``steps.csv`` of a folder; a last row that is cut short is left out.
+
+    Raises:
+        OSError: there is no such file.
+        ValueError: it is not of a run.
+    """
+    with (folder / "steps.csv").open(encoding="utf-8", newline="") as file:
+        return tuple(ContactState.from_row(row) for row in csv.DictReader(file) if None not in row.values())
 
 
-def _plain(value: Any) -> Any:
-    """Return a value ready for JSON: None for NaN."""
-    return None if isinstance(value, float) and math.isnan(value) else value
+def _drawing(result: Result, folder: Path) -> "Drawing":
+    """Return what the pictures of a result that was read are drawn from."""
+    from fingerpad.io.kept_drawing import KeptDrawing  # Matplotlib, which reading numbers does not need
+
+    mu_0 = None if "laws" in result.record.get("parameters", {}) else coefficient(result.scene)
+    meshes = (result.record.get("path_mesh"), result.record.get("accuracy", {}).get("mesh"))
+    path, final = (mesh["contact"] if mesh and result.scene.accuracy is not None else None for mesh in meshes)
+    return KeptDrawing(mu_0, result.steps, {}, {}, {}, path, result.named, folder.absolute(), final)
 
 
-def _nested(state: ContactState) -> dict[str, Any]:
-    found: dict[str, Any] = {key: _plain(getattr(state, key)) for key in (*CONDITIONS, *RESULTS, *_STABILITY)}
-    return found | {kind: getattr(state, kind).known() for kind in _CHANGES}
+def _state(name: str, kept: Mapping[str, Any]) -> ContactState:
+    """Return a named state of ``summary.json``.
+
+    Args:
+        name: of the state.
+        kept: its values and errors.
+    """
+    values = {key: value for key, value in kept.items() if key not in CHANGES and value is not None}
+    if wrong := [key for key, value in values.items() if not isinstance(value, int | float) and key != "load"]:
+        raise TypeError(f"{wrong[0]} of {name} is no number")
+    more: dict[str, Any] = {kind: Errors(**kept.get(kind, {})) for kind in CHANGES}
+    more |= {key: values.pop(key) for key in STABILITY if key in values}
+    slip = {"all_slip": True, "slip_held": True} if name == "full_slip" else {}
+    return replace(ContactState.from_row({"mu_app": math.nan} | values | slip), **more)
 
 
-def _state(summary: Mapping[str, Any], prefix: str) -> ContactState | None:
-    if summary.get(f"{prefix}_contact_length") is None:
-        return None
-    values = {key: summary.get(f"{prefix}_{key}") for key in (*CONDITIONS, *RESULTS, *_STABILITY)}
-    given = {"mu_app": math.nan} | {key: value for key, value in values.items() if value is not None}
-    if wrong := [key for key, value in given.items() if not isinstance(value, int | float) and key != "load"]:
-        raise TypeError(f"{prefix}_{wrong[0]} is no number")
-    for key in ("f_ext", "voltage"):  # of the scene itself, in results of models without a loading path
-        given.setdefault(key, summary[key] if summary.get("model", "full") != "full" else math.nan)
-    if prefix == PREFIXES["full_slip"]:
-        given |= {"all_slip": True, "slip_held": True}
-    return ContactState(**given, error=_changes(summary, prefix, "error"), penalty=_changes(summary, prefix, "penalty"))
+# -- text ------------------------------------------------------------------------------------------------
+def _text(result: Result) -> str:
+    """Return the text *Result* at the end of a run: the named states side by side, with units and errors.
+
+    The whole finger follows; it comes first where the scene has a force on it.
+    """
+    whole, shown = result.whole and result.finger is not None, result.named
+    lines = ["Result" if result.finger is None else _SECTION]
+    lines[0] += f" (model '{result.model}')" if result.model != DEFAULT_MODEL else ""
+    if shown:
+        heads = [called(name, state.voltage).split(" normal") for name, state in shown.items()]
+        rows = [
+            ["", *(head[0] for head in heads)],
+            ["", *(("normal" + head[1]) if head[1:] else "" for head in heads)],
+        ]
+        values = ((quantity.title, result.cells(key)) for key, quantity in result.printed.items())
+        rows += [[title, *each] for title, each in values if set(each) - {"–"}]
+        if any(state.stable is not None for state in shown.values()):
+            verdicts = {True: "yes", False: "no", None: "–"}
+            rows.append(["stable", *(verdicts[state.stable] for state in shown.values())])
+        widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+        for first, *rest in rows:
+            cells = (cell.rjust(width) for cell, width in zip(rest, widths[1:], strict=True))
+            lines.append("   ".join(["  " + first.ljust(widths[0]), *cells]).rstrip())
+    least = result.record.get("force_error") or 0.0
+    lines += [f"  {_in_time(load, least)}" for load in result.loads if load.over_time is not None]
+    lines += [f"  {note}" for note in _remarks(result)]
+    finger = [f"{result.finger}"] if result.finger is not None else []
+    return "\n".join([*finger, *lines] if whole else [*lines, *finger])
 
 
-def _changes(summary: Mapping[str, Any], prefix: str, kind: str) -> Errors:
-    keys = {field.name: f"{prefix}_{field.name}_{kind}" for field in fields(Errors)}
-    return Errors(**{name: summary[key] for name, key in keys.items() if summary.get(key) is not None})
+def _remarks(result: Result) -> list[str]:
+    """Return the lines after the table: failure, missing full slip, meaning of ± and N/m, effect of the penalty."""
+    found = [f"Not finished: {result.failure}"] if result.failure else []
+    asked = any(load.until_full_slip or load.moves for load in result.scene.loads())
+    if asked and result.full_slip is None and not result.failure:
+        reached = any(load.full_slip_reached for load in result.loads)
+        found.append(f"Full slip was {'not held over a further 0.2 mm' if reached else 'not reached'}.")
+    if any(state.error.known() for state in result.named.values()):
+        found.append(PLUS_MINUS)
+    sizes = {name: state.mesh_contact for name, state in result.named.items() if not math.isnan(state.mesh_contact)}
+    if len(set(sizes.values())) > 1:  # with an accuracy
+        each = (f"{1e6 * size:.3g} µm ({called(name, result.named[name].voltage)})" for name, size in sizes.items())
+        found.append(f"Facets of {', '.join(each)}: differences between these states have the errors of both meshes.")
+    share = math.nan if result.full_slip is None else result.full_slip.penalty.contact_length
+    if not math.isnan(share):
+        found.append(f"Penalty: a rigid screen would change the contact length at full slip by {1e3 * share:+.2g} mm.")
+    cautions = [f"! {caution}" for caution in result.cautions]
+    return [*found, *([PER_LENGTH] if result.named else []), *result.notes, *cautions]
+
+
+def _in_time(load: LoadResult, least: float) -> str:
+    """Return range and mean of friction in a load over time, and its largest amplitude; of L_R without friction.
+
+    Args:
+        load: over time.
+        least: friction force (N/m) up to which there is none.
+    """
+    passed, rubs = load.over_time, load.rubs(least)
+    assert passed is not None
+    key = "contact_length" if not rubs else "mu_app" if "mu_app" in load.extremes else "f_t"
+    quantity, ends, mean = QUANTITIES[key], load.extremes[key], passed.mean[key]
+    unit = f" {quantity.unit}" if quantity.unit else ""
+    words = f"{load.name}: {quantity.words.split()[-1]} {cell(key, ends.min)} to {cell(key, ends.max)}{unit}"
+    words += "" if math.isnan(mean) else f", mean {cell(key, mean)}{unit}"
+    if rubs and passed.periods:
+        most, frequency = max(zip(passed.f_t_amplitude, passed.frequency, strict=True))
+        words += f"; amplitude of f_T at {frequency:.4g} Hz {cell('f_t', most)} N/m"
+    return f"{words}; {load.sticking}" if rubs and load.sticking else words

@@ -14,7 +14,7 @@ from matplotlib.figure import Figure
 from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import NDArray
 
-from fingerpad.io import style, titles
+from fingerpad.io import style
 
 Array = NDArray[np.float64]
 _MM, _UM, _KPA = 1e3, 1e6, 1e-3
@@ -63,7 +63,7 @@ def surface(path: Path | str | None, states: Sequence[SurfaceProfile], title: st
     Args:
         path: of the PNG file; None for the figure alone.
         states: one pair of panels each, such as normal contact, partial slip and full slip.
-        title: what they have in common, see :mod:`fingerpad.io.titles`.
+        title: what they have in common, see :mod:`fingerpad.io.style`.
         largest_gap: end of the gaps' axis (m).
     """
     with style.look():
@@ -106,7 +106,7 @@ def saw_teeth(p: Array) -> float:
 
 
 def _surface_title(letter: str, state: SurfaceProfile) -> str:
-    words = f"{letter}  {titles.plain(state.title)}: {titles.loads([(state.f_ext, state.voltage, state.bone_x)])}"
+    words = f"{letter}  {style.plain(state.title)}: {style.loads([(state.f_ext, state.voltage, state.bone_x)])}"
     words += f", $L_R$ = {_MM * state.contact_length:.3g} mm"
     if _pressed(state):
         words += f", $f_{{ext}}/L_R$ = {_KPA * state.f_ext / state.contact_length:.3g} kPa"

@@ -10,13 +10,14 @@
 """
 
 import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import asdict, dataclass
 from itertools import groupby
 from operator import attrgetter
 from typing import Any
 
-from fingerpad.io.over_time import QUANTITIES, OverTime, over_time, without_parts_of_jumps
+from fingerpad.io.over_time import OverTime, over_time, without_parts_of_jumps
+from fingerpad.io.quantities import EXTREMES
 from fingerpad.scene import Load
 from fingerpad.scene.waveform import Waveform
 from variational.state import CONDITIONS, RESULTS, ContactState
@@ -25,12 +26,12 @@ STILL = 1e-12  # m, largest sideways displacement of a bone at rest
 SLIDE_ON = 0.2e-3  # m, further sliding over which the forces of full slip are constant
 STATES = ("uncharged", "charged", "full_slip")
 WORDS = {"uncharged": "uncharged normal contact", "charged": "charged normal contact", "full_slip": "full slip"}
-PREFIXES = {"uncharged": "uncharged", "charged": "normal", "full_slip": "slip"}
-"""Prefixes of the quantities of a state in flat tables and in ``summary.json``: ``normal_contact_length``."""
 FIRST_TOUCH = "touch"
 """Name of the steps that press a finger in the air in a little, before a force can control it."""
 _ROUNDOFF = 1e-9  # relative, of a displacement or a voltage
-_UNLOADED = ContactState(
+_MEANS = {"f_t": ("f_T", "N/m", 1.0), "contact_length": ("L_R", "mm", 1e3)}
+_SURE = 0.02  # of the largest amount in the load: change of a mean with every second step that is not told
+UNLOADED = ContactState(
     f_ext=0.0, voltage=0.0, f_t=0.0, mu_app=math.nan, f_contact=0.0, f_electrostatic=0.0, ridges_in_contact=0,
     contact_length=0.0, time=0.0,
 )  # fmt: skip
@@ -121,6 +122,16 @@ def partial_slip(rows: Sequence[ContactState]) -> ContactState | None:
     """
     found = named(rows)
     last = found.get("full_slip", rows[-1]).step
+    return nearest_to_half(rows, last)
+
+
+def nearest_to_half(rows: Sequence[ContactState], last: float = math.inf) -> ContactState | None:
+    """Return the state of sliding without full slip, up to a step, of which the slipping part is nearest to one half.
+
+    Args:
+        rows: states of a history.
+        last: number of the step.
+    """
     way = rows[len(before_sliding(rows)) :]
     some = [row for row in way if row.step <= last and not row.slip_began]
     return min(some, key=lambda row: abs(row.slipping - 0.5)) if some else None
@@ -186,7 +197,7 @@ class LoadResult:
 
     def to_dict(self) -> dict[str, Any]:
         """Return the load's result, ready for JSON."""
-        end = {key: getattr(self.end, key) for key in (*CONDITIONS, *RESULTS) if key != "load"}
+        end = {key: getattr(self.end, key) for key in (*CONDITIONS, *RESULTS, *self.end.own) if key != "load"}
         extremes = {quantity: extreme.to_dict() for quantity, extreme in self.extremes.items()}
         more = {name: getattr(self, name) for name in ("full_slip_reached", "full_slip_held", "stable")}
         more |= {} if self.over_time is None else {"over_time": self.over_time.to_dict()}
@@ -229,15 +240,15 @@ def load_result(
         wave: its voltage over time; None where it is constant.
     """
     # A waveform has a state of its own at its begin, after a jump from the voltage before.
-    begin = [] if wave is not None else before or ([_UNLOADED] if mine[0].time > 0 else [])
+    begin = [] if wave is not None else before or ([UNLOADED] if mine[0].time > 0 else [])
     passed = over_time([*begin, *mine], wave)
     own = [state for state in mine if _counts(state, name)] or mine
     if passed is not None:
         own = without_parts_of_jumps(own, passed.start) if wave is not None else [*begin, *own]
     extremes = {}
-    for quantity in QUANTITIES:
+    for quantity in (*EXTREMES, *mine[-1].own):
         of = attrgetter(quantity)
-        known = [state for state in own if not math.isnan(of(state))]
+        known = [state for state in own if not math.isnan(getattr(state, quantity, math.nan))]
         if not known:
             continue
         least, most = min(known, key=of), max(known, key=of)
@@ -247,3 +258,26 @@ def load_result(
     under = [] if wave is None or passed is None else [state for state in own if state.time > passed.start]
     slides = sum(state.slip_began > 0 for state in under) / len(under) if under else math.nan
     return LoadResult(name, mine[-1], extremes, *slips, stable, passed, slides)
+
+
+def long_steps(loads: Iterable[LoadResult], least: float) -> list[str]:
+    """Return a sentence for each load at a constant voltage whose steps are too long for its means.
+
+    Args:
+        loads: of a run.
+        least: friction force (N/m) up to which there is none.
+    """
+    found = list[str]()
+    for load in loads:
+        changes = {} if load.over_time is None else load.over_time.mean_change
+        for key, (words, unit, factor) in _MEANS.items():
+            ends = load.extremes.get(key)
+            most = 0.0 if ends is None else max(abs(ends.min), abs(ends.max))
+            change = changes.get(key, 0.0)
+            if change > _SURE * most and (key != "f_t" or load.rubs(least)):
+                found.append(
+                    f"In the load {load.name} the mean {words} over time would change by {factor * change:.2g} {unit} "
+                    "with every second step alone: its steps are too long for it; give a smaller numerics.step_scale."
+                )
+                break
+    return found

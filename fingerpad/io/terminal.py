@@ -26,6 +26,11 @@ def ranks() -> int:
     return next((int(text) for text in given if text.isdecimal()), 1)
 
 
+def launched() -> bool:
+    """Return whether a launcher of MPI has started this process."""
+    return _rank() is not None
+
+
 def watched(stream: TextIO | None = None) -> bool:
     """Return whether a person watches a stream, to whom progress bars and colours may be shown.
 

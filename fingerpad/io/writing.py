@@ -2,17 +2,22 @@
 
 import logging
 import logging.handlers
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from typing import Any
 
+import numpy as np
 from mpi4py import MPI
 
-from fingerpad.io import columns, dataset
+from fingerpad.io import dataset
 from fingerpad.io.files import Table, replace_json
 from fingerpad.io.place import Place
+from fingerpad.io.quantities import FIELDS
 from fingerpad.io.result import Result
 from variational.output import Fields
 from variational.problem import Problem
+from variational.state import ContactState
+
+_LOG = "run.log"
 
 
 class Writer:
@@ -34,6 +39,7 @@ class Writer:
         self.folder = None if place is None else place.folder
         self._tables: dict[str, Table] = {}
         self._fields: Fields | None = None
+        self._earlier: Mapping[str, str] = {}  # tables and log of an earlier run
         self.log = logging.Logger("fingerpad", logging.INFO)  # of this run alone, apart from those of the caller
         self.log.handlers = [logging.handlers.MemoryHandler(1000, logging.CRITICAL, flushOnClose=False)]
 
@@ -45,9 +51,25 @@ class Writer:
             self._taken = True
             self._place.take()
             if self._comm.rank == 0:
-                _send(self.log, _LogFile(self._place.folder / "run.log", mode="x", encoding="utf-8"))
+                for name, text in self._earlier.items():
+                    if name != _LOG:
+                        self._tables[name] = Table(self._place.folder / f"{name}.csv", text)
+                file = _LogFile(self._place.folder / _LOG, mode="x", encoding="utf-8")
+                file.stream.write(self._earlier.get(_LOG, ""))
+                _send(self.log, file)
         if self._fields is None:
             self._fields = Fields(problem, self._place.folder)
+
+    def kept(self) -> dict[str, str]:
+        """Return the text of the log and of all tables but that of the fields, on rank 0."""
+        if self._place is None or self._comm.rank != 0:
+            return {}
+        tables = {name: table.text() for name, table in self._tables.items() if name != "fields"}
+        return tables | {_LOG: (self._place.folder / _LOG).read_text(encoding="utf-8")}
+
+    def resume(self, tables: Mapping[str, str]) -> None:
+        """Begin, before :meth:`take`, with the log and the tables of an earlier run, as :meth:`kept`."""
+        self._earlier = tables
 
     def row(self, name: str, row: Mapping[str, Any]) -> None:
         """Append a row to a table, on rank 0."""
@@ -60,8 +82,8 @@ class Writer:
         """Write the present fields under the number of their step, and the load's name and units beside; collective."""
         if self._fields is not None:
             self._fields.write(float(step))
-            for name, column in columns.FIELDS.items():
-                about = {"unit": column.unit, "meaning": column.meaning}
+            for name, field in FIELDS.items():
+                about = {"unit": field.si, "meaning": field.meaning}
                 self.row("fields", {"file": f"{name}.bp", "variable": name, "time": step, "load": load} | about)
 
     def summary(self, found: Mapping[str, Any]) -> None:
@@ -125,3 +147,20 @@ def _send(log: logging.Logger, file: logging.Handler) -> None:
             memory.setTarget(file)
             memory.flush()
     log.handlers = [file]
+
+
+def ridge_rows(state: ContactState) -> Iterator[dict[str, Any]]:
+    """Yield the row of each ridge in contact, as ``ridges.csv`` has it."""
+    if (ridges := state.ridges) is None:
+        return
+    for k in np.flatnonzero(ridges.length > 0):
+        values = {name: getattr(ridges, attribute) for name, attribute in dataset.OF_RIDGES.items()}
+        yield {"ridge": int(ridges.number[k])} | {name: each[k] if len(each) else "" for name, each in values.items()}
+
+
+def site_rows(state: ContactState) -> Iterator[dict[str, Any]]:
+    """Yield the row of each ridge's receptor sites, as ``receptors.csv`` has it."""
+    if (sites := state.sites) is None:
+        return
+    for k, number in enumerate(sites.number):
+        yield {"ridge": int(number)} | {name: getattr(sites, each)[k] for name, each in dataset.OF_SITES.items()}

@@ -22,13 +22,12 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-import fingerpad.started  # noqa: F401
+import fingerpad.startup  # noqa: F401
 from fingerpad.io.states import full_slip
 from fingerpad.model import cautions
-from fingerpad.model.balance import force_error, refuse_strained, steady
-from fingerpad.model.gathered import Nodes, Points
-from fingerpad.model.state import contact_state, step_record
-from fingerpad.scene.laws import refuse_thickness
+from fingerpad.model.gather import Nodes, Points
+from fingerpad.model.state import contact_state, force_error, refuse_strained, steady, step_record
+from fingerpad.scene.contradictions import refuse_thickness
 from fingerpad.startup import MPI
 from geometry.mesh import TaggedMesh, load
 from geometry.meshfile import file
@@ -83,7 +82,7 @@ class Body:
         shape: Callable[[], float] | TaggedMesh | str | Path,
         material: Material | Mapping[str, Material],
         *,
-        contact: Formulation = Penalty(1.5e12, 5e10),  # noqa: B008
+        contact: Formulation = Penalty(),  # noqa: B008
         friction: Friction | float | None = None,
         roughness: Closure | None = None,
         h_0: float | None = None,
@@ -119,7 +118,7 @@ class Body:
         if not (isinstance(element, str) and element in ELEMENTS):
             raise ValueError(f"element is {element!r}; it must be one of {', '.join(ELEMENTS)}")
         if not isinstance(contact, Formulation):
-            raise ValueError(f"contact is {contact!r}; it must be a Penalty, a Nitsche or an AugmentedLagrangian")
+            raise ValueError(f"contact is {contact!r}; it must be a Formulation, such as fp.Penalty(1.5e12, 5e10)")
         numbers = {"force_scale": force_scale, "touch_depth": touch_depth, "step_scale": step_scale}
         for name, value in (numbers | ({} if h_0 is None else {"h_0": h_0})).items():
             if isinstance(value, bool) or not (isinstance(value, Real) and 0 < value < math.inf):
@@ -245,7 +244,7 @@ class Body:
 
         They are computed of all states so far; without ``roughness`` there are none.
         """
-        return cautions.on_states(self.states, self._closure)
+        return cautions.on_states(self.states, self._closure, self.problem.interface.formulation)
 
     @property
     def _d_eq(self) -> Array:

@@ -9,6 +9,7 @@ from collections.abc import Iterable, Sequence
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from variational.contact.formulation import Formulation
 from variational.roughness.closure import Closure, air_gaps
 from variational.state import ContactState
 
@@ -17,18 +18,21 @@ _SHARE = 0.1  # of the contact force, from which ridges outside of the closure's
 _DEEP = 0.1  # of the air gap: largest penetration that is of no matter
 
 
-def on_states(states: Iterable[ContactState], closure: Closure | None) -> list[str]:
+def on_states(
+    states: Iterable[ContactState], closure: Closure | None, formulation: Formulation | None = None
+) -> list[str]:
     """Return the cautions on states of a body.
 
     Args:
         states: in any order; those without contact have none, and those without a voltage none on the closure.
         closure: from a ridge's pressure to its air gap; without it there are none.
+        formulation: of the contact, which has the remedy against deep skin; None of states without a mesh.
     """
     touching = [state for state in states if state.contact_length > 0]
     if closure is None or not touching:
         return []
     charged = [(*_pressures(state), state.voltage) for state in touching if state.voltage]
-    return [*on_closure(closure, charged, "states"), *_deep(touching, closure)]
+    return [*on_closure(closure, charged, "states"), *_deep(touching, closure, formulation)]
 
 
 def on_closure(closure: Closure, points: Sequence[tuple[ArrayLike, ArrayLike, float]], noun: str) -> list[str]:
@@ -59,7 +63,7 @@ def _pressures(state: ContactState) -> tuple[Array, Array]:
     return state.ridges.p_c[inside], state.ridges.f_contact[inside]
 
 
-def _deep(touching: Sequence[ContactState], closure: Closure) -> list[str]:
+def _deep(touching: Sequence[ContactState], closure: Closure, formulation: Formulation | None) -> list[str]:
     """Return the caution on states whose penetration is more than a tenth of the least air gap in contact."""
     found = [
         (state.record.penetration, float(air_gaps(closure, _pressures(state)[0]).min()))
@@ -72,6 +76,6 @@ def _deep(touching: Sequence[ContactState], closure: Closure) -> list[str]:
     depth, gap = max(deep, key=lambda each: each[0] / each[1])
     return [
         f"in {len(deep)} of {len(found)} states the skin is deeper in the screen than a tenth of the air gap, "
-        f"{depth * 1e6:.2g} µm where the gap is {gap * 1e6:.2g} µm: attraction and contact length depend on the depth; "
-        "a larger eps_n of the contact reduces it, with Nitsche's method a larger gamma_0 or smaller elements"
+        f"{depth * 1e6:.2g} µm where the gap is {gap * 1e6:.2g} µm: attraction and contact length depend on the depth"
+        + ("" if formulation is None else f"; {formulation.less_penetration}")
     ]

@@ -6,7 +6,7 @@ from contextlib import contextmanager
 
 from mpi4py import MPI
 
-from fingerpad.io.result import Cost
+from fingerpad.io.answer import Cost
 from variational.solvers.timing import Counts, memory_mb
 
 

@@ -8,9 +8,10 @@ import numpy as np
 from mpi4py import MPI
 from numpy.typing import NDArray
 
-from fingerpad.model import balance, symmetry
+from fingerpad.model import symmetry
+from fingerpad.model.feasibility import refuse_mesh, refuse_sizes
 from fingerpad.model.options import FingerModel
-from fingerpad.model.state import contact_state
+from fingerpad.model.state import contact_state, force_error, refuse_unbalanced
 from geometry import fingertip, mesh, meshfile, tags
 from geometry.profiles import Profiles
 from variational.attraction.electroadhesion import ELECTROSTATIC
@@ -30,8 +31,6 @@ class Step:
     """An accepted step."""
 
     state: ContactState
-    notes: list[str]
-    """Remarks on each ridge's place on the closure, mostly empty."""
     attempt: Attempt
     touches: bool = False
     """Whether the bone was lowered to a first touch."""
@@ -75,9 +74,9 @@ class Finger:
 
     @property
     def force_error(self) -> float:
-        """What the solves' tolerance leaves of a sum of nodal forces (N/m), see :func:`balance.force_error`."""
+        """What the solves' tolerance leaves of a sum of nodal forces (N/m), see :mod:`fingerpad.model.state`."""
         left = max(self._tolerance, self.solver.floor)
-        return balance.force_error(self.unknowns, left, self.solver.force_scale)
+        return force_error(self.unknowns, left, self.solver.force_scale)
 
     def book(self) -> EnergyBook:
         """Return a book of energies that begins in the present state; collective."""
@@ -104,11 +103,11 @@ class Finger:
             load: name of the present load.
 
         Raises:
-            StepFailed: see :func:`balance.refuse_unbalanced`.
+            StepFailed: see :func:`fingerpad.model.state.refuse_unbalanced`.
         """
         left, scale = self.solver.imbalance(), self.solver.force_scale
         where = f"step {self.continuation.steps} ({load})"
-        balance.refuse_unbalanced(where, left, loads, self.solver.reaction, scale, self._tolerance, self.solver.floor)
+        refuse_unbalanced(where, left, loads, self.solver.reaction, scale, self._tolerance, self.solver.floor)
         return left
 
     def present(self, loads: RidgeLoads, load: str, number: int, attempt: Attempt | None = None) -> Step:
@@ -126,7 +125,8 @@ class Finger:
         p_c = self.ridge_loads(by_gap=True).p_c if self.coupling.by_gap else loads.p_c  # the closure's own
         notes = [self.closure.state(float(p), self.voltage) if self.closure else "" for p in p_c]
         more = {"load": load, "load_number": number, "mesh_contact": self.contact_size}
-        return Step(contact_state(self.continuation, loads, self.ridges, d_eq, **more), notes, attempt or Attempt())
+        state = contact_state(self.continuation, loads, self.ridges, d_eq, notes, **more)
+        return Step(state, attempt or Attempt())
 
 
 def assembled(
@@ -140,17 +140,12 @@ def assembled(
         on_accept: see :class:`variational.solvers.continuation.Continuation`.
         half: of the half at x >= 0, whose mirror image is the other.
     """
-    numerics = model.numerics
-    if model.mesh_file is not None:
-        tagged = mesh.load(comm, meshfile.file(model.mesh_file, model.mesh_sha256))
-    else:
-        build = partial(fingertip.build, model.geometry, model.mesh, model.options.receptors, half)
-        tagged = mesh.load(comm, build, tags.LAYERS.values())
+    numerics, tagged = model.numerics, meshed(model, comm, half)
     layers = tagged.layers().values()
     body = Body(
         tagged,
         {tag: solid for tag, solid in model.solids.items() if tag in layers},
-        Interface(model.contact.law(), model.friction, model.h_0, ELECTROSTATIC if model.options.voltage else None),
+        Interface(model.contact, model.friction, model.h_0, ELECTROSTATIC if model.options.voltage else None),
         model.closure,
         element=numerics.element,
         points=numerics.quadrature_points,
@@ -159,8 +154,30 @@ def assembled(
         mirror=tagged.facets(tags.SYMMETRY) if half else None,
         coupling_tolerance=numerics.coupling_tolerance,
         coupling_cap=numerics.coupling_cap,
-        by_gap=model.contact.length == "gap",
+        by_gap=model.by_gap,
         on_accept=on_accept,
         step_scale=numerics.step_scale,
     )
     return tagged, body
+
+
+def meshed(model: FingerModel, comm: MPI.Comm, half: bool | None = None) -> mesh.TaggedMesh:
+    """Return a finger's mesh; collective.
+
+    Args:
+        model: shape, sizes and numbers.
+        comm: communicator of the mesh.
+        half: whether of the half at x >= 0 alone; by default as the model's options have it.
+
+    Raises:
+        GeometryError: it cannot be meshed, or needs more memory than is allowed, for which no file is refused.
+    """
+    if model.mesh_file is not None:
+        return mesh.load(comm, meshfile.file(model.mesh_file, model.mesh_sha256 or ""))
+    half = not model.options.both_halves if half is None else half
+    refuse_sizes(model.geometry, model.mesh, model.numerics, model.options)
+    build = partial(fingertip.build, model.geometry, model.mesh, model.options.receptors, half)
+    found = mesh.load(comm, build, tags.LAYERS.values())
+    points, triangles = (found.mesh.topology.index_map(dimension).size_global for dimension in (0, 2))
+    refuse_mesh(points, triangles, model)
+    return found

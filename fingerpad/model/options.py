@@ -4,16 +4,19 @@ A :class:`FingerModel` reads the scene once. What meshes, solves, records and re
 
 What cannot change any number asked for is left out, and each omission comes with its reason. Nothing here is an
 approximation but what the finite elements make of it: the numbers stay those of the whole model. Ridges that are not
-expected to touch are another matter (:mod:`fingerpad.model.touching`).
+expected to touch are another matter (:mod:`fingerpad.model.feasibility`).
 """
 
 from collections.abc import Mapping
 from copy import copy
 from dataclasses import dataclass, replace
+from pathlib import Path
 
-from fingerpad.scene import Contact, Load, Numerics, Scene
+from fingerpad.scene import Load, Numerics, Scene
 from geometry.parameters import Fingertip, MeshSize
 from geometry.sizing import touching_ridges
+from variational.contact.formulation import Formulation
+from variational.materials.material import Material
 
 
 @dataclass(frozen=True)
@@ -77,16 +80,15 @@ def plan(scene: Scene) -> ModelOptions:
     errors = scene.output.errors or scene.accuracy is not None
     if not errors:
         omitted.append(Omission("discretisation errors", "output.errors is false"))
-    symmetric = all(solid.keeps_symmetry() for solid in scene.laws.materials.values())
+    symmetric = all(solid.keeps_symmetry() for solid in scene.own_laws().values() if isinstance(solid, Material))
     both_halves = any(load.moves for load in scene.loads()) or not symmetric
-    if scene.laws.mesh is not None:  # the whole of it, and no other mesh of the same finger
+    if scene.geometry.file is not None:  # the whole of it, and no other mesh of the same finger
         if receptors:
             omitted.append(Omission("receptor sites", _FILE))
         if errors:
             omitted.append(Omission("discretisation errors", f"{_FILE} and cannot be refined"))
         return ModelOptions(voltage, friction, False, True, False, False, tuple(omitted))
-    # The half's multipliers, which an augmented Lagrangian corrects within a step, are not put on the whole.
-    symmetric_start = both_halves and symmetric and scene.contact.formulation != "augmented"
+    symmetric_start = both_halves and symmetric and scene.contact.law.symmetric_start
     if not both_halves:
         omitted.append(_HALF)
     return ModelOptions(voltage, friction, receptors, both_halves, symmetric_start, errors, tuple(omitted))
@@ -103,6 +105,7 @@ class FingerModel:
         mesh_sha256: hash of that file, as it was when the scene was given it.
         solids: material of each layer's tag.
         contact: formulation of the contact.
+        by_gap: whether a ridge's length is that of a small gap, and not that under contact pressure.
         friction: law of friction; None without friction.
         closure: the microscale; None where there is never a voltage.
         h_0: effective insulator thickness (m).
@@ -115,15 +118,17 @@ class FingerModel:
         """Read a scene.
 
         Args:
-            scene: a checked scene with a ``mesh.touching_half_arc``, see :func:`fingerpad.model.touching.by_rule`.
+            scene: a checked scene with a ``mesh.touching_half_arc``, see :func:`fingerpad.model.feasibility.by_rule`.
             options: the parts of the model, see :func:`plan`.
         """
         self.options = options
         self.geometry: Fingertip = scene.geometry
         self.mesh: MeshSize = scene.mesh
-        self.mesh_file, self.mesh_sha256 = scene.laws.mesh, scene.laws.mesh_sha256
+        self.mesh_file = None if scene.geometry.file is None else Path(scene.geometry.file)
+        self.mesh_sha256 = scene.geometry.file_sha256
         self.solids = scene.solids()
-        self.contact: Contact = scene.contact
+        self.contact: Formulation = scene.contact.law
+        self.by_gap = scene.contact.length == "gap"
         self.friction = scene.friction_law()
         self.closure = scene.closure() if options.voltage else None
         self.h_0 = scene.h_0
@@ -136,7 +141,7 @@ class FingerModel:
         *,
         options: ModelOptions | None = None,
         mesh: MeshSize | None = None,
-        contact: Contact | None = None,
+        contact: Formulation | None = None,
         loads: tuple[Load, ...] | None = None,
         numerics: Numerics | None = None,
     ) -> "FingerModel":

@@ -4,18 +4,19 @@ import json
 import logging
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from typing import Any
 
 from fingerpad.io import states
 from fingerpad.io.console import Console
-from fingerpad.io.drawing import End
-from fingerpad.io.views import View
-from fingerpad.io.writing import Writer
+from fingerpad.io.drawing import End, View
+from fingerpad.io.quantities import Output, valued
+from fingerpad.io.writing import Writer, ridge_rows, site_rows
 from fingerpad.model.cost import Clock
 from fingerpad.model.finger import Step
 from fingerpad.model.options import Omission
-from fingerpad.model.path_record import PathRecord
+from fingerpad.model.record import PathRecord, Viewer
 from fingerpad.model.simulation import Simulation
-from fingerpad.model.viewer import Viewer
+from variational.solvers import checkpoint
 from variational.state import ContactState
 
 
@@ -27,22 +28,34 @@ class Report:
     """
 
     def __init__(
-        self, simulation: Simulation, omitted: Sequence[Omission], writer: Writer, console: Console, clock: Clock
+        self,
+        simulation: Simulation,
+        omitted: Sequence[Omission],
+        loads: Sequence[str],
+        writer: Writer,
+        console: Console,
+        clock: Clock,
+        outputs: Sequence[Output] = (),
     ) -> None:
         """Print the model; nothing is written before there is a step.
 
         Args:
             simulation: set up, at its start.
             omitted: parts that its model leaves out.
+            loads: names of its loads in order.
             writer: writes into the folder.
             console: prints.
             clock: of the run.
+            outputs: computed from each state.
         """
+        self._outputs = outputs
         self._simulation, self._writer, self._console, self._clock = simulation, writer, console, clock
         finger, checks = simulation.finger, simulation.checks
         self.record = PathRecord(finger.problem.mesh.comm, checks)
         self._viewer = Viewer(finger)
         self._written = self._logged = 0
+        self._ends: list[tuple[int, Any]] = []  # step and unknowns at the end of each load, whole on rank 0
+        self._loads = loads
         for omission in omitted:
             console.show(f"{omission}")
             writer.log.info("%s", omission)
@@ -60,29 +73,33 @@ class Report:
             assert step.state.record is not None
             self._writer.take(self._simulation.finger.problem)
             record = replace(step.state.record, processor_seconds=self._clock.processor_seconds())
-            state = replace(step.state, record=record)
+            state = replace(step.state, record=record, sites=self._viewer.sites(), changes=tuple(step.attempt.changes))
+            state = valued(state, self._outputs)
             self.record.states.append(state)
-            profile, receptors = self._viewer.profile(step), self._viewer.receptors(step)
+            profile = self._viewer.profile(step)
             if profile is not None:
                 self.record.profiles[state.step] = profile
             self._writer.row("steps", state.row())
-            size = {"mesh_contact": state.mesh_contact}
-            for name, found in (("ridges", self._viewer.ridges(step)), ("receptors", receptors)):
-                for each in found:
-                    self._writer.row(name, each | size)
-            for iteration, change in enumerate(step.attempt.changes):
+            self._tables("", {"step": state.step}, state, state.mesh_contact)
+            for iteration, change in enumerate(state.changes):
                 self._writer.row("coupling", {"step": state.step, "iteration": iteration + 1, "change": change})
             self._console.step(state, done)
             if self._simulation.finger.problem.mesh.comm.rank == 0:
                 self._log(step, state)
+
+    def _tables(self, end: str, first: Mapping[str, Any], state: ContactState, size: float) -> None:
+        """Write the rows of ridges in contact and of receptor sites of a state."""
+        for name, rows in (("ridges", ridge_rows(state)), ("receptors", site_rows(state))):
+            for row in rows:
+                self._writer.row(f"{name}{end}", {**first, **row, "mesh_contact": size})
 
     def _log(self, step: Step, state: ContactState) -> None:
         log = self._writer.log
         log.info("step %s coupling iterations %s", json.dumps(state.row()), step.attempt.changes)
         for cut in step.attempt.cutbacks:
             log.warning("step %d cut: %s", state.step, cut)
-        ridges = self._simulation.finger.ridges
-        notes = [f"ridge {j} {note}" for j, note in zip(ridges, step.notes, strict=True) if note]
+        assert state.ridges is not None
+        notes = [f"ridge {j} {note}" for j, note in zip(state.ridges.number, state.ridges.note, strict=True) if note]
         if notes:
             log.warning("step %d closure: %s", state.step, ", ".join(notes))
 
@@ -93,11 +110,54 @@ class Report:
             last = done[-1].step if done else 0
             if self._written != last == self._simulation.finger.continuation.steps:
                 self._written = last
-                self._writer.fields(last, done[-1].load if done else "")
                 self._log_checks()
-                snapshot, merkel = self._viewer.picture()
-                if snapshot is not None:
-                    self.record.ends[done[-1].load] = End(done[-1], snapshot, merkel)
+                self._ends.append((last, checkpoint.unknowns(self._simulation.finger.continuation)))
+                self._end(done[-1])
+
+    def _end(self, state: ContactState) -> None:
+        """Write the present fields, those at the end of a load, and keep them for the pictures; collective."""
+        self._writer.fields(state.step, state.load)
+        snapshot, merkel = self._viewer.picture()
+        if snapshot is not None:
+            self.record.ends[state.load] = End(state, snapshot, merkel)
+
+    def kept(self) -> dict[str, Any]:
+        """Return what another process needs to go on with all tables and pictures, whole on rank 0."""
+        self.record.prune(self._loads)
+        return {
+            "states": self.record.states,
+            "profiles": self.record.profiles,
+            "ends": self._ends,
+            "logged": self._logged,
+            "tables": self._writer.kept(),
+        }
+
+    def resume(self, kept: Mapping[str, Any], places: Mapping[str, Any], done: float) -> None:
+        """Go on from what another process kept; collective.
+
+        Args:
+            kept: what it kept, on every rank.
+            places: of the unknowns at the ends of loads, see :func:`variational.solvers.checkpoint.take`.
+            done: part of the whole history that is done.
+        """
+        finger = self._simulation.finger
+        self._writer.resume(kept["tables"])
+        self._writer.take(finger.problem)
+        self.record.states, self._logged = kept["states"], kept["logged"]
+        self._ends, self._written = kept["ends"], kept["ends"][-1][0] if kept["ends"] else 0
+        if finger.problem.mesh.comm.rank == 0:
+            self.record.profiles = kept["profiles"]
+        by_step = {state.step: state for state in self.record.states}
+        now = finger.solver.x.array_r.copy()
+        mine = checkpoint.order(finger.continuation, dict(places))
+        for step, unknowns in self._ends:
+            finger.solver.x.array_w[:] = mine("unknowns", unknowns)
+            finger.solver.equations.to_fields(finger.solver.x)
+            self._end(by_step[step])
+        finger.solver.x.array_w[:] = now
+        finger.solver.equations.to_fields(finger.solver.x)
+        for state in self.record.states:
+            self._console.step(state, done)
 
     def _log_checks(self) -> None:
         for step, check in list(self._simulation.checks.items())[self._logged :]:
@@ -112,8 +172,4 @@ class Report:
             path = "steps.csv, history.png and *.bp are of the path on the starting mesh; %s"
             self._writer.log.info(path, words)
         for state, view in views.items():
-            size = {"mesh_contact": view.mesh.contact}
-            for name, found in (("ridges", view.ridges), ("receptors", view.receptors)):
-                for row in found:
-                    values = {key: value for key, value in row.items() if key != "step"}
-                    self._writer.row(f"{name}_final", {"of": state} | values | size)
+            self._tables("_final", {"of": state}, view.state, view.mesh.contact)

@@ -1,25 +1,27 @@
 """The path of a finger's loads: from one load to the next, every accepted state checked and reported."""
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from mpi4py import MPI
 
 from fingerpad.io.states import FIRST_TOUCH, SLIDE_ON
-from fingerpad.model.balance import refuse_strained
 from fingerpad.model.contact_zone import ContactZone, FingerExceeded
-from fingerpad.model.course import Course
 from fingerpad.model.finger import Finger, Step
-from fingerpad.model.full_slip import FullSlip
-from fingerpad.model.half import HalfFinger
-from fingerpad.model.journal import Journal
+from fingerpad.model.half_finger import HalfFinger
 from fingerpad.model.options import FingerModel
-from fingerpad.model.stability import StabilityChecks
-from fingerpad.model.state import step_record
+from fingerpad.model.schedule import targets
+from fingerpad.model.stability import Checked, FullSlip, StabilityChecks
+from fingerpad.model.state import refuse_strained, step_record
 from fingerpad.scene import Load
 from variational.quantities import RidgeLoads
-from variational.solvers.continuation import Attempt, StepFailed, Target
+from variational.solvers import checkpoint
+from variational.solvers.continuation import Attempt, Continuation, StepFailed
+from variational.solvers.stability import Stability
+from variational.solvers.target import Target
 from variational.solvers.transfer import StateSnapshot, restore
 from variational.state import ContactState
 
@@ -48,7 +50,6 @@ class Simulation:
         comm: MPI.Comm,
         on_step: Callable[[Step, float], None] = lambda step, done: None,
         on_load: Callable[[], None] = lambda: None,
-        journal: Journal | None = None,
     ) -> None:
         """Mesh the finger and set the solver up; collective.
 
@@ -57,20 +58,21 @@ class Simulation:
             comm: communicator of the mesh.
             on_step: called on every rank after each accepted step with the part of the whole history that is done.
             on_load: called on every rank when a load has been reached.
-            journal: keeps what solves leave; None to keep nothing.
         """
         self._model, self._comm = model, comm
         self.on_step, self.on_load = on_step, on_load
         self.finger = finger = Finger(model, comm, self._accepted)
         self.energy = finger.book()
         self.states: list[ContactState] = []
-        self._journal = journal
-        self.checks = StabilityChecks(finger) if journal is None else StabilityChecks(finger, journal.examine)
-        if journal is not None:
-            journal.follow(finger.continuation)
+        self.checks = StabilityChecks(finger)
         self._load, self._loads_done = "", 0
         self._slip = FullSlip(finger)
-        self._course = Course(model.loads, model.numerics.step_scale)
+        self._timed = any(load.takes_time for load in model.loads)
+        self._began = self._seconds = 0.0  # when the present load began, and how long it takes (s)
+        self._over_time = False  # whether its voltage is over time
+        self._x, self._runs = 0.0, 0  # where the bone was when it began (m), and how often the path was run for it
+        self._passed = 0  # runs of the load at which another process has been, the last of them not to its end
+        self._half_kept: dict[str, Any] | None = None
         count, file = model.geometry.ridge_count, model.mesh_file
         self._zone = ContactZone(finger.mesh, finger.observer, finger.ridges, count, file)
         self._restart: RestartRequired | None = None
@@ -88,48 +90,119 @@ class Simulation:
         """
         loads = self._model.loads
         moves = next((k for k, load in enumerate(loads) if load.moves), len(loads))
-        half = None
-        if moves > 0 and self._model.options.symmetric_start:
-            self._half = half = HalfFinger(self._model, self.finger, self._comm, self._accepted)
-            if self._journal is not None:
-                self._journal.follow(half.path)
+        first = self._loads_done
+        if moves > first and self._model.options.symmetric_start:
+            self._half = HalfFinger(self._model, self.finger, self._comm, self._accepted)
+            if self._half_kept is not None:
+                checkpoint.put(self._half.path, self._half_kept)
+                self.finger.continuation.resumes = False
         try:
-            for k, load in enumerate(loads):
-                if k == moves and half is not None:
-                    self._half = None
-                    half.free()
+            for k, load in enumerate(loads[first:], start=first):
+                if k == moves:
+                    self._end_half()
                 self._load, self._loads_done = load.name, k
                 self._follow(load)
                 if self._restart is not None:
                     return self._restart
                 self.on_load()
-        finally:
-            if half is not None:
-                half.count()
+        finally:  # nothing collective: a rank may be alone here with its error
+            if self._half is not None:
+                self._half.count()
         self.checks.free()
         return None
 
+    def _end_half(self) -> None:
+        """Go on with the whole finger."""
+        half, self._half = self._half, None
+        if half is not None:
+            self.finger.continuation.time = half.path.time
+            half.count()
+            half.free()
+
+    # -- checkpoints -----------------------------------------------------------------------------------
+    def forget(self) -> None:
+        """Leave nothing to the next solve that another process would not have, see :meth:`kept`; collective."""
+        for path in self._paths().values():
+            path.solver.iteration.forget()
+
+    def _paths(self) -> dict[str, Continuation]:
+        paths = {"finger": self.finger.continuation}
+        return paths if self._half is None else paths | {"half": self._half.path}
+
+    def kept(self) -> dict[str, Any]:
+        """Return all that another process needs to go on from the accepted state, whole on rank 0; collective.
+
+        The two go on the same to the last bit on one rank, if this one forgets (:meth:`forget`).
+        """
+        return {
+            "paths": {name: checkpoint.take(path) for name, path in self._paths().items()},
+            "checks": {step: (c.frozen.lambda_min, c.frozen.settled, c.gain) for step, c in self.checks.items()},
+            "load": (self._loads_done, self._x, self._began, self._runs),
+        }
+
+    def resume(self, kept: dict[str, Any], states: list[ContactState]) -> None:
+        """Go on with :meth:`run` from where another process was; collective.
+
+        Args:
+            kept: what it kept, on every rank.
+            states: accepted until there.
+
+        Raises:
+            OtherBody: its mesh was another one; on every rank.
+        """
+        checkpoint.put(self.finger.continuation, kept["paths"]["finger"])
+        self._half_kept = kept["paths"].get("half")
+        self.energy, self.states = self.finger.book(), states
+        for step, (least, settled, gain) in kept["checks"].items():
+            self.checks[step] = Checked(Stability(least, settled), gain)
+        self._loads_done, self._x, self._began, self._passed = kept["load"]
+
     def _follow(self, load: Load) -> None:
         """Reach a load, and slide on where it ends at full slip."""
-        path, x = self.finger.continuation, float(self.finger.solver.control.x)
-        *before, target = self._course.targets(load, x)
+        path, x = self.finger.continuation, self._x
+        if not self._passed:
+            x, self._began = float(path.solver.control.x), self._time
+            self._x = x
+        *before, target = targets(load, x, self._model.numerics.step_scale)
         end = x if target.bone_x is None else target.bone_x
         direction = float(np.sign(end - x))
+        seconds = load.seconds(end - x)
+        speed = abs(end - x) / seconds if seconds else 0.0
+        self._seconds, self._over_time, self._runs = seconds, load.wave is not None, 0
         for piece in before:
-            if self._restart is None:
+            if self._restart is None and self._is_next():
                 (self._half or path).run(piece)
         self._reach(target)
-        while direction and target.until_full_slip and path.slip[1] and self._restart is None:
-            steady = self._slip.slides_on(load.name, direction)
-            if steady or direction * (end - float(self.finger.solver.control.x)) <= 0:  # or at the end of the slide
+        slides = direction and target.until_full_slip
+        while slides and self._restart is None and (self._runs < self._passed or path.slip[1]):
+            following = self._is_next()
+            steady = following and self._slip.slides_on(load.name, direction, speed)
+            left = direction * (end - path.begun().control.x)
+            if steady or (following and left <= 0):  # or at the end of the slide
                 break
-            self._reach(replace(target))  # another one for the course, whose time goes on from here
+            self._reach(replace(target, duration=left / speed if speed else 0.0))
+        self._passed = 0
+
+    def _is_next(self) -> bool:
+        """Count a run of the path for the present load; return whether another process has not been through it."""
+        self._runs += 1
+        return self._runs >= self._passed
+
+    @property
+    def _time(self) -> float:
+        """Time of the accepted state (s)."""
+        return (self.finger.continuation if self._half is None else self._half.path).time
+
+    def _done(self, part: float) -> float:
+        """Return the part of the present load that is done, in time where its voltage is over time."""
+        timed = self._over_time and self._seconds > 0
+        return min((self._time - self._began) / self._seconds, 1.0) if timed else part
 
     def _reach(self, target: Target) -> None:
-        if self._restart is None:
+        if self._restart is None and self._is_next():
             (self._half or self.finger.continuation).run(target)
-        if self._restart is None:
-            self._restart = self._symmetry_lost()
+            if self._restart is None:
+                self._restart = self._symmetry_lost()
 
     def re_equilibrate(self, snapshot: StateSnapshot, name: str, direction: int = 0) -> None:
         """Solve again for a state that was reached on another mesh of the same finger; collective.
@@ -201,11 +274,11 @@ class Simulation:
             where = f"step {finger.continuation.steps} ({self._load})"
             formulation = finger.problem.interface.formulation
             refuse_strained(where, record, self.states, finger.solver.force_scale, formulation)
-        probe = part >= 1 and not target.until_full_slip and not self._course.over_time
+        probe = part >= 1 and not target.until_full_slip and not self._over_time
         state = self._slip.placed(self.states, step.state, probe)
-        state = replace(state, record=record, time=self._course.time(target, part, state.bone_x))
+        state = replace(state, record=record, time=self._time if self._timed else math.nan)
         self.states.append(state)
-        part = 0.0 if touches else self._course.done(target, part)
+        part = 0.0 if touches else self._done(part)
         done = min((self._loads_done + part) / len(self._model.loads), 1.0)
         self.on_step(replace(step, state=state, touches=touches), done)
         try:

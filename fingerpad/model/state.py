@@ -1,20 +1,33 @@
-"""The present state of a path of loads, and the energies and work of the step to it, in plain numbers."""
+"""The present state of a path in plain numbers, and what must hold of it: balance of forces, friction at its limit."""
 
 import math
+from collections.abc import Iterable, Sequence
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from fingerpad.model.balance import BALANCED
+from variational.contact.formulation import Formulation
+from variational.contact.friction import CONE_ROUNDOFF
 from variational.energy import Balance
 from variational.quantities import RidgeLoads
-from variational.solvers.continuation import Attempt, Continuation
+from variational.solvers.continuation import Attempt, Continuation, StepFailed
 from variational.state import ContactState, RidgeStates, StepRecord
+
+BALANCED = 1e-6
+"""Largest part of f_ext that may be left at a node, and by which the reactions of bone and screen may differ."""
+_STEADY = 1e-6  # relative change of f_t that sliding on at full slip may cause, beside that of gaps not closed
+_AT_REST = 1e-6  # part of the energy stored under loads that is roundoff where nothing loads the body
+_DEFECT = "this is a defect of the program, please report it"
 
 
 def contact_state(
-    path: Continuation, loads: RidgeLoads, ridges: list[int], d_eq: NDArray[np.float64], **more: Any
+    path: Continuation,
+    loads: RidgeLoads,
+    ridges: list[int],
+    d_eq: NDArray[np.float64],
+    notes: Sequence[str] = (),
+    **more: Any,
 ) -> ContactState:
     """Return the present state.
 
@@ -23,6 +36,7 @@ def contact_state(
         loads: resultants of the ridges that can touch.
         ridges: their numbers.
         d_eq: their air gaps (m), shape (ridges,).
+        notes: remarks on their places on the closure, mostly empty.
         **more: further attributes of the state.
     """
     solver, (slipping, all_slip) = path.solver, path.slip
@@ -43,7 +57,7 @@ def contact_state(
         all_slip=all_slip,
         ridges=RidgeStates(
             np.array(ridges), loads.length, loads.f_contact, loads.f_friction, loads.f_attraction, loads.p_c,
-            np.array(d_eq),
+            np.array(d_eq), tuple(notes),
         ),
         **more,
     )  # fmt: skip
@@ -72,3 +86,122 @@ def step_record(path: Continuation, energy: Balance, imbalance: float, attempt: 
         cutbacks=len(attempt.cutbacks),
         jump=attempt.jump,
     )
+
+
+def force_error(unknowns: int, tolerance: float, force_scale: float) -> float:
+    """Return the largest sum (N/m) of the nodal forces in one direction that a converged solve can leave.
+
+    The solve ends where the norm of all of them is the tolerance times the force scale; their sum is at most the root
+    of their number times that (Cauchy and Schwarz).
+
+    Args:
+        unknowns: their number, at most.
+        tolerance: of the solver, over ``force_scale``.
+        force_scale: force per length (N/m) in which residuals are measured.
+    """
+    return float(np.sqrt(unknowns)) * tolerance * force_scale
+
+
+def steady(tolerance: float, gap: float) -> float:
+    """Return the relative change of f_t that is not significant when the body slides on at full slip.
+
+    An augmented Lagrangian leaves gaps of up to its tolerance, which close further with each load; the attraction goes
+    with the inverse square of the air gap and the insulator behind it.
+
+    Args:
+        tolerance: of the formulation (m).
+        gap: least air gap with the insulator behind it (m), infinite without attraction.
+    """
+    return _STEADY + 2 * tolerance / gap
+
+
+def refuse_unbalanced(
+    where: str,
+    left: float,
+    loads: RidgeLoads,
+    bone: NDArray[np.float64],
+    scale: float,
+    tolerance: float,
+    floor: float,
+) -> None:
+    """Refuse a state in which forces are left at a node, or the bone does not bear what the screen does.
+
+    Args:
+        where: step and load.
+        left: largest force left at a node, over ``scale``.
+        loads: what each ridge bears.
+        bone: reaction of the bone (N/m), shape (2,).
+        scale: force (N/m) in which residuals are measured.
+        tolerance: of the solver, in that scale.
+        floor: roundoff at which the solve ended, in that scale; 0 where it met its tolerance.
+
+    Raises:
+        StepFailed: the state is no equilibrium.
+    """
+    remedy = f"forces are not balanced to {BALANCED:g} of {scale:g} N/m; "
+    if floor > tolerance:
+        remedy += (
+            f"roundoff of the stiffest layer leaves {floor * scale:.2g} N/m, whatever the numerics.tolerance; try a "
+            "smaller stiffness, or poisson, of the nail, its bed or the stiffest layer"
+        )
+    else:
+        remedy += f"try a numerics.tolerance below {tolerance:g}, and no PETSc option that ends a solve earlier"
+    if not left <= BALANCED:
+        raise StepFailed(f"{where}: a force of {left * scale:.4g} N/m is left at a node; {remedy}")
+    screen = np.array([float(loads.f_friction.sum()), float((loads.f_contact - loads.f_attraction).sum())])
+    worst = int(np.argmax(np.abs(screen - bone)))
+    if not abs(screen[worst] - bone[worst]) <= BALANCED * scale:
+        raise StepFailed(
+            f"{where}: the bone bears {bone[worst]:.9g} N/m {('sideways', 'downwards')[worst]} and the screen "
+            f"{screen[worst]:.9g} N/m; {remedy}"
+        )
+
+
+def refuse_strained(
+    where: str, record: StepRecord, before: Iterable[ContactState], scale: float, formulation: Formulation
+) -> None:
+    """Refuse a state that stores energy although nothing loads the body.
+
+    Some formulations have such equilibria (:attr:`~variational.contact.formulation.Formulation.unloaded_energy`). They
+    come where the method is not coercive, and Newton's method may go on to them while the body is loaded.
+
+    Args:
+        where: step and load.
+        record: of the state, in which nothing touches and there is no voltage.
+        before: states before it.
+        scale: force (N/m) in which residuals are measured.
+        formulation: of the contact.
+
+    Raises:
+        StepFailed: the energy is above roundoff of the largest one stored under a load before.
+    """
+    loaded = (state.record.stored for state in before if state.record and state.f_contact > BALANCED * scale)
+    if record.stored > _AT_REST * max(loaded, default=math.inf):
+        own = "a material of one's own may have a second state without stress, else " + _DEFECT
+        remedy = formulation.unloaded_energy or own
+        raise StepFailed(f"{where}: nothing loads the body, and it stores {record.stored:.3g} J/m; {remedy}")
+
+
+def broken(slip: ContactState | None, error: float, mu_0: float | None) -> str:
+    """Return what does not hold at the last full slip of a run, one sentence; empty where all does, or without slip.
+
+    The bone's load is what the screen bears less the attraction, and Coulomb friction is mu_0 times the contact force.
+    Points count as slipping within roundoff of the cone.
+
+    Args:
+        slip: full slip.
+        error: what the solver's tolerance leaves of a sum of nodal forces (N/m).
+        mu_0: friction coefficient; None where the law of friction is not Coulomb's.
+    """
+    if slip is None:
+        return ""
+    balance = slip.f_contact - slip.f_electrostatic - slip.f_ext
+    if abs(balance) > error:
+        return (
+            f"the forces at full slip are out of balance by {balance:.3g} N/m, more than the {error:.3g} N/m that the "
+            f"solver's tolerance leaves; {_DEFECT}"
+        )
+    cone = 0.0 if mu_0 is None else mu_0 * slip.f_contact
+    if mu_0 is not None and abs(abs(slip.f_t) - cone) > error + CONE_ROUNDOFF * cone:
+        return f"friction at full slip is {abs(slip.f_t):.9g} N/m and its limit {cone:.9g} N/m; {_DEFECT}"
+    return ""

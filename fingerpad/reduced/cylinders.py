@@ -17,29 +17,37 @@ voltage. ``docs/models.md`` has its errors.
 """
 
 import json
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cache
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
+from fingerpad.io.answer import Cost
 from fingerpad.io.files import read_object
 from fingerpad.io.place import difference
-from fingerpad.io.result import Cost, Result
-from fingerpad.io.states import PREFIXES, WORDS
+from fingerpad.io.result import Result
+from fingerpad.io.states import WORDS
 from fingerpad.model.cautions import on_states
-from fingerpad.reduced import known
-from fingerpad.reduced.answer import STATES, Stopwatch, at_rest, at_slip, refuse_others
+from fingerpad.reduced import cylinder_errors
+from fingerpad.reduced.model import STATES, Model, Stopwatch, at_rest, at_slip, refuse_others
 from fingerpad.scene import Scene, SceneError
 from fingerpad.scene.laws import skin_modulus, used
 from fingerpad.scene.messages import show
+from fingerpad.scene.reading import DEFAULT_MODEL
 from fingerpad.scene.remarks import leakage, remarks
 from geometry.parameters import Fingertip
 from geometry.profiles import Profiles
 from variational.attraction.cylinder import Cylinder, NoEquilibriumError, RidgeState, hertz_modulus
 from variational.state import ContactState
 
+if TYPE_CHECKING:
+    from fingerpad.runs.context import RunContext
+
+Array = NDArray[np.float64]
 # The default finger's full runs without voltage, contact size 10 um: f_ext (N/m), then contact length (m), ridges in
 # contact and indentation in each state. benchmarks/models.py keeps the same numbers in docs/models.json.
 FORCES = (5.0, 10.0, 25.0, 50.0, 75.0, 100.0, 120.0, 150.0)
@@ -53,9 +61,7 @@ INDENTATIONS = {  # m, how far the bone is lowered
     "full_slip": (0.1452e-3, 0.2239e-3, 0.3893e-3, 0.5842e-3, 0.7345e-3, 0.8569e-3, 0.9417e-3, 1.0510e-3),
 }
 _SHAPING = ("geometry", "materials", "contact")  # tables of a scene of which these lengths are a matter
-_ELSE = (
-    "use the model 'smooth', or the command compare with --contact-length and --ridges, or with the --run of a folder"
-)
+_ELSE = "use the model 'full', or the command compare with --contact-length and --ridges, or with the --run of a folder"
 
 
 @dataclass(frozen=True)
@@ -77,30 +83,42 @@ def fitted(scene: Scene) -> Footprint:
     Raises:
         SceneError: the scene's finger is another one.
     """
-    default = Scene()
-    if scene.laws.materials:
-        raise SceneError(
-            f"materials are given for {', '.join(scene.laws.materials)}, and a contact length is known of the default "
-            f"finger alone; {_ELSE}"
-        )
-    for name in _SHAPING:
-        if getattr(scene, name) != getattr(default, name):
-            raise SceneError(f"{name} is not that of the default finger, whose contact length is known; {_ELSE}")
+    default = _default()
+    _refuse_other(scene, default)
     source = "uncharged contact length interpolated between full runs of the default finger"
     if not FORCES[0] <= scene.f_ext <= FORCES[-1]:
         source = f"uncharged contact length extrapolated from full runs at {FORCES[0]:g} to {FORCES[-1]:g} N/m"
-    if scene.friction_law() != default.friction_law():
+    if scene.friction != default.friction:
         source += f"; that of full slip with a friction coefficient of {default.friction:g}"
-    length = {state: _interpolate(scene.f_ext, LENGTHS[state]) for state in STATES}
-    ridges = {state: max(1, round(_interpolate(scene.f_ext, RIDGES[state]))) for state in STATES}
-    return Footprint(length, ridges, False, source)
+    length = {state: float(_lengths(scene.f_ext, state)) for state in STATES}
+    return Footprint(length, {state: int(_ridges(scene.f_ext, state)) for state in STATES}, False, source)
 
 
-def _interpolate(f_ext: float, values: tuple[float, ...] | tuple[int, ...]) -> float:
-    """Return a power law through the two neighbours, at the ends through the last two."""
-    x, y = np.log(FORCES), np.log(values)
-    k = int(np.clip(np.searchsorted(x, np.log(f_ext)) - 1, 0, len(x) - 2))
-    return float(np.exp(y[k] + (y[k + 1] - y[k]) * (np.log(f_ext) - x[k]) / (x[k + 1] - x[k])))
+_default = cache(Scene)
+
+
+def _refuse_other(scene: Scene, default: Scene) -> None:
+    """Refuse a finger other than the default one."""
+    for name in _SHAPING:
+        if getattr(scene, name) != getattr(default, name):
+            raise SceneError(f"{name} is not that of the default finger, whose contact length is known; {_ELSE}")
+
+
+def _lengths(f_ext: ArrayLike, state: str) -> Array:
+    """Return the default finger's contact length (m) without voltage under external forces (N/m)."""
+    return _interpolate(f_ext, LENGTHS[state])
+
+
+def _ridges(f_ext: ArrayLike, state: str) -> NDArray[np.int_]:
+    """Return the default finger's ridges in contact without voltage under external forces (N/m)."""
+    return np.maximum(np.rint(_interpolate(f_ext, RIDGES[state])).astype(int), 1)
+
+
+def _interpolate(f_ext: ArrayLike, values: tuple[float, ...] | tuple[int, ...]) -> Array:
+    """Return power laws through the two neighbours, at the ends through the last two; shape of the forces."""
+    x, y, at = np.log(FORCES), np.log(values), np.log(f_ext)
+    k = np.clip(np.searchsorted(x, at) - 1, 0, len(x) - 2)
+    return np.exp(y[k] + (y[k + 1] - y[k]) * (at - x[k]) / (x[k + 1] - x[k]))
 
 
 def indentation(f_ext: float, state: str) -> float:
@@ -110,7 +128,7 @@ def indentation(f_ext: float, state: str) -> float:
         f_ext: external force (N/m).
         state: ``charged`` or ``full_slip``. A voltage of 200 V moves the bone at full slip by up to 6 %.
     """
-    return _interpolate(f_ext, INDENTATIONS[state])
+    return float(_interpolate(f_ext, INDENTATIONS[state]))
 
 
 def given(length: float, ridges: int) -> Footprint:
@@ -145,7 +163,7 @@ def from_run(scene: Scene, folder: Path) -> Footprint:
 def _of_summary(scene: Scene, folder: Path, summary: Mapping[str, Any]) -> Footprint:
     if "parameters" not in summary:  # a point of a sweep that was refused
         raise SceneError(f"run {folder} has no results: {summary.get('failure', 'summary.json is of another kind')}")
-    if (model := summary.get("model", "full")) != "full":
+    if (model := summary.get("model", DEFAULT_MODEL)) != DEFAULT_MODEL:
         raise SceneError(f"run {folder} is one of the model {show(model)}; give a full run")
     for name, unit in (("f_ext", "N/m"), ("voltage", "V")):
         if not np.isclose(abs(summary[name]), abs(getattr(scene, name)), rtol=1e-6, atol=1e-9):
@@ -156,8 +174,8 @@ def _of_summary(scene: Scene, folder: Path, summary: Mapping[str, Any]) -> Footp
     other = difference(_finger(summary["parameters"]), _finger(scene.parameters()))
     if other:
         raise SceneError(f"run {folder} is one of another finger ({other}); give a run of this scene's finger")
-    length = {state: summary.get(f"{PREFIXES[state]}_contact_length") for state in STATES}
-    ridges = {state: summary.get(f"{PREFIXES[state]}_ridges_in_contact") for state in STATES}
+    length = {state: summary.get(f"{state}_contact_length") for state in STATES}
+    ridges = {state: summary.get(f"{state}_ridges_in_contact") for state in STATES}
     if None in (*length.values(), *ridges.values()):
         raise SceneError(f"run {folder} did not reach full slip, so that its contact length there is not known")
     return Footprint(length, ridges, True, f"contact length of the run in {folder}")  # type: ignore[arg-type]
@@ -170,6 +188,28 @@ def _finger(parameters: Mapping[str, Any]) -> dict[str, Any]:
     return dict(json.loads(json.dumps(shape | {"laws": own})))
 
 
+class Cylinders(Model):
+    """Every ridge in contact the same charged cylinder, over a footprint; without one it is the default finger's."""
+
+    name, words = "cylinders", "A closed form of charged cylinders"
+    traces = "traces of charged cylinders, indentations without voltage"
+
+    def __init__(self, footprint: Footprint | None = None) -> None:
+        """Take the footprint."""
+        self._footprint = footprint
+
+    def solve(self, scene: Scene, context: "RunContext") -> Result:
+        """Return the answer of :func:`solve`."""
+        return solve(scene, self._footprint)
+
+    def over_forces(
+        self, scene: Scene, f_ext: Sequence[float], state: str, solve: Callable[[Scene], Result]
+    ) -> list[ContactState]:
+        """Return the states computed together, with the indentations of the default finger without voltage."""
+        states = over_forces(scene, f_ext, state)
+        return [replace(each, bone_height=-indentation(each.f_ext, state)) for each in states]
+
+
 def solve(scene: Scene, footprint: Footprint | None = None) -> Result:
     """Return the answer of the cylinders; without a footprint it is the default finger's.
 
@@ -177,47 +217,103 @@ def solve(scene: Scene, footprint: Footprint | None = None) -> Result:
         SceneError: a scene with a history, another finger than the footprint's, or ridges that do not stay.
     """
     clock = Stopwatch()
-    refuse_others(scene, "cylinders")
+    refuse_others(scene, Cylinders.name)
     footprint = footprint or fitted(scene)
     found: dict[str, ContactState] = {}
     exact = "a closed form, without a mesh: no discretisation error but that of the contact length it is given"
-    errors = {} if footprint.charged else known.errors("cylinders", scene)
-    notes = footprint.source, exact, known.in_words(errors), "the bone's height is not in this model", *leakage(scene)
-    cautions, states = [*remarks(scene), *([] if footprint.charged else known.cautions(scene))], {}
+    errors = {} if footprint.charged else cylinder_errors.errors(scene)
+    notes = (
+        footprint.source,
+        exact,
+        cylinder_errors.in_words(errors),
+        "the bone's height is not in this model",
+        *leakage(scene),
+    )
+    cautions, states = [*remarks(scene), *([] if footprint.charged else cylinder_errors.cautions(scene))], {}
     for state in STATES:
-        try:
-            ridge = _ridge(scene, footprint, state)
-        except NoEquilibriumError as error:
-            raise SceneError(f"{WORDS[state]} of the model 'cylinders': {error}") from None
-        n = footprint.ridges[state]
+        n, length = np.array([footprint.ridges[state]]), np.array([footprint.length[state]])
+        ((found[state], states[state]),) = _solved(scene, [scene.f_ext], length, n, state, footprint.charged)
+        cautions += _others(state, states[state])
+    cautions += on_states(found.values(), scene.closure())
+    more: dict[str, Any] = {
+        f"{state}_{name}": getattr(ridge, name) for state, ridge in states.items() for name in ("p_c", "d_eq")
+    }
+    more |= {"laws": used(scene), "model_error": errors}
+    cost = Cost(processor_seconds=clock.seconds())
+    return Result(
+        scene, Cylinders.name, None, found["charged"], found["full_slip"],
+        cost=cost, notes=notes, cautions=tuple(cautions), record=more,
+    )  # fmt: skip
+
+
+def over_forces(
+    scene: Scene, f_ext: Sequence[float], state: str, press: Sequence[ContactState] = ()
+) -> list[ContactState]:
+    """Return a state of a scene under each of several external forces, computed together.
+
+    Args:
+        scene: with the voltage of all.
+        f_ext: external forces (N/m).
+        state: ``charged`` or ``full_slip``.
+        press: states without voltage under these forces, whose contact it is; by default the default finger's.
+
+    Raises:
+        SceneError: as :func:`solve`, but for what is wrong with the other state alone.
+    """
+    refuse_others(scene, Cylinders.name)
+    if press:
+        length = np.array([each.contact_length for each in press])
+        ridges = np.array([each.ridges_in_contact for each in press])
+    else:
+        _refuse_other(scene, _default())
+        length, ridges = _lengths(f_ext, state), _ridges(f_ext, state)
+    return [found for found, _ in _solved(scene, f_ext, length, ridges, state)]
+
+
+def _solved(
+    scene: Scene,
+    f_ext: Sequence[float],
+    length: Array,
+    ridges: NDArray[np.int_],
+    state: str,
+    charged: bool = False,
+) -> list[tuple[ContactState, RidgeState]]:
+    """Return a state of a scene under external forces (N/m), and that of its ridges.
+
+    Args:
+        scene: with the voltage of all.
+        f_ext: external forces (N/m).
+        length: contact length (m) under each.
+        ridges: in contact under each.
+        state: ``charged`` or ``full_slip``.
+        charged: whether the lengths are those at the voltage.
+    """
+    radius, closure, forces, length = (
+        tip_radius(scene.geometry),
+        scene.closure(),
+        np.array(f_ext) / ridges,
+        length / ridges,
+    )
+    try:
+        if charged:
+            cylinder = Cylinder(radius, skin_modulus(scene), scene.h_0, closure)
+            found = [cylinder.over_length(*each, scene.voltage) for each in zip(length, forces, strict=True)]
+        else:
+            moduli = hertz_modulus(radius, forces, length)
+            found = Cylinder(radius, moduli, scene.h_0, closure).under_loads(forces, scene.voltage)
+    except NoEquilibriumError as error:
+        raise SceneError(f"{WORDS[state]} of the model 'cylinders': {error}") from None
+    made, states = at_rest if state == "charged" else at_slip, []
+    for each, count, ridge in zip(f_ext, ridges, found, strict=True):
+        n = int(count)
         contact = {
             "f_contact": n * ridge.f_contact,
             "f_electrostatic": n * ridge.f_attraction,
             "contact_length": n * ridge.length,
             "ridges_in_contact": n,
         }
-        found[state] = at_rest(scene, contact) if state == "charged" else at_slip(scene, contact)
-        states[state] = ridge
-        cautions += _others(state, ridge)
-    cautions += on_states(found.values(), scene.closure())
-    more: dict[str, Any] = {
-        f"{PREFIXES[state]}_{name}": getattr(ridge, name) for state, ridge in states.items() for name in ("p_c", "d_eq")
-    }
-    more |= {"laws": used(scene), "model_error": errors}
-    cost = Cost(processor_seconds=clock.seconds())
-    return Result(
-        scene, "cylinders", None, found["charged"], found["full_slip"],
-        cost=cost, notes=notes, cautions=tuple(cautions), record=more,
-    )  # fmt: skip
-
-
-def _ridge(scene: Scene, footprint: Footprint, state: str) -> RidgeState:
-    n, length = footprint.ridges[state], footprint.length[state]
-    f, radius, closure = scene.f_ext / n, tip_radius(scene.geometry), scene.closure()
-    if footprint.charged:
-        return Cylinder(radius, skin_modulus(scene), scene.h_0, closure).over_length(length / n, f, scene.voltage)
-    modulus = hertz_modulus(radius, f, length / n)
-    return Cylinder(radius, modulus, scene.h_0, closure).under_load(f, scene.voltage)
+        states.append((made(scene.model_copy(update={"f_ext": float(each)}), contact), ridge))
+    return states
 
 
 def _others(state: str, ridge: RidgeState) -> list[str]:
@@ -242,6 +338,6 @@ def tip_radius(finger: Fingertip) -> float:
         what = f"{len(places)} crests" if len(places) > 1 else "a flat tip"
         raise SceneError(
             f"geometry.ridge_profile gives a ridge {what}; the model 'cylinders' takes ridges for cylinders, so use "
-            "the model 'smooth'"
+            "the model 'full'"
         )
     return step**2 / (2 * (high - low))

@@ -5,7 +5,6 @@ triangles.
 """
 
 import base64
-import csv
 import math
 from collections.abc import Iterator
 from pathlib import Path
@@ -26,7 +25,6 @@ _MM, _UM, _KPA = 1e3, 1e6, 1e-3
 _COLUMNS = 520  # of the grid
 _MOST = 12  # states with an image
 _EMPTY = 32767
-_Tables = dict[str, dict[tuple[str, int], tuple[float, float]]]
 _BELOW, _ABOVE, _BESIDE = -0.15, 1.25, 0.6  # mm of the view around the contact
 
 
@@ -39,19 +37,14 @@ class _Frame(NamedTuple):
     """Stem of the file of its skin."""
     prefix: str
     """Of the skin's arrays there."""
-    table: str = "ridges"
-    """Name of the table of its ridges."""
-    row: str = ""
-    """Its step, or its name, there."""
 
 
 def frames(result: Result) -> dict[str, Any]:
     """Return the states that a folder has arrays of, ready for JSON; empty without any."""
     folder = result.folder
-    if folder is None or result.model != "full":
+    if folder is None:
         return {}
-    tables = {name: _ridges(folder / f"{name}.csv") for name in ("ridges", "ridges_final")}
-    found = [(frame, _skin(folder, frame, tables)) for frame in _listed(result)]
+    found = [(frame, _skin(folder, frame)) for frame in _listed(result)]
     view = _view([skin for _, skin in found if skin])
     if view is None:
         return {}
@@ -67,27 +60,20 @@ def frames(result: Result) -> dict[str, Any]:
 def _listed(result: Result) -> Iterator[_Frame]:
     partial = partial_slip(result.steps) if result.charged is not None and result.steps else None
     ends = [
-        _Frame(
-            f"end of {load.name}",
-            load.end,
-            f"finger_{_file(load.name)}",
-            f"surface_{_file(load.name)}",
-            "end",
-            row=str(load.end.step),
-        )
+        _Frame(f"end of {load.name}", load.end, f"finger_{_file(load.name)}", f"surface_{_file(load.name)}", "end")
         for load in result.loads
     ]
     for frame in ends:
         if partial is not None and frame.state is not None and frame.state.step > partial.step:
-            yield _Frame("partial slip", partial, "", "surface", "partial", row=str(partial.step))
+            yield _Frame("partial slip", partial, "", "surface", "partial")
             partial = None
         yield frame
-    for name, prefix in (("charged", "normal"), ("full_slip", "slip")):
+    for name in ("charged", "full_slip"):
         stem = f"finger_{_file(WORDS[name])}"
         if result.folder is not None and (result.folder / f"{stem}.npz").is_file():
             state = result.named[name]
             words = f"{called(name, state.voltage)}, final mesh"
-            yield _Frame(words, state, stem, "surface", prefix, "ridges_final", name)
+            yield _Frame(words, state, stem, "surface", name)
 
 
 def _file(words: str) -> str:
@@ -103,32 +89,20 @@ def _about(state: ContactState | None) -> str:
     return f"{words}{slip}, L_R = {_MM * state.contact_length:.3f} mm, {state.ridges_in_contact} ridges in contact"
 
 
-def _ridges(file: Path) -> dict[tuple[str, int], tuple[float, float]]:
-    """Return length in contact (mm) and mean pressure (kPa) by state, a step or a name, and number of the ridge."""
-    try:
-        with file.open(encoding="utf-8", newline="") as table:
-            return {
-                (row.get("of") or row["step"], int(row["ridge"])): (
-                    round(_MM * float(row["contact_length"]), 4),
-                    round(_KPA * float(row["p_c"]), 2),
-                )
-                for row in csv.DictReader(table)
-            }
-    except (OSError, KeyError, ValueError, TypeError, csv.Error):
-        return {}
-
-
-def _skin(folder: Path, frame: _Frame, tables: _Tables) -> list[dict[str, Any]]:
+def _skin(folder: Path, frame: _Frame) -> list[dict[str, Any]]:
     """Return the ridges of a state, each with its places (mm, height in µm), stresses (kPa) and gap (µm)."""
     skin = skin_of(folder / f"{frame.skin}.npz", frame.prefix)
     if not skin:
         return []
     x, y, p, t, p_el, d_eq, ridge = skin.values()
+    ridges = None if frame.state is None else frame.state.ridges
+    at = {} if ridges is None else {int(j): k for k, j in enumerate(ridges.number)}
     found = []
     for number in np.unique(ridge[np.isfinite(ridge)]):
         mine = ridge == number
         gap = float(d_eq[mine][0])
-        length, mean = tables[frame.table].get((frame.row, int(number)), (0.0, 0.0))
+        k = at.get(int(number))
+        length, mean = (0.0, 0.0) if ridges is None or k is None else (ridges.length[k], ridges.p_c[k])
         found.append(
             {
                 "ridge": int(number),
@@ -138,8 +112,8 @@ def _skin(folder: Path, frame: _Frame, tables: _Tables) -> list[dict[str, Any]]:
                 "t": _rounded(_KPA * t[mine], 2),
                 "p_el": _rounded(_KPA * p_el[mine], 2),
                 "gap": round(_UM * gap, 4) if np.isfinite(gap) else None,
-                "length": length,
-                "mean": mean,
+                "length": round(_MM * float(length), 4),
+                "mean": round(_KPA * float(mean), 2),
             }
         )
     return found

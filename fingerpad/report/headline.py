@@ -7,6 +7,7 @@ from fingerpad.io.result import Result
 from fingerpad.io.states import LoadResult, called
 from fingerpad.report import page as html
 from fingerpad.report import trust
+from fingerpad.scene.laws import coefficient
 
 MARKS = {trust.GOOD: "✓ holds", trust.CARE: "! care", trust.BAD: "✗ fails"}
 """Verdicts as they are shown."""
@@ -14,8 +15,8 @@ MARKS = {trust.GOOD: "✓ holds", trust.CARE: "! care", trust.BAD: "✗ fails"}
 
 def conditions(result: Result) -> str:
     """Return force and voltage of a run in words."""
-    if result.asked_force is not None and result.finger is not None:
-        return f"{result.asked_force:.4g} N on the whole finger, {result.scene.voltage:.4g} V"
+    if result.whole and result.finger is not None:
+        return f"{result.finger.f_ext:.4g} N on the whole finger, {result.scene.voltage:.4g} V"
     last = result.full_slip or result.charged or result.last
     if last is None:
         return "a run without a result"
@@ -25,15 +26,15 @@ def conditions(result: Result) -> str:
 def head(result: Result) -> str:
     """Return the finding: the largest number of the page, and whether to rely on it."""
     slip, charged = result.full_slip, result.charged
-    whole = result.finger if result.asked_force is not None else None
+    whole = result.finger if result.whole else None
     if whole is not None and "full_slip" in whole.states:
         number = f"µ<sub>app</sub> = {html.text(whole.shown('full_slip', 'mu_app'))}"
         force = f"friction force {whole.shown('full_slip', 'f_t')} N"
-        said = f"apparent friction coefficient at full slip, {force}; {conditions(result)}"
+        said = f"apparent friction coefficient of the whole finger at full slip, {force}; {conditions(result)}"
     elif whole is not None:
         name = list(whole.states)[-1]
         number = f"{html.text(whole.shown(name, 'contact_area'))} mm²"
-        said = f"ridge contact area in {whole.heads()[-1]}; {conditions(result)}"
+        said = f"ridge contact area of the whole finger in {whole.heads()[-1]}; {conditions(result)}"
     elif (timed := _timed(result)) is not None:
         ends = timed.extremes["mu_app"]
         number = f"µ<sub>app</sub> from {cell('mu_app', ends.min)} to {cell('mu_app', ends.max)}"
@@ -48,10 +49,10 @@ def head(result: Result) -> str:
     elif slip is not None:
         value = cell("mu_app", slip.mu_app, slip.error.mu_app)
         number = f"µ<sub>app</sub> = {html.text(value)}"
-        given = result.record.get("parameters") or result.scene.parameters()
-        friction = result.scene.friction if "laws" not in given else None
+        friction = coefficient(result.scene)
         factor = f", {abs(slip.mu_app) / friction:.2f} times the {friction:.3g} without attraction" if friction else ""
-        said = f"apparent friction coefficient at full slip{factor}; {conditions(result)}"
+        of = "of the section at the centre of the finger " if result.finger is not None else ""
+        said = f"apparent friction coefficient {of}at full slip{factor}; {conditions(result)}"
     elif charged is not None:
         value = cell("contact_length", charged.contact_length, charged.error.contact_length)
         number = f"L<sub>R</sub> = {html.text(value)} mm"

@@ -8,7 +8,7 @@ from typing import Any
 
 from fingerpad.report.page import folded, paragraph, table, text
 from fingerpad.scene import Scene, SceneError, override
-from fingerpad.scene.reading import flat
+from fingerpad.scene.reading import DEFAULT_MODEL, flat
 
 PAPER = (
     "Forsbach, F., Heß, M., Papangelo, A. (2023). A two-scale FEM-BAM approach for fingerpad friction under "
@@ -17,16 +17,8 @@ PAPER = (
 
 
 def changed(parameters: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the parameters that are not those of the default scene, by dotted key.
-
-    A mesh of its own is the key ``geometry.file``, and the keys that it leaves unread are not there.
-    """
-    default = flat(json.loads(json.dumps(Scene().parameters())))
-    given = flat({key: value for key, value in json.loads(json.dumps(parameters)).items() if key != "laws"})
-    mesh = parameters.get("laws", {}).get("mesh")
-    if mesh is not None:
-        unread = [key for key in given if key.startswith(("geometry.", "mesh.")) and key != "geometry.sc_thickness"]
-        given = {key: value for key, value in given.items() if key not in unread} | {"geometry.file": mesh["path"]}
+    """Return the parameters that are not those of the default scene, by dotted key."""
+    default, given = (flat(json.loads(json.dumps(each))) for each in (Scene().parameters(), parameters))
     empty = {key for key, value in given.items() if value is None and key not in default}  # of a table that is given
     return {key: value for key, value in given.items() if key not in empty and default.get(key, ...) != value}
 
@@ -40,7 +32,7 @@ def all_of(parameters: Mapping[str, Any], varied: Container[str] = ()) -> str:
     """
     from fingerpad.scene.keys import every  # reads the docstrings of the models
 
-    keys, other, rows = {key.name: key for key in every()}, changed(parameters), []
+    keys, other, rows = {key.name: key for key in every(Scene)}, changed(parameters), []
     for name, value in flat(parameters).items():
         key = keys.get(re.sub(r"\[\d+\]", "[]", name))
         shown = "varied" if name in varied else _shown(value)
@@ -51,33 +43,22 @@ def all_of(parameters: Mapping[str, Any], varied: Container[str] = ()) -> str:
     return folded(f"All {len(rows)} parameters", paragraph(note), table(heads, rows, "parameters"))
 
 
-def again(parameters: Mapping[str, Any], model: str, asked: Mapping[str, Any] | None = None) -> str:
+def again(parameters: Mapping[str, Any], model: str) -> str:
     """Return how a run is repeated.
 
     Args:
         parameters: of its scene.
         model: that was used.
-        asked: of a force on the whole finger, ``force`` (N) and the ``parameters`` of the scene that was given.
     """
-    parameters, force = (asked["parameters"], asked["force"]) if asked else (parameters, None)
-    if parameters.get("laws", {}).keys() - {"mesh"}:
-        return paragraph(
-            f"The scene has laws of its own, written in Python ({parameters['laws']}); run the program that made them."
-        )
     given = {key: value for key, value in changed(parameters).items() if key != "model"}
-    option = "" if model == "full" else f" --model {model}"
+    option = "" if model == DEFAULT_MODEL else f" --model {model}"
     if any("[" in key or isinstance(value, list) or value is None for key, value in given.items()):
-        kept, more = 'open("scene.json"))', ""
-        if asked:
-            kept, more = 'open("summary.json"))["asked"]["parameters"]', f", force={force!r}"
         code = (
-            "import json\nimport fingerpad as fp\nfrom fingerpad.scene import from_kept\n\n"
-            f"scene = from_kept(json.load({kept})  # in this folder\n"
-            f'fp.run(scene, model="{model}"{more}, out="results/again")'
+            'import fingerpad as fp\n\nscene = fp.Scene.load("scene.json")  # in this folder\n'
+            f'fp.run(scene, model="{model}", out="results/again")'
         )
         return f"<pre><code>{text(code)}</code></pre>"
-    options = "".join(f" {option_of(key, value)}" for key, value in given.items() if not (asked and key == "f_ext"))
-    option += f" --force '{force!r} N'" if asked else ""
+    options = "".join(f" {option_of(key, value)}" for key, value in given.items())
     return f"<pre><code>{text(f'fingerpad run{options}{option} --out results/again')}</code></pre>"
 
 

@@ -2,9 +2,8 @@
 
 import numpy as np
 
-from fingerpad.io.dataset import sites
 from fingerpad.io.result import Result
-from fingerpad.io.states import STATES, called
+from fingerpad.io.states import called
 from fingerpad.report import page as html
 
 _KPA = 1e-3
@@ -16,31 +15,22 @@ _INTRO = (
 
 def section(result: Result) -> str:
     """Return the largest densities of each named state and those at every ridge; nothing where a run has none."""
-    found = sites(result)
+    named = {called(name, state.voltage): state.sites for name, state in result.named.items()}
+    found = {words: sites for words, sites in named.items() if sites is not None and len(sites.number)}
     if not found:
         return ""
-    ridges = found["ridge"][1]
-    merkel, meissner = (_KPA * found[f"{name}_sed"][1] for name in ("merkel", "meissner"))
-    named = {STATES.index(name): called(name, state.voltage) for name, state in result.named.items()}
-    there = [k for k in named if np.isfinite(merkel[k]).any()]
-    heads = ("", *(named[k] for k in there))
-    most = [int(ridges[np.nanargmax(merkel[k])]) for k in there]
+    merkel = {words: _KPA * sites.merkel for words, sites in found.items()}
+    meissner = {words: _KPA * np.maximum(sites.left, sites.right) for words, sites in found.items()}
+    heads = ("", *found)
     rows = [
-        ("largest at a Merkel site", *(f"{np.nanmax(merkel[k]):.4g}" for k in there)),
-        ("of the ridge", *map(str, most)),
-        ("largest at a Meissner site", *(f"{np.nanmax(meissner[k]):.4g}" for k in there)),
+        ("largest at a Merkel site", *(f"{values.max():.4g}" for values in merkel.values())),
+        ("of the ridge", *(str(int(sites.number[merkel[words].argmax()])) for words, sites in found.items())),
+        ("largest at a Meissner site", *(f"{values.max():.4g}" for values in meissner.values())),
     ]
-    every = [
-        (str(ridge), *(_cell(merkel[k, j]) for k in there), *(_cell(meissner[k, j].max()) for k in there))
-        for j, ridge in enumerate(ridges)
-        if np.isfinite(merkel[there, j]).any()
-    ]
-    all_heads = ("ridge", *(f"{site}, {named[k]}" for site in ("Merkel", "larger Meissner") for k in there))
+    cells = [[f"{value:.4g}" for value in values] for kind in (merkel, meissner) for values in kind.values()]
+    every = list(zip(map(str, next(iter(found.values())).number), *cells, strict=True))
+    all_heads = ("ridge", *(f"{site}, {words}" for site in ("Merkel", "larger Meissner") for words in found))
     return html.section(
         "receptors", "Mechanoreceptors", html.paragraph(_INTRO), html.table(heads, rows, "numbers"),
         html.folded("Every ridge", html.table(all_heads, every, "numbers")),
     )  # fmt: skip
-
-
-def _cell(value: float) -> str:
-    return f"{value:.4g}" if np.isfinite(value) else "–"

@@ -6,9 +6,10 @@ from pathlib import Path
 from typing import Any
 
 from fingerpad.io.kept_drawing import arrays_of
-from fingerpad.io.quantities import PER_LENGTH, PLUS_MINUS, QUANTITIES, cell
+from fingerpad.io.quantities import PER_LENGTH, PLUS_MINUS, cell
 from fingerpad.io.result import Result
 from fingerpad.io.states import before_sliding, called
+from fingerpad.reduced.models import MODELS
 from fingerpad.report import over_time, parameters, receptors, trust
 from fingerpad.report import page as html
 from fingerpad.report.frames import frames
@@ -20,10 +21,7 @@ _LINKS = {
     "sliding": "Sliding", "time": "Time", "receptors": "Receptors", "pictures": "Pictures", "model": "Model",
     "solver": "Solver", "parameters": "Parameters", "reproduce": "Reproduce",
 }  # fmt: skip
-_OF_FORCE = {
-    True: "States of the cross-section on its last trace, each under an external force of its own.",
-    False: "States of the cross-section at the centre of the finger, under its part of the force.",
-}
+_SECTION = "Section at the centre of the finger"
 _SAID = {
     "footprint.png": "Gross contact (light), sum of the ridges' contact lengths (dark) and pressure, slice by slice",
     "time.png": "Voltage, friction force and contact length over time",
@@ -36,7 +34,7 @@ def page(result: Result) -> str:
     """Return the page of a run."""
     shown = frames(result)
     title = f"fingerpad: {conditions(result)}"
-    first = (_numbers, _newtons) if result.asked_force is None else (_newtons, _numbers)
+    first = (_numbers, _newtons) if not result.whole else (_newtons, _numbers)
     sections = [
         _asked(result),
         *(section(result) for section in first),
@@ -79,9 +77,9 @@ def _asked(result: Result) -> str:
         words += ["ends at full slip"] if load.until_full_slip else []
         reached = [end for end in result.loads if end.name == load.name]
         rows.append((load.name, ", ".join(words), _cell(reached)))
-    intro, whole = "A fingertip on a charged screen, loaded in this order:", result.record.get("asked")
-    if whole:
-        intro = f"{whole['force']:.4g} N on the whole finger, from traces of the cross-section. Loads of this one:"
+    intro = "A fingertip on a charged screen, loaded in this order:"
+    if result.whole:
+        intro = f"{conditions(result)}. Loads at its centre, where f_ext is an estimate before the run:"
     return html.section(
         "asked",
         "What was asked",
@@ -102,19 +100,12 @@ def _cell(reached: list[Any]) -> str:
 def _numbers(result: Result) -> str:
     if not result.named:
         return html.section("numbers", "Key numbers", html.paragraph("The run has no named state."))
-    rows = []
-    for key, quantity in QUANTITIES.items():
-        cells = [
-            "–" if key in ("mu_app", "f_t") and name != "full_slip" else cell(key, value, error)
-            for name, state in result.named.items()
-            for value, error in [(getattr(state, key), getattr(state.error, key, math.nan))]
-        ]
-        if set(cells) - {"–"}:
-            rows.append((quantity.title, *cells))
+    every = [(quantity.title, *result.cells(key)) for key, quantity in result.printed.items()]
+    rows = [row for row in every if set(row[1:]) - {"–"}]
     slip = result.full_slip
     notes = []
-    if result.asked_force is not None:
-        notes.append(_OF_FORCE[result.model == "full"])
+    if result.whole:
+        notes.append("Each state of the section is under its own part of the force on the whole finger.")
     if any(state.error.known() for state in result.named.values()):
         notes.append(PLUS_MINUS)
     if slip is not None and not math.isnan(slip.penalty.contact_length):
@@ -124,7 +115,12 @@ def _numbers(result: Result) -> str:
         length = f"the contact length by {_MM * slip.penalty.contact_length:+.2g} mm"
         notes.append(f"Contact is a penalty: a rigid screen would change {friction}, and {length}.")
     heads = ("", *(called(name, state.voltage) for name, state in result.named.items()))
-    return html.section("numbers", "Key numbers", html.table(heads, rows, "numbers"), html.items(notes))
+    return html.section(
+        "numbers",
+        "Key numbers" if result.finger is None else _SECTION,
+        html.table(heads, rows, "numbers"),
+        html.items(notes),
+    )
 
 
 def _newtons(result: Result) -> str:
@@ -233,8 +229,8 @@ def _model(result: Result) -> str:
         "Never in the model: inertia, viscous skin, waves, leakage of charge, moisture, the deformation and roughness "
         "of the screen, and the direction along the finger (plane strain). See docs/model.md."
     )
-    kinds = {"full": "Every ridge of the cross-section", "smooth": "A smooth finger with the law of one ridge"}
-    first = f"{kinds.get(result.model, 'A closed form of charged cylinders')} (model {result.model!r})."
+    words = MODELS[result.model].words if result.model in MODELS else "A model that is not registered here"
+    first = f"{words} (model {result.model!r})."
     unknowns = f" {result.cost.unknowns} unknowns." if result.cost.unknowns else ""
     left = html.items(omitted) if omitted else html.paragraph("Nothing of the scene was left out.")
     return html.section(
@@ -276,7 +272,7 @@ def _reproduce(result: Result) -> str:
     return html.section(
         "reproduce",
         "How to reproduce and cite",
-        parameters.again(_parameters(result), result.model, result.record.get("asked")),
+        parameters.again(_parameters(result), result.model),
         html.folded("Versions", html.table(("program", "version"), rows)) if rows else "",
         parameters.cite(str(versions.get("fingerpad", ""))),
     )

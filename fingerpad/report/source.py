@@ -6,15 +6,16 @@ from pathlib import Path
 from typing import Any
 
 from fingerpad.io.files import read_object
-from fingerpad.io.place import TRACE
-from fingerpad.io.result import Result
+from fingerpad.io.quantities import Output
+from fingerpad.io.quantities import read as read_outputs
+from fingerpad.io.result import Result, steps_of
 from fingerpad.io.states import load_results, named
+from fingerpad.reduced.models import MODELS
 from fingerpad.scene import SceneError, as_kept
 from fingerpad.scene.messages import clip
-from variational.state import ContactState
+from fingerpad.scene.reading import DEFAULT_MODEL
 
-_RESULTS = ("uncharged_", "normal_", "slip_", "load_")
-_MODELS = ("full", "smooth")
+_RESULTS = ("uncharged_", "charged_", "full_slip_", "load_")
 
 
 @dataclass(frozen=True)
@@ -27,13 +28,26 @@ class Table:
     rows: tuple[dict[str, str], ...]
     parameters: dict[str, Any] | None
     """Every parameter of the scene that it varies; None of a sweep by an earlier version, whose folder has none."""
-    model: str = "full"
+    model: str = DEFAULT_MODEL
     version: str = ""
     """Of the program that made the table; empty where it is not known."""
     cautions: tuple[str, ...] = ()
     """Limits of validity that points reach."""
     notes: tuple[str, ...] = ()
     """Remarks on the points."""
+    outputs: tuple[Output, ...] = ()
+    """Of the points, computed from a state."""
+
+    @property
+    def whole(self) -> bool:
+        """Whether forces are those on the whole finger."""
+        return "force" in self.axes or "force" in (self.parameters or {})
+
+    def forces(self) -> list[float]:
+        """Return the forces on the whole finger (N)."""
+        if "force" in self.axes:
+            return [float(row["force"]) for row in self.rows]
+        return [float((self.parameters or {})["force"])] if self.whole else []
 
 
 def read(folder: Path) -> Result | Table:
@@ -51,8 +65,9 @@ def read(folder: Path) -> Result | Table:
         return _sweep(folder)
     if (folder / "steps.csv").exists():
         return _unfinished(folder)
-    done = sum(1 for model in _MODELS for _ in (folder / model).glob("*/summary.json"))
-    if done or any((folder / model).glob("*/asked.json") for model in _MODELS if (folder / model).is_dir()):
+    points = [folder / name for name, model in MODELS.items() if model.meshes and (folder / name).is_dir()]
+    done = sum(1 for place in points for _ in place.glob("*/summary.json"))
+    if done or any(any(place.glob("*/asked.json")) for place in points):
         raise SceneError(f"the sweep in {name} has not ended ({done} runs are there); give its command again to go on")
     if (folder / "scene.json").exists():
         raise SceneError(f"the run in {name} has no accepted step yet; make the report when it has one")
@@ -63,10 +78,8 @@ def _unfinished(folder: Path) -> Result:
     """Return the steps that a run has written so far."""
     try:
         parameters = read_object(folder / "scene.json")
-        scene = as_kept({key: value for key, value in parameters.items() if key != TRACE})
-        with (folder / "steps.csv").open(encoding="utf-8", newline="") as file:
-            rows = [row for row in csv.DictReader(file) if None not in row.values()]  # the last may be cut short
-        steps = tuple(ContactState.from_row(row) for row in rows)
+        scene = as_kept(parameters)
+        steps = steps_of(folder)
     except (OSError, ValueError, KeyError, TypeError, AttributeError, csv.Error) as error:
         raise SceneError(f"the unfinished run in {clip(str(folder), 80)} cannot be read: {error}") from None
     if not steps:
@@ -76,7 +89,7 @@ def _unfinished(folder: Path) -> Result:
     found = named(steps, [load.name for load in scene.loads()])
     return Result(
         scene,
-        "full",
+        DEFAULT_MODEL,
         found.get("uncharged"),
         found.get("charged"),
         found.get("full_slip"),
@@ -104,8 +117,9 @@ def _sweep(folder: Path) -> Table:
     try:
         asked = read_object(folder / "sweep.json")
         more = str(asked["model"]), str(asked.get("version", ""))
-        said = (tuple(map(str, asked.get(name, ()))) for name in ("cautions", "notes"))
-        return Table(folder, axes, rows, dict(asked["parameters"]), *more, *said)
+        cautions, notes = (tuple(map(str, asked.get(name, ()))) for name in ("cautions", "notes"))
+        outputs = read_outputs(asked.get("outputs", ()))
+        return Table(folder, axes, rows, dict(asked["parameters"]), *more, cautions, notes, outputs)
     except FileNotFoundError:
         return Table(folder, axes, rows, None)
     except (OSError, ValueError, KeyError, TypeError) as error:

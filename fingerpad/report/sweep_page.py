@@ -5,13 +5,13 @@ import math
 from collections.abc import Iterable, Mapping
 from typing import Any
 
-from fingerpad.io.quantities import PER_LENGTH, QUANTITIES, Quantity
+from fingerpad.io.quantities import PER_LENGTH, QUANTITIES, Output
 from fingerpad.io.states import WORDS
 from fingerpad.report import page as html
 from fingerpad.report import parameters
 from fingerpad.report.source import Table
-from fingerpad.runs.sweep_columns import FORCE, LOAD, in_time, loads, shown, text
-from fingerpad.runs.sweep_dataset import described
+from fingerpad.runs.sweep_columns import LOAD, described, in_time, loads, shown, text
+from fingerpad.scene.reading import DEFAULT_MODEL
 from fingerpad.slices import solid
 
 _CHARTS = ("mu_app", "f_t", "contact_length", "contact_area")
@@ -32,9 +32,9 @@ def page(table: Table) -> str:
     return html.page(title, "\n".join(filter(None, parts)), {"sweep": _curves(table)})
 
 
-def _shown(table: Table) -> tuple[str, dict[str, Quantity]]:
+def _shown(table: Table) -> tuple[str, dict[str, Output]]:
     """Return the state in words and the columns of it that the page shows."""
-    state, columns = shown(table.rows[0], FORCE in table.axes)
+    state, columns = shown(table.rows[0], table.whole, table.outputs)
     return WORDS[state], columns
 
 
@@ -48,7 +48,7 @@ def _head(table: Table) -> str:
             low, high = (f"{value * quantity.scale:.3f}" for value in (min(values), max(values)))
             number = f"{_symbol(quantity)} from {low} to {high} {quantity.unit}".rstrip()
             break
-    said = f"{'whole finger at' if FORCE in table.axes else 'at'} {state}, over {_varied(table)}"
+    said = f"{'whole finger at' if table.whole else 'at'} {state}, over {_varied(table)}"
     if (wave := _wave(table)) is not None:  # which a sweep of a waveform is about
         name, least, most = wave
         said = f"in the load {name}, over {_varied(table)}"
@@ -85,12 +85,12 @@ def _wave(table: Table) -> tuple[str, float, float] | None:
     return None
 
 
-def _drawn(columns: Mapping[str, Quantity]) -> dict[str, tuple[str, Quantity]]:
+def _drawn(columns: Mapping[str, Output]) -> dict[str, tuple[str, Output]]:
     """Return the columns with a chart by the names of their quantities."""
     return {key: each for key in _CHARTS for each in columns.items() if each[0].endswith(f"_{key}")}
 
 
-def _symbol(quantity: Quantity) -> str:
+def _symbol(quantity: Output) -> str:
     """Return the symbol of a quantity for the headline, its index below the line; its words where it has none."""
     name, _, index = quantity.symbol.partition("_")
     return html.text(name) + (f"<sub>{html.text(index)}</sub>" if index else "")
@@ -157,12 +157,11 @@ def _points(table: Table) -> str:
     for row in table.rows:
         cells = []
         for column, quantity in columns.items():
-            value, error = (_read(row.get(name)) for name in (column, f"{column}_error"))
-            cells.append(quantity.shown(math.nan if value is None else value, math.nan if error is None else error))
+            cells.append(quantity.shown(_read(row.get(column)), _read(row.get(f"{column}_error"))))
         said = "failed" if row["failure"] else "" if _reached(row, columns) else f"no {state}"
         first, *rest = (_plain(row[key]) for key in table.axes)
         rows.append((first, *rest, *cells, said))
-    forces = dict.fromkeys(float(row[FORCE]) for row in table.rows) if FORCE in table.axes else {}
+    forces = dict.fromkeys(table.forces())
     notes = solid.remarks(forces) or [PER_LENGTH]
     heads = [*(_head_of(key) for key in table.axes), *(quantity.title for quantity in columns.values())]
     return html.section(
@@ -192,15 +191,14 @@ def _parameters(table: Table) -> str:
     if table.parameters is None:
         words = "The folder has no sweep.json, and so no scene: an earlier version of fingerpad wrote it."
         return html.section("parameters", "Parameters", html.paragraph(words))
-    varied = (*table.axes, "f_ext") if FORCE in table.axes else table.axes  # in whose place the force is
-    return html.section("parameters", "Parameters", parameters.all_of(table.parameters, varied))
+    return html.section("parameters", "Parameters", parameters.all_of(table.parameters, table.axes))
 
 
 def _cite(table: Table) -> str:
     given = {} if table.parameters is None else parameters.changed(table.parameters)
     kept = {key: value for key, value in given.items() if not (key in table.axes or "[" in key or value is None)}
     options = [parameters.option_of(key, value) for key, value in kept.items()]
-    options += [f"--model {table.model}"] if table.model != "full" else []
+    options += [f"--model {table.model}"] if table.model != DEFAULT_MODEL else []
     values = {key: list(dict.fromkeys(row[key] for row in table.rows)) for key in table.axes}
     if all(_read(value) is not None for each in values.values() for value in each):
         over = [parameters.option_of(key, ",".join(each), "--over") for key, each in values.items()]

@@ -6,7 +6,8 @@ from typing import NamedTuple
 
 from fingerpad.io.result import Result
 from fingerpad.io.states import called
-from fingerpad.reduced import known
+from fingerpad.reduced.cylinder_errors import in_words
+from fingerpad.reduced.models import follows_path
 from variational.state import ContactState
 
 GOOD, CARE, BAD = "holds", "care", "fails"
@@ -31,8 +32,8 @@ def findings(result: Result) -> list[Finding]:
     """Return what was looked at, in the order in which a reader needs it."""
     found = [_end(result)]
     found += _full_slip(result)
-    if result.model != "full":
-        words = f"The model is {result.model!r}, a cheaper one; {known.in_words(result.record.get('model_error', {}))}."
+    if not follows_path(result.model):
+        words = f"The model is {result.model!r}, a cheaper one; {in_words(result.record.get('model_error', {}))}."
         return [*found, Finding("model", CARE, words), *_cautions(result)]
     for examined in (_cautions, _mesh, _balance, _stability, _jumps, _restarts):
         found += examined(result)
@@ -67,7 +68,7 @@ def _end(result: Result) -> Finding:
 
 
 def _full_slip(result: Result) -> Iterator[Finding]:
-    if result.full_slip is not None and result.model == "full":
+    if result.full_slip is not None and follows_path(result.model):
         words = "Every point in contact slips one way, and the forces stayed the same over a further 0.2 mm."
         yield Finding("full slip", GOOD, words)
     elif result.full_slip is None and any(load.until_full_slip or load.moves for load in result.scene.loads()):
@@ -121,7 +122,8 @@ def _share(error: float, value: float) -> float:
 
 def _facets(result: Result, state: ContactState) -> Iterator[Finding]:
     """Find contacts of few facets, on which the effect of the penalty's springs is not resolved."""
-    if result.scene.contact.formulation != "penalty" or not state.ridges_in_contact or not state.mesh_contact:
+    springs = result.scene.contact.law.over_stiffer_screen() is not None
+    if not (springs and state.ridges_in_contact and state.mesh_contact):
         return
     facets = state.contact_length / state.ridges_in_contact / state.mesh_contact
     if facets < _FEW:

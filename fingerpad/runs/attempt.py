@@ -1,40 +1,126 @@
 """One attempt at a run: the path of its loads on one mesh, and the errors of its states."""
 
+import logging
+from collections.abc import Mapping, Sequence
 from contextlib import suppress
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Any
 
-from fingerpad.accuracy.recompute import StateRecorder
 from fingerpad.accuracy.refinement import Refinement, with_errors
+from fingerpad.accuracy.solves import StateRecorder
 from fingerpad.io import petsc_options
+from fingerpad.io.checkpoint import Checkpoint, CheckpointError
 from fingerpad.io.console import Console
 from fingerpad.io.interrupt import Interrupt, Interrupted
-from fingerpad.io.left import in_words
-from fingerpad.io.over_time import NOTE, long_steps
+from fingerpad.io.over_time import NOTE
+from fingerpad.io.pace import in_words
 from fingerpad.io.provenance import provenance
+from fingerpad.io.quantities import Output, valued
 from fingerpad.io.result import Result
+from fingerpad.io.states import long_steps
 from fingerpad.io.writing import Writer
 from fingerpad.model import cautions
-from fingerpad.model.balance import broken, force_error
 from fingerpad.model.cost import Clock
-from fingerpad.model.finger import Step
+from fingerpad.model.finger import Finger, Step, meshed
 from fingerpad.model.hints import finer_mesh_may_help, hint
-from fingerpad.model.journal import Journal
-from fingerpad.model.memory import refuse_beyond
 from fingerpad.model.options import FingerModel
 from fingerpad.model.report import Report
 from fingerpad.model.simulation import RestartRequired, Simulation
-from fingerpad.runs.restarts import Restarts
+from fingerpad.model.state import broken, force_error
 from fingerpad.scene import Scene
 from fingerpad.scene.laws import coefficient, used
+from fingerpad.scene.reading import DEFAULT_MODEL
 from fingerpad.scene.remarks import leakage, remarks
 from fingerpad.slices.estimate import with_newtons
 from fingerpad.startup import MPI
 from geometry.profiles import GeometryError
+from variational.solvers.checkpoint import OtherBody
 from variational.solvers.continuation import StepFailed
+from variational.state import ContactState
 
+STEPS = 5
+"""Accepted steps from one checkpoint to the next, at most; there is one at the end of each load."""
 FINEST = 5e-6
 """Contact size (m) down to which a run starts again by itself where the path of its loads cannot be followed."""
+
+
+class Restarts:
+    """Reports restarts and keeps them.
+
+    Attributes:
+        table: the restarts, ready for JSON.
+        notes: remarks for a reader of the result, on the restarts with smaller elements.
+    """
+
+    def __init__(self, log: logging.Logger, console: Console) -> None:
+        """Start without any."""
+        self._log, self._console = log, console
+        self.table: list[dict[str, Any]] = []
+        self.notes: list[str] = []
+        self._seconds = 0.0
+
+    def kept(self) -> dict[str, Any]:
+        """Return what another process needs to go on."""
+        return {"table": self.table, "notes": self.notes, "seconds": self._seconds}
+
+    def resume(self, kept: Mapping[str, Any]) -> None:
+        """Go on from what another process kept."""
+        self.table, self.notes, self._seconds = kept["table"], kept["notes"], kept["seconds"]
+
+    def record(self, restart: RestartRequired, states: Sequence[ContactState], finger: Finger, clock: Clock) -> None:
+        """Record a restart; collective.
+
+        Args:
+            restart: what is to be added, and why.
+            states: accepted until here.
+            finger: with the model until here.
+            clock: of the run.
+        """
+        mesh = restart.model.mesh
+        step, load = (states[-1].step, states[-1].load) if states else (0, "start")
+        whole, seconds = restart.model.options.both_halves, clock.processor_seconds()
+        halves = " and both halves of the finger" if whole and not finger.options.both_halves else ""
+        added = f"mesh.touching_half_arc {mesh.touching_half_arc:g} m{halves}"
+        if mesh.contact < finger.size.contact:
+            added = f"mesh.contact {mesh.contact:g} m"
+            size = finger.size.contact * 1e6
+            self.notes.append(
+                f"No equilibrium was found with a contact size of {size:g} µm; the run started again with half of it."
+            )
+        text = f"step {step} ({load}): {restart.reason}; all loads again with {added}"
+        self._console.show(f"fingerpad: {text}")
+        self._log.warning(text)
+        counts = finger.solver.counts
+        self.table.append(
+            {
+                "step": step,
+                "load": load,
+                "reason": restart.reason,
+                "contact": mesh.contact,
+                "touching_half_arc": mesh.touching_half_arc,
+                "both_halves": whole,
+                "unknowns": finger.unknowns,
+                "newton_iterations": counts.newton,
+                "factorisations": counts.factorisations,
+                "processor_seconds": seconds - self._seconds,
+            }
+        )
+        self._seconds = seconds
+
+
+@dataclass(frozen=True)
+class Session:
+    """What all attempts of a run share."""
+
+    comm: MPI.Comm
+    writer: Writer
+    console: Console
+    clock: Clock
+    interrupt: Interrupt
+    outputs: Sequence[Output]
+    restarts: Restarts
+    checkpoint: Checkpoint | None
+    """None to keep nothing."""
 
 
 class Attempt:
@@ -45,36 +131,33 @@ class Attempt:
         report: its states, as they are written.
     """
 
-    def __init__(
-        self,
-        model: FingerModel,
-        comm: MPI.Comm,
-        writer: Writer,
-        console: Console,
-        clock: Clock,
-        interrupt: Interrupt,
-        journal: Journal | None = None,
-    ) -> None:
+    def __init__(self, model: FingerModel, session: Session) -> None:
         """Mesh the finger; collective."""
-        self._model, self._journal = model, journal
-        self._comm, self._interrupt = comm, interrupt
-        self._writer, self._console, self._clock = writer, console, clock
-        console.phase("meshing the finger and setting up its equations")
-        with clock.phase("setup"):
-            self.simulation = Simulation(model, comm, self._on_step, self._on_load, journal)
-        self.report = Report(self.simulation, model.omitted, writer, console, clock)
+        self._model, self._outputs = model, session.outputs
+        self._comm, self._interrupt = session.comm, session.interrupt
+        self._checkpoint, self._restarts = session.checkpoint, session.restarts
+        self._writer, self._console, self._clock = session.writer, session.console, session.clock
+        self._console.phase("meshing the finger and setting up its equations")
+        with self._clock.phase("setup"):
+            self.simulation = Simulation(model, self._comm, self._on_step, self._on_load)
+        loads = [load.name for load in model.loads]
+        writer, console, clock = self._writer, self._console, self._clock
+        self.report = Report(self.simulation, model.omitted, loads, writer, console, clock, self._outputs)
         self._recorder = StateRecorder(self.simulation) if model.options.errors else None
         self._refinement: Refinement | None = None
         self._ended: dict[str, str] = {}
+        self._has_kept = False  # whether there is a checkpoint
         self._solves = 0  # for the error estimate
+        self._steps, self._done = 0, 0.0  # accepted since the last checkpoint; part of the history that is done
 
     def _on_step(self, step: Step, done: float) -> None:
         petsc_options.refuse_unread()
         self.report.step(step, done)
         if self._recorder is not None:
             self._recorder.record(step)
-        if self._journal is not None:
-            self._journal.accepted(self._clock.present())
+        self._steps, self._done = self._steps + 1, done
+        if self._steps >= STEPS:
+            self._keep()
         self._interrupt.stop_if_asked(step.state.step, self._kept())
 
     def _kept(self) -> str:
@@ -82,15 +165,52 @@ class Attempt:
         if self._writer.folder is None:
             return ""
         steps = "every accepted step is in the folder of results"
-        if self._journal is None:
+        if self._checkpoint is None:
             return steps
         resumes = "fingerpad run --resume FOLDER goes on from there"
-        return f"{steps}, and {resumes if self._journal.parts else 'the same command starts again'}"
+        return f"{steps}, and {resumes if self._has_kept else 'the same command starts again'}"
 
     def _on_load(self) -> None:
         self.report.load_reached()
-        if self._journal is not None:
-            self._journal.keep(self._clock.present())
+        self._keep()
+
+    def _keep(self) -> None:
+        """Have the next solve use nothing but the accepted state, and keep that if there is a folder; collective."""
+        self.simulation.forget()
+        self._steps = 0
+        if self._checkpoint is None:
+            return
+        with self._clock.phase("output"):
+            recorder = None if self._recorder is None else self._recorder.kept()
+            state = {
+                "simulation": self.simulation.kept(),
+                "report": self.report.kept(),
+                "recorder": recorder,
+                "restarts": self._restarts.kept(),
+                "mesh": self._model.mesh.model_dump(),
+                "both_halves": self._model.options.both_halves,
+                "done": self._done,
+                "seconds": self._clock.present(),
+            }
+            if self._comm.rank == 0:
+                self._checkpoint.write(state)
+        self._has_kept = True
+
+    def resume(self, kept: dict[str, Any]) -> None:
+        """Go on from a checkpoint, as :func:`fingerpad.runs.full.read` gives it; collective.
+
+        Raises:
+            CheckpointError: it is of another mesh.
+        """
+        self._has_kept, self._done = True, kept["done"]
+        try:
+            self.simulation.resume(kept["simulation"], [*kept["report"]["states"]])
+        except OtherBody as error:
+            raise CheckpointError(f"the checkpoint is of another mesh: {error}") from error
+        places = kept["simulation"]["paths"]["finger"]["places"]
+        self.report.resume(kept["report"], places, self._done)
+        if self._recorder is not None:
+            self._recorder.resume(kept["recorder"])
 
     def _before_solve(self) -> None:
         """Stop if asked to, or tell how far the error estimate is."""
@@ -102,9 +222,9 @@ class Attempt:
             text = f"states on other meshes, to the accuracy asked for: solve {self._solves}, {number} or more to come"
             self._console.phase(f"{text}; {in_words(number * least)} or more left" if least else text)
             return
-        number = len(self._refinement.parameters) + (self._model.contact.formulation == "penalty")
+        number = len(self._refinement.parameters) + (self._refinement.stiffer is not None)
         text = f"estimating discretisation errors: solve {self._solves} of {number}"
-        self._console.phase(text, (self._solves - 0.5) / number)
+        self._console.phase(text, (self._solves - 1) / number)
 
     def follow(self) -> RestartRequired | None:
         """Reach every load, and estimate or refine; return what must be added to the model, if anything; collective."""
@@ -122,14 +242,14 @@ class Attempt:
             self._ended["failure"] = "; ".join(filter(None, (str(error), tip)))
             if isinstance(error, Interrupted):
                 self._ended["interrupted"] = error.signal.name
-            return None if reached else _finer(self._model, error)
+            return None if reached else _finer(self._model, error, self._comm)
 
     def _affordable(self, restart: RestartRequired | None) -> RestartRequired | None:
         """Return a restart within the memory allowed; None, with a failure, for another one."""
         if restart is None:
             return None
         try:
-            _refuse_beyond(restart.model)
+            meshed(restart.model, self._comm)
         except GeometryError as error:
             self._ended["failure"] = f"{restart.reason}; all loads again would need more memory: {error}"
             return None
@@ -153,6 +273,7 @@ class Attempt:
             unknowns, more["accuracy"] = refinement.base.unknowns, refinement.summary()
             notes += refinement.notes
             self.report.final(final)
+        named = {name: valued(state, self._outputs) for name, state in named.items()}
         self.report.load_reached()
         failure = self._ended.get("failure", "" if refinement is None else refinement.failure)
         mu_0 = coefficient(scene)
@@ -169,7 +290,7 @@ class Attempt:
         more |= {"restarts": restarts.table, "laws": used(scene), "provenance": provenance()}
         result = Result(
             scene,
-            "full",
+            DEFAULT_MODEL,
             named.get("uncharged"),
             named.get("charged"),
             named.get("full_slip"),
@@ -181,12 +302,13 @@ class Attempt:
             notes=tuple(notes),
             cautions=(
                 *remarks(scene),
-                *cautions.on_states(record.states, scene.closure()),
+                *cautions.on_states(record.states, scene.closure(), self._model.contact),
                 *long_steps(loads, error),
             ),
             record=more,
             folder=self._writer.folder,
             drawing=drawing,
+            outputs=tuple(self._outputs),
         )
         result = with_newtons(result)
         if result.failure:
@@ -212,12 +334,13 @@ class Attempt:
         }
 
 
-def _finer(model: FingerModel, error: StepFailed) -> RestartRequired | None:
-    """Return a restart with half the contact size, where that may help and is possible.
+def _finer(model: FingerModel, error: StepFailed, comm: MPI.Comm) -> RestartRequired | None:
+    """Return a restart with half the contact size, where that may help and is possible; collective.
 
     Args:
         model: whose loads were not reached.
         error: why not.
+        comm: communicator of the run.
     """
     helps = model.mesh_file is None and finer_mesh_may_help(error, bool(model.asked))
     contact = model.mesh.contact / 2
@@ -225,11 +348,7 @@ def _finer(model: FingerModel, error: StepFailed) -> RestartRequired | None:
         return None
     finer = model.changed(mesh=model.mesh.model_copy(update={"contact": contact}))
     try:
-        _refuse_beyond(finer)
+        meshed(finer, comm)
     except GeometryError:  # more than the memory allowed
         return None
     return RestartRequired(str(error), finer)
-
-
-def _refuse_beyond(model: FingerModel) -> None:
-    refuse_beyond(model.geometry, model.mesh, model.numerics, model.options)

@@ -3,58 +3,54 @@
 A scene's folder is named by a hash of all its parameters: run again, a sweep computes only what has changed, and runs
 that were cut short go on from their checkpoints. The hash does not depend on the program: after a change of the
 mechanics the folder must be deleted.
-
-    python3 -m fingerpad.runs.batch SCENE.json FOLDER LIMIT MODEL [FORCE]    one run, as the sweep starts it
 """
 
 import fcntl
 import hashlib
 import json
 import os
-import sys
 import time
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from types import MappingProxyType
 from typing import Any
 
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
 
-from fingerpad.io.files import lock_file, read_object, replace_json
-from fingerpad.io.folder import below
-from fingerpad.io.left import between
+from fingerpad.io.files import below, lock_file, read_object, replace_json
+from fingerpad.io.pace import between
 from fingerpad.io.place import identity
 from fingerpad.io.terminal import watched
-from fingerpad.runs.processes import End, Pool, limit_processor_time, run
+from fingerpad.runs.processes import End, Pool, run
 from fingerpad.scene import Scene
+from fingerpad.scene.reading import DEFAULT_MODEL
 
 Summary = dict[str, Any]
 _LIMIT = 900.0  # s of processor time for one scene
 _OF_THE_MACHINE = "MUMPS_OUT_OF_MEMORY"  # a failure that says nothing of the scene
 
 
-def key(scene: Scene, force: float | None = None) -> str:
-    """Return the name under which a scene's results are kept.
-
-    Args:
-        scene: the scene.
-        force: on the whole finger (N), in place of the scene's own; None without one.
-    """
-    kept = identity(scene.parameters())
-    if force is not None:
-        kept = {"force": force, "scene": kept}
-    return hashlib.sha256(json.dumps(kept, sort_keys=True).encode()).hexdigest()[:16]
+def key(scene: Scene) -> str:
+    """Return the name under which a scene's results are kept."""
+    return hashlib.sha256(json.dumps(identity(scene.parameters()), sort_keys=True).encode()).hexdigest()[:16]
 
 
-def result(scene: Scene, folder: Path, force: float | None = None) -> Summary | None:
-    """Return the summary of a scene that has been run in a sweep's folder to its end, whatever that was.
+def result(scene: Scene, folder: Path) -> Summary | None:
+    """Return the summary of a scene that has been run in a sweep's folder to its end, whatever that was."""
+    return _ended(_summary(folder / key(scene)))
 
-    A run that was stopped, or had too little memory, has not come to its end; nor has one of a force with traces alone.
-    """
-    summary = _summary(folder / key(scene, force))
+
+def finished(scene: Scene, place: Path) -> Summary | None:
+    """Return the summary of a scene that has been run in a folder of its own to its end; None of another scene's."""
+    summary = _ended(_summary(place))
+    own = json.loads(json.dumps(identity(scene.parameters())))
+    same = summary is not None and identity(summary.get("parameters", {})) == own
+    return summary if same else None
+
+
+def _ended(summary: Summary | None) -> Summary | None:
+    """Return a summary but for one of a run that was stopped, or had too little memory."""
     again = summary is None or summary.get("interrupted") or _OF_THE_MACHINE in str(summary.get("failure"))
-    trace = force is not None and summary is not None and "asked" not in summary and set(summary) != {"failure"}
-    return None if again or trace else summary
+    return None if again else summary
 
 
 def _summary(place: Path) -> Summary | None:
@@ -85,10 +81,12 @@ def times_left(took: Sequence[float], left: int, jobs: int) -> tuple[float, floa
     return (rounds - 1) * low + low / 2, rounds * max(high, 1.25 * low)
 
 
-def _said(summary: Summary, force: float | None) -> str:
-    """Return what became of a run that did not fail, in words."""
-    of_finger = force is not None  # whose cross-section is at another force
-    mu_app = summary["finger"]["states"].get("full_slip", {}).get("mu_app") if of_finger else summary.get("slip_mu_app")
+def _said(summary: Summary) -> str:
+    """Return what became of a run that did not fail, in words; of a whole finger where the force is on it."""
+    if "force" in summary.get("parameters", {}):
+        mu_app = summary["finger"]["states"].get("full_slip", {}).get("mu_app")
+    else:
+        mu_app = summary.get("full_slip_mu_app")
     return "done" if mu_app is None else f"done, µ_app {mu_app:.4f}"
 
 
@@ -97,9 +95,8 @@ def sweep(
     folder: Path,
     jobs: int = 2,
     limit: float = _LIMIT,
-    model: str = "full",
+    model: str = DEFAULT_MODEL,
     quiet: bool = False,
-    forces: Mapping[str, float] = MappingProxyType({}),
 ) -> dict[str, Summary]:
     """Run what has not been run yet, with a progress bar.
 
@@ -108,9 +105,8 @@ def sweep(
         folder: of all results.
         jobs: processes at a time.
         limit: seconds of processor time for one scene.
-        model: ``"full"`` or ``"smooth"``.
+        model: a name of :data:`fingerpad.reduced.models.MODELS`, of one that meshes.
         quiet: whether to print nothing, and show no bar.
-        forces: on the whole finger (N) by name, as of :func:`fingerpad.runs.solve.run`; of scenes that have one.
 
     Returns:
         The summaries by name. That of a run that crashed, took too long, had too little memory or was asked to stop
@@ -118,15 +114,14 @@ def sweep(
     """
 
     def kept(name: str) -> Summary | None:
-        return result(scenes[name], folder, forces.get(name))
+        return result(scenes[name], folder)
 
     found = {name: kept(name) for name in scenes}
     broken: dict[str, Summary] = {}
     took: list[float] = []  # s, of each run
 
     def job(name: str) -> End:
-        force = forces.get(name)
-        place = below(folder, key(scenes[name], force))
+        place = below(folder, key(scenes[name]))
         place.mkdir(parents=True, exist_ok=True)
         with lock_file(place / "lock") as lock:
             fcntl.flock(lock, fcntl.LOCK_EX)  # another sweep may be at it
@@ -136,21 +131,20 @@ def sweep(
             replace_json(place / "asked.json", scenes[name].parameters())
             start = time.monotonic()
             given = [str(place / "asked.json"), str(place), str(limit), model]
-            given += [] if force is None else [repr(force)]
-            end = run("fingerpad.runs.batch", given, limit)
+            end = run("fingerpad.runs.one", given, limit, scenes[name].law_folders())
             took.append(time.monotonic() - start)
             return end
 
     def done(name: str, end: End, left: int) -> None:
-        force, summary = forces.get(name), kept(name)
+        summary = kept(name)
         if summary is None:
             crashed = f"{end.reason}: {end.message}" if end.reason else "INTERRUPTED"
-            said = (_summary(folder / key(scenes[name], force)) or {}).get("failure", "")
+            said = (_summary(folder / key(scenes[name])) or {}).get("failure", "")
             of_process = end.message if end.code == os.EX_TEMPFAIL else crashed
             broken[name] = {"failure": said if _OF_THE_MACHINE in said else of_process}
         if quiet:
             return
-        words = (summary or broken[name]).get("failure") or _said(summary or {}, force)
+        words = (summary or broken[name]).get("failure") or _said(summary or {})
         rest = f"; {between(*times_left(took, left, jobs))} left" if left and took else ""
         text = f"{name}: {words} ({len(missing) - left} of {len(missing)}{rest})"
         bar.console.print(text, highlight=False, markup=False, soft_wrap=True)
@@ -161,36 +155,3 @@ def sweep(
         task = bar.add_task("scenes", total=len(missing))
         Pool[str, End](job, jobs).run(missing, done)
     return {name: kept(name) or broken[name] for name in scenes}
-
-
-def _one(scene: Path, folder: Path, model: str, force: float | None = None) -> None:
-    from fingerpad.startup import start
-
-    start()
-    from fingerpad.io.checkpoint import CheckpointError
-    from fingerpad.io.place import PlaceError
-    from fingerpad.runs.solve import solved, tables_in
-    from fingerpad.scene import SceneError, from_kept
-
-    asked = from_kept(json.loads(scene.read_text(encoding="utf-8")))
-
-    def solve(resume: bool) -> None:
-        tables = tables_in(folder.parent) if model == "smooth" else None  # of all points
-        path = model == "full"  # the others are listed by the sweep alone
-        solved(asked, model, folder, lines=path, bar=path, report=False, force=force, resume=resume, tables=tables)
-
-    try:
-        try:
-            solve(resume=model == "full" and force is None)
-        except CheckpointError:  # nothing to go on from
-            solve(resume=False)
-    except PlaceError as error:  # another run is at it, or the disk is full: it may be gone the next time
-        print(error, file=sys.stderr)
-        sys.exit(os.EX_TEMPFAIL)
-    except SceneError as error:  # it would be the same the next time
-        replace_json(folder / "summary.json", {"failure": str(error)})
-
-
-if __name__ == "__main__":
-    limit_processor_time(float(sys.argv[3]))
-    _one(Path(sys.argv[1]), Path(sys.argv[2]), sys.argv[4], float(sys.argv[5]) if sys.argv[5:] else None)

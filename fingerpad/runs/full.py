@@ -2,44 +2,41 @@
 
 import json
 import signal
-from collections.abc import Mapping
-from contextlib import nullcontext
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-import fingerpad.started  # noqa: F401
+import fingerpad.startup  # noqa: F401
+from fingerpad.accuracy.solves import State
 from fingerpad.io import petsc_options
 from fingerpad.io.abort import all_together, no_room
-from fingerpad.io.checkpoint import Checkpoint
+from fingerpad.io.checkpoint import Checkpoint, CheckpointError
 from fingerpad.io.console import Console
+from fingerpad.io.drawing import Profile
 from fingerpad.io.interrupt import Interrupt
-from fingerpad.io.place import Place
 from fingerpad.io.provenance import provenance
+from fingerpad.io.quantities import Output, checked
 from fingerpad.io.result import Result
 from fingerpad.io.writing import Writer
-from fingerpad.model import expected
 from fingerpad.model.cost import Clock
-from fingerpad.model.journal import Journal
-from fingerpad.model.memory import estimate
+from fingerpad.model.feasibility import by_rule
 from fingerpad.model.options import FingerModel, plan
-from fingerpad.model.touching import by_rule
-from fingerpad.runs.attempt import Attempt
-from fingerpad.runs.restarts import Restarts
+from fingerpad.runs.attempt import Attempt, Restarts, Session
+from fingerpad.runs.context import RunContext
 from fingerpad.scene import Scene, SceneError
 from fingerpad.scene.laws import coefficient
+from fingerpad.scene.reading import DEFAULT_MODEL
 from fingerpad.startup import MPI
+from geometry.parameters import MeshSize
 from geometry.profiles import GeometryError
+from variational.solvers.equations import Control
+from variational.solvers.target import Progress
+from variational.solvers.timing import Counts
+from variational.solvers.transfer import SkinState, StateSnapshot
+from variational.state import ContactState, Errors, RidgeStates, StepRecord
 
 
-def run(
-    scene: Scene,
-    folder: Path | None,
-    comm: MPI.Comm,
-    lines: bool = True,
-    bar: bool = True,
-    resume: bool = False,
-    asked: Mapping[str, Any] | None = None,
-) -> Result:
+def run(scene: Scene, context: RunContext) -> Result:
     """Reach every load of a scene; refine where it asks for an accuracy; collective.
 
     Where the scene does not give the number of ridges that can touch, a rule of thumb does. All loads are gone through
@@ -49,12 +46,7 @@ def run(
 
     Args:
         scene: what is run.
-        folder: of tables, plots and fields; None to write nothing.
-        comm: communicator of the run.
-        lines: whether to print the steps.
-        bar: whether to show the progress bar.
-        resume: go on from the checkpoint in the folder.
-        asked: of which the scene is a trace, see :class:`fingerpad.io.place.Place`; a trace has no checkpoint.
+        context: ranks, folder, console, and whether to go on from the checkpoint in the folder.
 
     Returns:
         The result, the same on every rank. It has a ``failure`` if a load or an accuracy could not be reached; every
@@ -68,45 +60,80 @@ def run(
         SceneError: the finger cannot be meshed; on every rank.
         DiskFull: there is no more room for results; on the ranks that found out, which end the others.
     """
+    comm = context.comm or MPI.COMM_WORLD
+    outputs = checked(context.outputs)
     all_together(comm)
     petsc_options.check(comm, scene.numerics.element)
-    console = Console(comm, lines, bar)
     try:
-        with nullcontext() if folder is None else Place(folder, scene.parameters(), comm, asked=asked) as place:
-            journal = None
-            if place is not None and asked is None:
-                journal = Journal(comm, _checkpoint(scene, place.folder), resume)
-            return _run(scene, Writer(place, comm), comm, console, journal)
+        with context.console() as console, context.place(scene, DEFAULT_MODEL) as place:
+            checkpoint = None if place is None else _checkpoint(scene, place.folder, outputs)
+            kept = read(checkpoint, comm) if context.resume and checkpoint is not None else None
+            writer = Writer(place, comm)
+            restarts = Restarts(writer.log, console)
+            session = Session(comm, writer, console, Clock(comm), Interrupt(comm), outputs, restarts, checkpoint)
+            return _run(scene, session, kept)
     except GeometryError as error:
-        what = "the finger cannot be meshed" if scene.laws.mesh is None else "mesh"
+        what = "the finger cannot be meshed" if scene.geometry.file is None else "mesh"
         raise SceneError(f"{what}: {error}") from error
-    finally:
-        console.close()
 
 
-def _checkpoint(scene: Scene, folder: Path) -> Checkpoint:
+_KEPT = (
+    *(ContactState, RidgeStates, StepRecord, Errors, Profile, Control, Counts, Progress),
+    *(State, StateSnapshot, SkinState),
+)
+"""Classes of what a checkpoint holds."""
+
+
+def read(checkpoint: Checkpoint, comm: MPI.Comm) -> dict[str, Any]:
+    """Return what the last checkpoint holds, on every rank; collective.
+
+    Raises:
+        CheckpointError: a run cannot go on from there; on every rank.
+    """
+    kept: dict[str, Any] | CheckpointError | None = None
+    if comm.rank == 0:
+        try:
+            checkpoint.check()
+            kept = checkpoint.read(_KEPT)
+        except CheckpointError as error:
+            kept = error
+    kept = comm.bcast(kept)
+    if isinstance(kept, CheckpointError):
+        raise kept
+    assert kept is not None
+    return kept
+
+
+def _checkpoint(scene: Scene, folder: Path, outputs: Sequence[Output]) -> Checkpoint:
     """Return the checkpoint of a scene by the present program."""
     versions = provenance()["versions"]
-    return Checkpoint(folder, scene.parameters(), {"source": versions["source"], "dolfinx": versions["dolfinx"]})
+    names = ", ".join(each.name for each in outputs) or "none"
+    same = {"source": versions["source"], "dolfinx": versions["dolfinx"], "list of outputs": names}
+    return Checkpoint(folder, scene.parameters(), same)
 
 
-def _run(scene: Scene, writer: Writer, comm: MPI.Comm, console: Console, journal: Journal | None) -> Result:
-    """Run a scene until nothing must be added to its model."""
+def _run(scene: Scene, session: Session, kept: dict[str, Any] | None) -> Result:
+    """Run a scene until nothing must be added to its model; go on from what an earlier run kept, if it did."""
+    comm, writer, console = session.comm, session.writer, session.console
+    clock, restarts, checkpoint = session.clock, session.restarts, session.checkpoint
     writer.log.info("scene %s", json.dumps(scene.parameters()))
-    clock, restarts = Clock(comm), Restarts(writer.log, console)
-    if journal is not None:
-        clock.earlier(*journal.seconds)
-        if journal.parts:
-            writer.log.info("takes over what an earlier run solved, %d parts of its checkpoint", journal.parts)
-            console.show(f"fingerpad: going on with a run of {journal.seconds[0]:.0f} s; its steps are listed again")
     model = FingerModel(by_rule(scene), plan(scene))
+    if kept is not None:
+        clock.earlier(*kept["seconds"])
+        restarts.resume(kept["restarts"])
+        more = kept["both_halves"] and not model.options.both_halves
+        options = model.options.with_both_halves() if more else model.options
+        model = model.changed(mesh=MeshSize(**kept["mesh"]), options=options)
+        writer.log.info("goes on after step %d of an earlier run", len(kept["report"]["states"]))
+        console.show(f"fingerpad: going on with a run of {kept['seconds'][0]:.0f} s; its steps are listed again")
     try:
-        with Interrupt(comm) as interrupt:
+        with session.interrupt:
             while True:
-                _expect(scene, model, comm, console)
-                attempt = Attempt(model, comm, writer, console, clock, interrupt, journal)
-                if model.mesh_file is not None:
-                    _expect(scene, model, comm, console, attempt.simulation.finger.unknowns)
+                attempt = Attempt(model, session)
+                _expect(scene, console)
+                if kept is not None:
+                    attempt.resume(kept)
+                    kept = None
                 restart = attempt.follow()
                 if restart is None:
                     break
@@ -116,8 +143,8 @@ def _run(scene: Scene, writer: Writer, comm: MPI.Comm, console: Console, journal
             result = attempt.result(scene, restarts)
             console.show(f"\n{result}\n{_work(result)}")
             writer.close()
-            if journal is not None and not result.interrupted:
-                journal.end()
+            if checkpoint is not None and comm.rank == 0 and not result.interrupted:
+                checkpoint.delete()
             return result
     except BaseException as error:
         # On more ranks than this, or not: what waits for the others would never return.
@@ -128,22 +155,12 @@ def _run(scene: Scene, writer: Writer, comm: MPI.Comm, console: Console, journal
         raise full from error
 
 
-def _expect(scene: Scene, model: FingerModel, comm: MPI.Comm, console: Console, unknowns: int | None = None) -> None:
-    """Tell the console what the path will take, about; of a mesh whose unknowns are not estimated but known."""
+def _expect(scene: Scene, console: Console) -> None:
+    """Describe the path to the console: its loads, which end with full slip, and the first over time."""
     loads = scene.loads()
-    size = estimate(scene, model.options).unknowns if unknowns is None else unknowns
-    seconds = [each / comm.size for each in expected.by_load(scene, size)]
-    path = {load.name: each for load, each in zip(loads, seconds, strict=True)}
     slipping = [load.name for load in loads if load.until_full_slip]
-    after = expected.ERRORS * sum(seconds) if model.options.errors and not model.asked else 0.0
-    console.expect(path, after, slipping, coefficient(scene) or 0.0, whole=not model.asked, unsure=_unsure(scene, size))
-
-
-def _unsure(scene: Scene, unknowns: float) -> int | None:
-    """Return the number of the first load that is none like those of the kept runs, None without one."""
-    if expected.beyond_loads(scene) or expected.beyond_mesh(unknowns):
-        return 0
-    return next((k for k, load in enumerate(scene.loads()) if load.wave is not None), None)
+    first = next((k for k, load in enumerate(loads) if load.wave is not None), 0)
+    console.expect(len(loads), slipping, coefficient(scene) or 0.0, first)
 
 
 def exit_code(result: Result) -> int:

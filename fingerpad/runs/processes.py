@@ -48,15 +48,16 @@ def limit_processor_time(seconds: float) -> None:
     resource.setrlimit(resource.RLIMIT_CPU, (whole, whole + 10))
 
 
-def run(module: str, arguments: Sequence[str], limit: float) -> End:
+def run(module: str, arguments: Sequence[str], limit: float, folders: Sequence[str] = ()) -> End:
     """Run ``python3 -m module arguments`` to its end, whatever that is.
 
     Args:
         module: calls :func:`limit_processor_time`.
         arguments: of its command line.
         limit: what it calls it with; a twentieth of the time it may take by the clock.
+        folders: of modules of one's own.
     """
-    path = os.pathsep.join([str(_ROOT), *filter(None, [os.environ.get("PYTHONPATH")])])
+    path = os.pathsep.join([str(_ROOT), *filter(None, [os.environ.get("PYTHONPATH")]), *folders])
     alone = {name: value for name, value in os.environ.items() if not name.startswith(_LAUNCHERS)}
     env = alone | {"PYTHONPATH": path, "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
     command = [sys.executable, "-P", "-m", module, *arguments]  # -P: no modules of the current folder

@@ -1,69 +1,51 @@
 """Run a scene, or many: what ``import fingerpad`` gives for that."""
 
-import itertools
 import os
 import signal
-import tempfile
 import warnings
-from collections.abc import Mapping
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from fingerpad.installed import needed_by, source, version
 from fingerpad.io import dataset, terminal
-from fingerpad.io.files import replace_json
-from fingerpad.io.folder import below
-from fingerpad.io.place import Place, Serial, on_rank_0
+from fingerpad.io.files import below, replace_json
+from fingerpad.io.place import Serial, on_rank_0
+from fingerpad.io.quantities import Output
+from fingerpad.io.quantities import checked as checked_outputs
 from fingerpad.io.result import Result
-from fingerpad.io.states import WORDS
-from fingerpad.model.check import check
+from fingerpad.reduced.model import Model
+from fingerpad.reduced.models import find
+from fingerpad.runs.context import RunContext
 from fingerpad.scene import Scene, SceneError
 from fingerpad.scene.messages import show
-from fingerpad.scene.reading import flat
+from fingerpad.scene.reading import DEFAULT_MODEL, flat
 from variational.coefficients import LawError
 
 if TYPE_CHECKING:
     from fingerpad.startup import MPI
-    from variational.contact.friction import Friction
-    from variational.materials.material import Material
-    from variational.roughness.closure import Closure
-
-MODELS = ("cylinders", "smooth", "full")
-"""The cheapest first; see :mod:`fingerpad.runs.compare`."""
 
 
 def run(
     scene: Scene | None = None,
     *,
     out: str | Path | None = None,
-    model: str = "full",
-    force: float | str | None = None,
-    closure: "Closure | None" = None,
-    materials: "Mapping[str, Material] | None" = None,
-    friction: "Friction | float | None" = None,
-    mesh: str | Path | None = None,
+    model: str = DEFAULT_MODEL,
     comm: "MPI.Comm | None" = None,
     resume: bool = False,
+    outputs: Sequence[Output] = (),
 ) -> Result:
     """Return what a model answers to a scene; collective.
 
     Args:
         scene: the scene; by default press, charge and slide of the default finger.
         out: folder for tables, pictures, fields and ``summary.json``; without it nothing is written.
-        model: ``"full"``, every ridge along the whole path (minutes); ``"smooth"``, a smooth finger with the law of
-            one ridge (seconds, half a minute the first time); ``"cylinders"``, a closed form (at once).
-        force: external force on the whole finger, in N, as a text such as ``"0.5 N"`` or as a quantity of pint, in
-            place of the scene's ``f_ext``. The result's ``finger`` is then summed over traces of the model
-            (:mod:`fingerpad.slices.traces`): three runs of the full one, some 25 scenes of the others. States in N/m:
-            for the full model, those at the end of its last trace; for other models, those under the force on the
-            centre slice.
-        closure: microscale model in place of the bearing area model, see :mod:`variational.roughness.closure`.
-        materials: materials by layer (``{"dermis": NeoHooke(2.5e3)}``), see :mod:`variational.materials.material`.
-        friction: friction law, see :mod:`variational.contact.friction`.
-        mesh: file of a gmsh mesh in place of the finger's own, see :mod:`geometry.meshfile`.
+        model: a name of :data:`fingerpad.reduced.models.MODELS`: ``"full"``, every ridge along the whole path
+            (minutes); ``"cylinders"``, a closed form (at once).
         comm: communicator; by default of all ranks.
         resume: go on from where a run of the same scene in ``out`` was cut short; only of the full model.
+        outputs: further quantities, each computed from every state: see :class:`fingerpad.io.quantities.Output`.
 
     Returns:
         The result. A load that could not be reached is its ``failure``, with a warning; the states before are in it.
@@ -73,17 +55,15 @@ def run(
         KeyboardInterrupt: Ctrl-C, after the present step; its attribute ``result`` has the steps accepted before.
         SystemExit: SIGTERM or SIGHUP, likewise.
     """
-    scene = checked(scene)
+    scene, way = checked(scene), find(model)
     if out is not None and not isinstance(out, str | os.PathLike):
         raise SceneError(f"out is {show(out)}; it must be the path of a folder")
-    if closure is not None or materials or friction is not None or mesh is not None:
-        scene = scene.with_laws(closure=closure, materials=materials, friction=friction, mesh=mesh)
-    if resume and (out is None or model != "full" or force is not None):
+    if resume and (out is None or not way.resumes):
         raise SceneError(
-            f"resume is true, out is {show(out)}, model {show(model)} and force {show(force)}; "
-            "only a full run in a folder, of one scene, can go on"
+            f"resume is true, out is {show(out)} and model {show(model)}; only a full run in a folder can go on"
         )
-    result = solved(scene, model, None if out is None else Path(out), comm, force=force, resume=resume)
+    context = RunContext(None if out is None else Path(out), comm, resume=resume, outputs=outputs)
+    result = solved(scene, way, context)
     if result.interrupted:
         raise _ended(result)
     if result.failure and terminal.rank() == 0:
@@ -112,113 +92,59 @@ def _ended(result: Result) -> BaseException:
     return error
 
 
-def solved(
-    scene: Scene,
-    model: str,
-    out: Path | None = None,
-    comm: "MPI.Comm | None" = None,
-    lines: bool = False,
-    bar: bool = True,
-    report: bool = True,
-    force: float | str | None = None,
-    resume: bool = False,
-    tables: Path | None = None,
-) -> Result:
-    """Return what a model answers to a scene with all its laws; collective; arguments as of :func:`run`.
+def solved(scene: Scene, model: Model, context: RunContext) -> Result:
+    """Return what a model answers to a scene with all its laws; collective.
 
     Args:
         scene: the scene.
-        model: one of :data:`MODELS`.
-        out: folder of results.
-        comm: communicator.
-        lines: whether the full model prints its steps, and the smooth finger what it does.
-        bar: whether they show a progress bar.
-        report: whether ``report.html`` is written beside the results.
-        force: on the whole finger, as of :func:`run`.
-        resume: whether the full model goes on from where a run in the folder was cut short.
-        tables: folder of the ridge's tables of the smooth finger; by default that of :func:`tables_in`.
+        model: one of :data:`fingerpad.reduced.models.MODELS`.
+        context: all else.
     """
-    if model not in MODELS:
-        raise SceneError(f"model is {show(model)}; it must be {' or '.join(map(repr, MODELS))}")
-    scene.laws.refuse_kept()
+    checked_outputs(context.outputs)
+    scene = scene.resolved()
+    if context.resume:
+        scene.refuse_laws_of_program("a run that goes on")
     try:
-        if force is None:
-            result = _solved(scene, model, out, comm, lines, bar, resume, tables=tables)
-        else:
-            result = _whole(scene, force, model, out, comm, lines, bar, tables)
+        result = _solved(scene, model, context) if scene.force is None else _whole(scene, model, context)
     except LawError as error:
         raise SceneError(str(error)) from error
-    whole = not (result.interrupted and force is not None)  # a force without all of its traces is no result
-    if report and whole and out is not None and _ranks(comm).rank == 0:
+    whole = not (result.interrupted and scene.force is not None)  # a force without all of its traces is no result
+    if context.report and whole and context.folder is not None and context.ranks.rank == 0:
         from fingerpad.report.write import attempt, draw_footprint
 
         draw_footprint(result)
-        attempt(out)
+        attempt(context.folder)
     return result
 
 
-def _solved(
-    scene: Scene,
-    model: str,
-    out: Path | None,
-    comm: "MPI.Comm | None",
-    lines: bool,
-    bar: bool,
-    resume: bool = False,
-    asked: Mapping[str, Any] | None = None,
-    tables: Path | None = None,
-) -> Result:
-    """Return what a model answers, its results written into a folder; collective; arguments as of :func:`solved`.
+def _solved(scene: Scene, model: Model, context: RunContext) -> Result:
+    """Return what a model answers, its results written into a folder; collective; arguments as of :func:`solved`."""
+    with needed_by(f"the model {model.name!r}"):
+        if model.meshes:
+            from fingerpad.startup import MPI  # before any other import of the libraries that it starts
 
-    Args:
-        scene: the scene.
-        model: one of :data:`MODELS`.
-        out: folder of results.
-        comm: communicator.
-        lines: whether to print.
-        bar: whether to show a bar.
-        resume: whether to go on.
-        asked: of which the scene is a trace, see :class:`fingerpad.io.place.Place`.
-        tables: as of :func:`solved`.
-    """
-    if model == "cylinders":
-        from fingerpad.reduced import cylinders
-
-        found = with_versions(cylinders.solve(scene), {"versions": {"fingerpad": version(), "source": source()}})
-        return found if out is None else kept(found, out, _ranks(comm))
-    with needed_by(f"the model {model!r}"):
-        import fingerpad.started  # noqa: F401  # with the configuration of the user alone, before any other import
-        from fingerpad.startup import MPI
-
-        comm = comm or MPI.COMM_WORLD
-        _refuse_different(scene, comm)
-        check(scene)
-        if model == "full":
-            from fingerpad.runs import full
-
-            return full.run(scene, out, comm, lines, bar, resume, asked)
-        from fingerpad.io.console import Console
-        from fingerpad.io.provenance import provenance
-        from fingerpad.reduced import smooth
-
-        _refuse_other_results(scene, model, out, comm, asked)
-        console = Console(comm, lines, bar)
-        try:
-            found = with_versions(smooth.solve(scene, tables or tables_in(out), comm, console), provenance())
-            return kept(found, out, comm)
-        finally:
-            console.close()
+            context = replace(context, comm=context.comm or MPI.COMM_WORLD)
+            _refuse_different(scene, context.ranks)
+        model.check(scene)
+        result = model.solve(scene, context)
+    if model.path:
+        return result
+    versions = {"versions": {"fingerpad": version(), "source": source()}}
+    result = replace(result, record={**result.record, "provenance": versions})
+    return kept(result.with_outputs(context.outputs), context)
 
 
-def _refuse_different(scene: Scene, comm: "MPI.Comm") -> None:
+def _refuse_different(scene: Scene, comm: "MPI.Comm | Serial") -> None:
     """Refuse scenes that differ from rank to rank, whose solves would wait for each other for ever; collective.
 
-    Laws of one's own are left out: those without a source are another one in each process.
+    Hashes of laws are left out: those without a file are another one in each process.
 
     Raises:
         SceneError: the first key that differs, on every rank.
     """
-    first, *others = comm.allgather({k: v for k, v in flat(scene.parameters()).items() if not k.startswith("laws.")})
+    if isinstance(comm, Serial):
+        return
+    first, *others = comm.allgather({k: v for k, v in flat(scene.parameters()).items() if not k.endswith(".sha256")})
     for rank, other in enumerate(others, start=1):
         for key in sorted(first.keys() | other.keys()):
             if (one := first.get(key)) != (two := other.get(key)):
@@ -228,97 +154,58 @@ def _refuse_different(scene: Scene, comm: "MPI.Comm") -> None:
                 )
 
 
-def _whole(
-    scene: Scene,
-    force: float | str,
-    model: str,
-    out: Path | None,
-    comm: "MPI.Comm | None",
-    lines: bool,
-    bar: bool,
-    tables: Path | None = None,
-) -> Result:
-    """Return the result of a force on the whole finger, its sums written beside the files of the last trace."""
-    from fingerpad.slices import traces
-    from fingerpad.slices.force import newtons
+def _whole(scene: Scene, model: Model, context: RunContext) -> Result:
+    """Return the result of a force on the whole finger: a sweep of scenes without one, each in a folder of its own.
 
-    value, number = newtons(force), itertools.count(1)
-    asked = {"force": value, "parameters": scene.parameters()}
-    if model != "full":
-        _refuse_other_results(scene, model, out, _ranks(comm), asked)
-    own = out if model == "full" else None
-    tables = tables or (tables_in(out) if model == "smooth" else None)
-    told = lines and model == "smooth" and terminal.rank() == 0
+    What an earlier run of the same scene has finished is taken from there, and what it began goes on.
+    """
+    from fingerpad.slices import traces
+
+    with context.place(scene, model.name) as place:
+        if place is not None and model.path:
+            place.take()  # the scene is then there for those who go on with it
 
     def solve(each: Scene, name: str) -> Result:
-        if told:
-            what = f"trace of {WORDS[name]}" if name else "centre of the finger"
-            print(f"scene {next(number)} of some {traces.scenes(scene)}: {what}, {each.f_ext:.4g} N/m", flush=True)
-        folder = traces.folder_of(own, name)
-        return _solved(each, model, folder, comm, lines and model == "full", bar, asked=asked, tables=tables)
+        if not model.path:
+            return _solved(each, model, replace(context, folder=None))
+        if context.lines and context.ranks.rank == 0:
+            print(f"\nTrace of the cross-section, {name.replace('_', ' ')}", flush=True)
+        return _gone_on(each, model, replace(context, folder=context.folder and below(context.folder, name)))
 
+    found = traces.whole(scene, model, solve)
+    return found if found.interrupted else kept(found, context)
+
+
+def _gone_on(scene: Scene, model: Model, context: RunContext) -> Result:
+    """Return the result of a scene that its folder may have, whole or in part; collective."""
+    from fingerpad.io.checkpoint import CheckpointError
+    from fingerpad.runs.batch import finished
+
+    folder = context.folder
+    if folder is None:
+        return _solved(scene, model, context)
+    if on_rank_0(context.ranks, lambda: finished(scene, folder) is not None):
+        return Result.load(folder)
     try:
-        found = traces.whole(scene, value, model, solve)
-    except (KeyboardInterrupt, SystemExit):
-        if told:
-            print(f"Stopped. The same command starts the traces again, with the ridge's finished tables in {tables}.")
-        raise
-    if found.interrupted:
-        return found
-    found = replace(found, record={**found.record, "asked": asked})
-    if out is None:
-        return found
-    if model != "full":
-        return kept(found, out, _ranks(comm), asked)
-    return _written(found, _ranks(comm))
+        return solved(scene, model, replace(context, resume=True))
+    except CheckpointError:  # nothing to go on from
+        return solved(scene, model, replace(context, resume=False))
 
 
-def with_versions(result: Result, provenance: Mapping[str, Any]) -> Result:
-    """Return the result of a model without a path with the versions that computed it, as a full run has them."""
-    return replace(result, record={**result.record, "provenance": provenance})
-
-
-def _refuse_other_results(
-    scene: Scene, model: str, out: Path | None, comm: "MPI.Comm | Serial", asked: Mapping[str, Any] | None = None
-) -> None:
-    """Refuse a folder of other results before the work, not after it; collective; see :func:`kept`."""
-    if out is not None:
-        with Place(out, scene.parameters(), comm, model, asked):
-            pass
-
-
-def _ranks(comm: "MPI.Comm | None") -> "MPI.Comm | Serial":
-    """Return the communicator of a run: of all ranks by default, and of this process alone where there is no MPI."""
-    if comm is not None:
-        return comm
-    try:
-        from fingerpad.startup import MPI
-    except ImportError:
-        return Serial()
-    return MPI.COMM_WORLD
-
-
-def kept(result: Result, out: Path | None, comm: "MPI.Comm | Serial", asked: Mapping[str, Any] | None = None) -> Result:
-    """Return the result of a model without a path, its summary written into a folder if there is one; collective.
-
-    Args:
-        result: of the model.
-        out: folder of results.
-        comm: communicator of the model.
-        asked: the force on the whole finger that the result is of, see :class:`fingerpad.io.place.Place`.
+def kept(result: Result, context: RunContext) -> Result:
+    """Return the result of a model without a path, its summary written into the folder if there is one; collective.
 
     Raises:
         PlaceError: the folder is in use, holds results of another scene or model, or cannot be written to.
     """
-    if out is None:
-        return result
-    result = replace(result, folder=out)
-    with Place(out, result.scene.parameters(), comm, result.model, asked) as place:
+    with context.place(result.scene, result.model) as place:
+        if place is None:
+            return result
         place.take()
-        return _written(result, comm)
+        return _written(replace(result, folder=place.folder), context)
 
 
-def _written(result: Result, comm: "MPI.Comm | Serial") -> Result:
+def _written(result: Result, context: RunContext) -> Result:
     """Write summary and dataset of a result into its folder; return the result with a note on what is missing."""
 
     def write() -> str:
@@ -326,18 +213,5 @@ def _written(result: Result, comm: "MPI.Comm | Serial") -> Result:
         replace_json(result.folder / "summary.json", result.to_dict())
         return dataset.save(result)
 
-    missing = on_rank_0(comm, write)
+    missing = on_rank_0(context.ranks, write)
     return replace(result, notes=(*result.notes, missing)) if missing else result
-
-
-def tables_in(out: Path | None) -> Path:
-    """Return the folder of the tables of ridges: inside that of the results, or else in the user's cache."""
-    if out is not None:
-        folder = below(out, "ridge_tables")
-    else:
-        folder = Path(os.environ.get("XDG_CACHE_HOME") or "~/.cache").expanduser() / "fingerpad" / "ridge_tables"
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError:
-        return Path(tempfile.mkdtemp(prefix="fingerpad-tables-"))
-    return folder

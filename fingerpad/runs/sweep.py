@@ -13,21 +13,22 @@ import numpy as np
 
 from fingerpad.installed import source, version
 from fingerpad.io import terminal
-from fingerpad.io.files import replace_json
-from fingerpad.io.folder import below, check_folder
+from fingerpad.io.files import below, check_folder, replace_json
+from fingerpad.io.quantities import Output
+from fingerpad.io.quantities import checked as checked_outputs
 from fingerpad.io.result import Result
-from fingerpad.model.check import check
+from fingerpad.reduced.model import Model
+from fingerpad.reduced.models import MODELS, find
 from fingerpad.report.write import attempt
-from fingerpad.runs import over_force, sweep_dataset
-from fingerpad.runs.solve import MODELS, checked, solved
-from fingerpad.runs.sweep_columns import FORCE
-from fingerpad.runs.sweep_results import Sweep
+from fingerpad.runs.context import RunContext
+from fingerpad.runs.solve import checked, solved
+from fingerpad.runs.sweep_results import FILE, Sweep
 from fingerpad.scene import Scene, SceneError
 from fingerpad.scene.messages import clip, show
-from fingerpad.scene.reading import plain, put
+from fingerpad.scene.reading import DEFAULT_MODEL, plain, put
 from fingerpad.scene.remarks import leakage
 
-FILES = ("table.csv", sweep_dataset.FILE, "report.html", "sweep.json")
+FILES = ("table.csv", FILE, "report.html", "sweep.json")
 """What a sweep writes into its folder beside its points."""
 _MOST = 10_000  # points
 _LIMIT = 4 * 3600.0  # s of processor time for one point
@@ -38,8 +39,9 @@ def sweep(
     out: str | Path = "results/sweep",
     *,
     jobs: int = 1,
-    model: str = "full",
+    model: str = DEFAULT_MODEL,
     quiet: bool = False,
+    outputs: Sequence[Output] = (),
     **axes: Sequence[Any],
 ) -> Sweep:
     """Return what a model answers to a scene over values of some of its keys.
@@ -54,43 +56,46 @@ def sweep(
         jobs: points that are run at a time.
         model: as of :func:`fingerpad.runs.solve.run`.
         quiet: whether to print no line for each point, and show no progress bar.
-        **axes: values by key: ``voltage=[0, 100, 200]``, or ``**{"roughness.h_rms": [2e-6, 3e-6]}``. An axis ``force``
-            is of external forces on the whole finger, in N or as texts with units, in place of ``f_ext``: see
-            ``force`` of :func:`fingerpad.runs.solve.run`. Tables and arrays are then of the whole finger.
+        outputs: as of :func:`fingerpad.runs.solve.run`; the folders of the points do not have them.
+        **axes: values by key: ``voltage=[0, 100, 200]``, or ``**{"roughness.h_rms": [2e-6, 3e-6]}``.
+            With ``force`` tables and arrays are of the whole finger.
 
     Raises:
-        SceneError: a key or a value that a scene cannot have, no values, a scene with laws of its own, which other
-            processes cannot be given, more than one rank of MPI, or a folder that holds a run.
+        SceneError: a key or a value that a scene cannot have, no values, a law that only this program knows and other
+            processes cannot import, more than one rank of MPI, or a folder that holds a run.
         KeyboardInterrupt: Ctrl-C, after the present step of each running point; the same sweep goes on from there.
         SystemExit: SIGTERM or SIGHUP, likewise.
     """
-    scene = checked(scene)
+    scene, way = checked(scene), find(model)
     if terminal.ranks() > 1:
         raise SceneError("a sweep runs its points in processes of its own; start it without mpirun, and use jobs")
     if not isinstance(jobs, Integral) or jobs < 1:
         raise SceneError(f"jobs is {show(jobs)}; it must be a whole number, at least 1")
     if not isinstance(out, str | os.PathLike):
         raise SceneError(f"out is {show(out)}; it must be the path of a folder")
-    if model not in MODELS:
-        raise SceneError(f"model is {show(model)}; it must be {' or '.join(map(repr, MODELS))}")
-    _refuse_axes(scene, axes)
+    checked_outputs(outputs)
+    _refuse_axes(axes)
+    scene = scene.resolved()
     scenes = _scenes(scene, axes)
     values = _values(scenes, axes)
+    for each in scenes if way.meshes else ():
+        each.refuse_laws_of_program("the processes of a sweep")
     folder = Path(out)
     _claim(folder)
     points = [_Point(*each) for each in zip(scenes, _points(values), strict=True)]
-    if model == "cylinders":
-        found = [_closed(point) for point in points]
+    if way.meshes:
+        found = _in_processes(points, folder, jobs, way, quiet)
     else:
-        found = _in_processes(points, folder, jobs, model, quiet)
-    done = Sweep(values, tuple(found), folder)
+        found = [_here(point, way) for point in points]
+    done = Sweep(values, tuple(each.with_outputs(outputs) for each in found), folder)
     for name in FILES[:-1]:  # else that of an earlier sweep may stay beside this one's
         (folder / name).unlink(missing_ok=True)
     asked = {"version": version(), "model": model, "parameters": scene.parameters()}
+    asked |= {"outputs": [each.to_dict() for each in done.outputs]}
     leaks = next((note for each in done for note in leakage(each.scene)), "")
     replace_json(folder / FILES[-1], asked | {"cautions": done.cautions(), "notes": [leaks] if leaks else []})
     done.to_csv(folder / FILES[0])
-    notes = tuple(filter(None, (leaks, sweep_dataset.save(done), _older(done, folder / model))))
+    notes = tuple(filter(None, (leaks, done.save(), _older(done, folder / model))))
     attempt(folder)
     return replace(done, notes=notes)
 
@@ -123,11 +128,11 @@ def _points(axes: Mapping[str, Sequence[Any]]) -> list[dict[str, Any]]:
 
 
 def _scenes(scene: Scene, axes: Mapping[str, Sequence[Any]]) -> list[Scene]:
-    """Return the scenes of all points, checked; a force in newtons is in none of them."""
-    return [_with(scene, {key: v for key, v in point.items() if key != FORCE}) for point in _points(axes)]
+    """Return the scenes of all points, checked."""
+    return [_with(scene, point) for point in _points(axes)]
 
 
-def _refuse_axes(scene: Scene, axes: Mapping[str, Sequence[Any]]) -> None:
+def _refuse_axes(axes: Mapping[str, Sequence[Any]]) -> None:
     """Refuse a sweep over what cannot be one."""
     if not axes:
         raise SceneError("the sweep has no axis; give values of at least one key, such as voltage=[0, 100, 200]")
@@ -141,11 +146,6 @@ def _refuse_axes(scene: Scene, axes: Mapping[str, Sequence[Any]]) -> None:
             raise SceneError(
                 f"{key} of the sweep is {show(values)}; it must be a list of at least one value, none a list"
             )
-    scene.laws.refuse_kept()
-    if scene.parameters().get("laws", {}).keys() - {"mesh"}:
-        raise SceneError(
-            "the scene has laws of its own, which the processes of a sweep cannot be given; call run for each point"
-        )
     count = int(np.prod([len(values) for values in axes.values()]))
     if count > _MOST:
         raise SceneError(f"the sweep has {count} points; at most {_MOST} are allowed")
@@ -156,9 +156,6 @@ def _values(scenes: Sequence[Scene], axes: Mapping[str, Sequence[Any]]) -> dict[
     found, apart = {}, len(scenes)  # points from one value of an axis to the next
     for key, values in axes.items():
         apart //= len(values)
-        if key == FORCE:
-            found[key] = over_force.forces(axes, scenes)
-            continue
         found[key] = tuple(_at(scenes[k * apart], key) for k in range(len(values)))
         if len(set(map(repr, found[key]))) < len(values):
             raise SceneError(f"{key} of the sweep is {show(values)}; each value must be there once")
@@ -191,42 +188,36 @@ class _Point(NamedTuple):
     values: Mapping[str, Any]
     """Of the axes by key."""
 
-    @property
-    def force(self) -> float | None:
-        """On the whole finger (N), if the sweep is over it."""
-        return self.values.get(FORCE)
-
     def failed(self, model: str, why: str) -> Result:
         """Return a result without any number."""
         return Result(self.scene, model, None, None, None, failure=why)
 
 
-def _closed(point: _Point) -> Result:
+def _here(point: _Point, model: Model) -> Result:
     try:
-        return solved(point.scene, "cylinders", force=point.force)
+        return solved(point.scene, model, RunContext())
     except SceneError as error:
-        return point.failed("cylinders", str(error))
+        return point.failed(model.name, str(error))
 
 
-def _in_processes(points: Sequence[_Point], folder: Path, jobs: int, model: str, quiet: bool) -> list[Result]:
+def _in_processes(points: Sequence[_Point], folder: Path, jobs: int, model: Model, quiet: bool) -> list[Result]:
     """Return the results of points, those that can be run in processes of their own, kept by their parameters."""
     from fingerpad.runs import batch
 
-    place = below(folder, model)
+    place = below(folder, model.name)
     results, keys, named = dict[str, Result](), list[str](), dict[str, _Point]()
     for point in points:
-        keys.append(batch.key(point.scene, point.force))
+        keys.append(batch.key(point.scene))
         words = ", ".join(f"{key} {show(value)}" for key, value in point.values.items())
         try:
-            check(point.scene)
+            model.check(point.scene)
             named[f"{words} ({keys[-1]})"] = point
         except SceneError as error:
-            results[keys[-1]] = point.failed(model, str(error))
+            results[keys[-1]] = point.failed(model.name, str(error))
     scenes = {name: point.scene for name, point in named.items()}
-    forces = {name: point.force for name, point in named.items() if point.force is not None}
-    found = batch.sweep(scenes, place, jobs, _LIMIT, model, quiet, forces)
+    found = batch.sweep(scenes, place, jobs, _LIMIT, model.name, quiet)
     for name, point in named.items():
-        summary, key = found[name], batch.key(point.scene, point.force)
+        summary, key = found[name], batch.key(point.scene)
         lost = set(summary) == {"failure"}
-        results[key] = point.failed(model, summary["failure"]) if lost else Result.load(place / key)
+        results[key] = point.failed(model.name, summary["failure"]) if lost else Result.load(place / key)
     return [results[key] for key in keys]

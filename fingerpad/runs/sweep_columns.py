@@ -2,7 +2,7 @@
 
 A load over time, such as a drive waveform, has no named state: ``load_NAME_mu_app_max`` is the largest coefficient in
 it, ``load_NAME_f_t_amplitude`` the largest amplitude in the spectrum of friction and ``load_NAME_f_t_frequency`` the
-frequency of that. A sweep over the force in newtons has columns of the whole finger alone.
+frequency of that. Under a force on the whole finger there are columns of that alone.
 """
 
 import math
@@ -10,36 +10,27 @@ import re
 from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
-from fingerpad.io.quantities import QUANTITIES, Quantity, cell
+from fingerpad.io.quantities import FINGER, FRICTION, QUANTITIES, SWEPT, Output, cell
 from fingerpad.io.result import Result
-from fingerpad.io.states import PREFIXES, STATES, LoadResult
-from fingerpad.slices.finger import QUANTITIES as OF_FINGER
+from fingerpad.io.states import STATES, LoadResult
+from fingerpad.scene import Scene
+from fingerpad.scene.keys import Key, every
 from fingerpad.slices.finger import WholeFinger
 
-SHOWN = ("mu_app", "f_t", "contact_length", "f_electrostatic", "ridges_in_contact")
-"""Quantities of a named state."""
 LOAD = "load"
 """Beginning of the columns of a load over time."""
-FORCE = "force"
-"""Axis of the force on the whole finger (N), which is no key of a scene."""
 _WHOLE = ("mu_app", "f_t", "f_electrostatic", "contact_area", "gross_area")
-_FRICTION = ("mu_app", "f_t")  # at full slip alone
 _NEWTONS = ("f_ext", *_WHOLE, "indentation")
 _IN_TIME = ("mu_app", "f_t", "contact_length")
 _ENDS = {"min": "least", "max": "largest", "mean": "mean"}
 
 
-def row(result: Result, whole: bool = False) -> dict[str, Any]:
-    """Return the values of a point in SI units by column, and its failure.
-
-    Args:
-        result: of the point.
-        whole: whether it is one of several forces in newtons of a run, whose cross-section is of none of them.
-    """
-    if whole:
+def row(result: Result) -> dict[str, Any]:
+    """Return the values of a point in SI units by column, and its failure."""
+    if result.whole:
         return (_newtons(result.finger) if result.finger is not None else {}) | {"failure": result.failure}
-    values = result.values()
-    names = [f"{PREFIXES[state]}_{key}" for state in STATES for key in SHOWN]
+    values, keys = result.values(), (*SWEPT, *(each.name for each in result.outputs))
+    names = [f"{state}_{key}" for state in STATES for key in keys]
     cells = {key: values.get(key) for name in names for key in (name, f"{name}_error") if key in values}
     if result.finger is not None:
         cells |= _newtons(result.finger)
@@ -53,7 +44,7 @@ def _newtons(finger: WholeFinger) -> dict[str, float]:
     for state in finger.states:
         values, error = finger.values(state), finger.error.get(state, {})
         for key in _NEWTONS:
-            if key in _FRICTION and state != "full_slip":
+            if key in FRICTION and state != "full_slip":
                 continue
             name = _of_finger(state, key)
             found |= {name: values[key]} | ({f"{name}_error": error[key]} if key in error else {})
@@ -76,27 +67,29 @@ def _in_time(load: LoadResult) -> dict[str, float]:
     return found
 
 
-def shown(columns: Iterable[str], whole: bool) -> tuple[str, dict[str, Quantity]]:
+def shown(columns: Iterable[str], whole: bool, outputs: Iterable[Output] = ()) -> tuple[str, dict[str, Output]]:
     """Return a named state, and the columns of it that a table shows.
 
     Args:
         columns: of the sweep.
-        whole: whether it is over the force in newtons.
+        whole: whether forces are those on the whole finger.
+        outputs: of the sweep, that are computed from a state.
 
     Returns:
         Full slip. Without friction a whole finger has none, and it is the last state before.
     """
     if not whole:
-        return "full_slip", {f"{PREFIXES['full_slip']}_{key}": QUANTITIES[key] for key in SHOWN}
+        known = {key: QUANTITIES[key] for key in SWEPT} | {each.name: each for each in outputs}
+        return "full_slip", {f"full_slip_{key}": each for key, each in known.items()}
     there = set(columns)
     state = next((name for name in reversed(STATES) if _of_finger(name, "contact_area") in there), "full_slip")
-    keys = [key for key in _WHOLE if state == "full_slip" or key not in _FRICTION]
-    return state, {_of_finger(state, key): OF_FINGER[key] for key in keys}
+    keys = [key for key in _WHOLE if state == "full_slip" or key not in FRICTION]
+    return state, {_of_finger(state, key): FINGER[key] for key in keys}
 
 
 def _of_finger(state: str, key: str) -> str:
     """Return the column of a quantity of the whole finger."""
-    return f"{PREFIXES[state]}_finger_{key}"
+    return f"{state}_finger_{key}"
 
 
 def newtons_of(result: Result) -> str:
@@ -128,7 +121,7 @@ def in_time(name: str, columns: Iterable[str]) -> dict[str, str]:
     return {column: said for key, said in words.items() if (column := f"{LOAD}_{name}_{key}") in there}
 
 
-def head(quantity: Quantity) -> str:
+def head(quantity: Output) -> str:
     """Return the symbol of a quantity, or its words where it has none, with the unit."""
     name = quantity.symbol.removesuffix(" in contact")
     return f"{name} ({quantity.unit})" if quantity.unit else name
@@ -164,3 +157,8 @@ def printed(value: Any) -> str:
     if isinstance(value, bool):
         return str(value).lower()
     return f"{value:g}" if isinstance(value, int | float) else str(value)
+
+
+def described(key: str) -> Key | None:
+    """Return what is known of a dotted key of a scene; None of a table."""
+    return next((each for each in every(Scene) if each.name == re.sub(r"\[\d+\]", "[]", key)), None)

@@ -2,7 +2,7 @@
 
 import csv
 import itertools
-import math
+import json
 import re
 from collections import Counter
 from collections.abc import Iterator, Sequence
@@ -13,18 +13,20 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from fingerpad.io import dataset
 from fingerpad.io.files import replace
-from fingerpad.io.quantities import PER_LENGTH, QUANTITIES
+from fingerpad.io.quantities import FINGER, PER_LENGTH, QUANTITIES, Output
 from fingerpad.io.result import Result
 from fingerpad.io.states import STATES, WORDS
-from fingerpad.runs import sweep_dataset
-from fingerpad.runs.sweep_columns import FORCE, head, newtons_of, printed, row, shown, tables
+from fingerpad.runs.sweep_columns import described, head, newtons_of, printed, row, shown, tables
 from fingerpad.slices import solid
-from fingerpad.slices.finger import QUANTITIES as OF_FINGER
 from variational.state import CONDITIONS, RESULTS
 
 if TYPE_CHECKING:
     import xarray
+
+FILE = "sweep.nc"
+_OF_POINT = {"state", "load", "harmonic", "ridge", "side"}  # dimensions of a point; steps and skin are in its folder
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -58,8 +60,13 @@ class Sweep:
 
     @property
     def whole(self) -> bool:
-        """Whether the sweep is over the force on the whole finger; its results have their ``finger`` under it."""
-        return FORCE in self.axes
+        """Whether forces are those on the whole finger; results have their ``finger`` under it."""
+        return any(result.whole for result in self.results)
+
+    @property
+    def outputs(self) -> tuple[Output, ...]:
+        """Outputs of the results that are computed from a state."""
+        return tuple(dict.fromkeys(each for result in self.results for each in result.outputs))
 
     def points(self) -> list[dict[str, Any]]:
         """Return the values of the axes at each point, in order."""
@@ -70,7 +77,7 @@ class Sweep:
 
         Args:
             quantity: a name of :class:`variational.state.ContactState`, such as ``"mu_app"``; of a sweep over the force
-                in newtons a name of :data:`fingerpad.slices.finger.QUANTITIES`, such as ``"f_t"`` in N.
+                in newtons a name of :data:`fingerpad.io.quantities.FINGER`, such as ``"f_t"`` in N.
             state: a name of :data:`fingerpad.io.states.STATES`.
 
         Returns:
@@ -81,7 +88,8 @@ class Sweep:
         """
         if state not in STATES:
             raise ValueError(f"state is {state!r}; it must be one of {', '.join(STATES)}")
-        known = tuple(OF_FINGER) if self.whole else (*CONDITIONS[2:], *RESULTS)
+        own = (each.name for each in self.outputs)
+        known = tuple(FINGER) if self.whole else (*CONDITIONS[2:], *RESULTS, *own)
         if quantity not in known:
             raise ValueError(f"quantity is {quantity!r}; it must be one of {', '.join(known)}")
         if self.whole:
@@ -89,12 +97,16 @@ class Sweep:
             values = [np.nan if f is None or state not in f.states else f.values(state)[quantity] for f in fingers]
         else:
             found = [result.named.get(state) for result in self.results]
-            values = [np.nan if each is None else float(getattr(each, quantity)) for each in found]
+            values = [np.nan if each is None else float(getattr(each, quantity, np.nan)) for each in found]
         return np.array(values).reshape([len(values) for values in self.axes.values()])
+
+    def _forces(self) -> list[float]:
+        """Return the forces on the whole finger (N)."""
+        return list(dict.fromkeys(each.scene.force for each in self.results if each.scene.force is not None))
 
     def rows(self) -> list[dict[str, Any]]:
         """Return a flat row for each point in SI units: axes, :mod:`~fingerpad.runs.sweep_columns`, and failure."""
-        return [point | row(result, self.whole) for point, result in zip(self.points(), self.results, strict=True)]
+        return [point | row(result) for point, result in zip(self.points(), self.results, strict=True)]
 
     def cautions(self) -> list[str]:
         """Return why numbers may be further off than their errors say, each with how many points it is of.
@@ -110,12 +122,23 @@ class Sweep:
         return [f"{first[alike]} ({number} of {len(self)} points)" for alike, number in count.items()]
 
     def to_xarray(self) -> "xarray.Dataset":
-        """Return the named states along the swept keys as one dataset with units, as ``sweep.nc`` has it.
+        """Return the sweep as one dataset with units, as ``sweep.nc`` has it.
+
+        Returns:
+            The named states of every point along the swept keys and ``state``, as in the dataset of a run; likewise its
+            loads, ridges, sites and sums over the whole finger, where a point has them; its failure and cost. The
+            attributes are the parameters that all points share. Under a force on the whole finger there are
+            sums over it alone.
 
         Raises:
             ImportError: xarray is not installed.
         """
-        return sweep_dataset.of_sweep(self)
+        return _dataset(self)
+
+    def save(self) -> str:
+        """Write ``sweep.nc`` into the folder; return why not in one sentence, empty where it was written."""
+        assert self.folder is not None
+        return dataset.write(self.folder / FILE, self.to_xarray)
 
     def to_csv(self, path: str | Path) -> None:
         """Write the rows as a table."""
@@ -134,7 +157,7 @@ class Sweep:
         The last column is friction of the whole finger, where it is known.
         """
         rows, axes = self.rows(), {key: _head(key) for key in self.axes}
-        state, columns = shown((column for each in rows for column in each), self.whole)
+        state, columns = shown((column for each in rows for column in each), self.whole, self.outputs)
         newtons = not self.whole and any(result.finger is not None for result in self.results)
         table = [[*axes.values(), *map(head, columns.values()), *(["F_T (N)"] if newtons else [])]]
         for each, result in zip(rows, self.results, strict=True):
@@ -144,12 +167,12 @@ class Sweep:
                 table.append([*first, result.failure or f"no {WORDS[state]}"])
                 continue
             errors = {column: each.get(f"{column}_error") for column in columns}
-            cells = [of.shown(_number(values[column]), _number(errors[column])) for column, of in columns.items()]
+            cells = [of.shown(values[column], errors[column]) for column, of in columns.items()]
             table.append([*first, *cells, *([newtons_of(result)] if newtons else [])])
         lines = [f"{'Whole finger, at' if self.whole else 'At'} {WORDS[state]}", *_aligned(table)]
         for name, over_time in tables(rows, axes):
             lines += [f"Over time, in the load {name}", *_aligned(over_time)]
-        notes = solid.remarks(self.axes[FORCE]) if self.whole else [PER_LENGTH]
+        notes = solid.remarks(self._forces()) if self.whole else [PER_LENGTH]
         return "\n".join([*lines, *notes, *(f"! {caution}" for caution in self.cautions()), *self.notes])
 
     __repr__ = __str__
@@ -175,12 +198,83 @@ class _Lines(list[str]):
         self.append(line)
 
 
-def _number(value: float | None) -> float:
-    return math.nan if value is None else value
-
-
 def _head(key: str) -> str:
     if key in QUANTITIES:
         return head(QUANTITIES[key])
-    meant = sweep_dataset.described(key)
+    meant = described(key)
     return key if meant is None or not meant.unit else f"{key} ({meant.unit})"
+
+
+def _dataset(sweep: Sweep) -> "xarray.Dataset":
+    """Return a sweep with at least one point as a dataset."""
+    import xarray
+
+    shape = [len(values) for values in sweep.axes.values()]
+    axes = tuple(sweep.axes)
+    points = [_of_point(result, sweep.whole) for result in sweep.results]
+    found = _stacked(points, axes, shape)
+    failures = np.array([result.failure for result in sweep.results], object).reshape(shape)
+    found["failure"] = axes, failures, {"units": "1", "long_name": "reason of a failure, empty without one"}
+    for name, words in (("wall_seconds", "elapsed time"), ("processor_seconds", "processor time of all ranks")):
+        seconds = np.array([getattr(result.cost, name) for result in sweep.results], np.float64).reshape(shape)
+        found[name] = axes, seconds, {"units": "s", "long_name": f"{words} of the point"}
+    for key, along in sweep.axes.items():
+        meant = described(key)
+        unit, words = ("1", key) if meant is None else (meant.unit or "1", meant.meaning)
+        found[key] = (key,), _coordinate(along), {"units": unit, "long_name": words}
+    coords = {name: value for name, value in found.items() if name in (*axes, *dataset.COORDINATES)}
+    data = {name: value for name, value in found.items() if name not in coords}
+    return xarray.Dataset(data, coords, _shared(sweep))
+
+
+def _stacked(points: Sequence[dataset.Variables], axes: tuple[str, ...], shape: Sequence[int]) -> dataset.Variables:
+    """Return variables of all points along the swept keys and their own dimensions; missing where a point has none."""
+    labels: dict[str, list[Any]] = {}
+    for point in points:
+        for name in point.keys() & set(dataset.COORDINATES):
+            mine = labels.setdefault(name, [])
+            mine += [label for label in point[name][1].tolist() if label not in mine]
+    labels.get("ridge", []).sort()
+    found: dataset.Variables = {}
+    for name in dict.fromkeys(name for point in points for name in point):
+        dims, first, about = next(point[name] for point in points if name in point)
+        if name in labels:
+            found[name] = dims, np.array(labels[name], first.dtype), about
+            continue
+        values = dataset.filled([len(points), *(len(labels[dim]) for dim in dims)], first.dtype)
+        for k, point in enumerate(points):
+            if name in point:  # each place is that of its label: a load by name, a ridge by number
+                at = [[labels[dim].index(label) for label in point[dim][1].tolist()] for dim in dims]
+                values[k][np.ix_(*at)] = point[name][1]
+        found[name] = (*axes, *dims), values.reshape(*shape, *values.shape[1:]), about
+    return found
+
+
+def _of_point(result: Result, whole: bool) -> dataset.Variables:
+    """Return the variables of a point; of one of several forces of a run the sums over the whole finger alone."""
+    every = dataset.variables(result).items()
+    return {
+        name: each
+        for name, each in every
+        if _OF_POINT.issuperset(each[0]) and (not whole or name == "state" or name.startswith("finger_"))
+    }
+
+
+def _coordinate(values: Sequence[Any]) -> Any:
+    """Return numbers as they are, and all else as text: names, switches, lists and tables."""
+    if all(isinstance(value, int | float) and not isinstance(value, bool) for value in values):
+        whole = all(isinstance(value, int) for value in values)
+        return np.array(values, np.int32 if whole else np.float64)
+    return np.array([value if isinstance(value, str) else json.dumps(value, default=str) for value in values], object)
+
+
+def _shared(sweep: Sweep) -> dict[str, Any]:
+    """Return the attributes that all points have in common."""
+    every = [dataset.attributes(result) for result in sweep.results]
+    texts = [{key: json.dumps(value) for key, value in each.items()} for each in every]
+    own = ("parameters", "provenance", "failure", "notes", "cautions")
+    return {
+        key: value
+        for key, value in every[0].items()
+        if key not in own and all(t.get(key) == texts[0][key] for t in texts)
+    }

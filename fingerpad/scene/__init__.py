@@ -1,10 +1,17 @@
 """Scenes: everything a run needs, checked, from Python, TOML or the command line."""
 
-from fingerpad.scene.changes import start
+from fingerpad.scene.materials import CLOSURES, FRICTION_LAWS, MATERIALS
 from fingerpad.scene.messages import SceneError
-from fingerpad.scene.parameters import Accuracy, Contact, Load, Numerics, Output
+from fingerpad.scene.parameters import CONTACT, Accuracy, Contact, Load, Numerics, Output
 from fingerpad.scene.reading import override
-from fingerpad.scene.scene import Scene, as_kept, from_data, from_kept, load
+from fingerpad.scene.scene import Scene, as_kept, from_data, load, start
+
+
+def laws_by_name() -> dict[str, type]:
+    """Return the laws of the package by the names of their classes."""
+    kinds = (MATERIALS, FRICTION_LAWS, CLOSURES, CONTACT.kind)
+    return {law.__name__: law for kind in kinds for law in kind.laws.values()}
+
 
 __all__ = [
     "Accuracy",
@@ -15,8 +22,8 @@ __all__ = [
     "Scene",
     "SceneError",
     "from_data",
+    "laws_by_name",
     "as_kept",
-    "from_kept",
     "load",
     "override",
     "start",

@@ -1,26 +1,31 @@
 """Keys of a scene that contradict each other although each is within its own bounds."""
 
 from collections.abc import Iterator, Mapping, Sequence
-from typing import Any
+from numbers import Real
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
 
 from fingerpad.scene.load_names import FINAL_STATES, first_clash
-from fingerpad.scene.materials import Roughness
-from fingerpad.scene.messages import show
-from fingerpad.scene.parameters import Accuracy, Load, Output
+from fingerpad.scene.messages import SceneError, clip, show
 from fingerpad.scene.waveform import MOST, Waveform
+from variational.roughness.bam import BearingArea
+
+if TYPE_CHECKING:
+    from fingerpad.scene.parameters import Accuracy, Load, Output
 
 DEFAULT_HISTORY = ("f_ext", "voltage", "slide_length")
 """Keys of the default loads, which a history replaces."""
+_SAME = 1e-6  # relative difference of thicknesses that are the same
 LARGEST_GAP = 1.0  # m, with which the attraction is as good as none
 
 
 def refuse_contradictions(
-    accuracy: Accuracy | None,
-    output: Output,
-    friction: float,
-    roughness: Roughness,
-    h_0: float,
-    history: Sequence[Load] | None,
+    accuracy: "Accuracy | None",
+    output: "Output",
+    friction: Any,
+    roughness: Any,
+    history: Sequence["Load"] | None,
     given: Mapping[str, Any],
     step_scale: float,
 ) -> None:
@@ -31,7 +36,6 @@ def refuse_contradictions(
         output: see there.
         friction: key of the scene.
         roughness: see there.
-        h_0: effective insulator thickness (m).
         history: see there.
         given: the values of :data:`DEFAULT_HISTORY` that are given.
         step_scale: key of the numerics.
@@ -40,7 +44,7 @@ def refuse_contradictions(
         ValueError: the keys, their values and the remedy.
     """
     _refuse_accuracy(accuracy, output, friction)
-    _refuse_endless_gap(roughness, h_0)
+    _refuse_endless_gap(roughness)
     if history is not None:
         _refuse_history(history, given)
         _refuse_names(history if accuracy else ())
@@ -48,7 +52,36 @@ def refuse_contradictions(
         _refuse_floating(history)
 
 
-def _refuse_accuracy(accuracy: Accuracy | None, output: Output, friction: float) -> None:
+def refuse_beside_force(
+    force: float | None, given: Mapping[str, Any], history: Sequence["Load"] | None, file: str | None
+) -> None:
+    """Refuse a force on the whole finger beside another one, beside loads of one's own or a mesh of one's own.
+
+    Args:
+        force: key of the scene (N).
+        given: the values of :data:`DEFAULT_HISTORY` that are given.
+        history: key of the scene.
+        file: of a mesh.
+
+    Raises:
+        ValueError: the keys, their values and the remedy.
+    """
+    if force is None:
+        return
+    if "f_ext" in given:
+        raise ValueError(
+            f"force is {show(force)} N and f_ext is {show(given['f_ext'])} N/m; give one of the two: newtons on the "
+            "whole finger, or newtons per metre at its centre"
+        )
+    if history is not None or file is not None:
+        what = "history is given" if history is not None else f"geometry.file is {show(file)}"
+        raise ValueError(
+            f"force is {show(force)} N and {what}; a force on the whole finger is that of press, charge and slide of "
+            "the scene's own geometry, so leave one of the two out"
+        )
+
+
+def _refuse_accuracy(accuracy: "Accuracy | None", output: "Output", friction: Any) -> None:
     """Refuse an accuracy of receptor sites that are not there, and of friction that is zero."""
     if accuracy is None:
         return
@@ -65,9 +98,12 @@ def _refuse_accuracy(accuracy: Accuracy | None, output: Output, friction: float)
         )
 
 
-def _refuse_endless_gap(roughness: Roughness, h_0: float) -> None:
+def _refuse_endless_gap(roughness: Any) -> None:
     """Refuse a roughness that holds the air gap of an unloaded ridge at more than a metre."""
-    gap = roughness.largest_gap(h_0)
+    if not isinstance(roughness, BearingArea):
+        return
+    with np.errstate(all="ignore"):  # infinite where the surfaces no longer see each other
+        gap = float(roughness(roughness.p_floor).d_eq)
     if not gap < LARGEST_GAP:
         raise ValueError(
             f"roughness.p_floor is {show(roughness.p_floor)}, where the air gap would be held at {gap:.3g} m; "
@@ -75,7 +111,7 @@ def _refuse_endless_gap(roughness: Roughness, h_0: float) -> None:
         )
 
 
-def _refuse_history(history: Sequence[Load], given: Mapping[str, Any]) -> None:
+def _refuse_history(history: Sequence["Load"], given: Mapping[str, Any]) -> None:
     """Refuse a history beside keys of the default loads, without a first height, or with two loads of one name."""
     for name, value in given.items():
         raise ValueError(
@@ -96,7 +132,7 @@ def _refuse_history(history: Sequence[Load], given: Mapping[str, Any]) -> None:
         )
 
 
-def _refuse_names(history: Sequence[Load]) -> None:
+def _refuse_names(history: Sequence["Load"]) -> None:
     """Refuse a load whose files would be those of a state on the final mesh."""
     for k, load in enumerate(history):
         if first_clash([*FINAL_STATES, load.name]) is not None:
@@ -106,7 +142,7 @@ def _refuse_names(history: Sequence[Load]) -> None:
             )
 
 
-def _refuse_floating(history: Sequence[Load]) -> None:
+def _refuse_floating(history: Sequence["Load"]) -> None:
     """Refuse loads that leave the bone neither held nor pressed nor attracted."""
     f_ext: float | None = None
     voltage = 0.0
@@ -129,7 +165,7 @@ def _refuse_floating(history: Sequence[Load]) -> None:
             )
 
 
-def ways(history: Sequence[Load]) -> Iterator[tuple[str, Load, float | None]]:
+def ways(history: Sequence["Load"]) -> Iterator[tuple[str, "Load", float | None]]:
     """Yield the key of each load, the load, and how far the bone goes (m); None where the run decides that."""
     place: float | None = 0.0  # of the bone; None where a load before may have stopped early
     for k, load in enumerate(history):
@@ -143,7 +179,7 @@ def ways(history: Sequence[Load]) -> Iterator[tuple[str, Load, float | None]]:
             place = None if load.until_full_slip else aim
 
 
-def _refuse_times(history: Sequence[Load], step_scale: float) -> None:
+def _refuse_times(history: Sequence["Load"], step_scale: float) -> None:
     """Refuse waveforms whose length is not known before the run, or whose samples are too many or end too early."""
     for key, load, way in ways(history):
         if load.wave is None:
@@ -173,4 +209,45 @@ def _refuse_samples(key: str, wave: Waveform, seconds: float, step_scale: float)
         raise ValueError(
             f"{key}.voltage has {has}, some {samples:.4g} steps; there must be at most {MOST} of them: take {less} or "
             "a larger numerics.step_scale"
+        )
+
+
+def refuse_thickness(closure: Any, h_0: float) -> None:
+    """Refuse a closure of another insulator than the one whose voltage attracts.
+
+    Args:
+        closure: a closure; one without a number ``h_0`` has no insulator of its own.
+        h_0: effective insulator thickness of the attraction (m).
+
+    Raises:
+        ValueError: the two differ by more than roundoff.
+    """
+    own = getattr(closure, "h_0", h_0)
+    if isinstance(own, Real) and abs(float(own) - h_0) > _SAME * h_0:
+        raise ValueError(
+            f"the closure {type(closure).__name__} has h_0 = {float(own):.7g} m, and the attraction has an effective "
+            f"insulator thickness h_0 of {h_0:.7g} m; the two must be the same"
+        )
+
+
+def refuse_beside_mesh(data: Mapping[str, Any]) -> None:
+    """Refuse keys of a scene beside ``geometry.file`` that a run on that mesh does not read.
+
+    Args:
+        data: nested tables, as they were given.
+
+    Raises:
+        SceneError: the first of them.
+    """
+    shape = data.get("geometry")
+    if not isinstance(shape, Mapping) or shape.get("file") is None:
+        return
+    sizes = data.get("mesh")
+    given = [f"geometry.{key}" for key in shape if key not in ("file", "file_sha256", "sc_thickness")]
+    given += [f"mesh.{key}" for key in sizes] if isinstance(sizes, Mapping) else []
+    given += ["accuracy"] if data.get("accuracy") is not None else []
+    if given:
+        raise SceneError(
+            f"{clip(given[0])} is given and geometry.file too, whose mesh has its own shape and sizes and cannot be "
+            "refined; leave one of the two out"
         )

@@ -1,88 +1,80 @@
-"""Materials, insulators and roughness of a scene, with units and the ranges that make sense.
+"""Materials, friction, insulators and roughness of a scene, with units and the ranges that make sense.
 
 A range is wider than measured values by a factor of ten or more on either side. The docstring of a key is its text in
 the scene reference, ``docs/scene.md``.
 """
 
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+import re
+from collections.abc import Mapping
+from typing import Annotated, Any, Literal
 
-import numpy as np
-from pydantic import BaseModel, Field, ValidationError, model_validator
+from pydantic import ConfigDict, ValidationError
 
-from fingerpad.scene.messages import clip, show
+from fingerpad.scene.law_keys import Kind, LawKey, fail, inside, whole
+from fingerpad.scene.messages import show
 from fingerpad.scene.table import Finite, Part
-from geometry.bounds import within
+from geometry import tags
+from geometry.parameters import Fingertip
+from geometry.units import within
 from variational.attraction.insulator import insulator_thickness
+from variational.contact.friction import Coulomb, Derjaguin, Friction
+from variational.materials.material import Material
+from variational.materials.neo_hooke import NeoHooke
+from variational.materials.ogden import Ogden
+from variational.materials.saint_venant import SaintVenant
+from variational.roughness import closure
 from variational.roughness.bam import BearingArea
 
-if TYPE_CHECKING:
-    from variational.materials.material import Material
 
-Poisson = Annotated[Finite, within(-0.9, 0.4999)]
-Modulus = Annotated[Finite, within(1.0, 1e12, "Pa")]
+def _named(*laws: type) -> dict[str, type]:
+    return {law.__name__: law for law in laws}
+
+
+MATERIALS = Kind(Material, "a Material", _named(Ogden, NeoHooke, SaintVenant), Material.check)
+FRICTION_LAWS = Kind(Friction, "a Friction", _named(Coulomb, Derjaguin), Friction.check)
+CLOSURES = Kind(closure.Closure, "a Closure", _named(BearingArea), closure.check)
+"""Laws of the package by kind: a new one is a line here."""
+LAYERS = {name.replace(" ", "_"): tag for name, tag in tags.LAYERS.items()}
+"""Tag of each layer by its key in the scene."""
+
 Permittivity = Annotated[Finite, within(1.0, 1e7)]
 
 
-class Skin(Part):
-    """Ogden solid (Eqs. 1 and 2)."""
-
-    shear_modulus: Modulus
-    """Initial shear modulus G_0 (Pa). Range: slime to diamond."""
-    alpha: Annotated[Finite, within(1e-2, 50.0, sides=2)]
-    """Exponent of the stretches, of either sign. Range: at 50 a stretch of 2 raises the stress by 1e15; zero, the
-    logarithmic limit, is not supported."""
-    poisson: Poisson = 0.48
-    """Poisson's ratio of small strains. Range: stability needs more than -1; above 0.4999 roundoff of the volume
-    decides, and such stiff volumes need the element P2-P1."""
+def _exponent(data: Mapping[str, Any]) -> dict[str, Any]:
+    """Return what a layer's Ogden solid has from the keys before it."""
+    return {"convention": data.get("exponent")}
 
 
-class Stiff(Part):
-    """Saint Venant-Kirchhoff solid: linear elastic at finite rotation (*assumption*; the paper: linear elastic)."""
+def _layer(default: Material) -> Any:
+    """Return the annotation of a layer's material."""
+    return LawKey(MATERIALS, default, of_scene=_exponent)
 
-    young: Modulus
-    """Young's modulus (Pa)."""
-    poisson: Poisson = 0.3
-    """Poisson's ratio."""
+
+_SUBCUTIS, _DERMIS = Ogden(25e3, 5.0), Ogden(2.55e3, -14.53)
+_EPIDERMIS, _CORNEUM = Ogden(61.75e3, -14.53), Ogden(86.76e3, -14.53)
+_NAIL, _NAIL_BED = SaintVenant(170e6), SaintVenant(1e6)
 
 
 class Materials(Part):
     """Materials of the layers (Table 2). A table that gives some keys of a layer keeps the others' defaults."""
 
-    subcutis: Skin = Skin(shear_modulus=25e3, alpha=5.0)
-    dermis: Skin = Skin(shear_modulus=2.55e3, alpha=-14.53)
-    viable_epidermis: Skin = Skin(shear_modulus=61.75e3, alpha=-14.53)
-    stratum_corneum: Skin = Skin(shear_modulus=86.76e3, alpha=-14.53)
-    nail: Stiff = Stiff(young=170e6)
-    nail_bed: Stiff = Stiff(young=1e6)
+    model_config = ConfigDict(validate_default=True)
+
     exponent: Literal["printed", "abaqus"] = "printed"
-    """Exponent of the stretches: ``"printed"`` is the paper's -alpha, ``"abaqus"`` is +alpha. *Assumption*: the
-    paper prints -alpha but was computed with Abaqus, whose Ogden law has +alpha."""
-
-    @model_validator(mode="before")
-    @classmethod
-    def _complete(cls, data: Any) -> Any:
-        if not isinstance(data, dict):
-            return data
-        defaults = {name: field.default for name, field in cls.model_fields.items()}
-        return {
-            name: defaults[name].model_dump() | given
-            if isinstance(given, dict) and isinstance(defaults.get(name), BaseModel)
-            else given
-            for name, given in data.items()
-        }
-
-    def solids(self) -> "dict[str, Material]":
-        """Return the solid of each layer by the layer's key."""
-        from variational.materials.ogden import Ogden  # UFL: not for those who only read scenes
-        from variational.materials.saint_venant import SaintVenant
-
-        found: dict[str, Material] = {}
-        for layer in ("subcutis", "dermis", "viable_epidermis", "stratum_corneum"):
-            skin: Skin = getattr(self, layer)
-            found[layer] = Ogden(skin.shear_modulus, skin.alpha, skin.poisson, self.exponent)
-        found["nail"] = SaintVenant(self.nail.young, self.nail.poisson)
-        found["nail_bed"] = SaintVenant(self.nail_bed.young, self.nail_bed.poisson)
-        return found
+    """Exponent of the stretches in Ogden's law: ``"printed"`` is the paper's -alpha, ``"abaqus"`` is +alpha.
+    *Assumption*: the paper prints -alpha but was computed with Abaqus, whose Ogden law has +alpha."""
+    subcutis: Annotated[Material, _layer(_SUBCUTIS)] = _SUBCUTIS
+    """Material of the subcutis."""
+    dermis: Annotated[Material, _layer(_DERMIS)] = _DERMIS
+    """Material of the dermis."""
+    viable_epidermis: Annotated[Material, _layer(_EPIDERMIS)] = _EPIDERMIS
+    """Material of the viable epidermis."""
+    stratum_corneum: Annotated[Material, _layer(_CORNEUM)] = _CORNEUM
+    """Material of the stratum corneum."""
+    nail: Annotated[Material, _layer(_NAIL)] = _NAIL
+    """Material of the nail."""
+    nail_bed: Annotated[Material, _layer(_NAIL_BED)] = _NAIL_BED
+    """Material of the nail bed."""
 
 
 class Electric(Part):
@@ -101,28 +93,25 @@ class Electric(Part):
         return insulator_thickness(d_sc, self.eps_sc, self.d_i, self.eps_i)
 
 
-Length = Annotated[float, Field(strict=True, gt=0, allow_inf_nan=False)]
-LengthUnit = Literal["m", "cm", "mm", "um", "µm", "μm", "micron", "nm", "pm"]
-"""Units of a height map, those of ``variational.roughness.heightheader``."""
+Length = Annotated[Finite, within(1e-10, 0.1, "m")]
 
 
 class Topography(Part):
     """A measured height map, from which the roughness is taken; see :mod:`variational.roughness.heightfile`."""
 
     file: str
-    """File of the height map: text, NumPy or an instrument's format; a relative path starts at the scene file."""
-    unit: LengthUnit | None = None
-    """Unit of the heights. Text and NumPy files need a unit; most files of instruments hold their own."""
+    """File of the height map: NumPy's, a plain matrix of numbers, or a format of SurfaceTopography; a relative path
+    starts at the scene file."""
+    unit: Literal["m", "cm", "mm", "um", "µm", "μm", "nm", "pm"] | None = None
+    """Unit of the heights, for a file that has no unit of its own."""
     size: tuple[Length, Length] | None = None
-    """Lengths of the map along x, from the first line of a matrix to the last, and y, along a line. A map without
-    coordinates needs these lengths or those of a pixel."""
+    """Lengths of the map along x, from the first line of a matrix to the last, and y, along a line (m), for a file that
+    has no size of its own."""
     pixel: tuple[Length, Length] | None = None
-    """Lengths of a pixel along x and y, in place of the map's lengths."""
-    size_unit: LengthUnit | None = None
-    """Unit of these lengths; by default the unit of the heights."""
+    """Lengths of a pixel along x and y (m), in place of the map's lengths."""
     missing: str | None = None
-    """Mark of missing pixels in a text, besides nan and empty places, or in a NumPy file, a number there. Without it a
-    value far from all other heights is refused; "nan" takes all values as measured."""
+    """Mark of missing pixels besides nan and empty places: a number, in a plain matrix also a word. Without it a value
+    far from all other heights is refused; "nan" takes all values as measured."""
 
     def roughness(self) -> dict[str, float]:
         """Return h_rms and wavelength (m) of the map.
@@ -130,71 +119,56 @@ class Topography(Part):
         Raises:
             ValueError: the file cannot be read, or is no height map.
         """
-        from variational.roughness.heightfile import NoUnit, scan
+        from variational.roughness.heightfile import scan
         from variational.roughness.spectrum import roughness_table
 
         try:
-            found = scan(self.file, self.size, self.unit, self.size_unit, self.missing, self.pixel)
-            return roughness_table(found.map)
-        except NoUnit:
-            text = f"topography.unit is missing; {clip(self.file)} holds numbers without a unit"
-            raise ValueError(text) from None
+            return roughness_table(scan(**dict(self)).map)
         except OSError as error:
             raise ValueError(f"topography.file is {show(self.file)}: {error.strerror or error}") from None
         except (ValueError, ImportError) as error:
-            text = str(error).replace('missing="', 'topography.missing="', 1)
+            text = re.sub(r"'(unit|size|pixel|missing)'", r"topography.\1", str(error))
             raise ValueError(f"topography: {text}") from None
 
 
-class Roughness(Part):
-    """Roughness of a ridge (Table 3), see :class:`variational.roughness.bam.BearingArea`."""
+class RoughnessKey(LawKey):
+    """The key of the model of roughness, whose bearing area can be that of a height map."""
 
-    h_rms: Annotated[Finite, within(1e-9, 1e-3, "m")] = 3.1e-6
-    """Root mean square height of the roughness (m)."""
-    wavelength: Annotated[Finite, within(1e-8, 1e-2, "m")] = 100e-6
-    """Largest wavelength lambda_0 of the roughness (m)."""
-    young: Modulus = 1e6
-    """Elastic modulus of the stratum corneum on the microscale (Pa)."""
-    gamma: Annotated[Finite, within(1e-2, 10.0)] = 0.5
-    """Decay length of the repulsion, relative to h_rms; Persson's theory gives 0.4 to 0.5."""
-    beta: Annotated[Finite, within(1e-2, 100.0)] = 1.0
-    """Prefactor of the repulsion: 1 in Eq. 9, 3/4 in Eq. 15. *Assumption*: Eq. 9 is meant."""
-    p_floor: Annotated[Finite, within(1e-3, 1e9, "Pa")] = 1e3
-    """Mean contact pressure (Pa) below which the air gap is held constant (*assumption*). It must be below the
-    pressure at zero separation."""
+    tables = (Topography,)
 
-    topography: Annotated[Topography | None, Field(exclude=True)] = None
-    """Measured height map in place of h_rms and wavelength. The map is read at once: a scene stores only the two
-    numbers."""
+    def completed(self, table: dict[str, Any], law: type) -> dict[str, Any]:
+        """Return a table of parameters with those of its height map."""
+        topography = table.pop("topography", None) if law is BearingArea else None
+        if topography is not None:
+            for name in ("h_rms", "wavelength"):
+                if name in table:
+                    raise fail(
+                        f"is {show(table[name])} and roughness.topography is given too, which has it; give one", name
+                    )
+            try:
+                table |= Topography.model_validate(topography).roughness()
+            except ValidationError as error:
+                raise inside(error, "topography") from None
+            except ValueError as error:
+                raise whole(re.sub(r"(?<=\s)topography\.", "roughness.topography.", str(error)), "topography") from None
+        return super().completed(table, law)
 
-    @model_validator(mode="before")
-    @classmethod
-    def _measured(cls, data: Any) -> Any:
-        if not isinstance(data, dict) or data.get("topography") is None:
-            return data
-        for name in ("h_rms", "wavelength"):
-            if name in data:
-                raise ValueError(f"{name} is {show(data[name])} and topography is given too, which has it; give one")
-        try:
-            found = Topography.model_validate(data["topography"])
-        except ValidationError:
-            return data  # to be refused where it is
-        return {key: value for key, value in data.items() if key != "topography"} | found.roughness()
-
-    def largest_gap(self, h_0: float) -> float:
-        """Return the air gap (m) at which it is held, infinite where the surfaces no longer see each other."""
-        with np.errstate(all="ignore"):
-            return float(self.bearing_area(h_0)(self.p_floor).d_eq)
-
-    def bearing_area(self, h_0: float) -> BearingArea:
-        """Return the closure for an effective insulator thickness ``h_0`` (m)."""
-        return BearingArea(h_0, **self.model_dump())
-
-    @model_validator(mode="after")
-    def _consistent(self) -> "Roughness":
-        full = self.bearing_area(1.0).full_pressure
-        if self.p_floor >= full:
+    def check(self, law: Any) -> None:
+        """Refuse a floor of the pressure that is no floor."""
+        super().check(law)
+        if isinstance(law, BearingArea) and law.p_floor >= law.full_pressure:
             raise ValueError(
-                f"p_floor is {show(self.p_floor)}; it must be below the pressure at zero separation, {full:.4g} Pa"
+                f"p_floor is {show(law.p_floor)}; it must be below the pressure at zero separation, "
+                f"{law.full_pressure:.4g} Pa"
             )
-        return self
+
+
+def _insulators(data: Mapping[str, Any]) -> dict[str, Any]:
+    """Return what a closure has from the keys before it."""
+    electric, shape = data.get("electric"), data.get("geometry")
+    return {"h_0": electric.h_0(shape.sc_thickness)} if electric is not None and shape is not None else {"h_0": 1.0}
+
+
+BEARING_AREA = BearingArea(Electric().h_0(Fingertip().sc_thickness))
+ROUGHNESS = RoughnessKey(CLOSURES, BEARING_AREA, of_scene=_insulators)
+FRICTION = LawKey(FRICTION_LAWS, Coulomb(0.25), number="mu_f")

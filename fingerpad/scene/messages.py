@@ -5,40 +5,14 @@ where they are quoted, and their control characters are written out.
 """
 
 import re
-from collections.abc import Iterable, Iterator
-from difflib import SequenceMatcher
-from typing import Any, get_args
-
-from pydantic import BaseModel, ValidationError
-
-from geometry.bounds import NO_QUANTITY, OUT_OF_RANGE
-from geometry.units import to_si
+from collections.abc import Iterable
+from typing import Any
 
 MOST = 280  # characters of a message; with the name of the program before it less than 300
 _MOST_VALUE = 60  # of a value that is quoted
-_MOST_KEY = 40  # of a key
-_MOST_LIST = 150  # of a list of keys
-_NEAR = 0.6  # likeness, from 0 to 1, at which a key of the same table may have been meant,
-_ELSEWHERE = 0.85  # or one of another table
-_TYPES = {
-    "float_type": "a number",
-    "int_type": "a whole number",
-    "int_from_float": "a whole number",
-    "bool_type": "true or false",
-    "string_type": "text",
-    "tuple_type": "a list",
-    "model_type": "a table of keys",
-    "model_attributes_type": "a table of keys",
-    "finite_number": "a finite number",
-}
-_BOUNDS = {
-    "greater_than": ("gt", "greater than"),
-    "greater_than_equal": ("ge", "at least"),
-    "less_than": ("lt", "less than"),
-    "less_than_equal": ("le", "at most"),
-}
+MOST_KEY = 40  # of a key
 
-
+LAW = "law"  # kind of the errors of a law, whose context has the text and the place
 NUMBER, WAVE = "a number", "a waveform"
 """What a voltage can be: parts of the place of an error that are no keys."""
 
@@ -84,112 +58,8 @@ def key_of(parts: Iterable[int | str]) -> str:
             key += f"[{part}]"
             continue
         plain = re.fullmatch(r"[A-Za-z0-9_-]+", part)
-        key += "." * bool(key) + (clip(part, _MOST_KEY) if plain else clip(repr(part), _MOST_KEY))
+        key += "." * bool(key) + (clip(part, MOST_KEY) if plain else clip(repr(part), MOST_KEY))
     return key
-
-
-# -- errors --------------------------------------------------------------------------------------------
-def first_error(error: ValidationError, root: type[BaseModel]) -> str:
-    """Return the first error of a validation of ``root`` as a message."""
-    first = error.errors(include_url=False)[0]
-    kind, context, given = first["type"], first.get("ctx", {}), show(first["input"])
-    loc = tuple(part for part in first["loc"] if part not in (NUMBER, WAVE))
-    key = key_of(loc)
-    if kind == OUT_OF_RANGE:
-        return f"{key} {context['range'].words(context['number'], context['slip'], _default(root, loc))}"
-    if kind == "extra_forbidden":
-        return f"{key} is not a key of {key_of(loc[:-1]) or 'a scene'}; {_instead(root, loc)}"
-    if kind == "missing":
-        return f"{key} is missing; it must be given"
-    if kind == "value_error":
-        model = _model_at(root, loc)
-        if model is None:
-            return f"{key} is {given}; {context['error']}"
-        return qualify(str(context["error"]), f"{key}." if key else "", model.model_fields)
-    if kind in _BOUNDS:
-        name, words = _BOUNDS[kind]
-        return f"{key} is {given}; it must be {words} {show(context[name])}"
-    if kind == "literal_error":
-        return f"{key} is {given}; it must be {context['expected']}"
-    if kind == "too_short":
-        return f"{key} is empty; it must have at least one entry"
-    if kind == "too_long":
-        return f"{key} has too many entries; it must have at most {context['max_length']}"
-    if kind == NO_QUANTITY and key == "f_ext" and _newtons(first["input"]):
-        return f"{key} is {given}; it must be in N/m; a force on the whole finger is given by run --force {given}"
-    if kind in ("int_type", "int_from_float") and isinstance(first["input"], float):
-        given = repr(first["input"])  # 5.0, which show writes as 5
-    if kind in _TYPES:
-        return f"{key or 'a scene'} is {given}; it must be {_TYPES[kind]}"
-    return f"{key or 'a scene'} is {given}; {first['msg']}"
-
-
-def _newtons(text: str) -> bool:
-    try:
-        to_si(text, "N")
-    except ValueError:
-        return False
-    return True
-
-
-def _default(root: type[BaseModel], loc: Iterable[int | str]) -> float | None:
-    """Return the number that a key has by default, None where it has none."""
-    value: Any = root.model_construct()
-    for part in loc:
-        value = getattr(value, part, None) if isinstance(part, str) else None
-    return value if isinstance(value, int | float) else None
-
-
-def _model_at(model: type[BaseModel], loc: Iterable[int | str]) -> type[BaseModel] | None:
-    """Return the model at a place in another one, None where there is a value."""
-    found: type[BaseModel] | None = model
-    for part in loc:
-        if isinstance(part, str) and found is not None:
-            found = next(_models_in(found.model_fields[part].annotation), None)
-    return found
-
-
-def _models_in(annotation: Any) -> Iterator[type[BaseModel]]:
-    """Yield the models in an annotation such as ``tuple[Model, ...] | None``."""
-    if isinstance(annotation, type) and issubclass(annotation, BaseModel):
-        yield annotation
-    for part in get_args(annotation):
-        yield from _models_in(part)
-
-
-# -- unknown keys --------------------------------------------------------------------------------------
-def _instead(root: type[BaseModel], loc: tuple[int | str, ...]) -> str:
-    """Return what may have been meant by an unknown key: the nearest key of all tables, or those of its own."""
-    table, name = key_of(loc[:-1]), str(loc[-1])
-    if (table, name.lower()) == ("", "force"):
-        return (
-            "a force on the whole finger in newtons is asked of a run (fingerpad run --force, or fp.run(force=…)), or "
-            "swept (fingerpad sweep --over force=…)"
-        )
-    own = list(getattr(_model_at(root, loc[:-1]), "model_fields", ()))
-    wanted = clip(name, _MOST_KEY).lower().replace("-", "_")
-    keys = [(table, key, _NEAR) for key in own]
-    keys += [(where, key, _ELSEWHERE) for where, key in _keys(root) if where != table]
-    near = [
-        (likeness, -k)
-        for k, (_, key, least) in enumerate(keys)
-        if (likeness := SequenceMatcher(None, wanted, key.lower()).ratio()) >= least
-    ]
-    if near:
-        where, key, _ = keys[-max(near)[1]]
-        return f"did you mean {where}{'.' * bool(where)}{key}?"
-    known = ", ".join(own)
-    return f"keys are {known if len(known) <= _MOST_LIST else known[:_MOST_LIST].rpartition(',')[0] + ' and others'}"
-
-
-def _keys(model: type[BaseModel], table: str = "") -> Iterator[tuple[str, str]]:
-    """Yield every table and key that a model has, from the top down."""
-    for name in model.model_fields:
-        yield table, name
-    for name, field in model.model_fields.items():
-        for inner in _models_in(field.annotation):
-            entry = "[0]" if "tuple" in str(field.annotation) else ""
-            yield from _keys(inner, f"{table}{'.' * bool(table)}{name}{entry}")
 
 
 def qualify(message: str, prefix: str, names: Iterable[str]) -> str:

@@ -4,8 +4,10 @@
 ``docs/scene.md``.
 """
 
+import hashlib
 import math
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from pathlib import Path
+from typing import Annotated, Any, Literal
 
 from pydantic import (
     AfterValidator,
@@ -17,16 +19,22 @@ from pydantic import (
     model_validator,
 )
 
+from fingerpad.scene.law_keys import Kind, LawKey, fail, keys_of, reading_results
 from fingerpad.scene.load_names import load_name
 from fingerpad.scene.messages import NUMBER, WAVE, show
 from fingerpad.scene.table import Finite, Part, Switch
 from fingerpad.scene.waveform import Volts, Waveform
-from geometry.bounds import within
 from geometry.parameters import Fingertip
+from geometry.units import within
+from variational import files
+from variational.contact.augmented import AugmentedLagrangian
+from variational.contact.formulation import Formulation
+from variational.contact.nitsche import Nitsche
+from variational.contact.penalty import Penalty
 
-if TYPE_CHECKING:
-    from variational.contact.formulation import Formulation
-
+FORMULATIONS: dict[str, type[Formulation]] = {"penalty": Penalty, "nitsche": Nitsche, "augmented": AugmentedLagrangian}
+"""Contact formulations by their names, key ``contact.formulation``: a new one is an entry here."""
+CONTACT = LawKey(Kind(Formulation, "a Formulation", FORMULATIONS), Penalty(), flat="formulation")
 Asked = Annotated[Finite, within(1e-6, 0.5)]
 Way = Annotated[Finite, within(1e-9, 0.1, "m", zero=True, sides=2)]
 _OVER_TIME = ("bone_x_by", "speed", "duration")  # keys that runs made before they were there do not have
@@ -198,9 +206,27 @@ class Geometry(Fingertip):
     are marked as *assumption*.
     """
 
-    file: Annotated[str | None, Field(exclude=True)] = None  # a scene keeps it as a law, with a hash
+    file: str | None = None
     """File of a gmsh mesh in place of the cross-section and of the sizes in mesh, by the rules of ``docs/mesh.md``; a
     relative path starts at the scene file. Only sc_thickness is read of the other keys, for the attraction."""
+    file_sha256: str | None = None
+    """Hash of that file, which a run writes into its scene; another file is then refused."""
+
+    @model_validator(mode="before")
+    @classmethod
+    def _hashed(cls, data: Any) -> Any:
+        file = data.get("file") if isinstance(data, dict) else None
+        if not isinstance(file, str) or reading_results():
+            return data
+        try:
+            found = hashlib.sha256(files.read(file)).hexdigest()
+        except FileNotFoundError:
+            raise fail(f"is {show(file)}, and there is no such file", "file") from None
+        except OSError as error:
+            raise fail(f"is {show(file)}, which cannot be read: {error.strerror}", "file") from None
+        if data.get("file_sha256") not in (None, found):
+            raise fail(f"is {show(file)}, which was changed since the scene was kept; put that file back", "file")
+        return data | {"file": str(Path(file).absolute()), "file_sha256": found}
 
 
 class Contact(Part):
@@ -209,28 +235,11 @@ class Contact(Part):
     A formulation reads its own keys only; keys of another formulation are refused.
     """
 
-    formulation: Literal["penalty", "nitsche", "augmented"] = "penalty"
+    law: Annotated[Formulation, CONTACT] = Penalty()
     """Penalty (springs of the screen), Nitsche's method or an augmented Lagrangian; see
     :mod:`variational.contact.formulation`. The augmented Lagrangian is a method for comparison: it takes several times
     the factorisations of the penalty, finds full slip in fewer scenes (``docs/stability.md``), and its friction at full
     slip depends a little on the load path."""
-    eps_n: Annotated[Finite, within(1e7, 1e17, "Pa/m")] = 1.5e12
-    """Normal stiffness of the penalty and of the augmented Lagrangian (Pa/m of reference area). *Assumption*: the
-    default keeps the penetration below a tenth of d_eq. The augmented Lagrangian's default is ten times as large,
-    which saves coupling iterations. Range: at 1e7 the finger sinks in by millimetres; at 1e17 the roundoff of a
-    length of 1 mm is 20 kPa."""
-    eps_t: Annotated[Finite, within(1e6, 1e17, "Pa/m")] = 5e10
-    """Tangential stiffness of both (Pa/m of reference area) (*assumption*). The augmented Lagrangian's default is
-    ten times as large."""
-    tolerance: Annotated[Finite, within(1e-12, 1e-6, "m")] = 5e-9
-    """Penetration and elastic slip (m) at which the augmented Lagrangian's iteration ends. The default is a
-    three-hundredth of the smallest d_eq. Range: from roundoff to the size of the air gap."""
-    gamma_0: Annotated[Finite, within(1e-3, 1e6)] = 1.0
-    """Nitsche's stiffness, divided by the skin's constrained modulus per facet length. With 10 no equilibrium was
-    found while the default finger was pressed (``docs/chart.md``)."""
-    theta: Literal[-1, 0, 1] = 0
-    """Variant of Nitsche's method. Variants 1 and -1 compile for longer. Variant 1 needs a larger gamma_0: below it
-    stresses can remain in the unloaded skin, which is refused where the finger is lifted."""
     length: Literal["pressure", "gap"] = "pressure"
     """Ridge length L_R of Eq. 4: ``"pressure"`` is the length under contact pressure, ``"gap"`` the length where
     the gap is below d_eq. *Assumption*: the former; the domain printed in Eq. 4 is the whole boundary. Tables have the
@@ -238,44 +247,43 @@ class Contact(Part):
 
     @model_validator(mode="before")
     @classmethod
-    def _complete(cls, data: Any) -> Any:
-        stiff = isinstance(data, dict) and data.get("formulation") == "augmented"
-        return {"eps_n": 1.5e13, "eps_t": 5e11} | data if stiff else data
+    def _nested(cls, data: Any) -> Any:
+        """Put the keys of a formulation into a table of their own."""
+        if isinstance(data, Formulation):
+            return {"law": data}
+        if not isinstance(data, dict):
+            return data
+        own = {key: value for key, value in data.items() if key not in ("law", "formulation", "length")}
+        before = data.get("law", {})  # a table, of a scene of which some keys are changed
+        name = before if isinstance(before, str) else data.get("formulation")
+        if name is not None:
+            same = isinstance(before, dict) and CONTACT.kind.laws.get(str(name)) is before.get("law", ...)
+            own = (before if same else {"law": name}) | own
+        elif isinstance(before, dict):
+            own = before | own
+        elif own:
+            raise ValueError(f"{next(iter(own))} is given beside a formulation, which has its own; leave it out")
+        else:
+            return data
+        return {key: value for key, value in data.items() if key == "length"} | {"law": own}
 
-    @model_validator(mode="after")
-    def _own_keys(self) -> "Contact":
-        for name in self.unread():
-            if name in self.model_fields_set:
-                raise ValueError(
-                    f"{name} is {show(getattr(self, name))} and formulation is {show(self.formulation)}, "
-                    "which does not read it"
-                )
-        return self
+    @model_serializer(mode="wrap")
+    def _flat(self, write: SerializerFunctionWrapHandler) -> dict[str, Any]:
+        found: dict[str, Any] = write(self)
+        own = found.pop("law")
+        return {"formulation": own.pop("law", self.formulation)} | own | found
 
-    def unread(self) -> set[str]:
-        """Return the keys that the formulation does not read."""
-        return set(FORMULATION_KEYS) - _FORMULATION_KEYS[self.formulation]
+    @property
+    def formulation(self) -> str:
+        """Name of the formulation, or its import path."""
+        return CONTACT.kind.name(type(self.law))
 
-    def law(self) -> "Formulation":
-        """Return the formulation with its parameters."""
-        from variational.contact.augmented import AugmentedLagrangian  # UFL: not for those who only read scenes
-        from variational.contact.nitsche import Nitsche
-        from variational.contact.penalty import Penalty
-
-        if self.formulation == "nitsche":
-            return Nitsche(self.gamma_0, self.theta)
-        if self.formulation == "augmented":
-            return AugmentedLagrangian(self.eps_n, self.eps_t, self.tolerance)
-        return Penalty(self.eps_n, self.eps_t)
-
-
-_FORMULATION_KEYS = {
-    "penalty": {"eps_n", "eps_t"},
-    "nitsche": {"gamma_0", "theta"},
-    "augmented": {"eps_n", "eps_t", "tolerance"},
-}
-FORMULATION_KEYS = frozenset().union(*_FORMULATION_KEYS.values())
-"""Keys of :class:`Contact` that some formulations read and others do not."""
+    def __getattr__(self, name: str) -> Any:
+        """Return a parameter of the formulation."""
+        law = self.__dict__.get("law")
+        if law is not None and name in keys_of(law):
+            return getattr(law, name)
+        raise AttributeError(f"contact has no {name}")
 
 
 class Output(Part):
@@ -310,7 +318,7 @@ class Numerics(Part):
     step_scale: Annotated[Finite, within(1e-3, 10.0)] = 1.0
     """Factor on the largest steps of force, voltage and displacement."""
     memory: Annotated[Finite, within(1e8, 1e15, "B")] = 16e9
-    """Most memory (bytes) of all ranks together, by the estimate of :mod:`fingerpad.model.memory`. A larger scene
+    """Most memory (bytes) of all ranks together, by :mod:`fingerpad.model.feasibility`. A larger scene
     is refused before meshing. The default fits a machine of 24 GB."""
 
     @model_validator(mode="after")

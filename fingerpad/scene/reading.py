@@ -1,22 +1,26 @@
 """From a scene file, or from changes of one, to plain data: read within bounds, whatever is in it."""
 
-import hashlib
 import json
 import os
 import re
 import tomllib
 from collections.abc import Mapping, Sequence
+from dataclasses import is_dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from pydantic import BaseModel
 
+from fingerpad.scene.law_keys import table
 from fingerpad.scene.messages import SceneError, clip, key_of, show
+from fingerpad.scene.table import MOST_BYTES
 from variational import files
+from variational.coefficients import Law
+from variational.roughness.closure import Closure
 
-MOST_BYTES = 1_000_000
-"""Largest size of a scene, or of a table of voltages; the longest scene that comes along has 1000 bytes."""
+DEFAULT_MODEL = "full"
+"""Model of a run whose files name none, by :data:`fingerpad.reduced.models.MODELS`."""
 _MOST_DEPTH = 8  # of tables in lists in tables; a scene has 3
 _DEPTH = f"a scene has at most {_MOST_DEPTH} inside one another"
 _MOST_BITS = 1000  # of a whole number; floating point has 1024
@@ -24,8 +28,6 @@ _PATH = 80  # characters of a path in a message
 _AFTER_VALUE = "Expected newline or end of document after a statement"  # tomllib, of 50,0 and of 50 N/m
 _NAME = r"[A-Za-z0-9_-]+(\[[0-9]{1,6}\])?"
 _FILES = r"geometry\.file|roughness\.topography\.file|history\[\d+\]\.voltage\.file"
-_LAWS = "laws of its own, which are no part of a scene; run it from Python"
-_FORCE = "a force on the whole finger, which is no part of a scene; its report.html has the command"
 _QUOTED = re.compile(
     r'''#[^\n]*|"""(?:[^\\]|\\.)*?(?:"""|\Z)|\'{3}.*?(?:\'{3}|\Z)|"(?:[^"\\\n]|\\.)*"?|'[^'\n]*'?''', re.DOTALL
 )  # comments and texts of TOML
@@ -85,32 +87,19 @@ def read_study(path: Path) -> dict[str, Any]:
 
 
 def model_of(path: Path | None) -> str:
-    """Return the model of the run whose ``scene.json`` is given, ``"full"`` of any other scene.
+    """Return the model of the run whose ``scene.json`` is given, :data:`DEFAULT_MODEL` of any other scene.
 
     Raises:
         SceneError: the file cannot be read.
     """
-    return "full" if path is None or path.suffix.lower() != ".json" else str(_kept(path).get("model", "full"))
+    if path is None or path.suffix.lower() != ".json":
+        return DEFAULT_MODEL
+    return str(_kept(path).get("model", DEFAULT_MODEL))
 
 
 def _of_run(path: Path) -> dict[str, Any]:
-    """Return the data of the scene of a run's folder; a mesh of its own is the key ``geometry.file``."""
-    name, data = f"scene file {clip(str(path), _PATH)}", _kept(path)
-    laws = data.pop("laws", {})
-    more = [words for words, there in ((_LAWS, set(laws) - {"mesh"}), (_FORCE, "trace" in data)) if there]
-    if more:
-        raise SceneError(f"{name} is of a run with {more[0]}")
-    if laws:
-        file, shape = laws["mesh"]["path"], data.pop("geometry")
-        try:
-            same = hashlib.sha256(files.read(file)).hexdigest() == laws["mesh"]["sha256"]
-        except OSError:
-            same = False
-        if not same:
-            raise SceneError(f"{name} has the mesh {show(file)}, which is gone or was changed; put that one back")
-        data["geometry"] = {"file": file} | {key: shape[key] for key in ("sc_thickness",) if key in shape}
-        data.pop("mesh", None)
-    return {key: value for key, value in data.items() if key != "model"}
+    """Return the data of the scene of a run's folder."""
+    return {key: value for key, value in _kept(path).items() if key != "model"}
 
 
 def _kept(path: Path) -> dict[str, Any]:
@@ -170,8 +159,10 @@ def plain(value: Any, place: tuple[int | str, ...] = ()) -> Any:
         raise _too_deep(place)
     if isinstance(value, np.generic | np.ndarray):
         value = float(value) if isinstance(value, np.floating) else value.tolist()
+    if is_dataclass(value) or isinstance(value, type | Law | Closure):
+        return value  # a law, its class, or what was meant to be one
     if isinstance(value, BaseModel):
-        value = {name: inner for name, inner in value if name in value.model_fields_set}
+        value = {name: table(inner) for name, inner in value if name in value.model_fields_set}
     if isinstance(value, Mapping):
         return {_text(str(key)): plain(inner, (*place, _text(str(key)))) for key, inner in value.items()}
     if isinstance(value, list | tuple):
@@ -250,6 +241,15 @@ def put(data: dict[str, Any], key: str, value: Any) -> None:
             here = here[part]
         else:
             here = here.setdefault(part, [] if isinstance(parts[depth + 1], int) else {})
+
+
+def put_all(data: dict[str, Any], changes: Mapping[str, Any]) -> None:
+    """Put values at dotted keys, as :func:`put` does; of ``f_ext`` and ``force`` a change of one replaces the other."""
+    for key, other in (("force", "f_ext"), ("f_ext", "force")):
+        if key in changes:
+            data.pop(other, None)
+    for key, value in changes.items():
+        put(data, key, value)
 
 
 def flat(parameters: Mapping[str, Any], where: str = "") -> dict[str, Any]:

@@ -9,6 +9,8 @@ caution.
 
 from typing import TYPE_CHECKING
 
+from variational.roughness.bam import BearingArea
+
 if TYPE_CHECKING:
     from fingerpad.scene.scene import Scene
 
@@ -24,10 +26,10 @@ _LONGEST = 100e-6  # m, lambda_0 of the paper (Table 3), and the default
 def remarks(scene: "Scene") -> list[str]:
     """Return the remarks on a scene for the cautions of its results.
 
-    There is none on keys that a law or a mesh of its own replaces.
+    There is none on the roughness of a closure of one's own, or of a mesh of a file.
     """
     found = [*offsets(scene)]
-    if scene.laws.closure is None and scene.laws.mesh is None:
+    if isinstance(scene.roughness, BearingArea) and scene.geometry.file is None:
         found += ridges_as_roughness(scene.roughness.wavelength, scene.geometry.ridge_wavelength)
         found += missing_waves(scene.roughness.wavelength)
     return found

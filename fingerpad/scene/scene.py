@@ -3,32 +3,36 @@
 A number is in SI units, or a text with its unit (:mod:`geometry.units`).
 """
 
-import json
 from collections.abc import Mapping
-from dataclasses import replace
-from numbers import Real
+from dataclasses import is_dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
-from pydantic import Field, PrivateAttr, ValidationError, model_validator
+from pydantic import Field, ValidationError, model_validator
 
-from fingerpad.scene.changes import changed, with_coarse_start
-from fingerpad.scene.contradictions import DEFAULT_HISTORY, refuse_contradictions
-from fingerpad.scene.laws import LAYERS, Laws, refuse_beside_mesh, refuse_thickness, refuse_unread
-from fingerpad.scene.materials import Electric, Materials, Roughness
-from fingerpad.scene.messages import SceneError, first_error, show
+from fingerpad.scene.contradictions import (
+    DEFAULT_HISTORY,
+    refuse_beside_force,
+    refuse_beside_mesh,
+    refuse_contradictions,
+    refuse_thickness,
+)
+from fingerpad.scene.keys import every
+from fingerpad.scene.law_code import digest, folder_of, imported
+from fingerpad.scene.law_keys import Kept, kept
+from fingerpad.scene.materials import BEARING_AREA, FRICTION, LAYERS, ROUGHNESS, Electric, Materials
+from fingerpad.scene.messages import SceneError, show
 from fingerpad.scene.parameters import Accuracy, Contact, Geometry, Load, Numerics, Output
-from fingerpad.scene.reading import plain, put, read_scene
-from fingerpad.scene.slices import Slices
+from fingerpad.scene.reading import plain, put_all, read_scene
+from fingerpad.scene.refusals import first_error
+from fingerpad.scene.slices import Slices, centre_force
 from fingerpad.scene.table import Finite, Part
 from fingerpad.scene.waveform import Volts
-from geometry.bounds import computed, within
 from geometry.parameters import MeshSize
+from geometry.units import computed, within
 from variational.contact.friction import Friction, law_of
+from variational.materials.material import Material
 from variational.roughness.closure import Closure
-
-if TYPE_CHECKING:
-    from variational.materials.material import Material
 
 
 class Scene(Part):
@@ -38,12 +42,16 @@ class Scene(Part):
     the same coarse start where an accuracy is asked for, and the same refusals. NumPy's numbers and arrays are taken
     as Python's, and a table may also be one of the classes here, such as ``MeshSize``.
 
-    Without ``history`` the bone is pressed with ``f_ext``, the voltage is switched on, and the bone slides until
-    every ridge slips. With ``history`` the loads say it all and the three keys of the default one are refused.
+    Without ``history`` the bone is pressed with ``f_ext``, or the whole finger with ``force``, the voltage is switched
+    on, and the bone slides until every ridge slips. With ``history`` the loads say it all and the keys of the default
+    one are refused.
     """
 
     f_ext: Annotated[Finite, within(1e-3, 5e3, "N/m")] = 75.0
     """External normal force on the bone (N/m). Range: the weight of a grain of sand to more than 100 N on a finger."""
+    force: Annotated[Finite, within(1e-5, 200.0, "N")] | None = None
+    """External normal force on the whole finger (N), in place of ``f_ext``. The result is then a sum over slices along
+    the finger's axis (``docs/newtons.md``). Range: the weight of a milligram to that of 20 kg."""
     voltage: Volts = 200.0
     """Instantaneous voltage U (V). *Assumption*: U is that of Eq. 3, not the peak-to-peak value of Table 3. Range:
     from 1 mV, which attracts with less than 1 µPa, to ten times the voltage of displays; 0 is no voltage. The sign
@@ -53,13 +61,14 @@ class Scene(Part):
     slip."""
     history: Annotated[tuple[Load, ...], Field(min_length=1, max_length=1000)] | None = None
     """Loads to reach one after the other, at most 1000, in place of the default press, charge and slide."""
-    friction: Annotated[Finite, within(1e-6, 2.0, zero=True)] = 0.25
-    """Friction coefficient mu_0 of skin on the screen. 0 is no friction; 2 is the coefficient of rubber."""
+    friction: Annotated[float | Friction, FRICTION] = 0.25
+    """Friction coefficient mu_0 of skin on the screen, or a table of a law of friction."""
     geometry: Geometry = Geometry()
     mesh: MeshSize = MeshSize()
     materials: Materials = Materials()
     electric: Electric = Electric()
-    roughness: Roughness = Roughness()
+    roughness: Annotated[Closure, ROUGHNESS] = Field(BEARING_AREA, validate_default=True)
+    """Roughness of a ridge (Table 3): a table of the bearing area model, or of another closure."""
     contact: Contact = Contact()
     numerics: Numerics = Numerics()
     accuracy: Accuracy | None = None
@@ -71,17 +80,12 @@ class Scene(Part):
         Raises:
             SceneError: the first key at fault.
         """
-        if "laws" in data:
-            raise SceneError("laws is no key, since no file can hold one; give laws from Python, by Scene.with_laws")
         given = plain(data)
         refuse_beside_mesh(given)
-        text = json.dumps(with_coarse_start(given))
         try:
-            # As JSON, because there a list is a tuple and a table is a model even under strict rules.
-            self.__pydantic_validator__.validate_json(text, strict=True, self_instance=self)
+            self.__pydantic_validator__.validate_python(with_coarse_start(given), self_instance=self)
         except ValidationError as error:
-            raise SceneError(first_error(error, Scene)) from None
-        self._laws = self._laws.with_file(self.geometry.file)
+            raise SceneError(first_error(error, Scene, (key.name for key in every(Scene)))) from None
 
     output: Output = Output()
     slices: Slices = Slices()
@@ -89,18 +93,17 @@ class Scene(Part):
     @model_validator(mode="after")
     def _consistent(self) -> "Scene":
         given = {name: getattr(self, name) for name in DEFAULT_HISTORY if name in self.model_fields_set}
+        refuse_beside_force(self.force, given, self.history, self.geometry.file)
         scale = self.numerics.step_scale
-        refuse_contradictions(
-            self.accuracy, self.output, self.friction, self.roughness, self.h_0, self.history, given, scale
-        )
+        refuse_contradictions(self.accuracy, self.output, self.friction, self.roughness, self.history, given, scale)
+        refuse_thickness(self.roughness, self.h_0)
         return self
 
     def replace(self, **changes: Any) -> "Scene":
         """Return a checked copy with some values changed.
 
-        Laws given from Python stay, but for a law of friction where ``friction`` changes. What the changes make
-        meaningless goes: the sizes of a coarse start with another ``accuracy``, the values of the default loads with a
-        ``history``, and the values of one ``contact.formulation`` with another.
+        What the changes make meaningless goes: the sizes of a coarse start with another ``accuracy``, the values of the
+        default loads with a ``history``, and the parameters of one law with another.
 
         Args:
             changes: values by key. A table given as a mapping keeps the keys that are not in it; any other value, also
@@ -109,16 +112,7 @@ class Scene(Part):
         Raises:
             SceneError: the first key at fault, or one in whose place the scene has a law.
         """
-        found = Scene(**changed(plain(self), self.accuracy, self.contact.formulation, changes))
-        for name, value in (self.__pydantic_private__ or {}).items():
-            setattr(found, name, value)
-        if "friction" in changes:
-            kept = {name: law for name, law in found._laws.kept.items() if name != "friction"}
-            found._laws = replace(found._laws, friction=None, kept=kept)
-        if found.geometry.file != self.geometry.file:
-            found._laws = found._laws.with_file(found.geometry.file)
-        refuse_unread(self, found)
-        return found._checked()
+        return Scene(**changed(plain(self), self.accuracy, changes))
 
     def __replace__(self, **changes: Any) -> "Scene":
         """Return :meth:`replace` of changes, as ``copy.replace`` does from Python 3.13 on."""
@@ -130,70 +124,53 @@ class Scene(Part):
         return self.electric.h_0(self.geometry.sc_thickness)
 
     # -- laws ------------------------------------------------------------------------------------------
-    _laws: Laws = PrivateAttr(default_factory=Laws)  # no field: it is no key of a file
+    def laws(self) -> dict[str, Any]:
+        """Return what each key has that holds a law: an object, or the number of a friction coefficient."""
+        layers = {f"materials.{name}": getattr(self.materials, name) for name in LAYERS}
+        return {"friction": self.friction, "roughness": self.roughness, "contact": self.contact.law} | layers
 
-    @property
-    def laws(self) -> Laws:
-        """Laws given from Python, in the place of those of the keys."""
-        return self._laws
+    def own_laws(self) -> dict[str, Any]:
+        """Return the laws of one's own by key."""
+        return {key: law for key, law in self.laws().items() if is_dataclass(law) and digest(type(law))}  # type: ignore[arg-type]
 
-    def with_laws(
-        self,
-        closure: Closure | None = None,
-        materials: "Mapping[str, Material] | None" = None,
-        friction: Friction | float | None = None,
-        mesh: Path | str | None = None,
-    ) -> "Scene":
-        """Return the scene with laws of one's own; what is left out stays, and so do the materials of other layers.
+    def resolved(self) -> "Scene":
+        """Return the scene with the laws that were not imported where results were read; raises as :meth:`replace`."""
+        return self.replace() if any(isinstance(law, Kept) for law in self.laws().values()) else self
+
+    def refuse_laws_of_program(self, where: str) -> None:
+        """Refuse laws that no other process can import.
 
         Args:
-            closure: the microscale.
-            materials: solids by the layer's key or name.
-            friction: law of friction; a number is the key ``friction`` of the scene.
-            mesh: file of a mesh.
+            where: they are to be imported, in words.
 
         Raises:
-            SceneError: what is no law, or a closure of another insulator than the scene's; in one sentence.
+            SceneError: the first of them.
         """
-        given = {"closure": closure, "mesh": mesh}
-        changes: dict[str, Any] = {name: law for name, law in given.items() if law is not None}
-        if materials is not None:
-            changes["materials"] = {**self.laws.materials, **Laws(materials=materials).materials}
-        found = self.model_copy()
-        if isinstance(friction, Real) and not isinstance(friction, bool):
-            found = self.replace(friction=friction)
-        elif friction is not None:
-            changes["friction"] = friction
-        found._laws = replace(found.laws, **changes)
-        return found._checked()
+        for key, law in self.own_laws().items():
+            try:
+                imported(type(law).__module__, type(law).__qualname__)
+            except ValueError as error:
+                raise SceneError(f"{key} is a {type(law).__name__}, which {where} cannot have: {error}") from None
 
-    def _checked(self) -> "Scene":
-        """Return the scene itself; refuse a closure of another insulator."""
-        try:
-            refuse_thickness(self.laws.closure, self.h_0)
-        except ValueError as error:
-            raise SceneError(str(error)) from None
-        return self
+    def law_folders(self) -> list[str]:
+        """Return the folders from which the laws of one's own are imported."""
+        return sorted({folder_of(type(law)) for law in self.own_laws().values()} - {""})
 
     def closure(self) -> Closure:
         """Return the microscale.
 
         Raises:
-            SceneError: it is known by name alone, in a scene that was read from a run's files.
+            SceneError: it is a law of one's own in results that were read.
         """
-        self._laws.refuse_kept("closure")
-        return self.roughness.bearing_area(self.h_0) if self.laws.closure is None else self.laws.closure
+        return _known("roughness", self.roughness)
 
     def friction_law(self) -> Friction | None:
         """Return the law of friction, None without friction; raises as :meth:`closure` does."""
-        self._laws.refuse_kept("friction")
-        return law_of(self.friction if self.laws.friction is None else self.laws.friction)
+        return law_of(_known("friction", self.friction))
 
-    def solids(self) -> "dict[int, Material]":
+    def solids(self) -> dict[int, Material]:
         """Return the material of each layer's tag; raises as :meth:`closure` does."""
-        self._laws.refuse_kept("materials")
-        own = self.laws.materials
-        return {LAYERS[layer]: own.get(layer, solid) for layer, solid in self.materials.solids().items()}
+        return {tag: _known(f"materials.{name}", getattr(self.materials, name)) for name, tag in LAYERS.items()}
 
     @classmethod
     def load(cls, path: str | Path) -> "Scene":
@@ -204,13 +181,18 @@ class Scene(Part):
         """
         return load(Path(path))
 
+    @property
+    def centre_force(self) -> float:
+        """``f_ext`` (N/m), or about that at the centre of the finger under ``force``."""
+        return self.f_ext if self.force is None else centre_force(self.force, self.geometry.width)
+
     def loads(self) -> tuple[Load, ...]:
-        """Return the loads to reach one after the other."""
+        """Return the loads to reach one after the other; under ``force`` those of the centre of the finger, about."""
         if self.history is not None:
             return self.history
         with computed():  # of a copy, which may have a force that a run has reached
             return (
-                Load(name="press", f_ext=self.f_ext),
+                Load(name="press", f_ext=self.centre_force),
                 Load(name="charge", voltage=self.voltage),
                 Load(name="slide", bone_x=self.slide_length, until_full_slip=True),
             )
@@ -219,6 +201,7 @@ class Scene(Part):
         """Return every parameter in use, ready for JSON; as a scene it gives the same run again."""
         unused: dict[str, Any] = {name: True for name in (("history",) if self.history is None else DEFAULT_HISTORY)}
         unused |= {"accuracy": True} if self.accuracy is None else {}
+        unused["force" if self.force is None else "f_ext"] = True
         if self.output == Output():  # not a word of it, so that runs made before it was a key are found
             unused["output"] = True
         elif self.output.each_load:
@@ -227,8 +210,76 @@ class Scene(Part):
             unused["slices"] = True
         default = Numerics()  # likewise
         unused["numerics"] = {n for n in ("step_scale", "memory") if getattr(self.numerics, n) == getattr(default, n)}
-        found = self.model_dump(mode="json", exclude=unused | {"contact": self.contact.unread()})
-        return found | ({"laws": self.laws.parameters()} if self.laws else {})
+        found = self.model_dump(mode="json", exclude=unused)
+        if self.geometry.file is not None:  # whose mesh has its own shape and sizes
+            del found["mesh"]
+            found["geometry"] = {key: found["geometry"][key] for key in ("file", "file_sha256", "sc_thickness")}
+        else:
+            found["geometry"] = {key: x for key, x in found["geometry"].items() if not key.startswith("file")}
+        return found
+
+
+def _known(key: str, law: Any) -> Any:
+    """Return the law of a key; refuse one whose code is not known."""
+    if isinstance(law, Kept):
+        law.refuse(key)
+    return law
+
+
+# -- changes ---------------------------------------------------------------------------------------------
+_START = {"contact": 20e-6, "receptor": 40e-6, "interface": 120e-6, "growth": 0.5}  # m, but for the growth
+_START_AT_SITES = 10e-6  # m; coarser elements do not resolve the tips of 6 µm: halving them does not show the error
+
+
+def changed(present: Mapping[str, Any], accuracy: Accuracy | None, changes: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the data of a scene with changes, without the keys that the changes make meaningless.
+
+    Args:
+        present: the keys that are given so far.
+        accuracy: the present one.
+        changes: values by key, as for :meth:`fingerpad.scene.Scene.replace`.
+    """
+    present = dict(present)
+    if "accuracy" in changes and accuracy is not None:
+        coarse = start(accuracy.tolerances())
+        present["mesh"] = {key: size for key, size in present.get("mesh", {}).items() if coarse.get(key) != size}
+    replaced = {"history": (*DEFAULT_HISTORY, "force"), "force": ("f_ext",), "f_ext": ("force",)}
+    gone = {other for key, others in replaced.items() if changes.get(key) is not None for other in others}
+    present = {key: value for key, value in present.items() if key not in gone}
+    shape = changes.get("geometry")
+    if isinstance(shape, Mapping) and "file" in shape:
+        present["geometry"] = {k: value for k, value in present.get("geometry", {}).items() if k != "file_sha256"}
+    return _merged(present, changes)
+
+
+def _merged(present: Mapping[str, Any], changes: Mapping[str, Any]) -> dict[str, Any]:
+    """Return a table with changes: tables are merged, all else is replaced."""
+    found = dict(present)
+    for key, value in changes.items():
+        before = found.get(key)
+        both = isinstance(value, Mapping) and isinstance(before, Mapping) and _same_law(before, value.get("law"))
+        found[key] = _merged(before, value) if both else value  # type: ignore[arg-type]
+    return found
+
+
+def _same_law(present: Mapping[str, Any], name: Any) -> bool:
+    """Return whether changes of a table are not of another law than the table's."""
+    kind = present.get("law")
+    names = (f"{kind.__module__}:{kind.__qualname__}", kind.__name__) if isinstance(kind, type) else ()
+    return name in (None, kind, *names)
+
+
+def with_coarse_start(data: Mapping[str, Any]) -> Mapping[str, Any]:
+    """Return the data of a scene; with an accuracy, sizes that are not given are those of :func:`start`."""
+    mesh, accuracy = data.get("mesh", {}), data.get("accuracy")
+    if not (isinstance(mesh, dict) and isinstance(accuracy, dict) and accuracy):
+        return data
+    return {**data, "mesh": start(accuracy) | mesh}
+
+
+def start(asked: Mapping[str, Any]) -> dict[str, float]:
+    """Return the element sizes from which a scene starts that asks for accuracies by quantity."""
+    return _START | ({"receptor": _START_AT_SITES} if asked.get("sed") is not None else {})
 
 
 # -- files ---------------------------------------------------------------------------------------------
@@ -244,8 +295,7 @@ def load(path: Path | None = None, overrides: Mapping[str, Any] | None = None) -
         SceneError: the file cannot be read, or the first key at fault.
     """
     data = {} if path is None else read_scene(Path(path))
-    for key, value in (overrides or {}).items():
-        put(data, key, value)
+    put_all(data, overrides or {})
     return from_data(data)
 
 
@@ -262,7 +312,7 @@ def from_data(data: Mapping[str, Any]) -> Scene:
 
 
 def as_kept(parameters: Mapping[str, Any]) -> Scene:
-    """Return the scene of a run's files, for reading: laws that these do not hold are in it by name alone.
+    """Return the scene of a run's files, for reading: laws of one's own and meshes are not looked for.
 
     Args:
         parameters: what :meth:`Scene.parameters` gave, and the model.
@@ -270,34 +320,5 @@ def as_kept(parameters: Mapping[str, Any]) -> Scene:
     Raises:
         SceneError: the first key at fault.
     """
-    with computed():  # as the loads of a trace are
-        scene = from_data({key: value for key, value in parameters.items() if key not in ("laws", "model")})
-    laws = parameters.get("laws")
-    if not isinstance(laws, Mapping) or not laws:
-        return scene
-    scene._laws = replace(scene.laws, kept=laws)
-    try:
-        mesh = from_kept({"laws": {"mesh": laws["mesh"]}}).laws.mesh
-    except (SceneError, KeyError, TypeError):  # it is gone, was changed, or there is none
-        return scene
-    return scene.with_laws(mesh=mesh)
-
-
-def from_kept(parameters: Mapping[str, Any]) -> Scene:
-    """Return the scene of what :meth:`Scene.parameters` gave, which may have a mesh of its own.
-
-    Raises:
-        SceneError: another law of its own, a mesh that is gone or was changed, or the first key at fault.
-    """
-    given, laws = dict(parameters), parameters.get("laws", {})
-    if not isinstance(laws, Mapping) or laws.keys() - {"mesh"}:
-        raise SceneError("the scene has laws of its own, written in Python, which no file holds")
-    given.pop("laws", None)
-    scene = from_data(given)
-    if not laws:
-        return scene
-    path, was = laws["mesh"]["path"], laws["mesh"]["sha256"]
-    scene = scene.with_laws(mesh=path)
-    if scene.laws.mesh_sha256 != was:
-        raise SceneError(f"mesh is {show(path)}, which is not the file that the scene was kept with; put that one back")
-    return scene
+    with computed(), kept():  # computed as the loads of a trace are
+        return from_data({key: value for key, value in parameters.items() if key != "model"})

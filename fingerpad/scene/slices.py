@@ -6,9 +6,11 @@ from pydantic import Field, model_validator
 
 from fingerpad.scene.messages import show
 from fingerpad.scene.table import Finite, Part
-from geometry.bounds import within
+from geometry.units import within
 
 MOST = 1000
+# A finger of the default's width bears some 0.53 N where its centre bears 75 N/m; forces grow as F^0.77.
+LINE, POINT, POWER, WIDTH = 75.0, 0.53, 0.77, 20e-3
 Place = Annotated[Finite, within(1e-9, 0.1, "m", zero=True, sides=2)]
 Height = Annotated[Finite, within(1e-9, 0.1, "m", zero=True)]
 Scale = Annotated[Finite, within(0.1, 10)]
@@ -65,3 +67,14 @@ class Slices(Part):
                     f"{name} is {show(getattr(self, name))} and height is given too; leave out one of them"
                 )
         return self
+
+
+def centre_force(force: float, width: float) -> float:
+    """Return about the force at the centre of a finger (N/m): of one of the default's shape, on another scale.
+
+    Args:
+        force: on the whole finger (N).
+        width: of the finger (m).
+    """
+    scale = width / WIDTH
+    return LINE * scale * (force / (POINT * scale**2)) ** POWER

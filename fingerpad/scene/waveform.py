@@ -22,9 +22,8 @@ from typing import Annotated, Any, Literal
 from pydantic import BeforeValidator, Field, model_validator
 
 from fingerpad.scene.messages import clip, show
-from fingerpad.scene.reading import MOST_BYTES
-from fingerpad.scene.table import Finite, Part
-from geometry.bounds import Range, within
+from fingerpad.scene.table import MOST_BYTES, Finite, Part
+from geometry.units import Range, within
 from variational import files
 
 SAMPLES = 24

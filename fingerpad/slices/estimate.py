@@ -4,7 +4,7 @@ A run of press, charge and slide has the cross-section's whole press without vol
 slip, at the scene's force. The slices away from the centre bear less. Their attraction and contact length are those
 of the model "cylinders" (:mod:`fingerpad.reduced.cylinders`) over the contact lengths of the run's own press, scaled to
 the run's own state at the centre; their indentation is that of the press, scaled likewise. ``docs/newtons.md`` has the
-error of this estimate beside traces of the full model. ``fp.run(scene, force="0.5 N")`` computes the traces.
+error of this estimate beside traces of the full model. A scene with a ``force`` computes the traces.
 """
 
 from collections.abc import Mapping, Sequence
@@ -33,7 +33,7 @@ def with_newtons(result: Result) -> Result:
     Args:
         result: of a scene without a history of its own.
     """
-    if result.scene.history is not None or result.scene.laws.mesh is not None or not result.named:
+    if result.scene.history is not None or result.scene.geometry.file is not None or not result.named:
         return result
     try:
         states = [state for state in result.steps if state.load == "press"]
@@ -84,7 +84,7 @@ def _scaled(scene: Scene, press: Sequence[ContactState], name: str, end: Contact
     """Return the trace of a named state: the press changed as the cylinders are, and scaled to the state itself."""
     if name == "uncharged":
         return trace(press, wavelength)
-    states = [_charged(scene, state, name, end.voltage) for state in press]
+    states = _charged(scene, press, name, end.voltage)
     law, now = scene.friction_law(), states[-1]
     shape = {key: _ratio(getattr(end, key), getattr(now, key)) for key in ("f_electrostatic", "contact_length")}
     shape["bone_height"] = _ratio(end.bone_height, now.bone_height)
@@ -100,17 +100,16 @@ def _scaled(scene: Scene, press: Sequence[ContactState], name: str, end: Contact
     return Trace(made.depth, made.columns | {"gross_width": width * made.columns["gross_width"]})
 
 
-def _charged(scene: Scene, state: ContactState, name: str, voltage: float) -> ContactState:
-    """Return a state of the press as the cylinders charge it to a voltage (V)."""
+def _charged(scene: Scene, press: Sequence[ContactState], name: str, voltage: float) -> list[ContactState]:
+    """Return the states of the press as the cylinders charge them to a voltage (V)."""
     if voltage == 0:
-        return state
-    length, ridges = {name: state.contact_length}, {name: state.ridges_in_contact}
-    for other in set(cylinders.STATES) - {name}:
-        length[other], ridges[other] = state.contact_length, state.ridges_in_contact
-    here = scene.model_copy(update={"f_ext": state.f_ext, "voltage": voltage})
-    footprint = cylinders.Footprint(length, ridges, False, "press of a run")
-    found = getattr(cylinders.solve(here, footprint), name)
-    return replace(state, f_electrostatic=found.f_electrostatic, contact_length=found.contact_length)
+        return list(press)
+    here = scene.model_copy(update={"voltage": voltage})
+    found = cylinders.over_forces(here, [state.f_ext for state in press], name, press)
+    return [
+        replace(state, f_electrostatic=charged.f_electrostatic, contact_length=charged.contact_length)
+        for state, charged in zip(press, found, strict=True)
+    ]
 
 
 def _ratio(value: float, of: float) -> float:

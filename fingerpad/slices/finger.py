@@ -1,6 +1,5 @@
 """The whole finger of a result: newtons and square millimetres by named state, their errors, and their source."""
 
-import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -8,29 +7,16 @@ from typing import Any
 
 import numpy as np
 
-from fingerpad.io.quantities import Quantity
+from fingerpad.io.quantities import FINGER, FRICTION
 from fingerpad.io.states import STATES, WORDS, called
-from fingerpad.scene.messages import SceneError
+from fingerpad.scene import Scene, SceneError
 from fingerpad.scene.slices import Slices
 from fingerpad.slices import errors, solid
-from fingerpad.slices.force import newtons
 from fingerpad.slices.profile import profile
 from fingerpad.slices.total import Total, at_force
 from fingerpad.slices.trace import NAMES, Trace
 
-QUANTITIES = {
-    "f_ext": Quantity("external force F_ext", "N", 1.0, 4),
-    "mu_app": Quantity("apparent friction µ_app", "", 1.0, 4),
-    "f_t": Quantity("friction force F_T", "N", 1.0, 4),
-    "f_electrostatic": Quantity("attraction F_el", "N", 1.0, 4),
-    "gross_area": Quantity("gross area", "mm²", 1e6, 1),
-    "contact_area": Quantity("ridge contact area", "mm²", 1e6, 2),
-    "indentation": Quantity("indentation δ", "mm", 1e3, 3),
-    "effective_width": Quantity("F_ext over f_ext of the centre", "mm", 1e3, 2),
-}
-"""The quantities of a whole finger, as they are printed."""
 _ROUNDOFF = 1e-9
-_FRICTION = "mu_app", "f_t"  # shown at full slip alone
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,12 +62,13 @@ class WholeFinger:
         Raises:
             SceneError: no force, or one that a trace does not reach; a file of an earlier version, without traces.
         """
-        value, finger = newtons(force), profile(self.shape)
+        value, finger = Scene(force=force).force, profile(self.shape)
+        assert value is not None
         if not self.traces:
             raise SceneError("the whole finger was read from a file without traces; run the scene again")
         states = {name: at_force(finger, self.traces[name], value, self.shape.count) for name in self.states}
         for name, total in states.items():
-            first = finger.centre_scale() * float(self.traces[name].columns["f_ext"][0])
+            first = finger.centre_scale * float(self.traces[name].columns["f_ext"][0])
             if total.centre < first * (1 - _ROUNDOFF):
                 raise SceneError(
                     f"the force is {value:.4g} N, under which the centre of the finger bears {total.centre:.3g} N/m, "
@@ -138,15 +125,15 @@ class WholeFinger:
 
     def rows(self) -> Iterator[list[str]]:
         """Yield the quantities with unit, and their values in each state with the error."""
-        for key, quantity in QUANTITIES.items():
-            known = [name for name in self.states if key not in _FRICTION or name == "full_slip"]
+        for key, quantity in FINGER.items():
+            known = [name for name in self.states if key not in FRICTION or name == "full_slip"]
             cells = [self.shown(name, key) if name in known else "–" for name in self.states]
             if set(cells) - {"–"}:
                 yield [quantity.title, *cells]
 
     def shown(self, name: str, key: str) -> str:
         """Return a quantity of a state in the unit of tables, with its error where the error reaches the digits."""
-        return QUANTITIES[key].shown(self.values(name)[key], self.error.get(name, {}).get(key, math.nan))
+        return FINGER[key].shown(self.values(name)[key], self.error.get(name, {}).get(key))
 
     def heads(self) -> list[str]:
         """Return the words of the states."""

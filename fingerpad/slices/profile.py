@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -21,7 +22,7 @@ class Profile:
     """A finger along its axis, from ``ends[0]`` to ``ends[1]`` (m)."""
 
     ends: tuple[float, float]
-    height: Callable[[Array], Array]
+    height: Callable[[Array | float], Array | float]
     """Height s (m) of the lower side at places z (m)."""
     width: Callable[[Array], Array]
     """Scale w of the slices at places z (m)."""
@@ -30,18 +31,24 @@ class Profile:
     straight: bool = False
     """Whether all heights are 0: then the ends may touch."""
 
-    def rise(self, z: Array) -> Array:
+    def rise(self, z: Array | float) -> Array:
         """Return how far slices stand above the bone's lowest place, s + θ z (m)."""
         return np.asarray(self.height(z) + self.tilt * z, dtype=float)
 
+    @cached_property
+    def _searched(self) -> tuple[Array, Array]:
+        """Places along the finger (m), and the rise of the slices there (m)."""
+        z = np.linspace(*self.ends, _SEARCHED)
+        return z, self.rise(z)
+
+    @cached_property
     def lowest(self) -> tuple[float, float]:
-        """Return the place (m) where the finger first touches, and the rise (m) there, the least one.
+        """The place (m) where the finger first touches, and the rise (m) there, the least one.
 
         Raises:
             SceneError: it is at an end of the finger, whose pad then touches nothing.
         """
-        z = np.linspace(*self.ends, _SEARCHED)
-        rise = self.rise(z)
+        z, rise = self._searched
         k = int(np.argmin(rise))
         if k in (0, len(z) - 1) and not (self.straight and self.tilt == 0):
             raise SceneError(
@@ -52,9 +59,10 @@ class Profile:
         found = self.rise(fine)
         return float(fine[found.argmin()]), float(found.min())
 
+    @cached_property
     def centre_scale(self) -> float:
-        """Return the scale of the slice where the finger first touches."""
-        return float(self.width(np.array([self.lowest()[0]]))[0])
+        """The scale of the slice where the finger first touches."""
+        return float(self.width(np.array([self.lowest[0]]))[0])
 
     def contact(self, delta: float) -> list[tuple[float, float]]:
         """Return the stretches (m) of the finger that touch, from one end of contact to the other.
@@ -65,8 +73,8 @@ class Profile:
         Raises:
             SceneError: the contact reaches an end of the finger.
         """
-        z = np.linspace(*self.ends, _SEARCHED)
-        touches = delta - self.rise(z) > 0
+        z, rise = self._searched
+        touches = delta - rise > 0
         if not touches.any():
             return self._between(delta, z)
         if not self.straight and (touches[0] or touches[-1]):
@@ -82,7 +90,7 @@ class Profile:
 
     def _between(self, delta: float, z: Array) -> list[tuple[float, float]]:
         """Return a contact shorter than the places searched, if there is one."""
-        k = int(np.clip(np.argmin(self.rise(z)), 1, len(z) - 2))
+        k = int(np.clip(np.argmin(self._searched[1]), 1, len(z) - 2))
         fine = np.linspace(z[k - 1], z[k + 1], _SEARCHED)
         inside = np.flatnonzero(delta - self.rise(fine) > 0)
         if not inside.size:
@@ -91,7 +99,7 @@ class Profile:
         return [(self._root(delta, a, fine[inside[0]]), self._root(delta, fine[inside[-1]], b))]
 
     def _root(self, delta: float, a: float, b: float) -> float:
-        return float(brentq(lambda place: delta - float(self.rise(np.array([place]))[0]), a, b, xtol=1e-15))
+        return float(brentq(lambda z: delta - float(self.rise(z)), a, b, xtol=1e-15))
 
 
 def profile(slices: Slices) -> Profile:
@@ -105,7 +113,7 @@ def profile(slices: Slices) -> Profile:
         return Profile((places[0], places[-1]), bent, width, slices.tilt, straight=not height.any())
     half = slices.length / 2
     ends = (-half, half) if places is None else (max(-half, places[0]), min(half, places[-1]))
-    return Profile(ends, lambda z: np.asarray(z) ** 2 / (2 * slices.radius), width, slices.tilt)
+    return Profile(ends, lambda z: z**2 / (2 * slices.radius), width, slices.tilt)
 
 
 def cylinder(length: float) -> Profile:

@@ -1,7 +1,7 @@
 """The sum over slices: forces in N and areas in m² of a finger at an indentation, or under a force."""
 
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cache, cached_property
 from typing import Any
 
 import numpy as np
@@ -89,15 +89,7 @@ def at_indentation(profile: Profile, trace: Trace, delta: float, count: int) -> 
     Raises:
         SceneError: the contact goes beyond the finger, or a slice beyond the trace.
     """
-    nodes, weights = np.polynomial.legendre.leggauss(count)
-    phi = np.pi / 2 * nodes
-    places: list[Array] = [np.empty(0)]
-    thicknesses: list[Array] = [np.empty(0)]
-    for first, last in profile.contact(delta):
-        half = (last - first) / 2
-        places.append((first + last) / 2 + half * np.sin(phi))
-        thicknesses.append(half * np.cos(phi) * np.pi / 2 * weights)
-    z, thickness = np.concatenate(places), np.concatenate(thicknesses)
+    z, thickness = _places(profile, delta, count)
     depth, width = np.maximum(delta - profile.rise(z), 0.0), np.asarray(profile.width(z), dtype=float)
     relative = depth / width
     deepest, force = trace.end
@@ -106,10 +98,22 @@ def at_indentation(profile: Profile, trace: Trace, delta: float, count: int) -> 
             f"a slice is indented by {relative.max():.3g} m, and the trace of the cross-section ends at {deepest:.3g} "
             f"m under {force:.4g} N/m; give a trace to a larger force"
         )
-    values = trace.at(np.minimum(relative, deepest))
-    (_, lowest), scale = profile.lowest(), profile.centre_scale()
-    most = trace.at(np.clip([(delta - lowest) / scale], 0.0, deepest))["f_ext"][0]
-    return Total(delta, z, thickness, depth, scale * float(most), {name: width * values[name] for name in NAMES})
+    (_, lowest), scale = profile.lowest, profile.centre_scale
+    values = trace.at(np.clip([*relative, (delta - lowest) / scale], 0.0, deepest))  # the last one is the deepest place
+    columns = {name: width * values[name][:-1] for name in NAMES}
+    return Total(delta, z, thickness, depth, scale * float(values["f_ext"][-1]), columns)
+
+
+def _places(profile: Profile, delta: float, count: int) -> tuple[Array, Array]:
+    """Return places and thicknesses (m) of the slices of :func:`at_indentation`."""
+    nodes, weights = _gauss(count)
+    ends = np.array(profile.contact(delta)).reshape(-1, 2)
+    middle, half = ends.mean(axis=1, keepdims=True), np.diff(ends) / 2
+    phi = np.pi / 2 * nodes
+    return (middle + half * np.sin(phi)).ravel(), (half * np.cos(phi) * np.pi / 2 * weights).ravel()
+
+
+_gauss = cache(np.polynomial.legendre.leggauss)
 
 
 def at_force(profile: Profile, trace: Trace, force: float, count: int) -> Total:
@@ -125,7 +129,7 @@ def at_force(profile: Profile, trace: Trace, force: float, count: int) -> Total:
         BeyondTrace: the trace ends before the force is reached; the message has the largest force.
         SceneError: the pad has no contact, or more of it than the finger has.
     """
-    (_, touch), most = profile.lowest(), deepest(profile, trace)
+    (_, touch), most = profile.lowest, deepest(profile, trace)
 
     def excess(delta: float) -> float:
         return at_indentation(profile, trace, delta, count).totals["f_ext"] - force

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,6 +13,7 @@ from variational.state import ContactState
 Array = NDArray[np.float64]
 NAMES = ("f_ext", "f_t", "f_electrostatic", "contact_length", "gross_width")
 """Columns: N/m the forces, m the lengths."""
+_INTERPOLATED = ("f_ext", "f_electrostatic", "contact_length", "gross_width", "grip")
 LEAST = 3
 """Least number of points of a trace. A power law needs two, and the error of the interpolation leaves one out."""
 _NOTHING = 1e-12  # of the largest external force: values below it are roundoff
@@ -81,38 +83,34 @@ class Trace:
                 f"an indentation of {depth.max():.4g} m is beyond the trace, which ends at {self.depth[-1]:.4g} m "
                 f"under {self.end[1]:.4g} N/m"
             )
+        touches, first = depth > 0, np.log(self.depth[0])
+        at = np.log(depth, where=touches, out=np.full_like(depth, first))
+        cubics, slopes, there = self._powers
+        values = np.exp(cubics(np.clip(at, first, np.log(self.depth[-1]))).T)
+        values = np.where(there & touches, values * np.exp(slopes * np.minimum(at - first, 0.0)), 0.0)
+        found = dict(zip(_INTERPOLATED, values, strict=True))
+        return found | {"f_t": found.pop("grip") * (found["f_ext"] + found["f_electrostatic"])}
+
+    @cached_property
+    def _powers(self) -> tuple[PchipInterpolator, Array, NDArray[np.bool_]]:
+        """Logarithms of the columns over that of the indentation, their slopes below it, and which are not zero."""
         borne = self.columns["f_ext"] + self.columns["f_electrostatic"]
-        slopes = {name: self._slope(self.columns[name]) for name in NAMES}
+        columns = self.columns | {"grip": self.columns["f_t"] / borne}
+        slopes = {name: self._slope(columns[name]) for name in _INTERPOLATED} | {"grip": 0.0}
         # No shorter contact than one in which the mean pressure falls with the forces, and no gross one within it.
-        forces = [slopes[name] for name in ("f_ext", "f_electrostatic") if self.columns[name].any()]
+        forces = [slopes[name] for name in ("f_ext", "f_electrostatic") if columns[name].any()]
         slopes["contact_length"] = min(slopes["contact_length"], *forces)
         slopes["gross_width"] = min(slopes["gross_width"], slopes["contact_length"])
-        found = {name: self._power(self.columns[name], depth, slopes[name]) for name in NAMES if name != "f_t"}
-        grip = self._power(self.columns["f_t"] / borne, depth, 0.0)
-        return found | {"f_t": grip * (found["f_ext"] + found["f_electrostatic"])}
+        values = np.array([columns[name] for name in _INTERPOLATED])
+        there = values.max(axis=1, keepdims=True) > _NOTHING * columns["f_ext"].max()
+        cubics = PchipInterpolator(np.log(self.depth), np.log(np.maximum(values, np.finfo(float).tiny)).T)
+        return cubics, np.array([[slopes[name]] for name in _INTERPOLATED]), there
 
     def _slope(self, values: Array) -> float:
         """Return the exponent of the power law of the first two points; 0 where values fall, or are 0."""
         if values[0] <= 0 or values[1] <= 0:
             return 0.0
         return max(float(np.log(values[1] / values[0]) / np.log(self.depth[1] / self.depth[0])), 0.0)
-
-    def _power(self, values: Array, depth: Array, slope: float) -> Array:
-        """Return values at indentations.
-
-        Args:
-            values: at the points.
-            depth: where they are wanted (m).
-            slope: exponent below the first point.
-        """
-        found, touches = np.zeros_like(depth), depth > 0
-        if np.all(values <= _NOTHING * self.columns["f_ext"].max()):
-            return found
-        x, y = np.log(self.depth), np.log(np.maximum(values, np.finfo(float).tiny))
-        at = np.minimum(np.log(depth, where=touches, out=np.full_like(depth, x[0])), x[-1])
-        inside = np.exp(PchipInterpolator(x, y)(np.maximum(at, x[0])))
-        found[touches] = (inside * np.exp(slope * np.minimum(at - x[0], 0.0)))[touches]
-        return found
 
 
 def trace(states: Iterable[ContactState], wavelength: float) -> Trace:

@@ -1,200 +1,90 @@
-"""Traces of the cross-section for a force in newtons, by any model, as ordinary scenes.
+"""Traces of the cross-section for a force in newtons, as ordinary scenes.
 
 The full model follows three histories. The finger is pressed without voltage. It is pressed lightly, charged and
 pressed on. It is pressed lightly, charged, slid to full slip and pressed on while it slides; every accepted step at
-full slip is then a point of the trace. The models "smooth" and "cylinders" solve one scene for each of :data:`FORCES`
-forces. A trace that ends before the force is reached is made again to a larger one.
+full slip is then a point of the trace. A model without a path has :data:`FORCES` points. A trace that ends before the
+force is reached is made again to a larger one.
 """
 
-from collections.abc import Iterator
-from dataclasses import replace
-from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
+from collections.abc import Callable, Iterable
+from dataclasses import fields, replace
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from fingerpad.io.folder import below
+from fingerpad.io.answer import Cost
 from fingerpad.io.result import Result
 from fingerpad.io.states import WORDS
-from fingerpad.reduced import cylinders
-from fingerpad.reduced.answer import TooLight
+from fingerpad.reduced.model import Model
 from fingerpad.scene import Scene, SceneError
+from fingerpad.scene.slices import LINE, POINT, POWER
 from fingerpad.slices import errors
 from fingerpad.slices.finger import WholeFinger, in_order
 from fingerpad.slices.profile import Profile, profile
-from fingerpad.slices.total import BeyondTrace, at_force
+from fingerpad.slices.total import BeyondTrace, Total, at_force
 from fingerpad.slices.trace import Trace, TraceError, trace
-from geometry.bounds import computed
-from variational.state import ContactState
+from geometry.units import computed
+from variational.state import ContactState, Errors
 
-if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    Solve = Callable[[Scene, str], Result]
-
+Solve = Callable[[Scene, str], Result]
+"""Returns the result of a scene; takes a name for the folder of its files."""
 FORCES = 8
-"""Points of a trace of the models "smooth" and "cylinders"."""
+"""Points of a trace of a model without a path."""
 LIGHT = 1 / 30
 """Force under which a finger is charged, and slid to full slip, over the largest of its trace."""
 _SMALLEST, _LARGEST = 1e-3, 5e3  # N/m, of a scene
 _SHORTEST = 1.01 * _SMALLEST / LIGHT  # N/m, largest force of a trace whose light one a scene can have
 _TRIES = 4  # of a trace, each time to a larger force
 _MORE, _MARGIN = 1.8, 1.1  # factors on the largest force: of the next try, and beyond the expected one
-# A finger of the default's width bears some 0.53 N where its centre bears 75 N/m; forces grow as F^0.77.
-_LINE, _POINT, _POWER, _WIDTH = 75.0, 0.53, 0.77, 20e-3
-_WORDS = {"full": "traces of the full model", "smooth": "traces of the model 'smooth'"}
+CONSTANTS = {
+    "light": LIGHT, "forces": FORCES, "margin": _MARGIN, "more": _MORE, "tries": _TRIES,
+    "shortest": _SHORTEST, "smallest": _SMALLEST, "largest": _LARGEST,
+    "start": {"line": LINE, "point": POINT, "power": POWER},
+}  # fmt: skip
+"""All of these, for the copy of the calculator, of a finger of the default's width."""
 
 
 class Traced(NamedTuple):
-    """A trace, and the result that ends at its largest force."""
+    """A trace, with what it was made of."""
 
     trace: Trace
-    result: Result
+    states: list[ContactState]
+    """Its points, and those that it leaves out."""
+    result: Result | None = None
+    """That ends at its largest force; None of a model without a path."""
+    total: Total | None = None
+    """The finger under the force, once it was found on the trace."""
 
 
-def whole(scene: Scene, force: float, model: str, solve: "Solve") -> Result:
-    """Return the result at the end of the last trace, with the whole finger under a force; collective.
+def whole(scene: Scene, model: Model, solve: Solve) -> Result:
+    """Return the result of a force on the whole finger; collective.
 
     Args:
-        scene: press, charge and slide; ``force`` takes the place of its ``f_ext``.
-        force: on the whole finger (N).
+        scene: with a force.
         model: that solves.
-        solve: solves a scene; takes a name for the folder of its files too, empty for the result's own.
+        solve: solves a scene without a force on the whole finger by it.
+
+    Returns:
+        The whole finger, and the section at its centre as named states. A trace that was interrupted is returned as it
+        is, without either.
 
     Raises:
-        SceneError: a scene with a history, a profile that does not fit, or a force that no trace reached.
-
-    A trace that was interrupted is returned as the result, without the whole finger.
+        SceneError: a profile that does not fit, or a force that no trace reached.
     """
-    refuse(scene)
-    finger = profile(scene.slices)
-    finger.lowest()
-    reach = _Reach(scene, finger, force, model, solve)
     try:
-        found = {name: reach.follow(name) for name in _wanted(scene)}
+        found = _followed(scene, model, solve)
     except _Stopped as stopped:
         return stopped.result
-    totals = {name: at_force(finger, each.trace, force, scene.slices.count) for name, each in found.items()}
-    ends = {name: each.result.named.get("charged" if name == "uncharged" else name) for name, each in found.items()}
-    known = {name: {errors.MESH: errors.discretisation(ends[name])} for name in totals}
-    source = f"{_WORDS.get(model, 'traces of charged cylinders, indentations without voltage')} to "
-    source += ", ".join(f"{each.trace.end[1]:.4g} N/m ({name.replace('_', ' ')})" for name, each in found.items())
-    last = list(found.values())[-1].result
-    if model != "full":
-        f_ext = list(totals.values())[-1].centre / finger.centre_scale()
-        if f_ext < _SMALLEST:
-            raise SceneError(
-                f"force is {force:.4g} N, under which the centre of the finger bears {f_ext:.2g} N/m, and the model "
-                f"{model!r} must have at least {_SMALLEST:g} N/m; give a larger force or a shorter finger"
-            )
-        last = solve(scene.model_copy(update={"f_ext": f_ext}), "")
-    states = {name: each.trace for name, each in found.items()}
-    if not scene.voltage:  # normal contact is one state then, with two names
-        totals["charged"], known["charged"] = totals["uncharged"], known["uncharged"]
-        states["charged"] = states["uncharged"]
-    return replace(last, finger=WholeFinger(in_order(totals), source, known, states, scene.slices))
-
-
-def _wanted(scene: Scene) -> Iterator[str]:
-    """Yield the names of the traces, the last one that of the result."""
-    yield "uncharged"
-    if scene.voltage:
-        yield "charged"
-    if scene.friction_law() is not None:
-        yield "full_slip"
-
-
-def scenes(scene: Scene) -> int:
-    """Return how many scenes a model without a path solves for a force, where no trace is made again."""
-    return FORCES * len(list(_wanted(scene))) + 1
-
-
-def refuse(scene: Scene) -> None:
-    """Refuse a scene that has no traces.
-
-    Raises:
-        SceneError: a history, or a mesh of its own.
-    """
-    if scene.history is not None:
+    finger = _summed(scene, model, found)
+    if model.path:
+        return _of_path(scene, finger, found)
+    centre = list(found.values())[-1].total.centre / profile(scene.slices).centre_scale  # type: ignore[union-attr]
+    if centre < _SMALLEST:
         raise SceneError(
-            "history is given; a force in N is that of press, charge and slide alone, so give voltage instead"
+            f"force is {scene.force:.4g} N, under which the centre of the finger bears {centre:.2g} N/m, and it must "
+            f"bear at least {_SMALLEST:g} N/m; give a larger force or a shorter finger"
         )
-    if scene.laws.mesh is not None:
-        raise SceneError("mesh is given; a force in N is that of fingers of the scene's own geometry alone")
-
-
-class _Stopped(Exception):  # noqa: N818
-    """A trace was interrupted; its attribute ``result`` says so."""
-
-    def __init__(self, result: Result, name: str) -> None:
-        super().__init__(name)
-        stopped = result.failure.partition(";")[0]
-        failure = f"{stopped} of the trace of {WORDS[name]}; the same command starts the traces again"
-        self.result = replace(result, failure=failure)
-
-
-class _Reach:
-    """Follows traces to forces that are large enough."""
-
-    def __init__(self, scene: Scene, finger: Profile, force: float, model: str, solve: "Solve") -> None:
-        self._scene, self._finger, self._force, self._model, self._solve = scene, finger, force, model, solve
-        scale = scene.geometry.width / _WIDTH
-        self._top = _LINE * scale * (force / (_POINT * scale**2)) ** _POWER * _MARGIN
-
-    def follow(self, name: str) -> Traced:
-        """Return the trace of a state, long enough for the force.
-
-        Raises:
-            SceneError: it could not be made so long.
-        """
-        for tries in range(_TRIES):
-            top = min(max(self._top, _SHORTEST), _LARGEST)
-            made = self._made(name, top)
-            try:
-                total = at_force(self._finger, made.trace, self._force, self._scene.slices.count)
-            except BeyondTrace as error:
-                if made.result.failure or tries == _TRIES - 1 or top == _LARGEST:
-                    why = f": {made.result.failure}" if made.result.failure else ""
-                    raise SceneError(f"{error}{why}") from None
-                self._top *= _MORE
-                continue
-            self._top = total.centre / self._finger.centre_scale() * _MARGIN  # of the next trace
-            return made
-        raise AssertionError("every try returns or raises")
-
-    def _made(self, name: str, top: float) -> Traced:
-        scene = self._scene
-        if self._model != "full":
-            return self._points(name, top)
-        folder = "" if name == list(_wanted(scene))[-1] else name
-        result = self._solve(history(scene, name, top), folder)
-        if result.interrupted:
-            raise _Stopped(result, name)
-        try:
-            return Traced(trace(points(result, name), scene.geometry.ridge_wavelength), result)
-        except TraceError as error:
-            why = f": {result.failure}" if result.failure else ""
-            raise SceneError(f"the force on the finger is {self._force:.4g} N; {error}{why}") from None
-
-    def _points(self, name: str, top: float) -> Traced:
-        """Return a trace of a model that solves one scene at a time."""
-        voltage = 0.0 if name == "uncharged" else self._scene.voltage
-        found, states = None, []
-        for f_ext in np.geomspace(top * LIGHT, top, FORCES):
-            scene = self._scene.model_copy(update={"f_ext": float(f_ext), "voltage": voltage})
-            try:
-                found = self._solve(scene, name)
-            except TooLight as error:
-                raise SceneError(f"force is {self._force:.4g} N, and in its trace {error}") from None
-            state = found.named.get("charged" if name == "uncharged" else name)
-            if state is None:
-                raise SceneError(f"the model {self._model!r} has no {name.replace('_', ' ')} at {f_ext:.4g} N/m")
-            if np.isnan(state.bone_height):
-                kind = "full_slip" if name == "full_slip" else "charged"
-                state = replace(state, bone_height=-cylinders.indentation(float(f_ext), kind))
-            states.append(state)
-        assert found is not None
-        return Traced(trace(states, self._scene.geometry.ridge_wavelength), found)
+    return replace(solve(scene.replace(f_ext=centre), ""), scene=scene, finger=finger)
 
 
 def history(scene: Scene, name: str, top: float) -> Scene:
@@ -231,6 +121,159 @@ def points(result: Result, name: str) -> list[ContactState]:
     return [state for state in result.steps if state.load in ("charge", "raise") and state.voltage == voltage]
 
 
-def folder_of(out: Path | None, name: str) -> Path | None:
-    """Return the folder of a trace's files."""
-    return None if out is None else below(out, name) if name else out
+def _followed(scene: Scene, model: Model, solve: Solve) -> dict[str, Traced]:
+    """Return the traces of a scene by state, that of the result last; arguments as of :func:`whole`."""
+    reach = _Reach(scene, profile(scene.slices), model, solve)
+    found = {"uncharged": reach.follow("uncharged")}
+    if scene.voltage:
+        found["charged"] = reach.follow("charged")
+    if scene.friction_law() is not None:
+        found["full_slip"] = reach.follow("full_slip")
+    return found
+
+
+def _summed(scene: Scene, model: Model, found: dict[str, Traced]) -> WholeFinger:
+    """Return the finger on its traces."""
+    totals = {name: each.total for name, each in found.items() if each.total is not None}
+    known = {name: {errors.MESH: errors.discretisation(_end(each, name))} for name, each in found.items()}
+    states = {name: each.trace for name, each in found.items()}
+    tops = (f"{each.trace.end[1]:.4g} N/m ({name.replace('_', ' ')})" for name, each in found.items())
+    if not scene.voltage:  # normal contact is one state then, with two names
+        for values in (totals, known, states):
+            values["charged"] = values["uncharged"]  # type: ignore[assignment]
+    return WholeFinger(in_order(totals), f"{model.traces} to {', '.join(tops)}", known, states, scene.slices)
+
+
+def _of_path(scene: Scene, finger: WholeFinger, found: dict[str, Traced]) -> Result:
+    """Return the result of traces that are runs."""
+    runs = [each.result for each in found.values() if each.result is not None]
+    lowest, scale = profile(scene.slices).lowest[1], profile(scene.slices).centre_scale
+    named = {
+        name: _section(each, name, (each.total.delta - lowest) / scale)
+        for name, each in found.items()
+        if each.total is not None
+    }
+    if not scene.voltage:
+        named["charged"] = named["uncharged"]
+    return replace(
+        runs[-1],
+        scene=scene,
+        record={key: value for key, value in runs[-1].record.items() if key != "steps"},
+        **{name: named.get(name) for name in WORDS},  # type: ignore[arg-type]
+        steps=(),
+        loads=(),
+        drawing=None,
+        folder=None,
+        cost=_together(run.cost for run in runs),
+        failure="",
+        notes=tuple(dict.fromkeys(note for run in runs for note in run.notes)),
+        cautions=tuple(dict.fromkeys(caution for run in runs for caution in run.cautions)),
+        finger=finger,
+    )
+
+
+def _section(traced: Traced, name: str, depth: float) -> ContactState:
+    """Return the section at the centre of the finger, interpolated between the points of its trace.
+
+    Args:
+        traced: the trace.
+        name: of the state.
+        depth: indentation of the section (m).
+    """
+    at: dict[str, Any] = {key: float(values[0]) for key, values in traced.trace.at(np.array([depth])).items()}
+    near = min(traced.states, key=lambda state: abs(state.bone_height + depth))
+    mu_app = at["f_t"] / at["f_ext"]
+    shares, end = errors.discretisation(_end(traced, name)), _end(traced, name)
+    known = {key: shares[key] * at[key] for key in ("f_t", "f_electrostatic") if key in shares}
+    known |= {"mu_app": shares["mu_app"] * mu_app} if "mu_app" in shares else {}
+    known |= {"contact_length": shares["contact_area"] * at["contact_length"]} if "contact_area" in shares else {}
+    known |= {"bone_height": shares["indentation"] * depth} if "indentation" in shares else {}
+    del at["gross_width"]
+    return ContactState(
+        **at,
+        mu_app=mu_app,
+        voltage=near.voltage,
+        f_contact=at["f_ext"] + at["f_electrostatic"],
+        bone_height=-depth,
+        ridges_in_contact=near.ridges_in_contact,
+        mesh_contact=near.mesh_contact if end is None else end.mesh_contact,
+        all_slip=name == "full_slip",
+        slip_held=name == "full_slip",
+        error=Errors(**known),
+    )
+
+
+def _end(traced: Traced, name: str) -> ContactState | None:
+    """Return the state at the largest force of a trace, None of a model without discretisation errors."""
+    named = {} if traced.result is None else traced.result.named
+    return named.get("charged" if name == "uncharged" else name)
+
+
+def _together(costs: Iterable[Cost]) -> Cost:
+    """Return what runs one after the other cost together: sums, and the largest memory and system."""
+    values, most = [*costs], ("unknowns", "memory_mb", "ranks")
+    every = {field.name: [getattr(cost, field.name) for cost in values] for field in fields(Cost)}
+    return Cost(**{name: max(each) if name in most else sum(each) for name, each in every.items()})
+
+
+class _Stopped(Exception):  # noqa: N818
+    """A trace was interrupted; its attribute ``result`` says so."""
+
+    def __init__(self, result: Result, name: str) -> None:
+        super().__init__(name)
+        stopped = result.failure.partition(";")[0]
+        failure = f"{stopped} of the trace of {WORDS[name]}; the same command goes on with it"
+        self.result = replace(result, failure=failure)
+
+
+class _Reach:
+    """Follows traces to forces that are large enough."""
+
+    def __init__(self, scene: Scene, finger: Profile, model: Model, solve: Solve) -> None:
+        assert scene.force is not None
+        self._scene, self._force = scene.replace(force=None), scene.force
+        self._finger, self._model, self._solve = finger, model, solve
+        self._scale = finger.centre_scale  # refuses a finger that is lowest at its end
+        self._top = scene.centre_force * _MARGIN
+
+    def follow(self, name: str) -> Traced:
+        """Return the trace of a state, long enough for the force.
+
+        Raises:
+            SceneError: it could not be made so long.
+        """
+        for tries in range(_TRIES):
+            top = min(max(self._top, _SHORTEST), _LARGEST)
+            made = self._run(name, top, tries) if self._model.path else self._points(name, top)
+            try:
+                total = at_force(self._finger, made.trace, self._force, self._scene.slices.count)
+            except BeyondTrace as error:
+                failure = "" if made.result is None else made.result.failure
+                if failure or tries == _TRIES - 1 or top == _LARGEST:
+                    why = f": {failure}" if failure else ""
+                    raise SceneError(f"{error}{why}") from None
+                self._top *= _MORE
+                continue
+            self._top = total.centre / self._scale * _MARGIN  # of the next trace
+            return made._replace(total=total)
+        raise AssertionError("every try returns or raises")
+
+    def _run(self, name: str, top: float, tries: int) -> Traced:
+        """Return a trace of a run; each try has a folder of its own, from which another command goes on."""
+        result = self._solve(history(self._scene, name, top), f"{name}_{tries + 1}" if tries else name)
+        if result.interrupted:
+            raise _Stopped(result, name)
+        states = points(result, name)
+        try:
+            return Traced(trace(states, self._scene.geometry.ridge_wavelength), states, result)
+        except TraceError as error:
+            why = f": {result.failure}" if result.failure else ""
+            raise SceneError(f"the force on the finger is {self._force:.4g} N; {error}{why}") from None
+
+    def _points(self, name: str, top: float) -> Traced:
+        """Return a trace of a model without a path."""
+        forces = [float(each) for each in np.geomspace(top * LIGHT, top, FORCES)]
+        kind = "full_slip" if name == "full_slip" else "charged"
+        scene = self._scene.model_copy(update={"voltage": 0.0}) if name == "uncharged" else self._scene
+        states = self._model.over_forces(scene, forces, kind, lambda each: self._solve(each, name))
+        return Traced(trace(states, scene.geometry.ridge_wavelength), states)

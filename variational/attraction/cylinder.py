@@ -1,4 +1,4 @@
-r"""A charged ridge as an elastic cylinder on the screen, with the microscale inside: closed forms and one scalar root.
+r"""A charged ridge as an elastic cylinder on the screen, with the microscale inside: closed forms and two roots.
 
 The attraction of :mod:`~variational.attraction.electroadhesion` is :math:`\sigma = \varepsilon_0 U^2 / 2 (h_0 +
 d_{eq})^2` where the gap is below d_eq, and falls beyond. It is replaced by a constant stress of the same strength and
@@ -20,7 +20,8 @@ surfaces are under that pressure (Forsbach et al. 2023, Eqs. 3, 4 and 13):
 .. math:: 2 a p_c = f + 2 \sigma c, \qquad d_{eq} = d_{eq}(p_c).
 
 Without voltage this is Hertz's law. There are two ways to close the equations: a is given, and f is borne over it; or
-f is given, and a follows. Both leave one equation in p_c. It can have several roots: that of the highest pressure is
+f is given, and a follows from the second equation. The gap at c grows with m then, which leaves one m at each p_c, and
+one equation in p_c. It can have several roots: that of the highest pressure is
 the branch in contact, on which the loop over the scales contracts; others are unstable, or states of a ridge that has
 not jumped on the screen yet. Where the highest root vanishes the ridge is past its pull-off fold and there is none.
 """
@@ -30,15 +31,18 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
-from scipy.optimize import brentq
+from numpy.typing import ArrayLike, NDArray
 
 from variational.attraction.insulator import VACUUM_PERMITTIVITY
 from variational.roughness.closure import Closure
 
-Array = NDArray[np.float64]
+Array = NDArray[np.floating[Any]]
 _PRESSURES = np.geomspace(10.0, 1e7, 181)  # Pa, among which roots are separated
-_BEYOND = np.geomspace(1e-9, 1e6, 451)  # m - 1, likewise
+_LEAST, _LARGEST = 1e-9, 1e6  # of m - 1
+_ROUNDOFF = 2e-16  # relative
+_STEP = 1e-9  # of Newton's method, relative; the next one would be of its square
+_TOLERANCE = 1e-14  # of the pressure, relative
+_ITERATIONS = 100  # of a root, at most; bisection to roundoff takes 60
 
 
 class NoEquilibriumError(ValueError):
@@ -66,13 +70,28 @@ class RidgeState:
 
 
 @dataclass(frozen=True)
+class _Loads:
+    """What ridges bear; arrays of shape (ridges,)."""
+
+    f: Array
+    """External force per length (N/m)."""
+    modulus: Array
+    """Of each ridge (Pa)."""
+    half: float | None
+    """Half-width a (m) if it is given."""
+
+    def __getitem__(self, chosen: NDArray[np.intp]) -> "_Loads":
+        return _Loads(self.f[chosen], self.modulus[chosen], self.half)
+
+
+@dataclass(frozen=True)
 class Cylinder:
     """A ridge's tip; SI units."""
 
     radius: float
     """R (m)."""
-    modulus: float
-    """Plane strain modulus E* (Pa)."""
+    modulus: float | Array
+    """Plane strain modulus E* (Pa): of all loads, or of each, shape (loads,)."""
     h_0: float
     """Effective insulator thickness (m)."""
     closure: Closure
@@ -88,96 +107,178 @@ class Cylinder:
         Raises:
             NoEquilibriumError: no branch in contact, or the attraction is beyond what a finger can bear.
         """
-        return self._root(lambda sigma, d: self._from_load(f, sigma, d), f, voltage)
+        return self.under_loads([f], voltage)[0]
+
+    def under_loads(self, f: ArrayLike, voltage: float) -> list[RidgeState]:
+        """Return the state under each of several external forces.
+
+        Args:
+            f: forces per length (N/m), positive, shape (loads,).
+            voltage: (V).
+
+        Raises:
+            NoEquilibriumError: as :meth:`under_load`, of the first force that is refused.
+        """
+        return self._states(np.asarray(f, dtype=float), voltage)
 
     def over_length(self, length: float, f: float, voltage: float) -> RidgeState:
-        """Return the state in which a contact of given length bears an external force; arguments as above.
+        """Return the state in which a contact of given length (m) bears an external force; as :meth:`under_load`.
 
         Raises:
             NoEquilibriumError: no branch in contact.
         """
-        half = length / 2
-        return self._root(lambda sigma, d: (half, self._from_half_width(half, sigma, d)), f, voltage)
+        return self._states(np.array([f], dtype=float), voltage, length / 2)[0]
 
     # -- the gap at c ----------------------------------------------------------------------------------
-    def _shapes(self, beyond: Any) -> tuple[Array, Array, Array]:
-        """Return the root of m^2 - 1 and the factors of a^2 / 2R and 4 sigma a / pi E*, for m - 1 given."""
-        m, root = 1 + beyond, np.sqrt(beyond * (2 + beyond))
-        angle = np.arcsinh(root)
-        return root, m * root - angle, root * angle - m * np.log1p(beyond)
+    def _half_width(self, loads: _Loads, beyond: Array, sigma: Array) -> tuple[Array, Array]:
+        """Return a (m) at m - 1, of the force or as given, and its derivative with respect to m."""
+        if loads.half is not None:
+            return np.full_like(beyond, loads.half), np.zeros_like(beyond)
+        stiffness = np.pi * loads.modulus / (2 * self.radius)
+        root = np.sqrt(beyond * (2 + beyond))
+        pull = 2 * sigma * root
+        both = np.sqrt(pull**2 + 2 * stiffness * loads.f)
+        return (pull + both) / stiffness, 2 * sigma * (1 + beyond) / root * (1 + pull / both) / stiffness
 
-    def _opening(self, a: Any, beyond: Any, sigma: float) -> Array:
-        """Return the gap at c (m)."""
-        _, round_part, pulled_part = self._shapes(beyond)
-        return np.asarray(a**2 / (2 * self.radius) * round_part + 4 * sigma * a / (np.pi * self.modulus) * pulled_part)
+    def _edge(self, loads: _Loads, sigma: Array, reach: Array, near: Array | None = None) -> Array:
+        """Return m - 1 where the gap at c is the reach of the attraction.
 
-    def _from_half_width(self, a: float, sigma: float, d_eq: float) -> float:
-        """Return m - 1 of a contact of half-width ``a`` (m); the gap at c grows with c."""
-        reach = self.h_0 + 2 * d_eq
-        if float(self._opening(a, _BEYOND[-1], sigma)) < reach:
+        By Newton's method on logarithms, between bounds: in them the gap is nearly a straight line.
+
+        Args:
+            loads: of each ridge.
+            sigma: strength of the attraction (Pa).
+            reach: of the attraction (m).
+            near: values of m - 1 to start at, of edges that are known to be there.
+
+        Raises:
+            NoEquilibriumError: the gap at c is smaller up to the largest m, or larger from the least m on.
+        """
+
+        def opening(y: Array) -> tuple[Array, Array]:
+            """Return the logarithm of the gap over the reach, and its derivative with respect to y = ln(m - 1)."""
+            beyond = np.exp(y)
+            m, root = 1 + beyond, np.sqrt(beyond * (2 + beyond))
+            angle, logarithm = np.arcsinh(root), np.log1p(beyond)
+            round_part, pulled_part = m * root - angle, root * angle - m * logarithm
+            a, slope = self._half_width(loads, beyond, sigma)
+            bent, pulled = a / self.radius, 4 * sigma / (np.pi * loads.modulus)
+            gap = bent * a / 2 * round_part + pulled * a * pulled_part
+            grows = slope * (bent * round_part + pulled * pulled_part)
+            grows += bent * a * root + pulled * a * (m / root * angle - logarithm)
+            return np.log(gap / reach), beyond * grows / gap
+
+        low, high, y = (np.full_like(sigma, np.log(end)) for end in (_LEAST, _LARGEST, 1.0))
+        y = y if near is None else np.log(near)
+        none = np.zeros_like(sigma, dtype=bool) if near is not None else opening(high)[0] < 0
+        if near is None and loads.half is None:
+            none |= opening(low)[0] > 0
+        if none.any():
+            k = int(np.argmax(none))
             raise NoEquilibriumError(
-                f"a contact of {2 * a:.3g} m is too short for an attraction that reaches {reach:.3g} m; "
+                f"a contact of {2 * loads.half:.3g} m is too short for an attraction that reaches {reach[k]:.3g} m; "
                 "try a longer one"
+                if loads.half is not None
+                else f"no contact bears {loads.f[k]:g} N/m under an attraction of {sigma[k]:.3g} Pa; "
+                "try a smaller voltage or another force"
             )
-        return float(brentq(lambda b: float(self._opening(a, b, sigma)) - reach, 0.0, _BEYOND[-1], xtol=1e-15))
-
-    def _from_load(self, f: float, sigma: float, d_eq: float) -> tuple[float, float]:
-        """Return a (m) and m - 1 under a force (N/m), of the widest contact that bears it."""
-        reach = self.h_0 + 2 * d_eq
-
-        def half_width(beyond: Any) -> Array:
-            # the positive root of the gap's equation, quadratic in a
-            _, round_part, pulled_part = self._shapes(beyond)
-            b = 4 * sigma / (np.pi * self.modulus) * pulled_part
-            return np.asarray(2 * reach / (b + np.sqrt(b**2 + 2 * round_part / self.radius * reach)))
-
-        def force(beyond: Any) -> Array:
-            a = half_width(beyond)
-            elastic = np.pi * self.modulus * a**2 / (4 * self.radius)
-            return np.asarray(elastic - 2 * sigma * a * self._shapes(beyond)[0])
-
-        borne = force(_BEYOND)
-        brackets = np.flatnonzero((borne[:-1] >= f) & (borne[1:] < f))
-        if not brackets.size:
-            raise NoEquilibriumError(
-                f"no contact bears {f:g} N/m under an attraction of {sigma:.3g} Pa; try a smaller voltage "
-                "or another force"
-            )
-        k = int(brackets[0])
-        beyond = float(brentq(lambda b: float(force(b)) - f, _BEYOND[k], _BEYOND[k + 1], xtol=1e-16))
-        return float(half_width(beyond)), beyond
+        for _ in range(_ITERATIONS):
+            value, slope = opening(y)
+            low, high = np.where(value < 0, y, low), np.where(value < 0, high, y)
+            step = value / slope
+            inside = (y - step > low) & (y - step < high)
+            small = abs(step) <= _STEP + 4 * _ROUNDOFF * np.exp(-y)  # the gap is a difference, good to 1e-16 / (m - 1)
+            y = np.where(inside | small, y - step, (low + high) / 2)
+            if small.all():
+                break
+        return np.exp(y)
 
     # -- the microscale --------------------------------------------------------------------------------
-    def _root(self, shape: Callable[[float, float], tuple[float, float]], f: float, voltage: float) -> RidgeState:
-        """Return the branch in contact; ``shape`` gives a (m) and m - 1 at a strength (Pa) and an air gap (m)."""
-        if not f > 0:
-            raise NoEquilibriumError(f"the force on a ridge is {f:g} N/m; it must be greater than 0")
-
-        def at(p_c: float) -> tuple[float, float, float, float]:
-            d_eq = float(self.closure(p_c).d_eq)
-            sigma = VACUUM_PERMITTIVITY * voltage**2 / 2 / (self.h_0 + d_eq) ** 2
-            return *shape(sigma, d_eq), sigma, d_eq
-
-        def excess(p_c: float) -> float:
-            a, beyond, sigma, _ = at(p_c)
-            return 2 * a * (p_c - sigma * (1 + beyond)) - f
-
-        values = np.array([excess(p) for p in _PRESSURES])
-        found = [
-            float(brentq(excess, _PRESSURES[k], _PRESSURES[k + 1], xtol=1e-9, rtol=1e-14))
-            for k in np.flatnonzero(np.sign(values[:-1]) != np.sign(values[1:]))
-        ]
-        if not found or values[-1] <= 0:
+    def _states(self, f: Array, voltage: float, half: float | None = None) -> list[RidgeState]:
+        """Return the branches in contact; ``half`` is a (m) where it is given."""
+        if not np.all(f > 0):
+            raise NoEquilibriumError(f"the force on a ridge is {f[~(f > 0)][0]:g} N/m; it must be greater than 0")
+        loads = _Loads(f, np.broadcast_to(np.asarray(self.modulus, dtype=float), f.shape), half)
+        count, every = len(f), len(_PRESSURES)
+        grid = loads[np.tile(np.arange(count), every)]
+        values = self._excess(_PRESSURES, voltage, grid)[1].reshape(every, count)
+        crossed = np.sign(values[:-1]) != np.sign(values[1:])
+        none = ~crossed.any(axis=0) | (values[-1] <= 0)
+        if none.any():
             raise NoEquilibriumError(
-                f"no contact pressure from {_PRESSURES[0]:g} to {_PRESSURES[-1]:g} Pa bears {f:g} N/m on a ridge at "
-                f"{voltage:g} V; try another force or length"
+                f"no contact pressure from {_PRESSURES[0]:g} to {_PRESSURES[-1]:g} Pa bears {f[none][0]:g} N/m on a "
+                f"ridge at {voltage:g} V; try another force or length"
             )
-        p_c = found[-1]
-        a, beyond, sigma, d_eq = at(p_c)
+        k, load = np.nonzero(crossed)
+        crossing, near = loads[load], None
+
+        def excess(p_c: Array) -> Array:
+            nonlocal near
+            near, found = self._excess(p_c, voltage, crossing, near)
+            return found
+
+        roots = _roots(excess, (_PRESSURES[k], values[k, load]), (_PRESSURES[k + 1], values[k + 1, load]))
+        found = [roots[load == n] for n in range(count)]  # of growing pressure
+        p_c = np.array([pressures[-1] for pressures in found])
+        a, beyond, sigma, d_eq = self._at(p_c, voltage, loads)
         attraction = 2 * sigma * a * (1 + beyond)
-        return RidgeState(2 * a, 2 * a * (1 + beyond), p_c, d_eq, f + attraction, attraction, tuple(found[:-1]))
+        columns: Any = np.array([2 * a, 2 * a * (1 + beyond), p_c, d_eq, f + attraction, attraction]).T.tolist()
+        others = (tuple(map(float, pressures[:-1])) for pressures in found)
+        return [RidgeState(*(*each, more)) for each, more in zip(columns, others, strict=True)]
+
+    def _at(
+        self, p_c: Array, voltage: float, loads: _Loads, near: Array | None = None
+    ) -> tuple[Array, Array, Array, Array]:
+        """Return a (m), m - 1, strength of the attraction (Pa) and air gap (m) at contact pressures (Pa).
+
+        Args:
+            p_c: of each ridge, or of as many ridges after each other as there are more ridges than pressures.
+            voltage: (V).
+            loads: of each ridge.
+            near: values of m - 1 to start at.
+        """
+        d_eq = np.repeat(np.asarray(self.closure(p_c).d_eq, dtype=float), len(loads.f) // len(p_c))
+        sigma = VACUUM_PERMITTIVITY * voltage**2 / 2 / (self.h_0 + d_eq) ** 2
+        beyond = self._edge(loads, sigma, self.h_0 + 2 * d_eq, near)
+        return self._half_width(loads, beyond, sigma)[0], beyond, sigma, d_eq
+
+    def _excess(self, p_c: Array, voltage: float, loads: _Loads, near: Array | None = None) -> tuple[Array, Array]:
+        """Return m - 1, and what pressures bear beyond attraction and force (N/m); arguments of :meth:`_at`."""
+        a, beyond, sigma, _ = self._at(p_c, voltage, loads, near)
+        return beyond, 2 * a * (np.repeat(p_c, len(a) // len(p_c)) - sigma * (1 + beyond)) - loads.f
 
 
-def hertz_modulus(radius: float, f: float, length: float) -> float:
+def _roots(function: Callable[[Array], Array], low: tuple[Array, Array], high: tuple[Array, Array]) -> Array:
+    """Return the roots of a function between ends at which it has other signs, by Chandrupatla's method.
+
+    T. R. Chandrupatla 1997, Adv. Eng. Softw. 28, 145, doi 10.1016/S0965-9978(96)00051-8; it starts as the secant does.
+
+    Args:
+        function: of arrays, shape (roots,).
+        low: places, and the values there.
+        high: as ``low``, of the other ends.
+    """
+    (x_1, f_1), (x_2, f_2) = low, high
+    t = f_1 / (f_1 - f_2)
+    for _ in range(_ITERATIONS):
+        x = x_1 + t * (x_2 - x_1)
+        f = function(x)
+        same = np.sign(f) == np.sign(f_1)
+        x_3, f_3 = np.where(same, x_1, x_2), np.where(same, f_1, f_2)
+        x_2, f_2 = np.where(same, x_2, x_1), np.where(same, f_2, f_1)
+        x_1, f_1 = x, f
+        limit = _TOLERANCE * abs(x) / abs(x_2 - x_1)
+        if np.all((limit > 0.5) | (f == 0)):
+            break
+        with np.errstate(divide="ignore", invalid="ignore"):
+            xi, phi = (x_1 - x_2) / (x_3 - x_2), (f_1 - f_2) / (f_3 - f_2)
+            inverse = f_1 / (f_2 - f_1) * f_3 / (f_2 - f_3)
+            inverse += (x_3 - x_1) / (x_2 - x_1) * f_1 / (f_3 - f_1) * f_2 / (f_3 - f_2)
+        t = np.where((phi**2 < xi) & ((1 - phi) ** 2 < 1 - xi), inverse, 0.5)
+        t = np.clip(t, np.minimum(limit, 0.5), np.maximum(1 - limit, 0.5))
+    return np.where(abs(f_1) < abs(f_2), x_1, x_2)
+
+
+def hertz_modulus(radius: float, f: ArrayLike, length: ArrayLike) -> Array:
     """Return the modulus E* (Pa) of the cylinder that has a contact length (m) under a force (N/m), uncharged."""
-    return float(4 * radius * f / (np.pi * (length / 2) ** 2))
+    return np.asarray(4 * radius * np.asarray(f) / (np.pi * (np.asarray(length) / 2) ** 2))

@@ -15,11 +15,12 @@ The slip of a step counts from the accepted place :math:`x_n`, so that
 :math:`a = x_n + \lambda_t / \epsilon_t`.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
-import ufl
 
+from variational.coefficients import parameter
 from variational.contact.formulation import Contact, Formulation, History, Skin, Springs, SurfaceState
 from variational.contact.friction import CONE_ROUNDOFF, Friction
 
@@ -28,9 +29,20 @@ from variational.contact.friction import CONE_ROUNDOFF, Friction
 class AugmentedLagrangian(Formulation):
     """Stiffness, normal and tangential (Pa/m of reference area), and what is left of penetration and slip (m)."""
 
-    eps_n: float
-    eps_t: float
-    tolerance: float
+    eps_n: float = parameter(1e7, 1e17, "Pa/m", default=1.5e13)
+    """Normal stiffness (Pa/m of reference area)."""
+    eps_t: float = parameter(1e6, 1e17, "Pa/m", default=5e11)
+    """Tangential stiffness (Pa/m of reference area)."""
+    tolerance: float = parameter(1e-12, 1e-6, "m", default=5e-9)
+    """Penetration and elastic slip (m) at which the augmented Lagrangian's iteration ends. The default is a
+    three-hundredth of the smallest d_eq. Range: from roundoff to the size of the air gap."""
+
+    symmetric_start: ClassVar[bool] = False  # its multipliers, corrected within a step, are not put on the whole
+    caution: ClassVar[str] = (
+        "contact by a method for comparison, which takes several times the factorisations of the penalty and may miss "
+        "equilibria that it finds"
+    )
+    less_penetration: ClassVar[str] = "a smaller tolerance of the contact reduces it"
 
     def springs(self, skin: Skin) -> Springs:
         """Return springs that the multiplier preloads."""
@@ -42,16 +54,18 @@ class AugmentedLagrangian(Formulation):
         The augmented gap has a kink at the edge of contact, as sharp as eps_n is stiff, which would spoil the
         interpolation by which the edge is located in a facet; over the skin's stiffness the two are alike.
         """
+        import ufl
+
         return ufl.conditional(ufl.lt(contact.gap, 0.0), -contact.p_n / skin.stiffness(), skin.y)
 
     def error(self, state: SurfaceState, history: History, friction: Friction | None) -> float:
         """Return the largest depth, or opening under pressure, and elastic slip at this rank's points (m)."""
-        depth = np.abs(state.p_n - history.pressure) / self.eps_n
+        depth = np.abs(state.p_n - history["pressure"]) / self.eps_n
         limit = np.zeros_like(state.p_n) if friction is None else friction.limit(state.p_n)
         sticking = (state.p_n > 0) & (np.abs(state.t_t) < limit * (1 - CONE_ROUNDOFF))
-        slip = np.where(sticking, np.abs(state.x - history.x), 0.0)
+        slip = np.where(sticking, np.abs(state.x - history["x"]), 0.0)
         return float(max(depth.max(initial=0.0), slip.max(initial=0.0)))
 
     def corrected(self, state: SurfaceState, history: History) -> History:
         """Return the history with the tractions of a solve as multipliers; the accepted place stays."""
-        return replace(history, pressure=state.p_n, anchor=state.anchor - (state.x - history.x))
+        return {**history, "pressure": state.p_n, "anchor": state.anchor - (state.x - history["x"])}

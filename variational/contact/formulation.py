@@ -16,23 +16,26 @@ The history variable of friction is the anchor s, see :mod:`~variational.contact
 """
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable
-from dataclasses import dataclass
-from typing import Any
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 import numpy as np
-import ufl
 from numpy.typing import NDArray
 
 from variational.coefficients import LawError, refuse_not_positive, said
 from variational.contact import return_mapping
-from variational.contact.friction import Friction
+
+if TYPE_CHECKING:
+    from variational.contact.friction import Friction
 
 Array = NDArray[np.float64]
 
 
 def pressure(gap, gamma_n):
     """Return the contact pressure p_n >= 0 (Pa of reference area) for an augmented gap (m) and a stiffness (Pa/m)."""
+    import ufl
+
     return ufl.conditional(ufl.lt(gap, 0.0), -gamma_n * gap, 0.0)
 
 
@@ -82,7 +85,7 @@ class Contact:
         new_anchor: anchor that a step leaves when it is accepted (m).
     """
 
-    def __init__(self, skin: Skin, springs: Springs, friction: Friction | None, guess, ease=1.0) -> None:
+    def __init__(self, skin: Skin, springs: Springs, friction: "Friction | None", guess, ease=1.0) -> None:
         """Project the trial tractions.
 
         Args:
@@ -92,6 +95,8 @@ class Contact:
             guess: as in :func:`variational.contact.return_mapping.traction`.
             ease: part of the tangential stiffness that acts.
         """
+        import ufl
+
         self.springs = s = springs
         self.gap = skin.y - s.lambda_n / s.gamma_n
         self.p_n = pressure(self.gap, s.gamma_n)
@@ -104,12 +109,14 @@ class Contact:
         self.traction = ufl.as_vector([self.t_t, self.p_n])
 
 
-def _limit(friction: Friction, p_n):
+def _limit(friction: "Friction", p_n):
     """Return the limit of friction (Pa) as the weak form has it.
 
     Raises:
         LawError: the law cannot be written in UFL.
     """
+    import ufl
+
     try:
         return ufl.as_ufl(friction.limit(p_n))
     except Exception as error:  # whatever the user's limit raises
@@ -119,16 +126,10 @@ def _limit(friction: Friction, p_n):
         ) from error
 
 
-@dataclass(frozen=True)
-class History:
-    """What a step leaves at this rank's Gauss points, shape (facets, points) each."""
-
-    anchor: Array
-    """Anchor of friction (m)."""
-    pressure: Array
-    """Contact pressure (Pa of reference area)."""
-    x: Array
-    """Current abscissa (m)."""
+History = Mapping[str, Array]
+"""Values of the fields of :mod:`variational.history`. Formulations read three of them, at this rank's Gauss points:
+``anchor`` of friction (m), contact ``pressure`` (Pa of reference area) and current abscissa ``x`` (m), each of shape
+(facets, points)."""
 
 
 @dataclass(frozen=True)
@@ -145,13 +146,26 @@ class SurfaceState:
     p_el: Array
     area_x: Array
     area_y: Array
+    history: History = field(default_factory=dict)
+    """What the state leaves in the fields of the skin when it is accepted."""
 
 
 class Formulation(ABC):
-    """How contact and friction enter the weak form."""
+    """How contact and friction enter the weak form: a frozen dataclass, importable without UFL.
+
+    What a run, a check or a report must consider of a formulation is an attribute here; none of them compares names.
+    """
 
     tolerance: float = 0.0
     """Error of the contact's conditions (m) that is left."""
+    symmetric_start: ClassVar[bool] = True
+    """Whether a state that was reached on one half of a symmetric body can be put on the whole."""
+    caution: ClassVar[str] = ""
+    """What a check says of the formulation before a run; empty for nothing."""
+    less_penetration: ClassVar[str] = "a stiffer contact reduces it"
+    """Remedy against skin that is too deep in the screen."""
+    unloaded_energy: ClassVar[str] = ""
+    """Remedy against a body that stores energy without a load; empty where no such equilibria are known."""
 
     def __post_init__(self) -> None:
         """Refuse numbers that are no stiffness.
@@ -165,15 +179,25 @@ class Formulation(ABC):
     def springs(self, skin: Skin) -> Springs:
         """Return what the trial tractions are made of."""
 
+    def over_stiffer_screen(self) -> Self | None:
+        """Return the contact over a screen of twice the stiffness; None where the screen is rigid already.
+
+        With one, the effect of a rigid screen is estimated beside the error of the mesh
+        (:mod:`fingerpad.accuracy.rigid_screen`).
+        """
+        return None
+
     def virtual_work(self, skin: Skin, contact: Contact, v):
         """Return the contact's part of the residual (J/m^2 of reference area) for a test function."""
+        import ufl
+
         return -ufl.dot(contact.traction, v)
 
     def opening(self, skin: Skin, contact: Contact):
         """Return a length (m), smooth within a facet, that is negative where the augmented gap is."""
         return contact.gap
 
-    def error(self, state: SurfaceState, history: History, friction: Friction | None) -> float:
+    def error(self, state: SurfaceState, history: History, friction: "Friction | None") -> float:
         """Return the largest error (m) at this rank's points that :meth:`corrected` can lower; mostly none."""
         return 0.0
 

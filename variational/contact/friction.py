@@ -28,7 +28,7 @@ from typing import Any, Self
 import numpy as np
 from numpy.typing import NDArray
 
-from variational.coefficients import Law, said
+from variational.coefficients import Law, parameter, said
 
 Array = NDArray[np.float64]
 CONE_ROUNDOFF = 1e-8  # relative: a traction this near the limit counts as on it
@@ -123,8 +123,8 @@ class Coulomb(Friction):
     Models without pressures take its friction coefficient for the whole law, so that no law is derived from it.
     """
 
-    mu_f: float
-    """Friction coefficient."""
+    mu_f: float = parameter(1e-6, 2.0, zero=True)
+    """Friction coefficient. 0 is no friction; 2 is the coefficient of rubber."""
 
     def __init_subclass__(cls) -> None:
         """Refuse a derived law.
@@ -165,11 +165,11 @@ class Derjaguin(Friction):
     less than a thousandth of tau_0.
     """
 
-    mu_f: float
+    mu_f: float = parameter(1e-6, 2.0, zero=True)
     """Friction coefficient of the load."""
-    tau_0: float
+    tau_0: float = parameter(1e-3, 1e9, "Pa", zero=True)
     """Friction without load (Pa of reference area)."""
-    p_reg: float = 1e3
+    p_reg: float = parameter(1e-3, 1e9, "Pa", default=1e3)
     """Contact pressure (Pa) below which tau_0 fades out. *Assumption*; a larger tau_0 may need a larger one."""
 
     def limit(self, p):

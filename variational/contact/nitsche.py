@@ -22,10 +22,10 @@ traction over normal strain where a facet moves by itself. D acts on P N, not on
 translation does no work in it and forces balance exactly.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from typing import ClassVar
 
-import ufl
-
+from variational.coefficients import parameter
 from variational.contact.formulation import Contact, Formulation, Skin, Springs
 
 
@@ -33,8 +33,17 @@ from variational.contact.formulation import Contact, Formulation, Skin, Springs
 class Nitsche(Formulation):
     """Parameter of the stiffness, and which of the variants: theta = 1, 0 or -1."""
 
-    gamma_0: float
-    theta: int = 0
+    gamma_0: float = parameter(1e-3, 1e6, default=1.0)
+    """Nitsche's stiffness, divided by the skin's constrained modulus per facet length. With 10 no equilibrium was
+    found while the default finger was pressed (``docs/chart.md``)."""
+    theta: int = field(default=0, metadata={"allowed": (-1, 0, 1)})
+    """Variant of Nitsche's method. Variants 1 and -1 compile for longer. Variant 1 needs a larger gamma_0: below it
+    stresses can remain in the unloaded skin, which is refused where the finger is lifted."""
+
+    less_penetration: ClassVar[str] = "a larger gamma_0 of the contact or smaller elements reduce it"
+    unloaded_energy: ClassVar[str] = (
+        "Nitsche's method has such equilibria where gamma_0 is too small, so start again with a larger one"
+    )
 
     def __post_init__(self) -> None:
         """Refuse other variants.
@@ -54,6 +63,8 @@ class Nitsche(Formulation):
 
     def virtual_work(self, skin: Skin, contact: Contact, v):
         """Return the work of the tractions and theta times the residual of the contact's conditions."""
+        import ufl
+
         work = super().virtual_work(skin, contact, v)
         if self.theta == 0:
             return work

@@ -7,12 +7,13 @@ Contact Mechanics, 2nd ed., ch. 6). The skin sinks by :math:`p_n / \epsilon_n`, 
 :math:`t_t / \epsilon_t`; without friction the tangent is symmetric.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-from variational.coefficients import refuse_not_positive
+from variational.coefficients import parameter, refuse_not_positive
 from variational.contact.formulation import Formulation, Skin, Springs, SurfaceState
 
 Array = NDArray[np.float64]
@@ -22,8 +23,16 @@ Array = NDArray[np.float64]
 class Penalty(Formulation):
     """Stiffness of the screen, normal and tangential (Pa/m of reference area)."""
 
-    eps_n: float
-    eps_t: float
+    eps_n: float = parameter(1e7, 1e17, "Pa/m", default=1.5e12)
+    """Normal stiffness of the penalty and of the augmented Lagrangian (Pa/m of reference area). *Assumption*: the
+    default keeps the penetration below a tenth of d_eq. The augmented Lagrangian's default is ten times as large,
+    which saves coupling iterations. Range: at 1e7 the finger sinks in by millimetres; at 1e17 the roundoff of a
+    length of 1 mm is 20 kPa."""
+    eps_t: float = parameter(1e6, 1e17, "Pa/m", default=5e10)
+    """Tangential stiffness of both (Pa/m of reference area) (*assumption*). The augmented Lagrangian's default is
+    ten times as large."""
+
+    less_penetration: ClassVar[str] = "a larger eps_n of the contact reduces it"
 
     def __post_init__(self) -> None:
         """Refuse negative stiffnesses; without any there is no screen.
@@ -36,6 +45,10 @@ class Penalty(Formulation):
     def springs(self, skin: Skin) -> Springs:
         """Return springs without preload."""
         return Springs(0.0, 0.0, skin.constant(self.eps_n), skin.constant(self.eps_t))
+
+    def over_stiffer_screen(self) -> "Penalty":
+        """Return springs of twice the stiffness, normal and tangential."""
+        return replace(self, eps_n=2 * self.eps_n, eps_t=2 * self.eps_t)
 
     def stored(self, state: SurfaceState) -> Array:
         """Return the energy of the springs (J/m^2 of reference area)."""

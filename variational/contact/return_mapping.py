@@ -11,8 +11,6 @@ its traction, the place itself. A point without contact carries its anchor along
 unsymmetric.
 """
 
-import ufl
-
 
 def traction(u_x, anchor, limit, gamma_t, guess=0.0, lambda_t=0.0):
     """Return the tangential traction on the skin (Pa of reference area).
@@ -27,6 +25,8 @@ def traction(u_x, anchor, limit, gamma_t, guess=0.0, lambda_t=0.0):
             is on its cone too.
         lambda_t: traction at the anchor (Pa of reference area).
     """
+    import ufl
+
     trial = lambda_t - gamma_t * (u_x - anchor)
     slipping = ufl.conditional(ufl.gt(trial, 0.0), limit, -limit)
     return ufl.conditional(ufl.ge(abs(trial), (1 + guess) * limit), slipping, trial)

@@ -26,15 +26,15 @@ from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import ufl
-from ufl.algorithms.apply_algebra_lowering import apply_algebra_lowering
-from ufl.algorithms.apply_derivatives import apply_derivatives
-from ufl.classes import Variable
 
-from variational import kinematics
 from variational.coefficients import Law, said
+from variational.lazy import kinematics, ufl
 
 _NATURAL = 1e-8  # of the shear modulus: stress of the unloaded solid that is roundoff
+MODULUS = 1.0, 1e12, "Pa"
+"""Range of a modulus: slime to diamond."""
+POISSON = -0.9, 0.4999
+"""Range of Poisson's ratio: stability needs more than -1; above 0.4999 roundoff of the volume decides."""
 _SAME = 1e-6  # relative: a shear modulus that was written with seven digits is the energy's
 
 
@@ -89,7 +89,7 @@ class Material(Law):
 
     def distortion_zz(self, F):
         """Return the Cauchy stress normal to the plane (Pa) without the volumetric part, of F, (2, 2)."""
-        stretch = Variable(ufl.as_ufl(1.0), kinematics.STRETCH)
+        stretch = ufl.classes.Variable(ufl.as_ufl(1.0), kinematics.STRETCH)
         return ufl.diff(self.energy(_in_space(F, stretch)), stretch) / ufl.det(F)
 
     def pressure(self, H):
@@ -184,6 +184,9 @@ def _unloaded(solid: Material) -> tuple[list[float], list[float]]:
 
 def _value(expression) -> float:
     """Return the number that an expression without coefficients is."""
+    from ufl.algorithms.apply_algebra_lowering import apply_algebra_lowering
+    from ufl.algorithms.apply_derivatives import apply_derivatives
+
     return float(apply_derivatives(apply_algebra_lowering(expression)))
 
 
@@ -199,3 +202,8 @@ def _hashable(solid: Material) -> bool:
 def _in_space(F, stretch):
     """Return the deformation gradient (3, 3) of one in the plane, (2, 2), and the stretch normal to it."""
     return ufl.as_matrix([[F[0, 0], F[0, 1], 0], [F[1, 0], F[1, 1], 0], [0, 0, stretch]])
+
+
+def bulk_modulus(shear_modulus, poisson):
+    """Return K = 2/D (Pa) of Eq. 2 for an initial shear modulus (Pa) and Poisson's ratio."""
+    return 2 * shear_modulus * (1 + poisson) / (3 * (1 - 2 * poisson))

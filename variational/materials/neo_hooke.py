@@ -11,20 +11,19 @@ deformation, :math:`\bar F = J^{-1/3} F` (Flory 1961, doi 10.1039/TF9615700829).
 from dataclasses import dataclass
 from functools import cached_property
 
-import ufl
-
-from variational.materials.material import Material
-from variational.materials.ogden import bulk_modulus
+from variational.coefficients import parameter
+from variational.lazy import ufl
+from variational.materials.material import MODULUS, POISSON, Material, bulk_modulus
 
 
 @dataclass(frozen=True)
 class NeoHooke(Material):
     """Neo-Hookean solid."""
 
-    shear_modulus: float
+    shear_modulus: float = parameter(*MODULUS)
     """Initial shear modulus G (Pa)."""
-    poisson: float = 0.48
-    """Poisson's ratio of small strains, below 1/2."""
+    poisson: float = parameter(*POISSON, default=0.48)
+    """Poisson's ratio of small strains."""
 
     coefficients = "shear_modulus", "bulk"
 

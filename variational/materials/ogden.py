@@ -16,21 +16,15 @@ the sum of powers is :math:`\lambda_1^a + \lambda_2^a = 2 J^{a/2} \cosh(a \eta)`
 series is used below ``SERIES_BELOW`` and the closed form above.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 
-import ufl
-
-from variational import kinematics
-from variational.materials.material import Material
+from variational.coefficients import OF_SCENE, parameter
+from variational.lazy import kinematics, ufl
+from variational.materials.material import MODULUS, POISSON, Material, bulk_modulus
 
 SERIES_BELOW = 0.01
 SERIES_TERMS = 9  # leaves 3e-14 in the tangent at a = 14.53, y = 0.01; seven would leave 2e-8
-
-
-def bulk_modulus(shear_modulus, poisson):
-    """Return K = 2/D (Pa) of Eq. 2 for an initial shear modulus (Pa) and Poisson's ratio."""
-    return 2 * shear_modulus * (1 + poisson) / (3 * (1 - 2 * poisson))
 
 
 def exponent(alpha, convention: str):
@@ -102,12 +96,18 @@ def isochoric_sigma_zz(F, shear_modulus, a):
 
 @dataclass(frozen=True)
 class Ogden(Material):
-    """Ogden solid: initial shear modulus (Pa), exponent, Poisson's ratio, sign convention of the exponent."""
+    """Ogden solid (Eqs. 1 and 2)."""
 
-    shear_modulus: float
-    alpha: float
-    poisson: float
-    convention: str = "printed"
+    shear_modulus: float = parameter(*MODULUS)
+    """Initial shear modulus G_0 (Pa). Range: slime to diamond."""
+    alpha: float = parameter(1e-2, 50.0, sides=2)
+    """Exponent of the stretches, of either sign. Range: at 50 a stretch of 2 raises the stress by 1e15; zero, the
+    logarithmic limit, is not supported."""
+    poisson: float = parameter(*POISSON, default=0.48)
+    """Poisson's ratio of small strains. Range: stability needs more than -1; above 0.4999 roundoff of the volume
+    decides, and such stiff volumes need the element P2-P1."""
+    convention: str = field(default="printed", metadata=OF_SCENE)
+    """Sign of the exponent: ``"printed"`` or ``"abaqus"``, see :func:`exponent`."""
 
     coefficients = "shear_modulus", "bulk", "a"
 
@@ -120,6 +120,11 @@ class Ogden(Material):
     def a(self) -> float:
         """Power of the stretches."""
         return float(exponent(self.alpha, self.convention))
+
+    @property
+    def plane_modulus(self) -> float:
+        """Plane strain modulus 2 G / (1 - nu) (Pa), unloaded."""
+        return 2 * self.shear_modulus / (1 - self.poisson)
 
     def distortion(self, H):
         """Return :func:`isochoric_energy` of a displacement gradient."""

@@ -11,9 +11,9 @@ of F^T F and I would lose six digits, and nodal forces of 1e-11 N/m with them.
 from dataclasses import dataclass
 from functools import cached_property
 
-import ufl
-
-from variational.materials.material import Material
+from variational.coefficients import parameter
+from variational.lazy import ufl
+from variational.materials.material import MODULUS, POISSON, Material
 
 
 def energy(H, lame, shear_modulus):
@@ -34,10 +34,12 @@ def sigma_zz(F, lame):
 
 @dataclass(frozen=True)
 class SaintVenant(Material):
-    """Saint Venant-Kirchhoff solid: Young's modulus (Pa) and Poisson's ratio."""
+    """Saint Venant-Kirchhoff solid: linear elastic at finite rotation (*assumption*; the paper: linear elastic)."""
 
-    young: float
-    poisson: float
+    young: float = parameter(*MODULUS)
+    """Young's modulus (Pa)."""
+    poisson: float = parameter(*POISSON, default=0.3)
+    """Poisson's ratio."""
 
     coefficients = "lame", "shear_modulus"
 

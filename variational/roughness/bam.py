@@ -10,13 +10,14 @@ The equivalent air gap :math:`d_{eq}(\bar u)` follows from equating attractions 
 contact pressure p_c it is closed form, single valued and free of the voltage.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.optimize import brentq, minimize_scalar
 from scipy.special import erfc, log_ndtr
 
+from variational.coefficients import OF_SCENE, parameter
 from variational.roughness.closure import AirGap, Closure
 
 Array = NDArray[np.float64]
@@ -33,19 +34,21 @@ voltage would be that of a stress of zero, which tails of the repulsion reach at
 class BearingArea(Closure):
     """A self-affine Gaussian roughness on stratum corneum (Table 3); SI units."""
 
-    h_0: float
+    h_0: float = field(metadata=OF_SCENE)
     """Effective insulator thickness (m), the range of the attraction."""
-    h_rms: float = 3.1e-6
-    wavelength: float = 100e-6
-    """Largest wavelength lambda_0 (m); q_0 = 2 pi / lambda_0."""
-    young: float = 1e6
+    h_rms: float = parameter(1e-9, 1e-3, "m", default=3.1e-6)
+    """Root mean square height of the roughness (m)."""
+    wavelength: float = parameter(1e-8, 1e-2, "m", default=100e-6)
+    """Largest wavelength lambda_0 of the roughness (m); q_0 = 2 pi / lambda_0."""
+    young: float = parameter(1.0, 1e12, "Pa", default=1e6)
     """Elastic modulus of the stratum corneum on the microscale (Pa)."""
-    gamma: float = 0.5
-    beta: float = 1.0
-    """Prefactor of the repulsion: 1 in Eq. 9; Eq. 15 takes 3/4."""
-    p_floor: float = 1e3
-    """Pressure (Pa) below which d_eq is held. *Assumption*: it keeps a ridge that is let go from
-    following d_eq to infinity."""
+    gamma: float = parameter(1e-2, 10.0, default=0.5)
+    """Decay length of the repulsion, relative to h_rms; Persson's theory gives 0.4 to 0.5."""
+    beta: float = parameter(1e-2, 100.0, default=1.0)
+    """Prefactor of the repulsion: 1 in Eq. 9, 3/4 in Eq. 15. *Assumption*: Eq. 9 is meant."""
+    p_floor: float = parameter(1e-3, 1e9, "Pa", default=1e3)
+    """Mean contact pressure (Pa) below which the air gap is held constant (*assumption*): a ridge that is let go does
+    not follow d_eq to infinity. It must be below the pressure at zero separation."""
 
     @property
     def full_pressure(self) -> float:

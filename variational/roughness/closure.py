@@ -10,8 +10,8 @@ Your own closure is one class, here a gap that no pressure changes::
             return AirGap(self.gap + 0 * np.asarray(p_c, dtype=float))
 """
 
-from abc import abstractmethod
-from typing import NamedTuple, Protocol
+from abc import ABC, abstractmethod
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -29,7 +29,7 @@ class AirGap(NamedTuple):
     """d d_eq / d p_c (m/Pa), likewise; None where it is not known. No solver reads it."""
 
 
-class Closure(Protocol):
+class Closure(ABC):
     """A microscale model: mean contact pressure in, equivalent air gap out."""
 
     @abstractmethod

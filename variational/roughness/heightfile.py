@@ -1,10 +1,18 @@
-"""Height maps from files: matrices by NumPy, text in any layout, instruments' formats by SurfaceTopography.
+"""Height maps from files: NumPy's, a plain matrix of numbers, and all that SurfaceTopography reads, in its own units.
 
 SurfaceTopography (Röttger et al. 2022, doi:10.1088/2051-672X/ac860a; MIT licence) reads the formats of Keyence,
-Zygo, Bruker and others: ``pip install fingerpad[topography]``.
+Zygo, Bruker and others, and text with a header: ``pip install fingerpad[topography]``.
+
+A plain matrix is a text of four or more columns of numbers and nothing else, separated by commas, semicolons, tabs or
+spaces, with decimal points; a pixel is missing where the place is empty or holds ``nan``. It has no unit and no size,
+so that both must be given, as for NumPy's files. Files that are ambiguous are refused: those in which a reader finds no
+unit though they have a header, those that contradict what is given, and those with the numbers of rows or columns among
+the heights.
 """
 
+import codecs
 import io
+import re
 from contextlib import redirect_stderr
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -13,18 +21,19 @@ import numpy as np
 from numpy.typing import NDArray
 
 from variational import files
-from variational.roughness import heighttext, unfilled
-from variational.roughness.heightheader import UNITS
-from variational.roughness.missing import filled
+from variational.roughness.missing import filled, mark
 from variational.roughness.topography import HeightMap
 
+Array = NDArray[np.float64]
+UNITS = {"m": 1.0, "cm": 1e-2, "mm": 1e-3, "um": 1e-6, "µm": 1e-6, "μm": 1e-6, "nm": 1e-9, "pm": 1e-12}
+"""Units of length in m."""
 _HIGHEST = 1.0  # m, of what can be roughness
 _WIDEST = 0.1  # m, of a map of skin: five fingertips
-_TEXT = (".txt", ".csv", ".tsv", ".dat", ".asc", ".xyz", ".prn")
-
-
-class NoUnit(ValueError):  # noqa: N818
-    """A file of numbers that has no unit of heights, where none is given."""
+_SAME = 0.01  # relative difference of lengths that are the same
+_POINTS = 3  # columns of a text of points x, y, z
+# What separates numbers in SurfaceTopography's formats of text, whose readers skip lines that they do not understand.
+_TEXTS = {"asc": r"\s+", "xyz": r"[\s,;]+"}
+_NO_NUMBERS = {"bad", "infinite"}  # words that these readers take for missing pixels
 
 
 class Found(NamedTuple):
@@ -35,223 +44,270 @@ class Found(NamedTuple):
     missing: int
     """Number of pixels that were missing."""
     layout: str
-    """How the file is laid out, in words."""
+    """Format and pixels, in words."""
 
 
 class _Read(NamedTuple):
     """Content of a file as it is."""
 
-    heights: NDArray[np.float64]
-    """Shape (nx, ny), NaN where a pixel is missing."""
-    size: tuple[float, float] | None
-    """Lengths along x and y; None if the file has none."""
-    unit: str | None
-    """Of all of these, of :data:`UNITS`; None if the file has none."""
+    heights: Array
+    """Shape (nx, ny), NaN where a pixel is missing; in m if the file has a unit."""
     layout: str
-    units: dict[str, str]
-    """Units of x, y and z, of :data:`UNITS`, where the header of a text gives them."""
+    has_unit: bool = False
+    size: tuple[float, float] | None = None
+    """Lengths (m) along x and y; None if the file has none, or no unit."""
 
 
 def scan(
-    path: str | Path,
-    size: tuple[float, float] | None = None,
+    file: str | Path,
     unit: str | None = None,
-    size_unit: str | None = None,
-    missing: str | None = None,
+    size: tuple[float, float] | None = None,
     pixel: tuple[float, float] | None = None,
+    missing: str | None = None,
 ) -> Found:
     """Return the height map of a file, and what was found in it.
 
     Args:
-        path: ``.npy`` or text (``.txt``, ``.csv``, ``.tsv``, ``.dat``, ``.asc``, ``.xyz``, ``.prn``, see
-            :mod:`variational.roughness.heighttext`) with a matrix of heights, of which each line has one x, or with
-            points x, y, z; any other name is left to SurfaceTopography, which mostly finds lengths and units too.
-        size: lengths along x, from the first line of a matrix to its last, and y, along a line. A matrix needs them,
-            or those of a pixel; most other files have their own.
-        unit: of heights, a key of :data:`variational.roughness.heightheader.UNITS`; if None that of the file.
-        size_unit: of lengths along x and y; if None that of a header, or of the heights.
-        missing: how a text marks a missing pixel, beside the usual ways; in ``.npy`` a number. Where it is given, a
-            value far from all others is taken as measured.
-        pixel: lengths of a pixel along x and y, in place of ``size``.
+        file: path of the file.
+        unit: of the heights, a key of :data:`UNITS`, for a file that has no unit of its own.
+        size: lengths (m) along x, from the first line of a plain matrix to its last, and y, along a line; for a file
+            that has no size of its own.
+        pixel: lengths (m) of a pixel along x and y, in place of ``size``.
+        missing: mark of missing pixels besides empty places and ``nan``; a number, in a plain matrix also a word. Where
+            a mark is given, ``nan`` for example, a value far from all others is taken as measured.
 
     Raises:
-        NoUnit: heights without a unit, a ValueError.
-        ValueError: the file is no height map; ``size``, ``unit`` or ``missing`` is missing or one too many; a value
-            seems to mark missing pixels; the lengths along x and y seem to be exchanged; a unit is not known, or is
-            another one than in the header.
+        ValueError: the file is no height map, is ambiguous, or has what is given too. Keys to give or to change are in
+            quotation marks in the message: 'unit', 'size', 'pixel', 'missing'.
         ImportError: SurfaceTopography is needed and not installed.
         OSError: the file cannot be opened.
     """
-    path = Path(path)
+    path = Path(file)
     found = _read(path, missing)
-    if not found.heights.size:
-        raise ValueError(f"{path} holds no heights")
-    if missing is None and is_plain(path):
-        _refuse_unfilled(path, found.heights)
-    if found.unit is not None and (unit is not None or size_unit is not None):
-        raise ValueError(f"{path} has its own units; give none")
-    if found.unit is None and unit is None and not is_plain(path):
-        raise ValueError(f"{path} has no unit of its own; give that of the heights")
-    own_unit = found.unit or unit or found.units.get("z")
-    if own_unit is None:
-        raise NoUnit(f"{path} holds numbers without a unit; give that of the heights")
-    if found.size is not None and (size is not None or pixel is not None):
-        raise ValueError(f"{path} has its own size; give none")
-    if found.size is None and size is None and pixel is None:
-        raise ValueError(f"{path} holds heights alone; give the lengths along x and y too")
-    if pixel is not None and size is not None:
-        raise ValueError(f"{path}: size and pixel are given; give one of the two")
-    shape = found.heights.shape
-    if size is not None and len(shape) == 2:
-        _refuse_exchanged(path, shape, size)
-    if pixel is not None and len(shape) == 2:
-        size = (pixel[0] * shape[0], pixel[1] * shape[1])
-    for axis, own in found.units.items():
-        name, given = ("unit", unit) if axis == "z" else ("size_unit", size_unit)
-        if given is not None and _factor(given) != _factor(own):
-            raise ValueError(f"{path} has {axis} in {own} by its header, and {name} is {given}; give the header's unit")
-    heights = found.heights * _factor(own_unit)
-    lengths, general = found.size or size or (0.0, 0.0), found.unit or size_unit or own_unit
-    x, y = (length * _factor(found.units.get(axis, general)) for axis, length in zip("xy", lengths, strict=True))
-    return _named(path, heights, (x, y), found.layout)
+    heights, (nx, ny) = found.heights, found.heights.shape
+    _refuse_numbering(path, heights)
+    if missing is None:
+        _refuse_mark(path, heights)
+    if found.has_unit and unit is not None:
+        raise ValueError(f"{path} has a unit of its own; give no 'unit'")
+    if not found.has_unit and unit is None:
+        raise ValueError(f"{path} holds numbers without a unit; give 'unit', such as um")
+    if [found.size, size, pixel].count(None) != 2:
+        what = "has a size of its own; give none" if found.size else "has no size; give 'size' or 'pixel', one of them"
+        raise ValueError(f"{path} {what}")
+    if size is not None and not _square(size, (nx, ny)) and _square(size, (ny, nx)):
+        raise ValueError(
+            f"{path} has {nx} x {ny} pixels, which are not square where 'size' is {size[0]:g} m x {size[1]:g} m; "
+            "exchange the lengths, or give 'pixel'"
+        )
+    if pixel is not None:
+        size = pixel[0] * nx, pixel[1] * ny
+    x, y = found.size or size or (0.0, 0.0)
+    if max(x, y) > _WIDEST:
+        raise ValueError(f"{path} is {x:.3g} m x {y:.3g} m large, at most {_WIDEST:g} m is allowed; check the unit")
+    heights = heights * (UNITS[unit] if unit else 1.0)
+    known = heights[np.isfinite(heights)]
+    if known.size and (over := float(np.ptp(known))) > _HIGHEST:
+        raise ValueError(f"{path} has heights over {over:.3g} m, at most {_HIGHEST:g} m is allowed; check their unit")
+    try:
+        whole = HeightMap(filled(heights), (x, y))
+    except ValueError as error:
+        raise ValueError(f"{path}: {error}") from None
+    return Found(whole, heights.size - known.size, found.layout)
 
 
-def _refuse_unfilled(path: Path, heights: NDArray[np.float64]) -> None:
+def _square(size: tuple[float, float], shape: tuple[int, int]) -> bool:
+    return 0.98 < size[0] / shape[0] * shape[1] / size[1] < 1.02
+
+
+# -- values that are no heights ----------------------------------------------------------------------------
+def _refuse_numbering(path: Path, heights: Array) -> None:
+    """Refuse numbers or coordinates of rows or columns, as pandas and instruments write them beside the heights.
+
+    The first line or column is one of them where it has equal steps and most others do not. No measured heights are.
+
+    Raises:
+        ValueError: there seem to be such numbers.
+    """
+    for lines, name in ((heights[:, 1:], "line"), (heights[1:].T, "column")):
+        steps = np.diff(lines, axis=1)
+        even = (steps[:, 0] != 0) & (np.ptp(steps, axis=1) < _SAME * np.abs(steps[:, 0]))
+        if even[0] and even.mean() < 0.5:
+            raise ValueError(
+                f"{path} has values at equal steps in its first {name}, from {lines[0, 0]:g} to {lines[0, -1]:g}, "
+                "which number or place the others; save the heights alone, in pandas with header=False, index=False"
+            )
+
+
+def _refuse_mark(path: Path, heights: Array) -> None:
     """Refuse a value far from all other heights, of which the spectrum would make roughness.
 
     Raises:
         ValueError: there is one.
     """
-    value = unfilled.mark(heights)
+    value = mark(heights)
     if value is not None:
         count, text = int(np.count_nonzero(heights == value)), repr(value).removesuffix(".0")
         pixels = "1 pixel" if count == 1 else f"{count} pixels"
         raise ValueError(
             f"{path} has {text} at {pixels}, far from all other heights, as a mark of missing pixels; give "
-            f'missing="{text}", or missing="nan" if it was measured'
+            f"'missing'=\"{text}\", or 'missing'=\"nan\" if it was measured"
         )
 
 
-def _refuse_exchanged(path: Path, shape: tuple[int, ...], size: tuple[float, float]) -> None:
-    """Refuse lengths of the two sides that are exchanged, by which square pixels become long ones.
-
-    Raises:
-        ValueError: they seem to be.
-    """
-    (nx, ny), (x, y) = shape, size
-    if not 0.98 < x * ny / (y * nx) < 1.02 and 0.99 < x * nx / (y * ny) < 1.01:
-        raise ValueError(
-            f"{path} has {nx} lines of {ny} heights, and x, along which there are {nx}, is {x:g} long and y {y:g}, so "
-            "that the pixels are not square; exchange the two lengths, or give those of a pixel"
-        )
-
-
-def is_plain(path: Path) -> bool:
-    """Return whether a file holds plain numbers, by its name: text or NumPy's, which have no units."""
-    return path.suffix.lower() in (".npy", *_TEXT)
-
-
-def _factor(unit: str) -> float:
-    if unit not in UNITS:
-        raise ValueError(f"{unit[:20]!r} is no unit of length; it must be one of {', '.join(UNITS)}")
-    return UNITS[unit]
-
-
-def _named(path: Path, heights: NDArray[np.float64], size: tuple[float, float], layout: str) -> Found:
-    known = heights[np.isfinite(heights)]
-    over = float(np.ptp(known)) if known.size else 0.0
-    if over > _HIGHEST:
-        raise ValueError(f"{path} has heights over {over:.3g} m, at most {_HIGHEST:g} m is allowed; check their unit")
-    try:
-        missing = int(np.count_nonzero(~np.isfinite(heights)))
-        found = HeightMap(filled(heights) if heights.ndim == 2 else heights, size)
-    except ValueError as error:
-        raise ValueError(f"{path}: {error}") from None
-    if max(size) > _WIDEST:
-        wide = f"{size[0]:.3g} m x {size[1]:.3g} m"
-        raise ValueError(f"{path} is {wide} large, at most {_WIDEST:g} m is allowed; check the unit of its lengths")
-    return Found(found, missing, layout)
-
-
+# -- reading -----------------------------------------------------------------------------------------------
 def _read(path: Path, missing: str | None) -> _Read:
-    """Return what is in a file, missing pixels as NaN."""
-    if not is_plain(path):
-        if missing is not None:
-            raise ValueError(f"{path} has its own mark of missing pixels; give none")
-        return _instrument(path)
-    if path.suffix.lower() == ".npy":
-        return _array(path, missing)
-    text = _text(path, missing)
-    return _Read(text.heights, text.size, None, text.layout, text.units)
+    """Return what is in a file, a matrix of 3 x 3 pixels or more, missing ones as NaN."""
+    content = files.read(path)
+    text, why = _text(content), "it is no text"
+    matrix = _array(path, content) if path.suffix.lower() == ".npy" else None
+    if matrix is None and text is not None:
+        if not text.strip():
+            raise ValueError(f"{path} holds no heights")
+        matrix, why = _matrix(text, missing)
+    if matrix is not None:
+        found = _Read(matrix, f"matrix of {' x '.join(map(str, matrix.shape))} pixels")
+    else:
+        found = _foreign(path, content, text, why)
+    shape = found.heights.shape
+    if len(shape) != 2 or min(shape) < 3:
+        raise ValueError(f"{path}: heights have shape {shape}; a height map is a matrix of at least 3 x 3")
+    if missing is not None and _is_number(missing):
+        found.heights[found.heights == float(missing)] = np.nan
+    elif missing is not None and (matrix is None or text is None):
+        raise ValueError(f"'missing' is {missing[:30]!r}; {path} has numbers alone, so it must be one")
+    return found
 
 
-def _array(path: Path, missing: str | None) -> _Read:
-    content = io.BytesIO(files.read(path))
+def _text(content: bytes) -> str | None:
+    """Return a text, None of binary content."""
+    if content.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
+        return content.decode("utf-16", errors="replace")
+    if b"\0" in content:
+        return None
     try:
-        found = np.lib.format.read_array(content, allow_pickle=False)
+        return content.decode("utf-8-sig")
+    except UnicodeDecodeError:
+        return content.decode("latin-1")
+
+
+def _array(path: Path, content: bytes) -> Array:
+    try:
+        found = np.lib.format.read_array(io.BytesIO(content), allow_pickle=False)
     except Exception as error:  # a header that is no Python, an array that is larger than the memory
         raise ValueError(f"{path} is no matrix of numbers: {_words(error)}") from error
     if found.dtype.kind not in "iuf":
         raise ValueError(f"{path} is no matrix of numbers: its values are of type {found.dtype}, and heights are real")
-    heights = found.astype(float)
-    if missing is not None:
-        if not heighttext.is_number(missing) and missing.lower() != "nan":
-            raise ValueError(f"missing is {missing[:30]!r}; {path} has numbers alone, so it must be one")
-        heights[heights == float(missing)] = np.nan
-    return _Read(heights, None, None, f"matrix of {' x '.join(map(str, heights.shape))} pixels by NumPy", {})
+    return found.astype(float)
 
 
-def _text(path: Path, missing: str | None) -> heighttext.Text:
-    raw = files.read(path)
+def _matrix(text: str, missing: str | None) -> tuple[Array | None, str]:
+    """Return a plain matrix of numbers, or None and why it is none."""
+    lines = [(k, line.strip(" ")) for k, line in enumerate(text.splitlines(), start=1) if line.strip()]
+    separator = next((each for each in (";", "\t", ",") if each in lines[0][1]), None)
+    if separator is not None and all(line.endswith(separator) for _, line in lines):
+        lines = [(k, line[:-1]) for k, line in lines]
+    rows: list[list[float]] = []
+    for k, line in lines:
+        words = [word.strip(' \t"') for word in line.split(separator)]
+        if unknown := [word for word in words if word not in ("", missing) and not _is_number(word)]:
+            return None, f"line {k} has {unknown[0][:30]!r}"
+        rows.append([np.nan if word in ("", missing) else float(word) for word in words])
+        if len(words) != len(rows[0]):
+            return None, f"line {k} has {len(words)} numbers and the first one {len(rows[0])}"
+    if len(rows[0]) <= _POINTS:
+        return None, f"it has {len(rows[0])} columns"
+    return np.array(rows), ""
+
+
+def _is_number(text: str) -> bool:
+    """Return whether a text is a number, nan and infinity among them."""
     try:
-        text = raw.decode("utf-16" if raw[:2] in (b"\xff\xfe", b"\xfe\xff") else "utf-8-sig")
-    except UnicodeDecodeError:
-        text = raw.decode("latin-1")
-    try:
-        return heighttext.parse(text, missing)
-    except ValueError as error:
-        raise ValueError(f"{path} is {error}" if str(error).startswith("no ") else f"{path}: {error}") from None
+        float(text)
+    except ValueError:
+        return False
+    return True
 
 
-def _instrument(path: Path) -> _Read:
-    content = files.read(path)
+def _foreign(path: Path, content: bytes, text: str | None, why: str) -> _Read:
+    """Return what SurfaceTopography finds: the first map of heights.
+
+    Args:
+        path: of the file.
+        content: of the file.
+        text: of the file, None of a binary one.
+        why: it is no plain matrix.
+    """
     try:
         from SurfaceTopography import open_topography
         from SurfaceTopography.Exceptions import CannotDetectFileFormat, ReadFileError
     except ImportError:
         raise ImportError(
-            f"reading {path} needs SurfaceTopography; get it with: pip install fingerpad[topography], or in a clone "
-            "environment/wheels"
+            f"{path} is no plain matrix of numbers ({why}), and other files need SurfaceTopography; get it with: pip "
+            "install fingerpad[topography], or in a clone environment/wheels"
         ) from None
-    form = "a map"
+    form, content = "a map", content if text is None else text.encode()
     try:
         with files.alone(content, f"map{path.suffix}") as copy, redirect_stderr(io.StringIO()):  # what they warn of
             reader = open_topography(str(copy))
             form = reader.name()
-            if not reader.channels or reader.default_channel.dim != 2:
+            channel = next((each for each in reader.height_channels if each.dim == 2), None)
+            if channel is None:
                 raise ReadFileError("it holds no map of heights")
-            return _map(reader)
+            read = _channel(channel, form)
     except CannotDetectFileFormat:
-        raise ValueError(f"{path} is no height map of a format that SurfaceTopography reads") from None
+        raise ValueError(
+            f"{path} has no format that SurfaceTopography reads, and is no plain matrix of numbers with decimal points "
+            f"({why}); save the heights alone, without names and numbers of lines and columns"
+        ) from None
     except Exception as error:  # of a damaged file, or one of another kind, its readers raise anything
         words = _words(error) if isinstance(error, ReadFileError) else f"{type(error).__name__}: {_words(error)}"
         raise ValueError(
-            f"{path} cannot be read by SurfaceTopography as {form} ({words}); export the heights as text"
+            f"{path} cannot be read by SurfaceTopography as {form} ({words}); export the heights as a plain matrix"
         ) from error
+    if text is not None and reader.format() in _TEXTS:
+        _refuse_unread(path, text, _TEXTS[reader.format()], read.has_unit)
+    return read
 
 
-def _words(error: Exception) -> str:
-    """Return what an error of a library has to say, on one line."""
+def _channel(channel: Any, form: str) -> _Read:
+    """Return a channel of a reader of SurfaceTopography, whose format is called ``form``."""
+    has_size = channel.physical_sizes is not None
+    found = channel.topography(**({} if has_size else {"physical_sizes": (1.0, 1.0)}))
+    has_unit = found.unit is not None
+    if has_unit:
+        found = found.to_unit("m")
+    heights = np.ma.filled(found.heights().astype(float), np.nan)
+    layout = f"{form}, channel {_words(channel.name)}, {' x '.join(map(str, heights.shape))} pixels"
+    x, y = found.physical_sizes
+    return _Read(heights, layout, has_unit, (float(x), float(y)) if has_size and has_unit else None)
+
+
+def _words(error: object) -> str:
+    """Return what a library says, on one line."""
     return "".join(filter(str.isprintable, " ".join(str(error).split())))[:120]
 
 
-def _map(reader: Any) -> _Read:
-    """Return the default channel of a reader of SurfaceTopography."""
-    own = reader.default_channel.physical_sizes is not None
-    found = reader.topography(**({} if own else {"physical_sizes": (1.0, 1.0)}))
-    if found.unit is not None:
-        found = found.to_unit("m")
-    heights = np.ma.filled(found.heights().astype(float), np.nan)
-    size = (float(found.physical_sizes[0]), float(found.physical_sizes[1])) if own else None
-    layout = f"map of {' x '.join(map(str, heights.shape))} pixels"
-    return _Read(heights, size, None if found.unit is None else "m", layout, {})
+def _refuse_unread(path: Path, text: str, separator: str, has_unit: bool) -> None:
+    """Refuse a text of which SurfaceTopography has skipped lines: with words, or with units that it does not know.
+
+    Args:
+        path: of the file.
+        text: of the file.
+        separator: of its numbers, a regular expression.
+        has_unit: whether a unit was found in it.
+
+    Raises:
+        ValueError: the line, and what to do.
+    """
+    begun = False
+    for k, line in enumerate(text.splitlines(), start=1):
+        words = re.split(separator, line.strip())
+        numbers = all(_is_number(word) or word.lower() in _NO_NUMBERS for word in words)
+        if not line.strip() or (begun and line.startswith("#")):
+            continue
+        if not numbers and (begun or not has_unit):
+            remedy = "export one map of numbers alone" if begun else "delete the lines above the numbers"
+            place = "among its numbers" if begun else "and no unit of heights that SurfaceTopography knows"
+            raise ValueError(f"{path} has {line.strip()[:40]!r} in line {k} {place}; {remedy}")
+        begun = begun or numbers

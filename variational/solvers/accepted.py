@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from variational.contact.formulation import History
+from variational.history import Values
 from variational.solvers.coupling import Coupling
 from variational.solvers.equations import Control
 
@@ -20,7 +20,8 @@ class AcceptedState:
     """This rank's unknowns."""
     bone: Array
     """The bone's translation (m), shape (2,)."""
-    history: History
+    history: Values
+    """Accepted values of the history's fields."""
     d_eq: Array
     """Equivalent air gaps (m), shape (ridges,)."""
     control: Control
@@ -40,7 +41,7 @@ class AcceptedState:
         return cls(
             solver.x.array_r.copy(),
             solver.bone,
-            problem.history,
+            problem.history.accepted,
             coupling.d_eq.copy(),
             replace(solver.control),
             float(problem.voltage.value),
@@ -53,7 +54,7 @@ class AcceptedState:
         solver.x.array_w[:] = self.x
         solver.equations.to_fields(solver.x)
         coupling.set_air_gaps(self.d_eq.copy())
-        problem.set_history(self.history)
+        problem.history.accept(self.history)
         solver.control = replace(self.control)
         problem.voltage.value = self.voltage
         solver.reaction = self.reaction.copy()

@@ -4,8 +4,8 @@ A step that fails is halved. Where the loop over the scales cycles there may be 
 :mod:`~variational.solvers.coupling`), which halved steps approach and never cross; so a longer step over that range is
 tried first.
 
-History (friction anchors, contact multipliers, air gaps, displacement) is accepted in :meth:`Continuation.accept`
-and nowhere else; a rejected attempt restores the last accepted state.
+The fields of :mod:`variational.history` are accepted in :meth:`Continuation.accept` and nowhere else; a rejected
+attempt restores the last accepted state.
 """
 
 from collections.abc import Callable
@@ -16,43 +16,17 @@ from mpi4py import MPI
 from numpy.typing import NDArray
 from petsc4py import PETSc
 
-from variational.contact.formulation import History
 from variational.solvers.accepted import AcceptedState
 from variational.solvers.coupling import Coupling
 from variational.solvers.equations import Control
 from variational.solvers.failure import NotConverged
 from variational.solvers.homotopy import relax
 from variational.solvers.onset import return_to_onset
+from variational.solvers.target import Progress, Target, Way
 
 Array = NDArray[np.float64]
 
 
-@dataclass(frozen=True)
-class Target:
-    """A load to reach from the present one; what is None stays as it is.
-
-    At most one of ``f_ext`` (N/m) and ``bone_height`` (m, change from the unloaded position, negative when pressed)
-    may be given: it also says which of the two is prescribed from then on.
-    """
-
-    name: str
-    f_ext: float | None = None
-    bone_height: float | None = None
-    voltage: float | None = None
-    bone_x: float | None = None
-    until_full_slip: bool = False
-    """Stop as soon as every point in contact slips one way."""
-    voltage_at: Callable[[float], float] | None = None
-    """Voltage (V) at a part of the way before its end; by default its square goes evenly."""
-    touches: bool = False
-    """Lower the bone from the air to the screen, before a load by a force."""
-    continues: bool = False
-    """A short piece of a longer way: the bone moves on as before, and the voltage changes as little as the piece is
-    short. It is reached in one step where that is possible."""
-
-
-# How far one step may go: parts of sqrt(f_ext) and of U^2, and metres of the bone.
-_FORCE, _VOLTAGE, _SINK, _SLIDE = 0.134, 0.5, 40e-6, 120e-6
 _SMALLEST = 1e-3  # step below which a load is given up, over the largest
 _MANY = 0.5  # part of the contact points that slip, above which they are expected to slip on when the bone moves
 _STEP_OVER = 1.5  # step tried where the loop over the scales cycles, over the one that led there
@@ -90,46 +64,6 @@ class Attempt:
         return self.pseudo_transient > 0 or bool(self.jumped) or self.stepped_over_fold
 
 
-class _Way:
-    """The loads between an accepted state and a target."""
-
-    def __init__(self, start: AcceptedState, target: Target) -> None:
-        self.start, self.target = start, target
-        self.length = 0.0 if target.bone_x is None else target.bone_x - start.control.x
-
-    def at(self, part: float) -> tuple[Control, float]:
-        """Return control and voltage where a part of the target is reached."""
-        a, target = self.start, self.target
-        u1 = a.voltage if target.voltage is None else target.voltage
-        c = Control(a.control.x + part * self.length, a.control.y, a.control.force)
-        if target.bone_height is not None:
-            c.y = a.height + part * (target.bone_height - a.height)
-        elif target.f_ext is not None:
-            # equal steps of the root: nearly equal steps of the indentation
-            f0 = max(a.control.force, 0.0)
-            c.y, c.force = None, (np.sqrt(f0) + part * (np.sqrt(target.f_ext) - np.sqrt(f0))) ** 2
-        if target.voltage_at is not None and part < 1:
-            return c, target.voltage_at(part)
-        # equal steps of U^2, which the attraction follows; a sign that changes does so at once, which changes no force
-        amount = np.sqrt(a.voltage**2 + part * (u1**2 - a.voltage**2))
-        return c, float(np.copysign(amount, u1 or a.voltage)) + 0.0
-
-    def largest_step(self, scale: float) -> float:
-        """Return the largest part of the target that one step may cover; ``scale`` multiplies the usual one."""
-        a, target = self.start, self.target
-        steps: list[tuple[float, float]] = []  # how far one step may go, and how far the target is
-        if target.f_ext is not None:
-            roots = np.sqrt(target.f_ext), np.sqrt(max(a.control.force, 0.0))
-            steps.append((_FORCE * max(roots), abs(roots[0] - roots[1])))
-        if target.voltage is not None and not target.continues:
-            squares = target.voltage**2, a.voltage**2
-            steps.append((_VOLTAGE * max(squares), abs(squares[0] - squares[1])))
-        if target.bone_height is not None:
-            steps.append((_SINK, abs(target.bone_height - a.height)))
-        steps.append((_SLIDE, abs(self.length)))
-        return float(min([1.0, *(scale * most / whole for most, whole in steps if whole > 0)]))
-
-
 class Continuation:
     """Leads a coupled problem along targets.
 
@@ -138,6 +72,10 @@ class Continuation:
         solve: solves at a load, see :meth:`variational.solvers.coupling.Coupling.solve`.
         surface_state: the skin in the accepted state, as solved, before its friction history moved on.
         slip: part of its contact points at the friction cone, and whether all slip one way.
+        time: of the accepted state (s), the durations of all targets so far.
+        progress: on the way to the present target.
+        touching: height of the bone before a first touch is looked for, and how far it is lowered (m); None elsewhere.
+        resumes: the next target is one that another process was on the way to, as ``progress`` says.
     """
 
     def __init__(
@@ -160,9 +98,12 @@ class Continuation:
         self.solve: Callable[[bool], None] = lambda pseudo_transient: coupling.solve(pseudo_transient)
         self.problem, self.observer = self.solver.problem, coupling.observer
         self.on_accept, self.touch_depth, self.step_scale = on_accept, touch_depth, step_scale
-        self.steps, self.slip = 0, (0.0, False)
+        self.steps, self.slip, self.time = 0, (0.0, False), 0.0
         self.surface_state = self.observer.state()
         self._now = AcceptedState.of(self.coupling)
+        self.progress = self._begun()
+        self.touching: tuple[float, float] | None = None
+        self.resumes = False
 
     # -- accepted states -------------------------------------------------------------------------------
     def _restore(self) -> None:
@@ -172,8 +113,8 @@ class Continuation:
         """Accept the present state, an equilibrium; collective."""
         self.surface_state = self.observer.state()
         self.slip = self.observer.slip(self.surface_state)
-        s = self.surface_state
-        self.problem.set_history(History(s.anchor, s.p_n, s.x))
+        history = self.problem.history
+        history.accept(history.updated(self.surface_state.history))
         self._now = AcceptedState.of(self.coupling)
         self.steps += 1
         PETSc.garbage_cleanup(self.problem.mesh.comm)  # objects that several ranks have dropped wait for this
@@ -197,12 +138,17 @@ class Continuation:
             Whether the screen bears it; False where ``on_accept`` stopped the path.
         """
         start, depth = self._now.control.y or 0.0, 0.0
-        while not self._bears():
-            # To a depth at which the screen bears it whatever the roundoff, also where it comes from above.
-            clearance = self._clearance()
-            depth += self.touch_depth + (clearance if clearance > self.touch_depth / 2 else 0.0)
+        if self.resumes and self.touching is not None:
+            start, depth = self.touching
+        while self.resumes or not self._bears():
+            if not self.resumes:
+                # To a depth at which the screen bears it whatever the roundoff, also where it comes from above.
+                clearance = self._clearance()
+                depth += self.touch_depth + (clearance if clearance > self.touch_depth / 2 else 0.0)
+            self.touching = start, depth
             if not self._reach(Target("touch", bone_height=start - depth, touches=True)):
                 return False
+        self.touching = None
         self.solver.control.y = None
         self.solver.control.force = float(self.solver.reaction[1])
         self._now = AcceptedState.of(self.coupling)
@@ -220,50 +166,66 @@ class Continuation:
 
     def _reach(self, target: Target) -> bool:
         """Reach a target; return False where ``on_accept`` stopped the path before."""
-        way = _Way(self._now, target)
+        p = self.progress = self.begun()
+        resumed, self.resumes = self.resumes, False
+        way = Way(p, target)
         largest = way.largest_step(self.step_scale)
         # A slide begins with a shorter step: under a light load it may be over within one.
         slides = way.length != 0 and not target.continues
-        part, step, uncut, cut, jumps = 0.0, largest / 2 if slides else largest, 0, 0, False
-        first, most = self.steps, _FEW_STEPS + int(np.ceil(_MANY_STEPS / largest))
-        while part < 1:
-            if self.steps - first >= most:
+        if not resumed:
+            p.step = largest / 2 if slides else largest
+        most = _FEW_STEPS + int(np.ceil(_MANY_STEPS / largest))
+        while p.part < 1:
+            if p.part > 0 and target.until_full_slip and self.slip[1]:
+                return True
+            if self.steps - p.steps >= most:
                 slow = NotConverged(f"TOO_SMALL_STEPS, {most} of them, do not get to the end of the load", False)
-                raise StepFailed(self._describe(target, part, slow)) from slow
-            step = min(step, 1 - part)
-            if 1 - part - step < 0.05 * step:
-                step = 1 - part
+                raise StepFailed(self._describe(target, p.part, slow)) from slow
+            step = min(p.step, 1 - p.part)
+            if 1 - p.part - step < 0.05 * step:
+                step = 1 - p.part
             attempt, within = Attempt(), step
             while True:
                 # One or two failures may be a step too large. More in a row, or one in each of several steps, are a
                 # jump, which no step is small enough for. One jump comes after the other: of facets, of ridges.
-                pseudo_transient = jumps or len(attempt.cutbacks) > 1 or cut >= _CUT
+                pseudo_transient = p.jumps or len(attempt.cutbacks) > 1 or p.cut >= _CUT
                 try:
-                    self._try(way.at(part + step), attempt, pseudo_transient)
+                    self._try(way.at(p.part + step), attempt, pseudo_transient, step * target.duration)
                     break
                 except NotConverged as failure:
                     self._restore()
-                    attempt.cutbacks.append(f"{failure} at part {part + step:.4g}")
-                    over = min(_STEP_OVER * within, 1 - part)
+                    attempt.cutbacks.append(f"{failure} at part {p.part + step:.4g}")
+                    over = min(_STEP_OVER * within, 1 - p.part)
                     attempt.stepped_over_fold = failure.cycling and not attempt.stepped_over_fold and over > within
                     within = within if attempt.stepped_over_fold else within / 2
                     step = over if attempt.stepped_over_fold else within
                     if failure.irrecoverable or pseudo_transient and within < _SMALLEST * largest:
-                        raise StepFailed(self._describe(target, part, failure)) from failure
+                        raise StepFailed(self._describe(target, p.part, failure)) from failure
             if target.until_full_slip and slides:
                 step -= return_to_onset(self.solver, self.observer, way.length) / abs(way.length)
             self.accept()
-            part += step
-            if self.on_accept(target, part, attempt) is True:
+            p.part += step
+            self.time = p.time + p.part * target.duration
+            p.uncut, p.cut = (0, p.cut + 1) if attempt.cutbacks else (p.uncut + 1, 0)
+            p.jumps |= attempt.pseudo_transient > 0
+            p.step = within
+            if attempt.factorisations <= _FEW or p.uncut >= _UNCUT:
+                p.step, p.uncut = min(2 * p.step, largest), 0
+            if self.on_accept(target, p.part, attempt) is True:
                 return False
-            if target.until_full_slip and self.slip[1]:
-                return True
-            uncut, cut = (0, cut + 1) if attempt.cutbacks else (uncut + 1, 0)
-            jumps |= attempt.pseudo_transient > 0
-            step = within
-            if attempt.factorisations <= _FEW or uncut >= _UNCUT:
-                step, uncut = min(2 * step, largest), 0
         return True
+
+    def resume(self) -> None:
+        """Take the present fields and attributes, those of another process, as the accepted state; collective."""
+        self._now, self.resumes = AcceptedState.of(self.coupling), True
+
+    def begun(self) -> Progress:
+        """Return the progress with which the next target begins: that of another process, or none from here."""
+        return self.progress if self.resumes else self._begun()
+
+    def _begun(self) -> Progress:
+        now = self._now
+        return Progress(replace(now.control), now.voltage, now.height, now.reaction.copy(), self.time, self.steps)
 
     def _describe(self, target: Target, part: float, failure: NotConverged) -> str:
         c = self._now.control
@@ -332,8 +294,16 @@ class Continuation:
             self.problem.guess.value, self.coupling.gain = guess, gain
 
     # -- one step --------------------------------------------------------------------------------------
-    def _try(self, load: tuple[Control, float], attempt: Attempt, pseudo_transient: bool, on_cone: bool = True) -> None:
+    def _try(
+        self,
+        load: tuple[Control, float],
+        attempt: Attempt,
+        pseudo_transient: bool,
+        dt: float = 0.0,
+        on_cone: bool = True,
+    ) -> None:
         counts = self.solver.counts
+        self.problem.dt.value = dt
         newton, factorisations, shifted = counts.newton, counts.factorisations, counts.pseudo_transient
         moves = load[0].x != self._now.control.x
         self.solver.new_load(*load, slipping=moves and self.slip[0] > _MANY, on_cone=on_cone)

@@ -155,7 +155,7 @@ class Coupling:
         problem = self.solver.problem
         formulation = problem.interface.formulation
         charged = self.closure is not None and float(problem.voltage.value) != 0.0
-        contact_history = problem.history
+        contact_history = problem.history.accepted
         free = np.inf if self.closure is None else float(air_gaps(self.closure, np.zeros(1))[0])
         secants, numbers = Secants(self.d_eq, self.gain, free), self.observer.surface.ridge_numbers
         stop = _FIRST if charged else EXACT
@@ -181,7 +181,7 @@ class Coupling:
                 return
             if not contact:
                 contact_history = formulation.corrected(state, contact_history)
-                problem.correct_history(contact_history)
+                problem.history.impose(contact_history)
             if charged:
                 settled = secants.settled(_NEARLY)
                 self.set_air_gaps(secants.step())

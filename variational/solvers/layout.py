@@ -1,6 +1,6 @@
 """Unknowns of a deformable body glued to a rigid one that translates.
 
-All nodes on the rim of the rigid body share one node of two unknowns, its translation: in the local-to-global
+All nodes on the rim of the rigid body share one node, its translation: in the local-to-global
 map of the linear system the rim's nodes simply point to that node. Assembly then adds the rows and columns
 of the rim up by itself, in parallel too. The translation's rows of the residual are the rigid body's force
 balance; the matrix stays square, as sparse as before and, where the laws are, symmetric, and the line search
@@ -32,7 +32,7 @@ class RigidRimLayout:
 
     Attributes:
         rows: global row of each of the space's local unknowns, ghosts included.
-        rigid_rows: global rows (2,) of the rigid body's translation in x and y.
+        rigid_rows: global rows (dimension,) of the rigid body's translation.
         owns_rigid: whether this rank owns those rows.
         pressure_count: number of the pressure's unknowns on all ranks.
         displacement_rows: this rank's global rows of displacements, the rigid body's included.
@@ -45,11 +45,11 @@ class RigidRimLayout:
         """Number the unknowns.
 
         Args:
-            V: vector space of block size 2.
+            V: vector space, of the mesh's dimension.
             rim_facets: facets on the rim known to this rank.
             pressure: further unknowns, if any.
         """
-        comm, index_map = V.mesh.comm, V.dofmap.index_map
+        comm, index_map, size = V.mesh.comm, V.dofmap.index_map, V.dofmap.index_map_bs
         owned = index_map.size_local
         rim = fem.locate_dofs_topological(V, V.mesh.topology.dim - 1, rim_facets)
         is_rim = np.zeros(owned + index_map.num_ghosts, dtype=bool)
@@ -59,30 +59,31 @@ class RigidRimLayout:
         self.owns_rigid = comm.rank == comm.size - 1
         pressures = pressure.owned if pressure else 0
         self.pressure_count = comm.allreduce(pressures)
-        self._block_size = 1 if pressure else 2
-        self.local_size = pressures + 2 * (int(free.sum()) + int(self.owns_rigid))
+        self._size = size
+        self._block_size = 1 if pressure else size
+        self.local_size = pressures + size * (int(free.sum()) + int(self.owns_rigid))
         self.global_size = comm.allreduce(self.local_size)
         first = comm.scan(self.local_size) - self.local_size
-        rigid = self.global_size - 2
-        self.rigid_rows = np.array([rigid, rigid + 1], dtype=PETSc.IntType)
+        rigid = self.global_size - size
+        self.rigid_rows = np.arange(rigid, rigid + size, dtype=PETSc.IntType)
         self.displacement_rows = np.arange(first + pressures, first + self.local_size, dtype=PETSc.IntType)
         numbers = dolfinx.la.vector(index_map, 1, np.int64)
-        numbers.array[:owned] = np.where(free, first + pressures + 2 * (np.cumsum(free) - 1), rigid)
+        numbers.array[:owned] = np.where(free, first + pressures + size * (np.cumsum(free) - 1), rigid)
         numbers.scatter_forward()
         nodes = numbers.array.astype(PETSc.IntType)
-        self.rows = rows = (nodes[:, None] + np.arange(2, dtype=PETSc.IntType)).ravel()
-        self._free = np.repeat(free, 2)
+        self.rows = rows = (nodes[:, None] + np.arange(size, dtype=PETSc.IntType)).ravel()
+        self._free = np.repeat(free, size)
         self.rim = np.flatnonzero(nodes == rigid)
         self._pressures = pressures
         self._scatter = self._scatter_from(rows)
         self._parts: list[PETSc.IS] = []
         if pressure is None:
-            self._map = PETSc.LGMap().create(nodes // 2, bsize=2, comm=comm)
+            self._map = PETSc.LGMap().create(nodes // size, bsize=size, comm=comm)
             return
         more = pressure.rows(first).astype(PETSc.IntType)
         self._map = PETSc.LGMap().create(np.concatenate([rows, more]), bsize=1, comm=comm)
         self._parts = [
-            PETSc.IS().createBlock(2, np.arange(len(nodes), dtype=PETSc.IntType), comm=PETSc.COMM_SELF),
+            PETSc.IS().createBlock(size, np.arange(len(nodes), dtype=PETSc.IntType), comm=PETSc.COMM_SELF),
             PETSc.IS().createStride(len(more), len(rows), 1, comm=PETSc.COMM_SELF),
         ]
         self._numbered = more >= 0
@@ -136,14 +137,14 @@ class RigidRimLayout:
         _reverse(values[self._numbered], *self._pressure_scatter, f)
 
     def from_nodes(self, nodal: Array, rigid: Array, x: PETSc.Vec) -> None:
-        """Write nodal values and the rigid body's translation (2,) into a vector of unknowns."""
+        """Write nodal values and the rigid body's translation into a vector of unknowns."""
         values = nodal[: len(self._free)][self._free]
         x.array_w[self._pressures :] = np.concatenate([values, rigid]) if self.owns_rigid else values
 
     def translate(self, x: PETSc.Vec, translation: Array) -> None:
-        """Add a translation (2,) to the displacements in a vector of unknowns, the rigid body's left out."""
+        """Add a translation to the displacements in a vector of unknowns, the rigid body's left out."""
         free = x.array_w[self._pressures : self._pressures + int(self._free.sum())]
-        free.reshape(-1, 2)[:] += translation
+        free.reshape(-1, self._size)[:] += translation
 
     def moved(self, x: PETSc.Vec, at: NDArray[np.int64], translation: Array) -> Array:
         """Return some of this rank's entries of a vector of unknowns as :meth:`translate` would leave them.
@@ -151,14 +152,14 @@ class RigidRimLayout:
         Args:
             x: vector of unknowns.
             at: places in this rank's part of it.
-            translation: of shape (2,).
+            translation: of the dimension's shape.
         """
         nodes = (at >= self._pressures) & (at < self._pressures + int(self._free.sum()))
-        return np.asarray(x.array_r[at] + np.where(nodes, translation[(at - self._pressures) % 2], 0.0))
+        return np.asarray(x.array_r[at] + np.where(nodes, translation[(at - self._pressures) % self._size], 0.0))
 
     def rigid_part(self, x: PETSc.Vec) -> Array:
-        """Return the rigid body's two entries of a vector of unknowns, on every rank."""
-        mine = x.array_r[-2:].copy() if self.owns_rigid else None
+        """Return the rigid body's entries of a vector of unknowns, on every rank."""
+        mine = x.array_r[-self._size :].copy() if self.owns_rigid else None
         return np.asarray(self.comm.bcast(mine, root=self.comm.size - 1))
 
 

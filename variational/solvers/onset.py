@@ -35,7 +35,7 @@ def return_to_onset(solver: Solver, observer: Observer, way: float) -> float:
     direction, state = float(np.sign(way)), observer.state()
     if not observer.slip(state)[1]:
         return 0.0
-    slip = direction * (state.anchor - solver.problem.imposed.anchor)
+    slip = direction * (state.anchor - solver.problem.history.imposed["anchor"])
     least = float(np.min(slip, where=state.p_n > 0, initial=np.inf))
     back = (1 - _LEFT) * max(solver.layout.comm.allreduce(least, op=MPI.MIN), 0.0)
     forces = solver.iteration.f

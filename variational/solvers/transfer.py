@@ -15,7 +15,8 @@ the ridge's chord, and not up.
 
 **History.** What friction keeps is the elastic slip :math:`s - u_x = t_t / \gamma_t` at Gauss points of the skin
 (:mod:`~variational.contact.return_mapping`). It is interpolated linearly along each ridge, over the place on the
-ridge's chord, so is the contact pressure, and :math:`s = u_x + (s - u_x)` is made anew with the new :math:`u_x`.
+ridge's chord, so is the contact pressure, and :math:`s = u_x + (s - u_x)` is made anew with the new :math:`u_x`. So are
+all fields of :mod:`variational.history` on the skin; those of the body are evaluated as the displacement is.
 
 **Full slip.** There the traction is the limit of friction, :math:`\mp t_{max}(p_n)`, wherever there is pressure. The
 state depends on the path only by where it is, since the screen looks the same everywhere: :math:`u + \delta e_x` is as
@@ -34,7 +35,7 @@ from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from variational import compat
-from variational.contact.formulation import History, SurfaceState
+from variational.contact.formulation import SurfaceState
 from variational.problem import Problem
 from variational.solvers.coupling import Coupling
 from variational.solvers.equations import Control
@@ -55,12 +56,10 @@ class SkinState:
     """Its direction, shape (2,)."""
     along: Array
     """Place on the chord (m)."""
-    elastic_slip: Array
-    """s - u_x (m)."""
-    pressure: Array
-    """Contact pressure (Pa of reference area)."""
     position: Array
     """Current place (m), by facet, shape (facets, points on each, 2)."""
+    history: dict[str, Array]
+    """Fields of history less what they follow (:class:`variational.history.SkinField`): of the anchor s - u_x (m)."""
 
 
 @dataclass(frozen=True)
@@ -73,6 +72,8 @@ class StateSnapshot:
     """Displacement at their nodes (m), shape (cells, nodes, 2)."""
     skin: dict[int, SkinState]
     """By the ridge's number."""
+    history: dict[str, Array]
+    """History of the body by field, shape (cells, nodes, components)."""
     d_eq: dict[int, float]
     """Equivalent air gap (m) by the ridge's number."""
     gain: dict[int, float]
@@ -95,13 +96,18 @@ def take_snapshot(coupling: Coupling, state: SurfaceState) -> StateSnapshot:
     cells = np.arange(mesh.topology.index_map(2).size_local)
     corners = mesh.geometry.x[compat.cell_geometry(mesh)[cells]][:, :, :2]
     u = problem.displacement()[problem.V.dofmap.list[cells]]
-    here = np.stack([*_reference(problem, state), state.anchor - _u_x(problem), state.p_n, state.x, state.y])
+    history = problem.history
+    followed = history.followed(state.history)
+    relative = {name: state.history[name] - base for name, base in followed.items()}
+    here = np.stack([*_reference(problem, state), state.x, state.y, *relative.values()])
     points, ridge = _all(mesh.comm, here, 1), _all(mesh.comm, surface.ridge, 0)
-    skin = {j: _ridge(points[:, ridge == k].reshape(6, -1), here.shape[2]) for k, j in enumerate(numbers)}
+    names, on_facet = list(relative), here.shape[2]
+    skin = {j: _ridge(points[:, ridge == k].reshape(len(here), -1), on_facet, names) for k, j in enumerate(numbers)}
     return StateSnapshot(
         _all(mesh.comm, corners, 0),
         _all(mesh.comm, u, 0),
         skin,
+        {field.name: _all(mesh.comm, field.by_cell(history.accepted[field.name]), 0) for field in history.body},
         {j: float(d) for j, d in zip(numbers, coupling.d_eq, strict=True)},
         {j: float(g) for j, g in zip(numbers, coupling.gain, strict=True)},
         solver.bone,
@@ -147,14 +153,22 @@ def restore(snapshot: StateSnapshot, coupling: Coupling, slide: float = 0.0) -> 
     coupling.gain = np.array([snapshot.gain[j] for j in numbers])
 
     state = coupling.observer.state()
-    elastic_slip, pressure = np.zeros_like(state.x), np.zeros_like(state.x)
     reference = np.stack(_reference(problem, state), axis=-1)
-    for k, j in enumerate(numbers):
-        mine, ridge = problem.surface.ridge == k, snapshot.skin[j]
-        along = (reference[mine] - ridge.origin) @ ridge.chord
-        elastic_slip[mine] = np.interp(along, ridge.along, ridge.elastic_slip)
-        pressure[mine] = np.interp(along, ridge.along, ridge.pressure)
-    problem.set_history(History(_u_x(problem) - slide + elastic_slip, pressure, state.x - slide))
+    restored = {}
+    for inner in problem.history.body:
+        places, inside = inner.places()
+        found = _restored(snapshot, snapshot.history[inner.name], places.reshape(-1, 2), inside.reshape(-1, 2))
+        restored[inner.name] = inner.from_cells(found.reshape(*places.shape[:2], -1))
+    followed = problem.history.followed(state.history)
+    for field in problem.history.skin:
+        relative = np.zeros_like(state.x)
+        for k, j in enumerate(numbers):
+            mine, ridge = problem.surface.ridge == k, snapshot.skin[j]
+            along = (reference[mine] - ridge.origin) @ ridge.chord
+            relative[mine] = np.interp(along, ridge.along, ridge.history[field.name])
+        back = 0.0 if field.follows is None else slide
+        restored[field.name] = followed[field.name] - back + relative
+    problem.history.accept(restored)
 
 
 def interpolate(snapshot: StateSnapshot, points: Array) -> tuple[Array, float]:
@@ -162,8 +176,22 @@ def interpolate(snapshot: StateSnapshot, points: Array) -> tuple[Array, float]:
 
     The distance is in altitudes of the triangle that the value is taken from, zero if every point is inside.
     """
+    cell, X, outside = _locate(snapshot, points)
+    return _evaluate(snapshot.u, cell, X), outside
+
+
+def _restored(snapshot: StateSnapshot, values: Array, nodes: Array, inside: Array) -> Array:
+    """Return values by cell at reference points (m), of the cells of the snapshot that points beside them are in."""
+    cell, _, _ = _locate(snapshot, inside)
+    a, b, c = np.moveaxis(snapshot.corners[cell], 1, 0)
+    X = np.einsum("nij,nj->ni", np.linalg.inv(np.stack([b - a, c - a], axis=-1)), nodes - a)
+    return _evaluate(values, cell, X)
+
+
+def _locate(snapshot: StateSnapshot, points: Array) -> tuple[NDArray[np.int64], Array, float]:
+    """Return each point's triangle, its coordinates there, shape (n, 2), and how far one is outside at most."""
     if len(points) == 0:
-        return np.zeros((0, 2)), 0.0
+        return np.zeros(0, dtype=np.int64), np.zeros((0, 2)), 0.0
     a, b, c = np.moveaxis(snapshot.corners, 1, 0)
     tree = cKDTree((a + b + c) / 3)
     near = tree.query(points, min(_CANDIDATES, len(a)))[1].reshape(len(points), -1)
@@ -173,13 +201,19 @@ def interpolate(snapshot: StateSnapshot, points: Array) -> tuple[Array, float]:
     least = np.minimum(local.min(axis=2), 1 - local.sum(axis=2))
     best = least.argmax(axis=1)
     row = np.arange(len(points))
-    cell, X = near[row, best], local[row, best]
-    degree = {3: 1, 6: 2, 10: 3}[snapshot.u.shape[1]]
+    return near[row, best], local[row, best], float(max(0.0, -least[row, best].min()))
+
+
+def _evaluate(values: Array, cell: NDArray[np.int64], X: Array) -> Array:
+    """Return nodal values, shape (cells, nodes, components), at points X of a cell each, shape (n, components)."""
+    if values.shape[1] == 1:
+        return values[cell, 0]
+    degree = {3: 1, 6: 2, 10: 3}[values.shape[1]]
     element = basix.create_element(
         basix.ElementFamily.P, basix.CellType.triangle, degree, basix.LagrangeVariant.gll_warped
     )
     basis = np.asarray(element.tabulate(0, X))[0, :, :, 0]
-    return np.einsum("nk,nki->ni", basis, snapshot.u[cell]), float(max(0.0, -least[row, best].min()))
+    return np.einsum("nk,nki->ni", basis, values[cell])
 
 
 def place(ridge: SkinState, position: Array, nodes: Array) -> Array:
@@ -202,11 +236,6 @@ def _gauss(n: int) -> Array:
     return (1 + np.polynomial.legendre.leggauss(n)[0]) / 2
 
 
-def _u_x(problem: Problem) -> Array:
-    """Return the sideways displacement (m) at this rank's Gauss points, shape (facets, points)."""
-    return problem.surface.evaluate(problem.surface.compile([problem.u[0]]))[0]
-
-
 def _reference(problem: Problem, state: SurfaceState) -> tuple[Array, Array]:
     """Return the reference positions (m) of this rank's Gauss points, shape (facets, points) each."""
     u_x, u_y = problem.surface.evaluate(problem.surface.compile([problem.u[0], problem.u[1]]))
@@ -217,8 +246,8 @@ def _all(comm: MPI.Comm, values: NDArray, axis: int) -> NDArray:
     return np.concatenate(comm.allgather(values), axis=axis)
 
 
-def _ridge(points: Array, on_facet: int) -> SkinState:
-    """Sort the points of a ridge along its chord; rows x, y, elastic slip, pressure, and current x and y."""
+def _ridge(points: Array, on_facet: int, names: list[str]) -> SkinState:
+    """Sort the points of a ridge along its chord; rows x, y, current x and y, and history by names."""
     xy = points[:2]
     origin = xy.mean(axis=1)
     # The chord is the first principal direction, in which most ridges are wide, unless the skin turns back on the way.
@@ -231,5 +260,6 @@ def _ridge(points: Array, on_facet: int) -> SkinState:
         chord = axes[:, 1]
         along = chord @ (xy - origin[:, None])
     order = np.argsort(along)
-    position = points[4:, order].T.reshape(-1, on_facet, 2)
-    return SkinState(origin, chord, along[order], points[2, order], points[3, order], position)
+    position = points[2:4, order].T.reshape(-1, on_facet, 2)
+    history = {name: points[4 + k, order] for k, name in enumerate(names)}
+    return SkinState(origin, chord, along[order], position, history)

@@ -1,0 +1,29 @@
+"""The names of fingerpad: read by type checkers and editors, and by the package, which imports each when it is used."""
+
+import geometry as geometry
+from fingerpad.io.quantities import Output as Output
+from fingerpad.io.result import Result as Result
+from fingerpad.measurements.compare import compare as compare
+from fingerpad.model.body import Body as Body
+from fingerpad.runs.solve import run as run
+from fingerpad.runs.sweep import sweep as sweep
+from fingerpad.runs.sweep_results import Sweep as Sweep
+from fingerpad.scene import Scene as Scene
+from fingerpad.scene import SceneError as SceneError
+from variational.contact.augmented import AugmentedLagrangian as AugmentedLagrangian
+from variational.contact.formulation import Formulation as Formulation
+from variational.contact.friction import Coulomb as Coulomb
+from variational.contact.friction import Derjaguin as Derjaguin
+from variational.contact.friction import Friction as Friction
+from variational.contact.nitsche import Nitsche as Nitsche
+from variational.contact.penalty import Penalty as Penalty
+from variational.materials.material import Material as Material
+from variational.materials.neo_hooke import NeoHooke as NeoHooke
+from variational.materials.ogden import Ogden as Ogden
+from variational.materials.saint_venant import SaintVenant as SaintVenant
+from variational.roughness.bam import BearingArea as BearingArea
+from variational.roughness.closure import AirGap as AirGap
+from variational.roughness.closure import Closure as Closure
+from variational.state import ContactState as ContactState
+
+__version__: str

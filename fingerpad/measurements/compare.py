@@ -1,0 +1,95 @@
+"""Measurements beside computed values, row by row, and their misfit."""
+
+import math
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+
+from fingerpad.measurements import table as tables
+from fingerpad.measurements.computed import CLOSE, Array, Computed, Source, computed
+from fingerpad.measurements.table import Measured
+from fingerpad.scene.messages import SceneError
+
+
+def compare(
+    table: str | Path | pd.DataFrame,
+    result: Source | Sequence[Source],
+    columns: Mapping[str, str | None] | None = None,
+    state: str | None = None,
+) -> pd.DataFrame:
+    """Return a table of measurements with the computed values at the same forces and voltages.
+
+    Args:
+        table: a CSV file or a DataFrame (:mod:`fingerpad.measurements.table`).
+        result: a result, several, a sweep, or folders of them.
+        columns: names of this program by heads of the table: ``{"Fn": "force (N)", "CoF": "friction (1)"}``; an empty
+            name leaves a column out.
+        state: ``"uncharged"``, ``"charged"`` or ``"full slip"``; by default that of the table, else full slip.
+
+    Returns:
+        A row for each row of the table, in SI units, NaN where a value is not known: ``force``, ``voltage``,
+        ``measured``, ``spread``, ``computed``, ``error`` (estimated discretisation error of the computed value),
+        ``difference`` (computed less measured) and ``relative_difference`` (of the measured value). Its ``attrs`` hold
+        the quantity, the units, the source, the state, the heads of ignored columns and the :func:`misfit`.
+
+    Raises:
+        SceneError: the table or the results cannot be compared, in one sentence.
+    """
+    measured = tables.read(table, columns, state)
+    return beside(measured, computed(result, measured))
+
+
+def beside(table: Measured, known: Computed) -> pd.DataFrame:
+    """Return the rows of :func:`compare`.
+
+    Raises:
+        SceneError: no row of the table is within the forces and voltages of the results, or the value is 0 in all.
+    """
+    rows = table.rows.copy()
+    for name, unit in (("force", table.force_unit), ("voltage", "V")):
+        if name not in rows:
+            rows[name] = _single(table.name, name, unit, known.points[name].unique())
+    rows["computed"], rows["error"] = known.at(rows.force.to_numpy(), rows.voltage.to_numpy())
+    rows["difference"] = rows.computed - rows.measured
+    rows["relative_difference"] = rows.difference / rows.measured
+    none = int(rows.computed.isna().sum())
+    if none == len(rows):
+        raise SceneError(f"no row of {table.name} is within the results, which have {known.reach(table.force_unit)}")
+    if not (rows.computed > 0).any():
+        beyond = f", and {none} of them are not within the results" if none else ""
+        raise SceneError(f"no {table.quantity} above 0 is computed in the {len(rows)} rows of {table.name}{beyond}")
+    rows = rows[["force", "voltage", "measured", "spread", "computed", "error", "difference", "relative_difference"]]
+    about = {"source": table.name} | table.about | {"table": table.name, "ignored": table.ignored}
+    about |= {"state": table.state, "quantity": table.quantity, "unit": table.unit, "force_unit": table.force_unit}
+    rows.attrs = about | {"misfit": misfit(rows)}
+    return rows
+
+
+def _single(table: str, name: str, unit: str, values: Array) -> float:
+    """Return the one force or voltage of results, for a table without it; forces within 1 % are one, their mean."""
+    if len(values) > 1 and (name == "voltage" or not math.isclose(values.min(), values.max(), rel_tol=CLOSE)):
+        raise SceneError(f"{table} has no {name}, and the results have {len(values)}; add a column '{name} ({unit})'")
+    return float(values.mean())
+
+
+def misfit(rows: pd.DataFrame) -> dict[str, float]:
+    """Return how far computed values are from measured ones, as ratios.
+
+    Args:
+        rows: of :func:`compare`.
+
+    Returns:
+        ``ratio``: geometric mean of computed over measured; ``factor``: the largest factor between the two;
+        ``shape_factor``: the same once the computed values are scaled by one factor; ``rows``: how many these are of,
+        the others having no computed value or 0; ``spreads``: how many of these have a spread; ``within``: how many of
+        those differ by no more than the spread plus the error.
+    """
+    used = rows[rows.computed > 0]
+    log = np.log(used.computed / used.measured)
+    with_spread = used[used.spread.notna()]
+    near = with_spread.difference.abs() <= with_spread.spread + with_spread.error.fillna(0.0)
+    ratios = {"ratio": log.mean(), "factor": log.abs().max(), "shape_factor": (log - log.mean()).abs().max()}
+    counts = {"rows": len(used), "spreads": len(with_spread), "within": int(near.sum())}
+    return {name: float(np.exp(value)) for name, value in ratios.items()} | counts

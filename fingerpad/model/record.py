@@ -1,0 +1,174 @@
+"""What tables and pictures show of a path: its accepted states, with the skin and the whole finger of some of them.
+
+The whole finger is shown whatever mesh and half of it the model has.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+from mpi4py import MPI
+from numpy.typing import NDArray
+
+from fingerpad.io import states
+from fingerpad.io.drawing import Drawing, End, Profile, View
+from fingerpad.model import symmetry
+from fingerpad.model.finger import Finger, Step
+from fingerpad.model.stability import Checked
+from fingerpad.scene import Load
+from variational.output import Snapshot, gather_mesh
+from variational.receptors import Receptors
+from variational.state import ContactState, Sites
+
+Array = NDArray[np.float64]
+_PROFILE = ("x", "y", "p_n", "t_t", "p_el", "area_x", "area_y")
+
+
+class Viewer:
+    """Collects the states of a finger for tables and pictures."""
+
+    def __init__(self, finger: Finger) -> None:
+        """Find the receptor sites, if they are part of the model."""
+        self._finger = finger
+        profiles = finger.profiles
+        sites = np.concatenate([profiles.merkel_sites(), profiles.meissner_sites()])
+        if not finger.options.both_halves:  # where their mirror images are
+            sites[:, 0] = np.abs(sites[:, 0])
+        self._sites = Receptors(finger.problem, sites) if finger.options.receptors else None
+
+    def view(self, step: Step) -> View:
+        """Return all that is shown of the present state, that of the step; collective."""
+        profile, (snapshot, merkel) = self.profile(step), self.picture()
+        return View(replace(step.state, sites=self.sites()), self._finger.size, profile, snapshot, merkel)
+
+    def profile(self, step: Step) -> Profile | None:
+        """Return the skin of a step, the present one, on rank 0, None elsewhere; collective."""
+        surface, skin = self._finger.problem.surface, self._finger.continuation.surface_state
+        values = surface.gather(np.stack([getattr(skin, name) for name in _PROFILE]))
+        ridge = surface.gather(surface.ridge[None, :, None].astype(float))
+        if values is None or ridge is None:
+            return None
+        where = ridge[0, :, 0].astype(int)
+        if not self._finger.options.both_halves:
+            values, where = symmetry.profile(_PROFILE, values, where)
+        return Profile(where, values, step.state.d_eq)
+
+    def picture(self) -> tuple[Snapshot | None, Array | None]:
+        """Return the present state of the whole finger, and where the Merkel sites are if wanted; collective."""
+        snapshot, ridges = gather_mesh(self._finger.problem), np.array(self._finger.profiles.ridges)
+        merkel = self._sites.positions()[: len(ridges)] if self._sites else None
+        if not self._finger.options.both_halves:
+            snapshot = symmetry.snapshot(snapshot) if snapshot else None
+            if merkel is not None:
+                merkel[ridges < 0, 0] *= -1
+        return snapshot, merkel
+
+    def sites(self) -> Sites | None:
+        """Return the energy densities at the receptor sites in the present state, None without them; collective."""
+        if self._sites is None:
+            return None
+        names, sed = self._finger.profiles.ridges, self._sites.sed()
+        left, right = sed[len(names) :].reshape(-1, 2).T
+        return Sites(np.array(names), sed[: len(names)], left, right)
+
+
+class PathRecord:
+    """Keeps accepted states.
+
+    Attributes:
+        states: in order, on every rank.
+        profiles: the skin by step, on rank 0.
+        ends: the finger at the end of each load, by load, on rank 0.
+    """
+
+    def __init__(self, comm: MPI.Comm, checks: Mapping[int, Checked]) -> None:
+        """Keep nothing yet.
+
+        Args:
+            comm: communicator of the run.
+            checks: stability by step, as far as it is examined.
+        """
+        self._comm, self._checks = comm, checks
+        self.states: list[ContactState] = []
+        self.profiles: dict[int, Profile] = {}
+        self.ends: dict[str, End] = {}
+
+    def prune(self, loads: Sequence[str]) -> None:
+        """Drop the skin of steps that nothing will show, whatever follows; rank 0 alone has one.
+
+        Args:
+            loads: names of the loads in order.
+        """
+        last, rows = self.states[-1], self.states
+        shown = [*states.named(rows, loads).values(), *(end.state for end in self.ends.values()), last]
+        shown += [row for row in (states.partial_slip(rows), states.nearest_to_half(rows)) if row]
+        steps = {state.step for state in shown} | {last.slip_began}
+        self.profiles = {step: profile for step, profile in self.profiles.items() if step in steps}
+
+    def named(self, final: Mapping[str, View], loads: Sequence[str]) -> dict[str, ContactState]:
+        """Return the named states with their stability and, on every rank, their skin; collective.
+
+        Args:
+            final: states on the mesh that the run ended with, whose skin is to be shown, by name.
+            loads: names of the loads in order.
+        """
+        found = {}
+        for name, state in states.named(self.states, loads).items():
+            profile = final[name].profile if name in final else self.profiles.get(state.step)
+            numbers = np.arange(0) if state.ridges is None else state.ridges.number
+            skin = self._comm.bcast(None if profile is None else profile.skin(numbers))
+            # A full slip counts because it was held; the row of its first step is of before that.
+            found[name] = replace(state, skin=skin, slip_held=state.slip_held or name == "full_slip")
+            check = self._check(state)
+            if check is not None:
+                verdict, least = check.stable, check.frozen.lambda_min
+                found[name] = replace(found[name], stable=verdict, lambda_min=least, gain=check.gain)
+        return found
+
+    def _check(self, state: ContactState) -> Checked | None:
+        """Return the stability of a state, or of another one of the same full slip; None where none was examined."""
+        same = [other.step for other in self.states if other.slip_began == state.slip_began > 0]
+        return next((self._checks[k] for k in (state.step, *same) if k in self._checks), None)
+
+    def loads(self, loads: Sequence[Load]) -> list[states.LoadResult]:
+        """Return the result of each load of a history."""
+
+        def stable(k: int, end: ContactState) -> bool | None:
+            check = self._check(end)
+            return None if check is None else check.stable
+
+        return list(states.load_results(self.states, loads, stable))
+
+    def drawing(
+        self, mu_0: float | None, final: Mapping[str, View], size: float | None, named: Mapping[str, ContactState]
+    ) -> Drawing | None:
+        """Return what the pictures are drawn from, on rank 0; None without a state.
+
+        Args:
+            mu_0: friction coefficient; None where the law of friction is not Coulomb's.
+            final: states on the mesh that the run ended with, by name.
+            size: contact size (m) of the path's mesh, where an accuracy was asked for.
+            named: the named states, with their estimated errors.
+        """
+        if not self.states or self._comm.rank != 0:
+            return None
+        whole = Drawing(mu_0, self.states, self.profiles, self.ends, final, size, named)
+        shown = whole.steps_along()
+        return replace(whole, profiles={step: p for step, p in self.profiles.items() if step in shown})
+
+    def totals(self) -> dict[str, Any]:
+        """Return sums and largest values over all states, ready for JSON."""
+        records = [s.record for s in self.states if s.record is not None]
+        jumps = [r for r in records if r.jump]
+        return {
+            "steps": len(self.states),
+            "jumps": len(jumps),
+            "cutbacks": sum(r.cutbacks for r in records),
+            "penetration": max((r.penetration for r in records), default=0.0),
+            "imbalance": max((r.imbalance for r in records), default=0.0),
+            "energy_released": sum(r.energy_released for r in jumps),
+            "energy_released_error": sum(r.released_error for r in jumps),
+            "dissipation": sum(r.dissipation for r in records),
+            "floor": max((r.floor for r in records), default=0.0),
+        }

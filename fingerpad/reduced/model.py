@@ -1,0 +1,144 @@
+"""A model of a scene, and what reduced ones have in common: normal contact and full slip, as a full run has them.
+
+A quantity that is not part of a model is NaN in its states, and a note names it. Your own model is a class with one
+method, :meth:`Model.solve`, and a line in :data:`fingerpad.reduced.models.MODELS`.
+"""
+
+import time
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Mapping, Sequence
+from typing import TYPE_CHECKING, Any, ClassVar
+
+from fingerpad.io.result import Result
+from fingerpad.scene import Scene, SceneError
+from fingerpad.scene.messages import show
+from variational.state import ContactState, Errors
+
+if TYPE_CHECKING:
+    from fingerpad.runs.context import RunContext
+
+STATES = ("charged", "full_slip")
+"""For which reduced models answer, by their names in :mod:`fingerpad.io.states`."""
+
+
+class Model(ABC):
+    """A way from a scene to its result; what a model can do is an attribute here, and no module compares its name."""
+
+    name: ClassVar[str]
+    """In commands, folders and tables."""
+    words: ClassVar[str]
+    """What it is made of, a sentence without its full stop."""
+    meshes: ClassVar[bool] = False
+    """Whether it solves on a mesh: it takes PETSc's options, and each point of a sweep is a process of its own."""
+    path: ClassVar[bool] = False
+    """Whether it follows the loads step by step and writes its own files: steps, fields and pictures of the skin."""
+    resumes: ClassVar[bool] = False
+    """Whether it goes on from the checkpoint of a run that was cut short."""
+
+    traces: ClassVar[str] = "traces over the force"
+    """What a force in newtons is summed over, in words."""
+
+    def check(self, scene: Scene) -> None:
+        """Refuse a scene before the work, in one sentence; by default one with a history or a mesh of its own.
+
+        Raises:
+            SceneError: the model has no answer to the scene.
+        """
+        refuse_others(scene, self.name)
+
+    @abstractmethod
+    def solve(self, scene: Scene, context: "RunContext") -> Result:
+        """Return the result of a scene; collective.
+
+        Args:
+            scene: a scene that :meth:`check` has taken.
+            context: ranks, folder and console. The summary of a model without a path is written by its caller.
+
+        Raises:
+            SceneError: the scene has no result, in one sentence.
+        """
+
+    def over_forces(
+        self, scene: Scene, f_ext: Sequence[float], state: str, solve: Callable[[Scene], Result]
+    ) -> list[ContactState]:
+        """Return a state of a scene under each of several external forces, for a force in newtons.
+
+        Args:
+            scene: with the voltage of all.
+            f_ext: external forces (N/m).
+            state: ``charged`` or ``full_slip``.
+            solve: solves one scene by this model.
+
+        Raises:
+            SceneError: the model has no such state of one of them.
+        """
+        found = [solve(scene.model_copy(update={"f_ext": each})).named.get(state) for each in f_ext]
+        states = [each for each in found if each is not None]
+        if len(states) < len(f_ext):
+            raise SceneError(
+                f"the model {self.name!r} has no {state.replace('_', ' ')} at {f_ext[found.index(None)]:.4g} N/m"
+            )
+        return states
+
+
+def at_rest(scene: Scene, contact: Mapping[str, float], error: Errors | None = None) -> ContactState:
+    """Return normal contact; by symmetry there is no friction.
+
+    Args:
+        scene: whose loads act.
+        contact: contact force, attraction, contact length and ridges in contact, and the bone's height if known.
+        error: estimated discretisation errors.
+    """
+    return _state(scene, contact, 0.0, error)
+
+
+def at_slip(scene: Scene, contact: Mapping[str, float], error: Errors | None = None) -> ContactState:
+    """Return full slip: f_T is the limit of friction, of the mean pressure over the contact length.
+
+    Coulomb's is mu_0 times the contact force, however that is spread. Arguments as of :func:`at_rest`.
+    """
+    law = scene.friction_law()
+    f_t = 0.0 if law is None else law.resultant(contact["f_contact"], contact["contact_length"])
+    return _state(scene, contact, f_t, error)
+
+
+def _state(scene: Scene, contact: Mapping[str, float], f_t: float, error: Errors | None) -> ContactState:
+    values: dict[str, Any] = {name: value for name, value in contact.items() if name != "ridges_in_contact"}
+    return ContactState(
+        f_ext=scene.f_ext,
+        voltage=scene.voltage,
+        f_t=f_t,
+        mu_app=f_t / scene.f_ext,
+        ridges_in_contact=int(contact["ridges_in_contact"]),
+        error=error or Errors(),
+        **values,
+    )
+
+
+def refuse_others(scene: Scene, model: str) -> None:
+    """Refuse a scene whose loads are not press, charge and slide, or whose finger has a mesh of its own.
+
+    Raises:
+        SceneError: it has a history, or a mesh.
+    """
+    if scene.geometry.file is not None:
+        raise SceneError(
+            f"geometry.file is {show(scene.geometry.file)}; the model '{model}' answers for fingers of the scene's own "
+            "geometry, so use the model 'full'"
+        )
+    if scene.history is not None:
+        raise SceneError(
+            f"history is given; the model '{model}' answers for press, charge and slide alone, so use the model 'full' "
+            "or give f_ext and voltage instead"
+        )
+
+
+class Stopwatch:
+    """Processor time since it was made."""
+
+    def __init__(self) -> None:
+        self._start = time.process_time()
+
+    def seconds(self) -> float:
+        """Return the time (s)."""
+        return time.process_time() - self._start

@@ -1,0 +1,54 @@
+"""The models by name, the cheapest first: where a reduced model of one's own is registered."""
+
+from typing import TYPE_CHECKING
+
+from fingerpad.io.result import Result
+from fingerpad.model import feasibility
+from fingerpad.reduced.cylinders import Cylinders
+from fingerpad.reduced.model import Model
+from fingerpad.scene import Scene, SceneError
+from fingerpad.scene.messages import show
+from fingerpad.scene.reading import DEFAULT_MODEL
+
+if TYPE_CHECKING:
+    from fingerpad.runs.context import RunContext
+
+
+class Full(Model):
+    """The whole cross-section with every ridge, along the path of its loads (:mod:`fingerpad.runs.full`)."""
+
+    name, words = DEFAULT_MODEL, "Every ridge of the cross-section"
+    traces = "traces of the full model"
+    meshes = path = resumes = True
+
+    def check(self, scene: Scene) -> None:
+        """Refuse a scene whose finger cannot be built or meshed, see :func:`fingerpad.model.feasibility.check`."""
+        feasibility.check(scene)
+
+    def solve(self, scene: Scene, context: "RunContext") -> Result:
+        """Reach every load, see :func:`fingerpad.runs.full.run`; collective."""
+        from fingerpad.runs import full  # finite elements
+
+        return full.run(scene, context)
+
+
+MODELS: dict[str, Model] = {
+    "cylinders": Cylinders(),
+    "full": Full(),
+}
+
+
+def find(name: str) -> Model:
+    """Return a model by its name.
+
+    Raises:
+        SceneError: there is none.
+    """
+    if not (isinstance(name, str) and name in MODELS):
+        raise SceneError(f"model is {show(name)}; it must be {' or '.join(map(repr, MODELS))}")
+    return MODELS[name]
+
+
+def follows_path(name: str) -> bool:
+    """Return whether a model of that name follows the loads; one that is not registered here does not."""
+    return name in MODELS and MODELS[name].path

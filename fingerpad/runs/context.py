@@ -1,0 +1,70 @@
+"""What a run has beside its scene: ranks, folder, console, report, and where it goes on."""
+
+from collections.abc import Iterator, Sequence
+from contextlib import AbstractContextManager, contextmanager, nullcontext
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from fingerpad.io import terminal
+from fingerpad.io.place import Place, Serial
+from fingerpad.io.quantities import Output
+from fingerpad.scene import Scene
+
+if TYPE_CHECKING:
+    from fingerpad.io.console import Console
+    from fingerpad.startup import MPI
+
+
+@dataclass(frozen=True)
+class RunContext:
+    """Everything that a run has beside its scene and model; none of it changes a number."""
+
+    folder: Path | None = None
+    """Folder of tables, pictures, fields and ``summary.json``; None to write nothing."""
+    comm: "MPI.Comm | None" = None
+    """Communicator; None for that of all ranks."""
+    lines: bool = False
+    """Whether steps are printed."""
+    bar: bool = True
+    """Whether a progress bar is shown where a person watches."""
+    report: bool = True
+    """Whether ``report.html`` is written beside the results."""
+    resume: bool = False
+    """Whether the run goes on from the checkpoint in its folder."""
+    outputs: Sequence[Output] = ()
+    """Further quantities, each computed from every state."""
+
+    @property
+    def ranks(self) -> "MPI.Comm | Serial":
+        """Communicator of the run: of all ranks by default, and of this process alone where there is no MPI."""
+        if self.comm is not None:
+            return self.comm
+        if not terminal.launched():  # nor do the libraries of finite elements start
+            return Serial()
+        try:
+            from fingerpad.startup import MPI
+        except ImportError:
+            return Serial()
+        return MPI.COMM_WORLD
+
+    @contextmanager
+    def console(self) -> Iterator["Console"]:
+        """Open the console of the run, for a model with MPI; collective."""
+        from fingerpad.io.console import Console
+
+        console = Console(self.ranks, self.lines, self.bar)  # type: ignore[arg-type]
+        try:
+            yield console
+        finally:
+            console.close()
+
+    def place(self, scene: Scene, model: str) -> AbstractContextManager[Place | None]:
+        """Lock the folder for the results of a scene by a model; nothing without a folder; collective.
+
+        Raises:
+            PlaceError: on entering, the folder is in use, holds other results, or cannot be written to.
+        """
+        if self.folder is None:
+            return nullcontext()
+        return Place(self.folder, scene.parameters(), self.ranks, model)

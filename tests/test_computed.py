@@ -1,0 +1,238 @@
+"""Runs beside tables of measurements: what of a run is compared, and which runs go together."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import fingerpad as fp
+from fingerpad.cli import main
+from fingerpad.io.result import Result
+from fingerpad.measurements import one_scene
+from fingerpad.measurements.compare import beside
+from fingerpad.measurements.computed import computed
+from fingerpad.measurements.table import read
+from fingerpad.runs.solve import run
+from fingerpad.scene import Scene, SceneError
+from fingerpad.slices.errors import MESH
+from fingerpad.slices.finger import WholeFinger
+from fingerpad.slices.total import Total
+from tests.commands import refused
+from variational.contact.friction import Derjaguin
+from variational.state import ContactState, Errors
+
+
+def state(step, f_ext, voltage=0.0, bone_x=0.0, **more):
+    values = {"f_t": 0.0, "mu_app": 0.0, "f_contact": f_ext, "f_electrostatic": 0.0, "ridges_in_contact": 3}
+    return ContactState(
+        step=step,
+        f_ext=f_ext,
+        voltage=voltage,
+        bone_x=bone_x,
+        bone_height=-1e-5 * f_ext,
+        contact_length=1e-4 * f_ext,
+        **values | more,
+    )
+
+
+def compared(runs, table):
+    """Return the rows of a table beside the values of runs."""
+    return beside(table, computed(runs, table))
+
+
+def ratio(runs, table):
+    """Return computed over measured values."""
+    found = compared(runs, table)
+    return found.computed.to_numpy() / found.measured.to_numpy()
+
+
+def test_press_of_a_run_is_compared(table):
+    """The states on the way down and no later ones; full slip is one state."""
+    steps = (state(1, 10.0), state(2, 20.0), state(3, 20.0, 100.0), state(4, 20.0, 100.0, 1e-3, mu_app=0.4))
+    run = Result(Scene(), "full", steps[1], steps[2], steps[3], steps=steps)
+    pressed = read(table("# state: uncharged\nforce (N/m), depth (mm)\n15, 0.3\n"))
+    assert compared(run, pressed).computed.tolist() == pytest.approx([1.5e-4])
+    assert ratio(run, pressed) == pytest.approx([0.5])
+    slip = read(table("friction (1)\n0.2\n"))
+    assert ratio([run], slip) == pytest.approx([2.0])
+    with pytest.raises(SceneError, match="no state full slip"):
+        computed([Result(Scene(), "full", steps[1], None, None, steps=steps[:2])], slip)
+
+
+def test_errors_of_named_states_are_carried(table):
+    """Of the cross-section and of the whole finger; a step of the press has none, but for the named state's own."""
+    steps = (state(1, 10.0), state(2, 20.0), state(4, 20.0, 100.0, 1e-3, mu_app=0.4))
+    uncharged, slip = replace(steps[1], error=Errors(bone_height=2e-6)), replace(steps[2], error=Errors(mu_app=0.01))
+    finger = WholeFinger({"full_slip": total(0.4, 8e-5)}, "test", {"full_slip": {MESH: {"contact_area": 3e-3}}})
+    run = Result(Scene(), "full", uncharged, None, slip, steps=steps, finger=finger)
+    for text, error in (
+        ("# state: uncharged\nforce (N/m), depth (mm)\n20, 0.2\n10, 0.1\n", [2e-6, np.nan]),
+        ("friction (1)\n0.2\n", [0.01]),
+        ("contact area (mm^2)\n20\n", [3e-3 * finger.values("full_slip")["contact_area"]]),
+        ("gross area (mm^2)\n20\n", [np.nan]),
+    ):
+        asked = read(table(text))
+        np.testing.assert_array_equal(compared([run], asked).error, error)
+
+
+def test_whole_finger_is_compared(table):
+    """Newtons and mm² are of the runs' whole fingers, by force and voltage; a cross-section has none."""
+    finger = [total(0.4, 8e-5), total(0.6, 1e-4)]
+    slip = [state(4, 40.0, 100.0, mu_app=0.3), state(4, 60.0, 100.0, mu_app=0.3)]
+    runs = [
+        Result(Scene(), "full", None, None, s, finger=WholeFinger({"full_slip": f}, "test"))
+        for s, f in zip(slip, finger, strict=True)
+    ]
+    area = read(table("force (mN), voltage (V), gross area (mm^2), spread (mm^2)\n500, 100, 45, 50\n"))
+    assert area.whole and area.rows.iloc[0].to_dict() == pytest.approx(
+        {"force": 0.5, "voltage": 100.0, "measured": 4.5e-5, "spread": 5e-5}
+    )
+    power = np.log(1e-4 / 8e-5) / np.log(0.6 / 0.4)
+    assert ratio(runs, area) == pytest.approx([8e-5 * 1.25**power / 4.5e-5])
+    friction = read(table("force (N), friction (1)\n0.4, 0.25\n"))
+    assert ratio(runs[:1], friction) == pytest.approx([2.0])
+    with pytest.raises(SceneError, match="the run has no newtons"):
+        computed([Result(Scene(), "full", None, None, slip[0])], friction)
+
+
+def total(force, area):
+    """Return a whole finger of one slice, 1 mm thick, whose friction is half its force."""
+    values = {"f_ext": force, "f_t": force / 2, "f_electrostatic": 0.0, "contact_length": area / 5, "gross_width": area}
+    one = np.ones(1)
+    return Total(1e-3, 0 * one, one, 1e-3 * one, force, {name: value * one for name, value in values.items()})
+
+
+def test_sites_that_are_left_out_change_no_value(table):
+    runs = fingers(0.3, 0.3)
+    runs[1] = replace(runs[1], scene=runs[1].scene.replace(output={"receptors": False}))
+    one_scene.refuse_mixed(runs)
+
+
+def test_smaller_forces_are_those_of_the_traces(table):
+    """Of one run to the largest force, as of runs to each; a run of its own wins, and what no trace reaches is left."""
+    runs = [fp.run(fp.Scene(voltage=150.0, force=force), model="cylinders") for force in (0.5, 1.0)]
+    asked = read(table("force (N), friction force (N)\n0.3, 0.1\n0.5, 0.1\n1, 0.1\n3, 0.1\n"))
+    one, both = (computed(given, asked) for given in (runs[1:], runs))
+    at = np.array([0.3, 0.5, 1.0, 3.0]), np.full(4, 150.0)
+    (of_one, _), (of_both, _) = one.at(*at), both.at(*at)
+    direct = [run.finger.values("full_slip")["f_t"] for run in runs]
+    assert of_both[1:3] == pytest.approx(direct, rel=1e-9)
+    assert 1e-6 < abs(of_one[1] / direct[0] - 1) < 5e-3, "its trace has other points"
+    assert both.points.force.tolist() == pytest.approx([0.3, 0.5, 1.0]), "0.5 N is that of its own run alone"
+    assert of_both[0] == runs[0].finger.under(0.3).values("full_slip")["f_t"]
+    assert np.isnan(of_both[3])
+
+
+# -- forces that differ a little -----------------------------------------------------------------------------
+def fingers(*forces):
+    """Return runs of whole fingers under forces (N), each at 50 V more than the last, from 0 V on."""
+    return [
+        Result(
+            Scene(),
+            "full",
+            None,
+            None,
+            state(4, 40.0, 50.0 * k, mu_app=0.3),
+            finger=WholeFinger({"full_slip": total(force, 1e-4 * (k + 1))}, "test"),
+        )
+        for k, force in enumerate(forces)
+    ]
+
+
+def test_forces_within_a_percent_are_one(table):
+    """The newtons of one f_ext differ between voltages: the nearest force of each is taken, also without a column."""
+    runs = fingers(0.3, 0.3015)
+    asked = read(table("force (N), voltage (V), gross area (mm^2)\n0.301, 0, 100\n0.301, 50, 100\n0.305, 0, 100\n"))
+    np.testing.assert_allclose(ratio(runs, asked), [1.0, 2.0, np.nan], rtol=1e-9)
+    free = read(table("voltage (V), gross area (mm^2)\n0, 100\n50, 100\n"))
+    assert ratio(runs, free) == pytest.approx([1.0, 2.0])
+
+
+def test_voltages_that_do_not_reach_a_force_are_named(table):
+    """The forces of all voltages in one span would hold the force that was asked for."""
+    runs = fingers(0.3, 0.32)
+    asked = read(table("force (N), voltage (V), gross area (mm^2)\n0.31, 50, 100\n"))
+    with pytest.raises(SceneError, match="is within the results, which have 0.3 N at 0 V, 0.32 N at 50 V$"):
+        compared(runs, asked)
+
+
+# -- runs together -------------------------------------------------------------------------------------------
+@pytest.fixture
+def together(table, tmp_path, monkeypatch):
+    """Return the arguments that compare runs of a whole finger by the closed form with a table."""
+    monkeypatch.chdir(tmp_path)
+    file = table("force (N), voltage (V), friction (1)\n0.3, 100, 0.3\n")
+
+    def together(*scenes, force="0.3 N"):
+        folders = [f"run{k}" for k in range(len(scenes))]
+        for place, changes in zip(folders, scenes, strict=True):
+            run(Scene(**{"voltage": 100, "force": force} | changes), model="cylinders", out=place)
+        return ["compare-data", str(file), "--run", *folders]
+
+    return together
+
+
+def test_runs_of_other_screens_are_refused(together, capsys):
+    """The last of them won, without a word."""
+    said = refused(capsys, *together({"electric": {"d_i": 1e-6}}, {"electric": {"d_i": 5e-6}}))
+    assert said == (
+        "electric.d_i is 1e-06 in run0 and 5e-06 in run1; give runs that differ in force and voltage alone\n"
+    )
+
+
+def test_runs_of_other_voltages_are_joined(together, capsys):
+    """The force in N/m of a result for newtons is another one at each voltage."""
+    assert main(together({}, {"voltage": -150}, {"voltage": 0})) == 0
+    assert "Misfit: computed over measured" in capsys.readouterr().out
+
+
+def test_runs_of_other_models_are_refused(tmp_path):
+    """The model is no key of a scene."""
+    runs = [Result(Scene(), model, None, None, None, folder=tmp_path / model) for model in ("full", "cylinders")]
+    with pytest.raises(SceneError, match="model is 'full' in .*full and 'cylinders' in .*cylinders; give runs"):
+        one_scene.refuse_mixed(runs)
+
+
+def test_runs_of_other_laws_are_refused():
+    runs = [Result(Scene(friction=Derjaguin(0.3, tau)), "full", None, None, None) for tau in (1e3, 2e3)]
+    with pytest.raises(SceneError, match="friction.tau_0 is 1000 in a run and 2000 in a run"):
+        one_scene.refuse_mixed(runs)
+
+
+def test_forces_on_the_finger_may_differ():
+    """And be those at its centre; all else may not."""
+
+    def under(force, **changes):
+        return Result(Scene(force=force, **changes), "full", None, None, None)
+
+    one_scene.refuse_mixed([under(0.3, voltage=100), under(0.5, voltage=150), Result(Scene(), "full", *[None] * 3)])
+    with pytest.raises(SceneError, match=r"friction is 0\.25 in a run and 0\.3 in a run"):
+        one_scene.refuse_mixed([under(0.3), under(0.5, friction=0.3)])
+
+
+def test_histories_may_differ_in_force_and_voltage():
+    """The force may be given by the height of the bone too; other moves are other loads."""
+
+    def history(press, volts, way):
+        loads = [{"name": "press"} | press, {"name": "on", "voltage": volts}, {"name": "off", "bone_x": way}]
+        return Result(Scene(history=loads), "full", None, None, None)
+
+    one_scene.refuse_mixed([history({"f_ext": 20}, 100, 1e-3), history({"bone_height": -1e-3}, 200, 1e-3)])
+    with pytest.raises(SceneError, match=r"history\[2\].bone_x is 0.001 in a run and 0.002 in a run"):
+        one_scene.refuse_mixed([history({"f_ext": 20}, 100, 1e-3), history({"f_ext": 20}, 100, 2e-3)])
+    with pytest.raises(SceneError, match="history is not given in a run and a list of 3 in a run"):
+        one_scene.refuse_mixed([Result(Scene(), "full", None, None, None), history({"f_ext": 20}, 100, 1e-3)])
+
+
+def test_two_values_at_one_place_are_refused(table):
+    """Roundoff of force, voltage and value is none."""
+    friction = read(table("force (N/m), voltage (V), friction (1)\n20, 100, 0.3\n"))
+
+    def slip(mu, f_ext=20.0):
+        return Result(Scene(), "full", None, None, state(4, f_ext, 100.0, mu_app=mu))
+
+    assert len(computed([slip(0.4), slip(0.4 + 1e-7, 20 + 1e-8)], friction).points) == 1
+    near = Result(Scene(), "full", None, None, replace(slip(0.41).full_slip, error=Errors(mu_app=0.02)))
+    computed([slip(0.4), near], friction)  # on another mesh, for an accuracy
+    with pytest.raises(SceneError, match="friction is 0.4 in a run and 0.41 in a run, both at 20 N/m and 100 V; give"):
+        computed([slip(0.4), slip(0.41)], friction)

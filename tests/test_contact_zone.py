@@ -1,0 +1,147 @@
+"""Where omitted ridges may touch the run starts again with them, and is the run that had them all along."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from mpi4py import MPI
+
+from fingerpad.model import options
+from fingerpad.model.contact_zone import FingerExceeded, Wider, more
+from fingerpad.model.simulation import Simulation
+from fingerpad.runs import full as run_module
+from fingerpad.scene import from_data
+from tests.measures import rows_of
+from tests.runs import path_of, run
+from variational.solvers.stability import Stability, StabilityCheck
+
+MESH = {"contact": 30e-6, "receptor": 80e-6, "interface": 150e-6, "growth": 0.8}
+WAVELENGTH = 483e-6
+
+
+def press(folder, half_arc: float) -> dict:
+    """Press a finger until three ridges are in contact and some more, as the mesh lets them."""
+    history = [{"name": "press", "bone_height": -50e-6}]
+    few = {"geometry": {"ridge_count": 11}, "output": {"errors": False}}
+    scene = from_data({"mesh": MESH | {"touching_half_arc": half_arc}, "history": history} | few)
+    return run(scene, folder, MPI.COMM_WORLD)
+
+
+def columns(folder, name: str) -> list[dict[str, str]]:
+    """Return a table's rows, without a word of what they took."""
+    return [{k: v for k, v in row.items() if k != "processor_seconds"} for row in rows_of(folder, name)]
+
+
+@pytest.fixture(scope="module")
+def restarted(tmp_path_factory):
+    """A run whose finger can touch with three ridges at first."""
+    folder = tmp_path_factory.mktemp("restarted")
+    return folder, press(folder, 0.6e-3)
+
+
+def test_run_starts_again_with_more_ridges(restarted):
+    folder, summary = restarted
+    assert "failure" not in summary
+    (restart,) = summary["restarts"]
+    assert restart["load"] == "press" and restart["factorisations"] > 0
+    assert restart["reason"] in ("ridge 1, the last one that is meshed to touch, is in contact",
+                              "ridge -1, the last one that is meshed to touch, is in contact")  # fmt: skip
+    assert restart["touching_half_arc"] == pytest.approx(3 * WAVELENGTH, rel=1e-12)
+    log = (folder / "run.log").read_text(encoding="utf-8")
+    assert f"{restart['reason']}; all loads again with mesh.touching_half_arc 0.001449 m" in log
+
+
+def test_restarted_run_is_the_one_that_had_the_ridges(restarted, tmp_path):
+    """Step for step and digit for digit; nothing is left of the steps before."""
+    folder, summary = restarted
+    straight = press(tmp_path, summary["restarts"][0]["touching_half_arc"])
+    assert straight["restarts"] == [] and straight["factorisations"] == summary["factorisations"]
+    for name in ("steps", "ridges", "receptors", "coupling"):
+        assert columns(folder, name) == columns(tmp_path, name), name
+
+
+def test_restarted_run_keeps_the_parameters_asked_for(restarted):
+    """The parameters are the scene's: run again they restart again."""
+    assert restarted[1]["parameters"]["mesh"]["touching_half_arc"] == 0.6e-3
+
+
+@pytest.mark.parametrize(("last", "after"), [(1, 3), (10, 12), (13, 16), (20, None)])
+def test_how_many_are_added(last, after):
+    """Two on either side, a quarter of many, none where all 41 can touch."""
+    assert more(last, 41) == after
+
+
+# -- skin beyond the last ridge ----------------------------------------------------------------------------
+def brought_near(half_arc: float, clearance: float) -> Simulation:
+    """Return a finger that touches nowhere, rolled onto its side so that ridge 6 is lowest, at a height (m)."""
+    scene = from_data({"mesh": MESH | {"touching_half_arc": half_arc}, "geometry": {"ridge_count": 15}})
+    simulation = path_of(scene)
+    problem, (tip, before) = (
+        simulation.finger.problem,
+        simulation.finger.profiles.point(np.array([6.0, 5.99]) * WAVELENGTH, 0.0),
+    )
+    slope = -np.arctan2(*(tip - before)[::-1])
+    turn = np.array([[np.cos(slope), -np.sin(slope)], [np.sin(slope), np.cos(slope)]])
+    problem.w.interpolate(lambda x: turn @ (x[:2] - tip[:, None]) + [[tip[0]], [clearance]] - x[:2])
+    return simulation
+
+
+def check(simulation: Simulation) -> Wider | None:
+    return simulation._zone.check(simulation.finger.observer.ridge_loads())
+
+
+def test_skin_that_comes_near_asks_for_a_restart():
+    """Ridge 6 is at 8 um, where the voltage reaches, and none of the ridges meshed to touch does."""
+    simulation = brought_near(4 * WAVELENGTH, 8e-6)
+    assert not simulation.finger.observer.ridge_loads().length.any()
+    wider = check(simulation)
+    assert wider.reason == "skin beyond the ridges that are meshed to touch is at a height of 8e-06 m"
+    assert wider.last == 6
+
+
+def test_skin_that_stays_clear_asks_for_none():
+    assert check(brought_near(4 * WAVELENGTH, 12e-6)) is None
+
+
+@pytest.mark.parametrize(("clearance", "exceeded"), [(8e-6, False), (-1e-6, True)])
+def test_skin_beyond_all_ridges_may_come_near_but_not_touch(clearance, exceeded):
+    """There are no more ridges to add: 15 can touch, and skin between their tips is the lowest here."""
+    simulation = brought_near(7 * WAVELENGTH, 1e-3)
+    simulation._zone._lowest_outside = lambda: clearance
+    if not exceeded:
+        assert check(simulation) is None
+        return
+    with pytest.raises(FingerExceeded, match="the finger has no more ridges"):
+        check(simulation)
+
+
+# -- the other half ----------------------------------------------------------------------------------------
+@pytest.fixture(scope="module")
+def half(tmp_path_factory):
+    """A finger pressed alone, whose half is said not to be stable; nothing is said of the whole."""
+    folder, check = tmp_path_factory.mktemp("half"), StabilityCheck.check
+
+    def unstable(self):
+        return Stability(-1.0, True) if self.solver.equations.antisymmetric_rows() is not None else check(self)
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(StabilityCheck, "check", unstable)
+        return folder, press(folder, 1.3e-3)
+
+
+def test_half_that_is_not_stable_is_made_whole(half):
+    folder, summary = half
+    (restart,) = summary["restarts"]
+    assert restart["both_halves"] is True and restart["touching_half_arc"] == 1.3e-3
+    assert restart["reason"] == "the half of the finger is not stable, so that the whole may not be symmetric"
+    assert not [omission for omission in summary["omitted"] if "half" in omission["what"]]
+    assert "1.3e-3 m and both halves" in (folder / "run.log").read_text(encoding="utf-8").replace("0.0013", "1.3e-3")
+
+
+def test_finger_made_whole_is_the_one_that_was_whole(half, tmp_path, monkeypatch):
+    """Step for step and digit for digit."""
+    folder, summary = half
+    monkeypatch.setattr(run_module, "plan", lambda scene: replace(options.plan(scene), both_halves=True))
+    assert press(tmp_path, 1.3e-3)["unknowns"] == summary["unknowns"]
+    for name in ("steps", "ridges", "receptors", "coupling"):
+        assert columns(folder, name) == columns(tmp_path, name), name

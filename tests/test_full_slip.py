@@ -1,0 +1,111 @@
+"""Full slip is steady: as steady as its gaps are closed, or the slide ends; and its lengths by ridge are its length."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from fingerpad.accuracy.solves import StateRecorder
+from fingerpad.model.stability import FullSlip
+from fingerpad.scene import from_data
+from tests.runs import followed, path_of
+from tests.small_finger import NINE, small
+
+SCENE = NINE | {"f_ext": 1.0, "voltage": 100.0}
+
+
+@pytest.fixture(scope="module")
+def path():
+    scene = from_data(SCENE)
+    simulation = path_of(scene, lambda step, done: keeper.record(step))
+    keeper = StateRecorder(simulation)
+    simulation.run()
+    return keeper.solve()
+
+
+def test_lengths_by_ridge_are_the_length(path):
+    """Each ridge of the nine at its place: the length in contact is their sum, and the central ones touch."""
+    state = path.states["full_slip"]
+    assert state.lengths.shape == (9,)
+    assert state.lengths.sum() == pytest.approx(state.state.contact_length, rel=1e-12, abs=0)
+    touching = np.flatnonzero(state.lengths)
+    assert len(touching) == state.state.ridges_in_contact < 9
+    assert abs(touching.mean() - 4) <= 0.5
+    assert path.parts()["full_slip_contact_length"] is state.lengths
+
+
+def test_slip_that_is_never_steady_ends_with_the_slide(monkeypatch):
+    """The bone never goes back to where the slide should have ended."""
+    monkeypatch.setattr("fingerpad.model.state._STEADY", -1.0)
+    scene, places = from_data(SCENE | {"slide_length": 0.9e-3}), []
+    simulation = path_of(scene, lambda step, done: places.append(step.state.bone_x))
+    simulation.run()
+    assert not any(state.slip_held for state in simulation.states)
+    assert places == sorted(places)
+    assert 0.9e-3 <= places[-1] <= 1.11e-3
+
+
+@pytest.mark.parametrize("end", [-20e-6, -30e-6, 20e-6])
+def test_slide_goes_on_the_way_it_came(end):
+    """Full slip is first found at the slide's end or before it; the bone moves on by 0.2 mm and does not turn round."""
+    press, slide = {"name": "press", "f_ext": 1.0}, {"name": "slide", "bone_x": end, "until_full_slip": True}
+    scene = small().replace(history=[press, slide])
+    simulation = followed(scene)
+    slid = [state for state in simulation.states if state.load == "slide"]
+    first = next(state.bone_x for state in slid if state.all_slip)
+    assert abs(first) <= abs(end)
+    places = np.array([0.0, *(state.bone_x for state in slid)]) * np.sign(end)
+    assert (np.diff(places) > 0).all()
+    assert places[-1] == pytest.approx(abs(first) + 0.2e-3, rel=1e-9)
+    assert slid[-1].f_t == pytest.approx(np.sign(end) * 0.25, rel=1e-6)
+
+
+def test_slide_of_no_length_is_none():
+    """A move by nothing until full slip, where full slip is: the bone stays, whichever way it came."""
+    press, back = {"name": "press", "f_ext": 1.0}, {"name": "back", "bone_x": -5e-3, "until_full_slip": True}
+    stay = {"name": "stay", "bone_x_by": 0.0, "until_full_slip": True}
+    scene = small().replace(history=[press, back, stay])
+    simulation = followed(scene)
+    last = [state for state in simulation.states if state.load == "back"][-1]
+    assert all(state.bone_x == last.bone_x for state in simulation.states if state.load == "stay")
+    assert last.slip_held and last.f_t < 0
+
+
+def test_time_goes_on_where_full_slip_is_not_steady_at_once(monkeypatch):
+    """The slide goes on from where it is, and so does its time, at the speed of the bone."""
+    steady = iter([False])
+    slides_on = FullSlip.slides_on
+    monkeypatch.setattr(FullSlip, "slides_on", lambda self, *args: slides_on(self, *args) and next(steady, True))
+    slide = {"name": "slide", "bone_x": 1e-3, "speed": 0.02, "until_full_slip": True}
+    scene = small().replace(history=[{"name": "press", "f_ext": 1.0}, slide])
+    simulation = followed(scene)
+    slid = [state for state in simulation.states if state.load == "slide"]
+    assert [state.time for state in slid] == pytest.approx([state.bone_x / 0.02 for state in slid], rel=1e-9)
+    assert next(steady, None) is None
+
+
+class Slid:
+    """In place of a continuation: each load changes f_t by a given part."""
+
+    def __init__(self, solver, change):
+        self.solver, self.change, self.slip = solver, change, (1.0, True)
+        solver.reaction = np.array([-1.0, 1.0])
+
+    def run(self, target):
+        self.solver.reaction = self.solver.reaction * (1 + self.change)
+
+    def begun(self):
+        return SimpleNamespace(reaction=self.solver.reaction.copy(), control=self.solver.control)
+
+
+@pytest.mark.parametrize(
+    ("formulation", "change", "steady"),
+    [("penalty", 0.9e-6, True), ("penalty", 1.1e-6, False), ("augmented", 1e-3, True), ("augmented", 1e-2, False)],
+)
+def test_force_of_full_slip_is_as_steady_as_its_gaps(formulation, change, steady):
+    """5 nm left of an air gap and insulators of some 2 um: 5e-3 of the attraction, 1e-6 where none are left."""
+    scene = from_data(SCENE | {"contact": {"formulation": formulation}})
+    finger = path_of(scene).finger
+    finger.coupling.set_air_gaps(np.full(len(finger.ridges), 1.5e-6))
+    finger.continuation = Slid(finger.solver, change)
+    assert FullSlip(finger).slides_on("slide", 1) is steady

@@ -1,0 +1,164 @@
+"""How far a run is and what time is left of it, in a terminal, in a file, and in quiet."""
+
+from dataclasses import fields
+
+import pytest
+from mpi4py import MPI
+
+from fingerpad.cli import compare, main
+from fingerpad.io.console import Console
+from fingerpad.io.pace import Pace, between, in_words
+from fingerpad.io.result import Result
+from fingerpad.runs.batch import times_left
+from variational.state import ContactState, StepRecord
+
+PRESS = '[[history]]\nname = "press"\nbone_height = -50e-6\n\n[output]\nerrors = false\nreceptors = false\n'
+MESH = "\n[mesh]\ncontact = 40e-6\nreceptor = 80e-6\ninterface = 150e-6\ngrowth = 0.8\n"
+
+
+# -- time left -----------------------------------------------------------------------------------------
+def after(seconds, done, **more):
+    """Return the time left (words) where a part is done after a time (s)."""
+    times = iter([0.0, seconds])
+    pace = Pace(clock=lambda: next(times), **more)
+    pace.at(done)
+    return pace.left()
+
+
+def test_half_done_leaves_as_long_again():
+    """Within a factor of the root of two."""
+    assert after(50.0, 0.5) == "35 to 71 s"
+
+
+def test_time_left_is_not_known_before_a_tenth():
+    assert after(10.0, 0.09) == "not known" != after(10.0, 0.11)
+
+
+def test_nothing_is_left_at_the_end():
+    assert after(100.0, 1.0) == "less than 1 s"
+
+
+@pytest.mark.parametrize("part", [0.1, 0.3, 0.6, 0.9])
+def test_range_holds_what_is_left_of_an_even_run(part):
+    low, _, high, _ = after(50.0 * part, part).split()
+    assert float(low) < 50.0 * (1 - part) < float(high)
+
+
+def test_load_that_ends_with_full_slip_is_as_far_as_its_friction():
+    """Not as far as its way, of which it needs a part alone."""
+    pace = Pace(2)
+    pace.at(0.5 + 0.1 / 2, slipped=0.75)
+    assert pace.part == pytest.approx(0.5 + 0.75 / 2)
+
+
+def test_full_slip_of_a_load_before_is_none_of_the_next():
+    """The first load has ended, with friction at its largest; and such a load is not done before full slip is held."""
+    pace = Pace(2)
+    pace.at(0.5, slipped=1.0)
+    assert pace.part == pytest.approx(0.5)
+    pace.at(0.5 + 0.1 / 2, slipped=1.0)
+    assert pace.part < 1
+
+
+def test_time_left_is_not_known_before_a_waveform_has_its_pace():
+    """It begins after 10 s; a fifth of it takes 8.8 s, so that 35.2 s are left."""
+    now = [0.0]
+    pace = Pace(2, first=1, clock=lambda: now[0])
+    for done, seconds in ((0.25, 5.0), (0.5, 10.0), (0.54, 13.2)):
+        now[0] = seconds
+        pace.at(done)
+        assert pace.left() == "not known"
+    now[0] = 10.0 + 8.8
+    pace.at(0.5 + 0.2 / 2)
+    low, _, high, unit = pace.left().split()
+    assert unit == "s" and float(low) < 35.2 < float(high) < 2 * 35.2
+
+
+@pytest.mark.parametrize(
+    ("low", "high", "words"),
+    [
+        (9e-10, 1.4e-9, "less than 1 s"),
+        (0.0, 0.0, "less than 1 s"),
+        (1.5, 6.0, "1.5 to 6 s"),
+        (40.0, 160.0, "0.67 to 2.7 minutes"),
+        (3600.0, 14400.0, "1 to 4 hours"),
+    ],
+)
+def test_range_is_in_the_unit_of_the_longer_time(low, high, words):
+    assert between(low, high) == words
+
+
+@pytest.mark.parametrize(("seconds", "words"), [(7.26, "7.3 s"), (119.0, "120 s"), (300.0, "5 minutes")])
+def test_time_is_in_the_unit_in_which_it_is_read(seconds, words):
+    assert in_words(seconds) == words
+
+
+def test_time_left_of_a_sweep_is_by_its_runs():
+    """Six runs left, two at a time: from two rounds and a half of the shortest to three of the longest."""
+    assert times_left([10.0, 30.0], 6, 2) == (25.0, 90.0)
+    assert times_left([10.0], 1, 2) == (5.0, 12.5)
+
+
+# -- console -------------------------------------------------------------------------------------------
+def test_phase_is_a_line_in_a_file(capsys):
+    """With the time left where it is known; capsys is no terminal."""
+    console = Console(MPI.COMM_SELF)
+    console.phase("meshing")
+    console.phase("estimating", 0)
+    console.phase("estimated", 1.0)
+    console.close()
+    assert capsys.readouterr().out == "meshing\nestimating\nestimated; time left: less than 1 s\n"
+
+
+def test_step_shows_the_time_left_of_the_path(capsys, monkeypatch):
+    monkeypatch.setattr(Pace, "left", lambda pace: "20 to 60 s")
+    console = Console(MPI.COMM_SELF)
+    console.expect(1)
+    work = {field.name: 0 for field in fields(StepRecord)}
+    conditions = {"f_ext": 1.0, "voltage": 0.0, "f_contact": 1.0, "f_electrostatic": 0.0, "f_t": 0.0, "mu_app": 0.0}
+    conditions |= {"bone_x": -0.0, "bone_height": -1e-12, "f_t": -1e-17, "mu_app": -1e-17}  # zeros have no sign
+    console.step(
+        ContactState(**conditions, load="press", contact_length=1e-3, ridges_in_contact=1, record=StepRecord(**work)),
+        0.5,
+    )
+    console.close()
+    out = capsys.readouterr().out
+    assert out.endswith("  20 to 60 s\n") and "-0" not in out
+
+
+@pytest.mark.parametrize("quiet", [False, True])
+def test_run_in_quiet_prints_the_result_alone(tmp_path, write, capsys, quiet):
+    """No step, no phase; the result as a table either way, once."""
+    argv = ["run", str(write(PRESS + MESH)), "--out", str(tmp_path / "out"), *(["--quiet"] if quiet else [])]
+    assert main(argv) == 0
+    said = capsys.readouterr().out
+    assert said.count("ridges in contact") == 1
+    assert ("path left" in said, "meshing the finger" in said) == (not quiet, not quiet)
+    assert said.endswith(f"Report: {tmp_path / 'out' / 'report.html'}\n") == (not quiet)
+
+
+def test_run_without_a_report_names_none(tmp_path, monkeypatch, capsys):
+    """Where it could not be made."""
+    monkeypatch.setattr("fingerpad.report.write.attempt", lambda folder: None)
+    assert main(["run", "--model", "cylinders", "--out", str(tmp_path / "out")]) == 0
+    assert "Report" not in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("quiet", [False, True])
+def test_compare_in_quiet_has_models_that_print_nothing(tmp_path, monkeypatch, quiet):
+    given = []
+
+    def solved(scene, model, context):
+        given.append((model.name, context.lines, context.bar))
+        return Result(scene, model.name, None, None, None, failure="none")
+
+    monkeypatch.setattr(compare, "solved", solved)
+    main(["compare", "--model", "full", "--out", str(tmp_path), *(["--quiet"] if quiet else [])])
+    assert given == [("full", not quiet, not quiet)]
+
+
+def test_sweep_in_quiet_prints_its_table_alone(tmp_path, write, capsys):
+    """Points that are refused before they are run are in the table."""
+    argv = ["sweep", str(write(PRESS + MESH)), "--over", "friction=0.2,0.3", "--out", str(tmp_path / "out"), "--quiet"]
+    assert main(argv) == 0
+    assert "done" not in capsys.readouterr().out

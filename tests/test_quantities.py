@@ -1,0 +1,136 @@
+"""Outputs: one entry, of a user or of the package, is in text, tables, files, sweeps and reports, and read back."""
+
+import csv
+import json
+import math
+from pathlib import Path
+
+import pytest
+import xarray
+from mpi4py import MPI
+
+import fingerpad as fp
+from fingerpad.io import quantities
+from fingerpad.report.write import write
+from fingerpad.scene import from_data
+from geometry.units import in_si
+from tests.test_dataset import SCENE
+
+P_MEAN = fp.Output(
+    "p_mean", "kPa", lambda state: state.f_contact / state.contact_length, words="mean pressure p_m", digits=2
+)
+MERKEL = fp.Output("merkel_max", "J/m^3", lambda state: state.sites.merkel.max())
+
+
+@pytest.fixture(scope="module")
+def result(tmp_path_factory):
+    """A run of seconds with two outputs of its own."""
+    folder = tmp_path_factory.mktemp("run")
+    return fp.run(from_data(SCENE), out=folder, comm=MPI.COMM_SELF, outputs=[P_MEAN, MERKEL])
+
+
+def values_of(result):
+    return [state.f_contact / state.contact_length for state in result.steps]
+
+
+def test_output_is_an_attribute_of_every_state(result):
+    assert [state.p_mean for state in result.steps] == values_of(result)
+    charged = result.charged
+    assert charged.p_mean == charged.f_contact / charged.contact_length
+    with pytest.raises(AttributeError, match="'p_min'"):
+        _ = charged.p_min
+
+
+def test_output_is_printed_in_its_unit(result):
+    """14614.6 Pa are 14.61 kPa."""
+    line = next(line for line in str(result).splitlines() if "p_m (kPa)" in line)
+    assert line.split()[-1] == f"{1e-3 * result.charged.p_mean:.2f}" and "mean pressure" in line
+
+
+def test_output_is_in_the_tables_in_si(result):
+    with (result.folder / "steps.csv").open(encoding="utf-8", newline="") as file:
+        assert [float(row["p_mean"]) for row in csv.DictReader(file)] == values_of(result)
+    summary = json.loads((result.folder / "summary.json").read_text(encoding="utf-8"))
+    assert summary["states"]["charged"]["p_mean"] == result.charged.p_mean
+    most = max(state.p_mean for state in result.steps if state.load == "nudge")
+    assert summary["loads"][2]["extremes"]["p_mean"]["max"] == most
+
+
+def test_output_is_in_the_dataset(result):
+    data = xarray.load_dataset(result.folder / "result.nc")
+    assert data["p_mean"].values.tolist() == values_of(result)
+    assert data["p_mean"].attrs == {"units": "Pa", "long_name": "mean pressure p_m"}
+    assert float(data["state_p_mean"].sel(state="charged")) == result.charged.p_mean
+    assert math.isnan(data["state_p_mean"].sel(state="full_slip"))
+    assert "load_p_mean_max" in data
+
+
+def test_output_is_read_back(result):
+    """Values, words and unit; the sites as well, of which one of them is computed."""
+    again = fp.Result.load(result.folder)
+    assert [state.row() for state in again.steps] == [state.row() for state in result.steps]
+    assert str(again) == str(result)
+    more = again.with_outputs([fp.Output("twice", "J/m^3", lambda state: 2 * state.sites.merkel.max())])
+    assert more.charged.twice == 2 * result.charged.merkel_max == 2 * more.steps[8].merkel_max
+    assert [output.name for output in more.outputs] == ["p_mean", "merkel_max", "twice"]
+
+
+def test_output_is_in_the_report(result):
+    page = write(result.folder).read_text(encoding="utf-8")
+    assert f"<td>{1e-3 * result.charged.p_mean:.2f}</td>" in page
+
+
+def test_output_of_a_sweep(tmp_path):
+    found = fp.sweep(fp.Scene(), tmp_path, model="cylinders", voltage=[0, 200], outputs=[P_MEAN])
+    values = [each.full_slip.f_contact / each.full_slip.contact_length for each in found]
+    assert found.array("p_mean").tolist() == values
+    with (tmp_path / "table.csv").open(encoding="utf-8", newline="") as file:
+        assert [float(row["full_slip_p_mean"]) for row in csv.DictReader(file)] == values
+    assert found.to_xarray()["state_p_mean"].sel(state="full_slip").values.tolist() == values
+    cell = f"{1e-3 * values[1]:.2f}"
+    assert str(found).splitlines()[3].split()[-1] == cell
+    assert f"<td>{cell}</td>" in (tmp_path / "report.html").read_text(encoding="utf-8")
+
+
+def test_entry_of_the_package_is_everywhere(tmp_path, monkeypatch):
+    """The recipe of CONTRIBUTING: an entry of OUTPUTS, and no other line."""
+    monkeypatch.setattr(quantities, "OUTPUTS", (P_MEAN,))
+    found = fp.run(fp.Scene(), model="cylinders", out=tmp_path)
+    assert "mean pressure p_m (kPa)" in str(found)
+    assert float(xarray.load_dataset(tmp_path / "result.nc")["state_p_mean"].sel(state="full_slip")) > 1e3
+    assert fp.Result.load(tmp_path).full_slip.p_mean == found.full_slip.p_mean
+
+
+def test_recipe_of_the_page_runs_as_written(capsys):
+    page = (Path(__file__).parents[1] / "docs" / "results.md").read_text(encoding="utf-8")
+    exec(page.split("```python\n")[1].split("```")[0], {})
+    printed = capsys.readouterr().out.splitlines()
+    shown = next(line for line in printed if line.strip().startswith("p_mean (kPa)")).split()[-1]
+    assert float(printed[-1]) == pytest.approx(1e3 * float(shown), rel=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("outputs", "words"),
+    [
+        (P_MEAN, "it must be a list of fingerpad.Output"),
+        (["p_mean"], "it must be a list of fingerpad.Output"),
+        ([P_MEAN, fp.Output("p_mean", "Pa", max)], "called .*p_mean.*; it must have a name of its own"),
+        ([fp.Output("f_t", "N/m", max)], "called .*f_t.*; it must have a name of its own"),
+        ([fp.Output("mean p", "Pa", max)], "called .*mean p.*; it must have a name of its own"),
+        ([fp.Output("p_mean", "Pa")], "must have a unit, such as 'kPa', and a function"),
+        ([fp.Output("p_mean", "Pa", lambda state: state.pressure)], "p_mean of step 0 cannot be computed"),
+        ([fp.Output("p_mean", "Pa", lambda state: "high")], "p_mean of step 0 cannot be computed"),
+    ],
+)
+def test_refused_outputs(outputs, words):
+    with pytest.raises(fp.SceneError, match=words):
+        fp.run(fp.Scene(), model="cylinders", outputs=outputs)
+
+
+@pytest.mark.parametrize(
+    ("unit", "found"),
+    [("kPa", ("Pa", 1e-3)), ("N/mm", ("N/m", 1e-3)), ("µm", ("m", 1e6)), ("J/m^3", ("Pa", 1.0)), ("1", ("1", 1.0))]
+    + [("clicks", ("clicks", 1.0))],
+)
+def test_units_of_outputs_are_turned_into_si(unit, found):
+    assert in_si(unit) == found

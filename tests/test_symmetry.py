@@ -1,0 +1,232 @@
+"""Half a body in the place of one that is its own mirror image: exact on a mirrored mesh, and the finger's numbers."""
+
+from dataclasses import replace
+
+import basix.ufl
+import dolfinx
+import numpy as np
+import pytest
+import ufl
+from mpi4py import MPI
+
+from fingerpad.model import options, symmetry
+from fingerpad.model.options import plan
+from fingerpad.runs import full as run_module
+from fingerpad.scene import Scene, from_data
+from geometry import tags
+from geometry.mesh import TaggedMesh
+from tests.measures import rows_of
+from tests.runs import run
+from variational.body import Body
+from variational.contact.penalty import Penalty
+from variational.energy import EnergyBook
+from variational.materials.ogden import Ogden
+from variational.output import Snapshot
+from variational.problem import Interface
+from variational.quantities import RidgeLoads
+from variational.roughness.bam import BearingArea
+from variational.solvers.continuation import Target
+from variational.solvers.stability import StabilityCheck
+
+H_0, WIDTH, HEIGHT, FORCE = 0.514e-6, 0.5e-3, 0.5e-3, 3.0
+MU_F = 0.02  # so little that some points slip
+SKIN, BOTTOM, TOP, LINE = tags.STRATUM_CORNEUM, tags.ridge(0), tags.BONE_RIM, tags.SYMMETRY
+
+
+# -- the plan ----------------------------------------------------------------------------------------------
+@pytest.mark.parametrize(
+    ("loads", "both"),
+    [
+        ([{"f_ext": 5.0}, {"voltage": 100.0}], False),
+        ([{"f_ext": 5.0, "bone_x": 0.0}], False),
+        ([{"f_ext": 5.0}, {"bone_x": -1e-3}, {"bone_x": 0.0}], True),
+    ],
+)
+def test_half_the_finger_where_the_bone_never_moves_sideways(loads, both):
+    history = [{"name": f"load {k}"} | load for k, load in enumerate(loads)]
+    needed = plan(from_data({"history": history}))
+    assert needed.both_halves is both
+    assert any("mirror image" in omission.reason for omission in needed.omitted) is not both
+
+
+def test_sliding_needs_both_halves():
+    assert plan(Scene()).both_halves
+
+
+def test_plan_for_the_whole_finger_says_nothing_of_halves():
+    needed = plan(from_data({"history": [{"name": "press", "f_ext": 5.0}]}))
+    assert [o.reason for o in needed.with_both_halves().omitted] == ["no load has a voltage"]
+
+
+# -- a block and its half ----------------------------------------------------------------------------------
+def mesh_of(half: bool, n: int = 6) -> dolfinx.mesh.Mesh:
+    """Return a block, 2 n x n rectangles halved, its own mirror image to the last diagonal, or its right half."""
+    x, y = np.meshgrid(np.linspace(0, WIDTH, n + 1), np.linspace(0, HEIGHT, n + 1))
+    points = np.column_stack([x.ravel(), y.ravel()])
+    a = np.arange(n * (n + 1)).reshape(n, n + 1)[:, :-1].ravel()
+    cells = np.concatenate([np.stack([a, a + 1, a + n + 2], 1), np.stack([a, a + n + 2, a + n + 1], 1)])
+    if not half:
+        nothing = np.zeros(len(cells))
+        whole = symmetry.snapshot(Snapshot(points, points, cells, nothing, nothing))
+        points, cells = whole.x, whole.triangles
+    element = ufl.Mesh(basix.ufl.element("Lagrange", "triangle", 1, shape=(2,)))
+    return dolfinx.mesh.create_mesh(MPI.COMM_SELF, cells, x=points, e=element)
+
+
+class Block:
+    """A barrelling block pressed with friction and charged; what it ended in."""
+
+    def __init__(self, half: bool) -> None:
+        mesh = mesh_of(half)
+        cells = np.arange(mesh.topology.index_map(2).size_local, dtype=np.int32)
+        cell_tags = dolfinx.mesh.meshtags(mesh, 2, cells, np.full(len(cells), SKIN, dtype=np.int32))
+        mesh.topology.create_connectivity(1, 2)
+        where = {BOTTOM: lambda x: x[1] < 1e-9, TOP: lambda x: x[1] > HEIGHT - 1e-9}
+        if half:
+            where[LINE] = lambda x: x[0] < 1e-9
+        found = {tag: dolfinx.mesh.locate_entities_boundary(mesh, 1, place) for tag, place in where.items()}
+        facets = np.concatenate(list(found.values()))
+        values = np.repeat(np.array(list(found), dtype=np.int32), [len(f) for f in found.values()])
+        order = np.argsort(facets)
+        facet_tags = dolfinx.mesh.meshtags(mesh, 1, facets[order], values[order])
+        body = TaggedMesh(mesh, cell_tags, facet_tags)
+        interface = Interface(Penalty(1.5e12, 5e10), MU_F, H_0)
+        made = Body(
+            body, {SKIN: Ogden(86.76e3, -14.53, 0.48)}, interface, BearingArea(H_0), force_scale=FORCE, tolerance=1e-11,
+            mirror=body.facets(LINE) if half else None, coupling_tolerance=1e-10,
+        )  # fmt: skip
+        problem, self.solver, coupling, self.path = made.problem, made.solver, made.coupling, made.continuation
+        path, copies = self.path, 2 if half else 1
+        book = EnergyBook(problem, path.surface_state, self.solver.bone, self.solver.reaction, coupling.d_eq, copies)
+        path.run(Target("press", f_ext=FORCE))
+        path.run(Target("charge", voltage=100.0))
+        self.energy = book.step(path.surface_state, self.solver.bone, self.solver.reaction, coupling.d_eq)
+        loads = path.observer.ridge_loads(path.surface_state)
+        self.loads = symmetry.loads(loads) if half else loads
+
+
+@pytest.fixture(scope="module")
+def blocks():
+    return Block(True), Block(False)
+
+
+CLOSE = 1e-8  # relative: imbalances of 1e-11 of the load over some hundred nodes and twenty steps
+
+
+def test_half_block_bears_and_sinks_as_the_whole(blocks):
+    half, whole = blocks
+    for name in ("f_contact", "f_attraction", "length"):
+        assert getattr(half.loads, name) == pytest.approx(getattr(whole.loads, name), rel=CLOSE)
+    assert half.path.slip == pytest.approx(whole.path.slip) and half.path.slip[0] > 0
+    assert half.solver.layout.global_size < 0.55 * whole.solver.layout.global_size
+    assert half.solver.bone[1] == pytest.approx(whole.solver.bone[1], rel=CLOSE)
+    assert half.solver.reaction == pytest.approx([0.0, FORCE], rel=CLOSE)
+    assert half.path.coupling.d_eq == pytest.approx(whole.path.coupling.d_eq, rel=CLOSE)
+
+
+@pytest.mark.parametrize("name", ["stored", "external", "voltage", "air_gap", "dissipation"])
+def test_half_block_s_energies_are_the_whole_s(blocks, name):
+    half, whole = (getattr(block.energy, name) for block in blocks)
+    assert half == pytest.approx(whole, rel=1e-6, abs=1e-9 * abs(blocks[1].energy.stored))
+
+
+def test_half_block_never_slips_one_way(blocks):
+    """Where all its points slip forth the image's slip back."""
+    slips = []
+    for block in blocks:
+        state = block.path.surface_state
+        slips.append(block.path.observer.slip(replace(state, t_t=MU_F * state.p_n)))
+    assert slips == [(1.0, False), (1.0, True)]
+
+
+def test_stability_of_the_half_is_that_of_the_whole(blocks):
+    """The least eigenvalue, of whichever symmetry; Ritz pairs settle to 1e-6 of the largest growth."""
+    half, whole = (StabilityCheck(block.solver).check() for block in blocks)
+    assert half.settled and whole.settled
+    assert half.lambda_min == pytest.approx(whole.lambda_min, rel=1e-4)
+
+
+# -- mirrored numbers --------------------------------------------------------------------------------------
+def test_mirrored_ridges():
+    ramp = np.array([1.0, 2.0, 3.0])
+    loads = symmetry.loads(RidgeLoads(ramp, ramp, ramp, ramp, ramp, ramp))
+    assert symmetry.names([0, 1, 2]) == [-2, -1, 0, 1, 2]
+    assert loads.f_contact.tolist() == loads.length.tolist() == [3, 2, 2, 2, 3]
+    assert loads.f_friction.tolist() == [-3, -2, 0, 2, 3]
+
+
+def test_mirrored_snapshot_is_one_body():
+    """No edge on the line belongs to one triangle only, and what moves right moves left."""
+    points = np.array([[0, 0], [1, 0], [0, 1.0]])
+    whole = symmetry.snapshot(Snapshot(points, points, np.array([[0, 1, 2]]), np.ones(1), np.ones(1, dtype=np.int32)))
+    assert whole.x.tolist() == whole.u.tolist() == [[0, 0], [1, 0], [0, 1], [-1, 0]]
+    assert whole.triangles.tolist() == [[0, 1, 2], [2, 3, 0]]
+    areas = [np.linalg.det(whole.x[t[1:]] - whole.x[t[0]]) for t in whole.triangles]
+    assert areas == [1, 1]
+
+
+# -- the finger --------------------------------------------------------------------------------------------
+MESH = {"contact": 12e-6, "receptor": 80e-6, "interface": 150e-6, "growth": 0.8, "touching_half_arc": 0.8e-3}
+HISTORY = [{"name": "press", "bone_height": -60e-6}, {"name": "charge", "voltage": 60.0}]
+
+
+@pytest.fixture(scope="module")
+def fingers(tmp_path_factory):
+    """Summaries and folders of a charged finger, by half and whole."""
+    folders = [tmp_path_factory.mktemp(name) for name in ("half", "whole")]
+    scene = from_data({"mesh": MESH, "history": HISTORY, "geometry": {"ridge_count": 9}})
+    half = run(scene, folders[0], MPI.COMM_WORLD)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(run_module, "plan", lambda scene: options.plan(scene).with_both_halves())
+        whole = run(scene, folders[1], MPI.COMM_WORLD)
+    assert "failure" not in half and "failure" not in whole
+    return (half, whole), folders
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("name", ["f_ext", "charged_f_contact", "charged_f_electrostatic", "charged_contact_length"])
+def test_half_the_finger_has_the_whole_s_numbers(fingers, name):
+    """Within the air gaps' tolerance of 1e-6: the whole's mesh is the half's and its mirror image."""
+    half, whole = fingers[0]
+    assert half[name] == pytest.approx(whole[name], rel=1e-5)
+
+
+@pytest.mark.long
+def test_half_the_finger_has_the_whole_s_tables(fingers):
+    _, (half, whole) = fingers
+    for name in ("ridges", "receptors"):
+        mine, other = rows_of(half, name), rows_of(whole, name)
+        assert list(mine[0]) == list(other[0])
+        last = [[row["ridge"] for row in rows if row["step"] == rows[-1]["step"]] for rows in (mine, other)]
+        assert last[0] == last[1]
+    sed = {row["ridge"]: row for row in rows_of(half, "receptors")}
+    assert sed["1"]["meissner_left"] == sed["-1"]["meissner_right"]
+    assert sed["2"]["merkel_sed"] == sed["-2"]["merkel_sed"]
+    assert {path.name for path in half.iterdir()} == {path.name for path in whole.iterdir()}
+
+
+@pytest.mark.long
+def test_half_the_finger_comes_with_its_error(fingers):
+    """Two halves of a length are not known better than one: of the size of the whole's, of which a facet is a fifth."""
+    half, whole = (summary["charged_contact_length_error"] for summary in fingers[0])
+    assert whole / 5 < half < 5 * whole
+    assert set(fingers[0][0]["accuracy"]["quantities"]) >= {"charged_contact_length", "charged_sed_0", "charged_sed_1"}
+
+
+@pytest.mark.long
+def test_half_the_finger_costs_half(fingers):
+    (half, whole), _ = fingers
+    assert half["unknowns"] < 0.55 * whole["unknowns"]
+    assert half["charged_f_t"] == 0.0
+
+
+def test_picture_shows_the_whole_finger(tmp_path, monkeypatch):
+    """Pressed by its half and as a whole, with elements of 30 um."""
+    half, whole = folders = tmp_path / "half", tmp_path / "whole"
+    data = {"mesh": MESH | {"contact": 30e-6}, "history": HISTORY[:1], "geometry": {"ridge_count": 9}}
+    for folder in folders:
+        run(from_data(data | {"output": {"errors": False}}), folder, MPI.COMM_WORLD)
+        monkeypatch.setattr(run_module, "plan", lambda scene: options.plan(scene).with_both_halves())
+    with np.load(half / "finger_press.npz") as mine, np.load(whole / "finger_press.npz") as other:
+        assert np.ptp(mine["x"][:, 0]) == pytest.approx(np.ptp(other["x"][:, 0]), rel=1e-9)
+        assert mine["merkel"] == pytest.approx(other["merkel"], abs=1e-9)

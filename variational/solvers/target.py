@@ -1,0 +1,107 @@
+"""A load to reach, the loads on the way to it, and how far a path has come."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from variational.solvers.equations import Control
+
+Array = NDArray[np.float64]
+# How far one step may go: parts of sqrt(f_ext) and of U^2, and metres of the bone.
+_FORCE, _VOLTAGE, _SINK, _SLIDE = 0.134, 0.5, 40e-6, 120e-6
+
+
+@dataclass(frozen=True)
+class Target:
+    """A load to reach from the present one; what is None stays as it is.
+
+    At most one of ``f_ext`` (N/m) and ``bone_height`` (m, change from the unloaded position, negative when pressed)
+    may be given: it also says which of the two is prescribed from then on.
+    """
+
+    name: str
+    f_ext: float | None = None
+    bone_height: float | None = None
+    voltage: float | None = None
+    bone_x: float | None = None
+    until_full_slip: bool = False
+    """Stop as soon as every point in contact slips one way."""
+    voltage_at: Callable[[float], float] | None = None
+    """Voltage (V) at a part of the way before its end; by default its square goes evenly."""
+    touches: bool = False
+    """Lower the bone from the air to the screen, before a load by a force."""
+    continues: bool = False
+    """A short piece of a longer way: the bone moves on as before, and the voltage changes as little as the piece is
+    short. It is reached in one step where that is possible."""
+    duration: float = 0.0
+    """How long the load takes (s), of which each step has its part as ``Problem.dt``; 0 where it changes at once."""
+
+
+@dataclass
+class Progress:
+    """From where a path is on its way to a target, and how far it has come; so that another process can go on."""
+
+    control: Control
+    """Of the state that the path set out from, as all above ``part``."""
+    voltage: float
+    height: float
+    """Of the bone (m, change from unloaded)."""
+    reaction: Array
+    """On the bone (N/m), shape (2,)."""
+    time: float
+    """(s)"""
+    steps: int
+    """Accepted steps so far."""
+    part: float = 0.0
+    """Of the way that is done."""
+    step: float = 0.0
+    """Part that the next step tries."""
+    uncut: int = 0
+    """Steps in a row that were not cut,"""
+    cut: int = 0
+    """and that were."""
+    jumps: bool = False
+    """Whether parts of the skin jumped on the way."""
+
+
+class Way:
+    """The loads between an accepted state and a target."""
+
+    def __init__(self, start: Progress, target: Target) -> None:
+        """Take the progress, of which its begin counts, and the target."""
+        self.start, self.target = start, target
+        self.length = 0.0 if target.bone_x is None else target.bone_x - start.control.x
+
+    def at(self, part: float) -> tuple[Control, float]:
+        """Return control and voltage where a part of the target is reached."""
+        a, target = self.start, self.target
+        u1 = a.voltage if target.voltage is None else target.voltage
+        c = Control(a.control.x + part * self.length, a.control.y, a.control.force)
+        if target.bone_height is not None:
+            c.y = a.height + part * (target.bone_height - a.height)
+        elif target.f_ext is not None:
+            # equal steps of the root: nearly equal steps of the indentation
+            f0 = max(a.control.force, 0.0)
+            c.y, c.force = None, (np.sqrt(f0) + part * (np.sqrt(target.f_ext) - np.sqrt(f0))) ** 2
+        if target.voltage_at is not None and part < 1:
+            return c, target.voltage_at(part)
+        # equal steps of U^2, which the attraction follows; a sign that changes does so at once, which changes no force
+        amount = np.sqrt(a.voltage**2 + part * (u1**2 - a.voltage**2))
+        return c, float(np.copysign(amount, u1 or a.voltage)) + 0.0
+
+    def largest_step(self, scale: float) -> float:
+        """Return the largest part of the target that one step may cover; ``scale`` multiplies the usual one."""
+        a, target = self.start, self.target
+        steps: list[tuple[float, float]] = []  # how far one step may go, and how far the target is
+        if target.f_ext is not None:
+            roots = np.sqrt(target.f_ext), np.sqrt(max(a.control.force, 0.0))
+            steps.append((_FORCE * max(roots), abs(roots[0] - roots[1])))
+        if target.voltage is not None and not target.continues:
+            squares = target.voltage**2, a.voltage**2
+            steps.append((_VOLTAGE * max(squares), abs(squares[0] - squares[1])))
+        if target.bone_height is not None:
+            steps.append((_SINK, abs(target.bone_height - a.height)))
+        steps.append((_SLIDE, abs(self.length)))
+        return float(min([1.0, *(scale * most / whole for most, whole in steps if whole > 0)]))
