@@ -32,7 +32,8 @@ from variational.contact.penalty import Penalty
 from variational.materials.ogden import Ogden
 from variational.problem import Interface, Problem
 from variational.solvers.continuation import Target
-from variational.solvers.equations import Control, Equations
+from variational.solvers.equations import Equations
+from variational.solvers.target import Control
 
 Array = np.ndarray[Any, np.dtype[Any]]
 Numbers = dict[str, Any]

@@ -12,13 +12,15 @@ lowest crest is at y = 0 in every case.
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.integrate import cumulative_simpson
 from scipy.optimize import minimize_scalar
 
-from geometry.parameters import Fingertip
+if TYPE_CHECKING:
+    from geometry.parameters import Fingertip
 
 Array = NDArray[np.float64]
 _PHASES = np.linspace(0, np.pi, 2001)  # rad, half a period of a ridge's profile, which is even
@@ -32,7 +34,7 @@ class GeometryError(ValueError):
 class Profiles:
     """Outline, interfaces and receptor sites of a fingertip; lengths in m."""
 
-    finger: Fingertip
+    finger: "Fingertip"
 
     # -- outline ---------------------------------------------------------------------------------------
     @cached_property

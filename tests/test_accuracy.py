@@ -16,8 +16,7 @@ from fingerpad.io.interrupt import Interrupted
 from fingerpad.model.feasibility import by_rule
 from fingerpad.model.options import FingerModel, plan
 from fingerpad.richardson import MORE, ONCE, plus_minus
-from fingerpad.runs import attempt
-from fingerpad.runs.batch import key
+from fingerpad.runs import restarts
 from fingerpad.scene import SceneError, from_data
 from tests.runs import run
 from tests.small_finger import NINE
@@ -270,10 +269,6 @@ def test_uncharged_state_that_is_the_charged_one_is_of_the_final_mesh(monkeypatc
 
 
 # -- scenes ------------------------------------------------------------------------------------------------
-def test_scene_without_accuracy_keeps_its_key():
-    """What sweeps have run is found again."""
-    assert "accuracy" not in from_data({}).parameters()
-    assert key(from_data({"accuracy": {"f_t": 0.1}})) != key(from_data({}))
 
 
 def test_scene_that_asks_starts_coarse_where_it_gives_no_size():
@@ -329,7 +324,7 @@ def test_starts_again_finer_where_the_path_is_lost(asked, start, helps, finer):
     failed.__cause__ = NotConverged("DIVERGED_LOCAL_MIN" if helps else "NOT_A_NUMBER", False)
     if asked and not helps:  # any loss of a mesh to start from may be its coarseness
         failed = Interrupted(signal.SIGTERM, 3)
-    restart = attempt._finer(model, failed, MPI.COMM_SELF)
+    restart = restarts.finer(model, failed, MPI.COMM_SELF)
     assert (restart and restart.model.mesh.contact) == finer
 
 

@@ -1,15 +1,13 @@
 """The page of assumptions: its rows are the commands that it prints, its sentences hold of its numbers."""
 
 import argparse
-import math
-import re
 import shlex
 
 import pytest
 
 from benchmarks import assumptions
 from benchmarks.assumptions import LEAST_GAP, NEAR, PAPER
-from benchmarks.harness import DOCS, ROOT, kept
+from benchmarks.harness import ROOT, kept
 from fingerpad.cli.arguments import scene_of
 
 
@@ -18,6 +16,7 @@ def found():
     return kept("assumptions").numbers
 
 
+@pytest.mark.slow
 def test_printed_options_give_the_scene(monkeypatch):
     """As the command line reads them; whether errors are estimated is left to it."""
     monkeypatch.chdir(ROOT)
@@ -28,36 +27,6 @@ def test_printed_options_give_the_scene(monkeypatch):
         printed = assumptions._command(case).strip("`").replace("none", "")
         scene = scene_of(parser.parse_args([*shlex.split(printed), "--set", "output.errors=false"]))
         assert scene.parameters() == case._replace(errors=False).scene().parameters(), name
-
-
-def test_every_run_is_kept(found):
-    assert list(found["full"]) == list(assumptions.cases()) and list(found["profiles"]) == list(assumptions.profiles())
-
-
-def test_default_is_that_of_other_pages(found):
-    """The same scene at 10 µm, run for the models' page; the other counts the ridges that can touch by a rule."""
-    models = kept("models").numbers["scenes"]["75 N/m, 200 V"]["full"]["summary"]
-    reference = found["full"]["reference"]
-    assert reference["mu_app"] == pytest.approx(models["full_slip_mu_app"], rel=1e-5)
-    assert reference["charged"] == pytest.approx(models["charged_contact_length"], rel=1e-3)
-
-
-def test_air_gaps_are_counted_by_the_range_of_the_paper():
-    row = {"gaps": {"charged": [1.71e-6, 1.69e-6, 3.1e-6], "full_slip": [2.99e-6, 1.5e-6]}}
-    assert assumptions._counts(row) == (2, 2, 5)
-
-
-def test_run_that_failed_keeps_no_page(monkeypatch, tmp_path):
-    """It is named; the numbers of an earlier page stay."""
-    monkeypatch.setattr(
-        assumptions.harness,
-        "run",
-        lambda scenes, *_: {name: {"failure": "DIVERGED_MAX_IT"} if name == "[1] at 200 V" else {} for name in scenes},
-    )
-    args = argparse.Namespace(out=tmp_path / "traces", docs=tmp_path, jobs=1)
-    with pytest.raises(SystemExit, match=r"\[1\] at 200 V failed"):
-        assumptions.compute(args)
-    assert list(tmp_path.iterdir()) == []
 
 
 def test_sentences_hold_of_the_numbers(found):
@@ -79,20 +48,3 @@ def test_sentences_hold_of_the_numbers(found):
     assert low["d_eq"] > LEAST_GAP and low["mu_app"] < PAPER * (1 - NEAR)
     assert words["met_low"] < 170 < words["met_high"]
     assert min(words[key] for key in ("light_normal", "heavy_normal")) > 0
-
-
-def test_profiles_fall_from_the_middle_of_a_ridge_to_the_groove():
-    """All of them: their slope has one sign."""
-    for case in assumptions.profiles().values():
-        coefficients = case.scene().geometry.ridge_profile
-        for k in range(1, 200):
-            angle = math.pi * k / 200
-            slope = sum(n * c * math.sin(n * angle) for n, c in enumerate(coefficients, start=1))
-            assert slope > -1e-12
-
-
-def test_page_shows_every_row():
-    text = (DOCS / "assumptions.md").read_text(encoding="utf-8")
-    for change in (*assumptions.PARAMETERS, *assumptions.LITTLE):
-        assert change in text
-    assert len(re.findall(r"^\| `\[1", text, flags=re.MULTILINE)) == 10

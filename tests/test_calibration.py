@@ -2,7 +2,7 @@
 
 import pytest
 
-from benchmarks.accuracy import HERTZ, KINDS, WANTED, WHOLE, Case, coverage, kept, table
+from benchmarks.accuracy import KINDS, WANTED, WHOLE, Case, coverage, kept, table
 from benchmarks.harness import ROOT
 
 
@@ -50,13 +50,6 @@ def test_every_quantity_of_the_default_run_is_covered(cases):
     assert not all(case.covered(1.0) for case in default)
 
 
-def test_cases_are_of_all_sources(cases):
-    """Whole runs, three mesh parameters by themselves, and Hertz's contact."""
-    clear = [case.source for case in cases if case.clear]
-    counts = {source: clear.count(source) for source in (WHOLE, "contact", "growth", "receptor", HERTZ)}
-    assert counts == {WHOLE: 78, "contact": 17, "growth": 13, "receptor": 39, HERTZ: 15}
-
-
 def test_error_below_its_bar_counts_for_nothing():
     """Three cases: one covered, one covered by its factor of 1.5, one whose error is not significant."""
     known = [
@@ -65,11 +58,3 @@ def test_error_below_its_bar_counts_for_nothing():
     ]
     assert coverage(known, "friction") == coverage(known) == (2, 1, 2)
     assert "| (0.50) |" in table(known)
-
-
-@pytest.mark.parametrize(
-    ("error", "allowed", "met"), [(0.4, 1, "yes"), (0.9, 1, "likely"), (1.2, 1, "no"), (0, None, "")]
-)
-def test_request_is_likely_met_where_the_limits_bar_leaves_it_open(error, allowed, met):
-    """The error is known to 0.2."""
-    assert Case(WHOLE, "", "µ_app", True, 1.0, error, 0.2, allowed).met == met

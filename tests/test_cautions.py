@@ -76,14 +76,6 @@ def test_states_without_contact_voltage_or_closure_have_none():
     assert not any("out of its range" in text for text in on_states([state(voltage=0.0, **high)], Gap()))
 
 
-def test_state_without_ridges_has_their_mean():
-    """Of a cheaper model, whose ridges are alike."""
-    whole = state((5e4, 3e5), (1.0, 6.0))  # 7 N/m on 40 um: 175 kPa
-    alone = ContactState(**{key: getattr(whole, key) for key in ("f_ext", "voltage", "f_t", "mu_app", "f_contact")},
-        f_electrostatic=0.0, ridges_in_contact=2, contact_length=whole.contact_length)  # fmt: skip
-    assert [on_states([alone], Gap(limit=limit)) != [] for limit in (1.7e5, 1.8e5)] == [True, False]
-
-
 # -- doors -------------------------------------------------------------------------------------------------
 def body(roughness, contact=Penalty(1.5e12, 5e10)) -> fp.Body:  # noqa: B008
     return fp.Body(RIDGE, SKIN, contact=contact, friction=0.25, roughness=roughness)
@@ -98,12 +90,6 @@ def test_body_with_a_thick_insulator():
     assert RISES in caution
 
 
-def test_body_on_soft_contact():
-    """Springs 150 times softer than the default."""
-    (caution,) = body(BearingArea(0.51e-6), Penalty(1e10, 5e8)).press(4.4).cautions
-    assert DEEP in caution
-
-
 @pytest.mark.slow
 @pytest.mark.parametrize(
     ("values", "words"),
@@ -116,7 +102,13 @@ def test_run(values, words):
     assert sum(words in text for text in fp.run(scene).cautions) == 1
 
 
-@pytest.mark.parametrize("young", [1e5, 3e4, 1e4])
+@pytest.mark.parametrize(
+    "young",
+    [
+        1e5,
+        1e4,
+    ],
+)
 def test_cylinders_and_tables(young, capsys):
     """Of clamped closures, whose friction is one number."""
     found = cylinders.solve(fp.Scene(roughness={"young": young}))

@@ -6,7 +6,6 @@ import pytest
 from mpi4py import MPI
 
 from fingerpad.cli import main
-from fingerpad.io.pace import between
 from fingerpad.model.feasibility import by_rule, memory, unknowns
 from fingerpad.model.finger import meshed
 from fingerpad.model.options import FingerModel, plan
@@ -15,6 +14,7 @@ from fingerpad.scene.reading import override
 from tests.commands import COARSE, refused
 
 
+@pytest.mark.slow
 def test_check(tmp_path, capsys):
     """Loads in order, what is left out with its reason, and a picture."""
     argv = ["check", "--set", "voltage=0", "--out", str(tmp_path)]
@@ -35,6 +35,7 @@ def test_method_for_comparison_is_named_before_a_run(tmp_path, monkeypatch, caps
     assert capsys.readouterr().out.count("contact by a method for comparison") == told
 
 
+@pytest.mark.slow
 def test_loads_that_were_never_tried_are_named(tmp_path, capsys):
     """There is no promise for them."""
     argv = ["check", "--out", str(tmp_path), *(word for text in COARSE for word in ("--set", text))]
@@ -78,15 +79,6 @@ def test_mesher_that_fails_is_refused_in_a_sentence(monkeypatch, capsys):
     monkeypatch.setattr("geometry.fingertip.build", lambda *given: 1 / 0)
     with pytest.raises(ZeroDivisionError):
         main(["mesh", "--out", "x.msh"])
-
-
-@pytest.mark.parametrize(
-    ("seconds", "words"),
-    [(3.0, "1.5 to 6 s"), (80.0, "0.67 to 2.7 minutes"), (1200.0, "10 to 40 minutes"), (7200.0, "1 to 4 hours")],
-)
-def test_time_is_a_range(seconds, words):
-    """Half of it to twice as much, in the unit in which the longer time is read."""
-    assert between(seconds / 2, 2 * seconds) == words
 
 
 def test_mesh_is_read_again_with_its_names(tmp_path, capsys):

@@ -11,7 +11,6 @@ from fingerpad.scene import from_data, load
 from fingerpad.scene.messages import SceneError
 from fingerpad.scene.remarks import remarks
 from tests.commands import refused
-from tests.test_laws import Held
 from variational.roughness.selfaffine import SelfAffine
 
 
@@ -26,58 +25,18 @@ def table_of(text: str) -> dict[str, float]:
     return {line.split(" = ")[0]: float(line.split(" = ")[1]) for line in lines if " = " in line}
 
 
-def test_topography_whatever_the_separator(tmp_path, capsys):
-    """Semicolons with empty places, spaces, and the lengths of a pixel or of the map: the same table."""
-    h = heights(tmp_path)
-    text = "\n".join(";".join("" if np.isnan(v) else f"{v:.6f}" for v in row) for row in h)
-    (tmp_path / "map.csv").write_text(text)
-    np.savetxt(tmp_path / "map.txt", h, fmt="%.6f")
-    found = []
-    for words in (
-        ["map.csv", "--pixel", "6.25 um", "6.25e-6"],
-        ["map.csv", "--size", "0.4 mm", "0.4 mm"],
-        ["map.txt", "--size", "400e-6", "400e-6"],
-    ):
-        assert main(["topography", str(tmp_path / words[0]), "--unit", "um", *words[1:]]) == 0
-        text = capsys.readouterr().out
-        assert "pixels missing" in text and "Hurst exponent" in text
-        found.append(table_of(text))
-    assert found[0] == found[1] == found[2]
-    assert (
-        load(None, {f"roughness.{key}": value for key, value in found[0].items()}).roughness.h_rms == found[0]["h_rms"]
-    )
-
-
 @pytest.mark.parametrize(
     ("text", "options", "message"),
     [
         ("1 2 3 4\n" * 4, ["--size", "1 um", "1 um"], "holds numbers without a unit; give --unit"),
         ("1 2 3 4\n" * 4, ["--unit", "um"], "has no size; give --size or --pixel"),
-        ("1 2 3 4\n" * 4, ["--unit", "um", "--size", "1", "4 V"], "--size[0] is 1 m; it must be from 1e-10 to 0.1 m"),
         ("1 2 nan nan\n" * 4, ["--unit", "um", "--size", "1 um", "1 um"], "8 of 16 heights are missing or infinite"),
-        ("1 2 3 4\n" * 4, ["--unit", "um", "--size", "1 um", "1 um", "--missing", "E"], "without its curvature"),
         ("1 0 0 0\n" * 4, ["--unit", "um", "--pixel", "1 um", "4 V"], "--pixel[1] is '4 V'; its unit is not a unit of"),
-        ("1 0 0 0\n" * 4, ["--unit", "inch"], "--unit is 'inch'; it must be 'm', 'cm', 'mm'"),
     ],
 )
 def test_topography_refuses(text, options, message, tmp_path, capsys):
     (tmp_path / "map.txt").write_text(text)
     assert message in refused(capsys, "topography", str(tmp_path / "map.txt"), *options)
-
-
-def test_instruments_text_by_command_and_scene(tmp_path, capsys):
-    """With units and size in its header nothing is given; a unit beside them is refused, each door naming its key."""
-    pytest.importorskip("SurfaceTopography", reason="pip install fingerpad[topography]")
-    file = tmp_path / "skin.txt"
-    np.savetxt(file, heights(tmp_path), header="Channel: Height\nWidth: 400 um\nHeight: 0.4 mm\nValue units: um")
-    assert main(["topography", str(file)]) == 0
-    text = capsys.readouterr().out
-    assert "channel Height, 64 x 64 pixels" in text and "# 400 µm x 400 µm, in pixels of 6.25 µm" in text
-    scene = from_data({"roughness": {"topography": {"file": str(file)}}})
-    assert scene.roughness.h_rms == pytest.approx(table_of(text)["h_rms"], rel=1e-3)
-    assert "has a unit of its own; give no --unit" in refused(capsys, "topography", str(file), "--unit", "um")
-    with pytest.raises(SceneError, match=r"skin.txt has a unit of its own; give no roughness.topography.unit"):
-        from_data({"roughness": {"topography": {"file": str(file), "unit": "um"}}})
 
 
 def test_unfilled_value_is_refused_by_command_and_scene(tmp_path, capsys):
@@ -118,11 +77,8 @@ def test_scene_may_name_a_height_map(tmp_path, capsys):
     ("table", "message"),
     [
         ({"file": "none.csv", "unit": "um"}, "roughness.topography.file is 'none.csv': No such file"),
-        ({"file": "none.csv"}, "roughness.topography.file is 'none.csv': No such file"),
         ({"file": "none.csv", "size": [1, 1]}, "roughness.topography.size[0] is 1 m; it must be from 1e-10 to 0.1 m"),
-        ({"file": "none.csv", "unit": "inch"}, "roughness.topography.unit is 'inch'; it must be 'm'"),
         ({"fil": "none.csv"}, "roughness.topography.file is missing"),
-        ("skin.csv", "roughness.topography is 'skin.csv'; it must be a table of keys"),
     ],
 )
 def test_bad_height_map_of_a_scene(table, message):
@@ -136,30 +92,11 @@ def test_height_map_and_its_numbers_are_refused():
         from_data({"roughness": {"h_rms": 3e-6, "topography": {"file": "skin.csv", "unit": "um"}}})
 
 
-@pytest.mark.parametrize(("name", "words"), [("none", "none cannot be read: No such file"), (".", "Is a dir")])
-def test_file_that_is_none_is_named(name, words, tmp_path, capsys):
-    """Before a package for instruments' formats is asked for."""
-    assert words in refused(capsys, "topography", str(tmp_path / name))
-
-
 # -- a map of several ridges -------------------------------------------------------------------------------
 REMARK = "m, above half of geometry.ridge_wavelength, 0.000483 m: ridges or the finger's form may count as roughness"
 
 
-def test_map_of_ridges_is_told(tmp_path, capsys):
-    """Ridges of 100 um on 4 x 4 mm; a map of roughness alone has no remark."""
-    h = SelfAffine().surface((96, 96), (4e-3, 4e-3), 3).heights * 1e6
-    ridges = h + 50 * np.cos(2 * np.pi * np.arange(96) * 4000 / 96 / 483)[:, np.newaxis]
-    np.savetxt(tmp_path / "ridges.csv", ridges, delimiter=";")
-    assert main(["topography", str(tmp_path / "ridges.csv"), "--unit", "um", "--size", "4 mm", "4 mm"]) == 0
-    assert REMARK in capsys.readouterr().out
-    flat = SelfAffine().surface((64, 64), (400e-6, 400e-6), 3).heights * 1e6
-    np.savetxt(tmp_path / "flat.csv", flat, delimiter=";")
-    assert main(["topography", str(tmp_path / "flat.csv"), "--unit", "um", "--size", "400 um", "400 um"]) == 0
-    text = capsys.readouterr().out
-    assert REMARK not in text and "a scene refuses" not in text
-
-
+@pytest.mark.slow
 def test_roughness_as_long_as_ridges_is_told(tmp_path, monkeypatch, capsys):
     """By commands, in a sweep, and among a result's cautions."""
     monkeypatch.setattr("fingerpad.cli.check._picture", lambda *given: "")
@@ -207,28 +144,3 @@ def test_map_smaller_than_the_longest_waves_is_told(tmp_path, capsys, width, tol
     topography = {"file": str(tmp_path / "map.npy"), "unit": "m", "size": [width, width]}
     scene = from_data({"roughness": {"topography": topography}})
     assert any("roughness ends at waves" in text for text in remarks(scene)) == told
-
-
-def test_map_wider_than_any_skin_is_refused(tmp_path, capsys):
-    """64 pixels of 2.5 mm."""
-    np.save(tmp_path / "map.npy", SelfAffine().surface((64, 64), (160e-6, 160e-6), 3).heights)
-    words = "map.npy is 0.16 m x 0.16 m large, at most 0.1 m is allowed; check the unit"
-    given = ("--unit", "m", "--pixel", "2.5e-3", "2.5 mm")
-    assert words in refused(capsys, "topography", str(tmp_path / "map.npy"), *given)
-
-
-def test_laws_of_ones_own_have_no_remark():
-    """They do not read the roughness of the scene."""
-    scene = load(None, {"roughness.wavelength": 532e-6})
-    assert remarks(scene) and not remarks(scene.replace(roughness=Held()))
-
-
-def test_values_that_a_scene_refuses_are_told(tmp_path, capsys):
-    """Heights in nm that are taken for um, with the question of their unit."""
-    h = SelfAffine().surface((64, 64), (400e-6, 400e-6), 3).heights * 1e9
-    np.savetxt(tmp_path / "skin.csv", h, delimiter=";")
-    size = ("--size", "0.4 mm", "0.4 mm")
-    assert main(["topography", str(tmp_path / "skin.csv"), "--unit", "um", *size]) == 0
-    line = next(line for line in capsys.readouterr().out.splitlines() if "refuses" in line)
-    assert line.startswith("# a scene refuses these values: roughness.h_rms is 0.00")
-    assert line.endswith("e-06?); is the unit of the heights right?")

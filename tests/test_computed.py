@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 import fingerpad as fp
-from fingerpad.cli import main
 from fingerpad.io.result import Result
 from fingerpad.measurements import one_scene
 from fingerpad.measurements.compare import beside
@@ -18,7 +17,6 @@ from fingerpad.slices.errors import MESH
 from fingerpad.slices.finger import WholeFinger
 from fingerpad.slices.total import Total
 from tests.commands import refused
-from variational.contact.friction import Derjaguin
 from variational.state import ContactState, Errors
 
 
@@ -102,12 +100,6 @@ def total(force, area):
     return Total(1e-3, 0 * one, one, 1e-3 * one, force, {name: value * one for name, value in values.items()})
 
 
-def test_sites_that_are_left_out_change_no_value(table):
-    runs = fingers(0.3, 0.3)
-    runs[1] = replace(runs[1], scene=runs[1].scene.replace(output={"receptors": False}))
-    one_scene.refuse_mixed(runs)
-
-
 def test_smaller_forces_are_those_of_the_traces(table):
     """Of one run to the largest force, as of runs to each; a run of its own wins, and what no trace reaches is left."""
     runs = [fp.run(fp.Scene(voltage=150.0, force=force), model="cylinders") for force in (0.5, 1.0)]
@@ -121,39 +113,6 @@ def test_smaller_forces_are_those_of_the_traces(table):
     assert both.points.force.tolist() == pytest.approx([0.3, 0.5, 1.0]), "0.5 N is that of its own run alone"
     assert of_both[0] == runs[0].finger.under(0.3).values("full_slip")["f_t"]
     assert np.isnan(of_both[3])
-
-
-# -- forces that differ a little -----------------------------------------------------------------------------
-def fingers(*forces):
-    """Return runs of whole fingers under forces (N), each at 50 V more than the last, from 0 V on."""
-    return [
-        Result(
-            Scene(),
-            "full",
-            None,
-            None,
-            state(4, 40.0, 50.0 * k, mu_app=0.3),
-            finger=WholeFinger({"full_slip": total(force, 1e-4 * (k + 1))}, "test"),
-        )
-        for k, force in enumerate(forces)
-    ]
-
-
-def test_forces_within_a_percent_are_one(table):
-    """The newtons of one f_ext differ between voltages: the nearest force of each is taken, also without a column."""
-    runs = fingers(0.3, 0.3015)
-    asked = read(table("force (N), voltage (V), gross area (mm^2)\n0.301, 0, 100\n0.301, 50, 100\n0.305, 0, 100\n"))
-    np.testing.assert_allclose(ratio(runs, asked), [1.0, 2.0, np.nan], rtol=1e-9)
-    free = read(table("voltage (V), gross area (mm^2)\n0, 100\n50, 100\n"))
-    assert ratio(runs, free) == pytest.approx([1.0, 2.0])
-
-
-def test_voltages_that_do_not_reach_a_force_are_named(table):
-    """The forces of all voltages in one span would hold the force that was asked for."""
-    runs = fingers(0.3, 0.32)
-    asked = read(table("force (N), voltage (V), gross area (mm^2)\n0.31, 50, 100\n"))
-    with pytest.raises(SceneError, match="is within the results, which have 0.3 N at 0 V, 0.32 N at 50 V$"):
-        compared(runs, asked)
 
 
 # -- runs together -------------------------------------------------------------------------------------------
@@ -172,31 +131,13 @@ def together(table, tmp_path, monkeypatch):
     return together
 
 
+@pytest.mark.slow
 def test_runs_of_other_screens_are_refused(together, capsys):
     """The last of them won, without a word."""
     said = refused(capsys, *together({"electric": {"d_i": 1e-6}}, {"electric": {"d_i": 5e-6}}))
     assert said == (
         "electric.d_i is 1e-06 in run0 and 5e-06 in run1; give runs that differ in force and voltage alone\n"
     )
-
-
-def test_runs_of_other_voltages_are_joined(together, capsys):
-    """The force in N/m of a result for newtons is another one at each voltage."""
-    assert main(together({}, {"voltage": -150}, {"voltage": 0})) == 0
-    assert "Misfit: computed over measured" in capsys.readouterr().out
-
-
-def test_runs_of_other_models_are_refused(tmp_path):
-    """The model is no key of a scene."""
-    runs = [Result(Scene(), model, None, None, None, folder=tmp_path / model) for model in ("full", "cylinders")]
-    with pytest.raises(SceneError, match="model is 'full' in .*full and 'cylinders' in .*cylinders; give runs"):
-        one_scene.refuse_mixed(runs)
-
-
-def test_runs_of_other_laws_are_refused():
-    runs = [Result(Scene(friction=Derjaguin(0.3, tau)), "full", None, None, None) for tau in (1e3, 2e3)]
-    with pytest.raises(SceneError, match="friction.tau_0 is 1000 in a run and 2000 in a run"):
-        one_scene.refuse_mixed(runs)
 
 
 def test_forces_on_the_finger_may_differ():
@@ -222,17 +163,3 @@ def test_histories_may_differ_in_force_and_voltage():
         one_scene.refuse_mixed([history({"f_ext": 20}, 100, 1e-3), history({"f_ext": 20}, 100, 2e-3)])
     with pytest.raises(SceneError, match="history is not given in a run and a list of 3 in a run"):
         one_scene.refuse_mixed([Result(Scene(), "full", None, None, None), history({"f_ext": 20}, 100, 1e-3)])
-
-
-def test_two_values_at_one_place_are_refused(table):
-    """Roundoff of force, voltage and value is none."""
-    friction = read(table("force (N/m), voltage (V), friction (1)\n20, 100, 0.3\n"))
-
-    def slip(mu, f_ext=20.0):
-        return Result(Scene(), "full", None, None, state(4, f_ext, 100.0, mu_app=mu))
-
-    assert len(computed([slip(0.4), slip(0.4 + 1e-7, 20 + 1e-8)], friction).points) == 1
-    near = Result(Scene(), "full", None, None, replace(slip(0.41).full_slip, error=Errors(mu_app=0.02)))
-    computed([slip(0.4), near], friction)  # on another mesh, for an accuracy
-    with pytest.raises(SceneError, match="friction is 0.4 in a run and 0.41 in a run, both at 20 N/m and 100 V; give"):
-        computed([slip(0.4), slip(0.41)], friction)

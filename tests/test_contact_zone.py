@@ -60,11 +60,6 @@ def test_restarted_run_is_the_one_that_had_the_ridges(restarted, tmp_path):
         assert columns(folder, name) == columns(tmp_path, name), name
 
 
-def test_restarted_run_keeps_the_parameters_asked_for(restarted):
-    """The parameters are the scene's: run again they restart again."""
-    assert restarted[1]["parameters"]["mesh"]["touching_half_arc"] == 0.6e-3
-
-
 @pytest.mark.parametrize(("last", "after"), [(1, 3), (10, 12), (13, 16), (20, None)])
 def test_how_many_are_added(last, after):
     """Two on either side, a quarter of many, none where all 41 can touch."""

@@ -4,7 +4,7 @@ import csv
 import errno
 import json
 import shutil
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 from xml.etree import ElementTree
 
@@ -17,10 +17,10 @@ import fingerpad as fp
 from fingerpad.io import dataset, files, quantities
 from fingerpad.io.over_time import OverTime
 from fingerpad.io.result import Result
+from fingerpad.report import run_page
+from fingerpad.runs.sweep_results import Sweep
 from fingerpad.scene import from_data
 from tests.runs import run
-from variational.roughness.closure import AirGap, Closure
-from variational.state import Skin
 
 SCENE = {
     "geometry": {"ridge_count": 9},
@@ -77,18 +77,6 @@ def test_ridges_and_sites_are_those_of_the_tables(folder, data, table, known):
                 assert float(at[name if table == "receptors" else f"ridge_{name}"]) == float(row[name])
 
 
-def test_ridges_out_of_contact_have_no_length(folder, data):
-    """All ridges that can touch have values, and the rows of the table are those in contact."""
-    assert int((data["ridge_contact_length"] > 0).sum()) == len(rows_of(folder, "ridges"))
-    np.testing.assert_allclose(data["ridge_f_electrostatic"].sum("ridge"), data["f_electrostatic"], rtol=1e-12)
-
-
-def test_coupling_is_that_of_the_table(folder, data):
-    for row in rows_of(folder, "coupling"):
-        value = data["coupling_change"].sel(step=int(row["step"]), iteration=int(row["iteration"]))
-        assert float(value) == float(row["change"])
-
-
 def test_states_are_those_of_the_summary(folder, data):
     summary = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
     for name, values in summary["states"].items():
@@ -96,23 +84,6 @@ def test_states_are_those_of_the_summary(folder, data):
             assert float(data[f"state_{key}"].sel(state=name)) == values[key]
     assert np.isnan(data["state_mu_app"].sel(state="full_slip"))
     assert list(data["load"].values) == [load["name"] for load in summary["loads"]]
-
-
-def test_a_state_that_is_missing_has_no_values(data):
-    """Numbers have NaN for it, whole numbers -1: 0 ridges would be a lifted finger."""
-    slip = data.sel(state="full_slip")
-    assert [int(slip[f"state_{name}"]) for name in ("step", "ridges_in_contact", "stable")] == [-1, -1, -1]
-    assert np.isnan(slip["state_f_t"])
-
-
-def test_errors_of_states(folder):
-    """The discretisation's and the penalty's, each under its name."""
-    result, given = Result.load(folder), {"error": 2e-5, "penalty": 3e-6}
-    changed = {kind: replace(result.charged.error, contact_length=value) for kind, value in given.items()}
-    found = dataset.dataset(replace(result, charged=replace(result.charged, **changed))).sel(state="charged")
-    for kind, value in given.items():
-        assert found[f"state_contact_length_{kind}"] == value
-        assert found[f"state_contact_length_{kind}"].attrs["units"] == "m"
 
 
 def test_loads_are_those_of_the_summary(folder, data):
@@ -131,21 +102,6 @@ def test_loads_are_those_of_the_summary(folder, data):
     assert list(at["load_f_t_amplitude"].values) == [0.3, 0.1] and list(at["load_frequency"].values) == [1.0, 2.0]
     others = dataset.dataset(replace(result, loads=loads)).isel(load=slice(1, None))
     assert others["load_f_t_mean"].isnull().all() and others["load_f_t_amplitude"].isnull().all()
-
-
-@pytest.mark.parametrize(
-    ("name", "unit"),
-    [
-        ("skin_p_el", "Pa"),
-        ("f_t", "N/m"),
-        ("ridge_d_eq", "m"),
-        ("merkel_sed", "J/m^3"),
-        ("stored", "J/m"),
-        ("mu_app", "1"),
-    ],
-)
-def test_units_are_those_of_the_quantity(data, name, unit):
-    assert data[name].attrs["units"] == unit
 
 
 def test_skin_is_along_facets_and_points(data):
@@ -168,43 +124,6 @@ def test_parameters_are_attributes(folder, data):
     assert data.attrs["roughness.h_rms"] == scene["roughness"]["h_rms"]
 
 
-def test_tables_are_the_results_own_in_another_folder(folder, tmp_path, monkeypatch):
-    """A result of a relative folder keeps it, where the program goes to another one and the name is there, too."""
-    monkeypatch.chdir(folder.parent)
-    found = Result.load(folder.name)
-    ours = found.to_xarray()
-    (tmp_path / folder.name).mkdir()
-    monkeypatch.chdir(tmp_path)
-    xarray.testing.assert_identical(found.to_xarray(), ours)
-    assert "ridge_f_contact" in ours
-
-
-@dataclass(frozen=True)
-class Odd(Closure):
-    """A closure with parameters of any kind."""
-
-    points: tuple
-    names: tuple
-    none: tuple
-    empty: tuple
-    numbers: tuple
-    on: bool
-
-    def __call__(self, p_c):
-        return AirGap(2e-6 + 0 * np.asarray(p_c, dtype=float))
-
-
-def test_laws_of_any_fields_are_attributes(tmp_path):
-    """What NetCDF has no attribute for is JSON; numbers are kept as they are."""
-    table = [[0.0, 5e-6], [1e4, 4e-6]]
-    fields = {"points": np.array(table), "names": ("a", "b"), "none": (None, 1.0), "empty": ()}
-    fp.run(fp.Scene(roughness=Odd(**fields, numbers=(1, 2.5), on=True)), model="cylinders", out=tmp_path)
-    found = xarray.load_dataset(tmp_path / "result.nc").attrs
-    as_json = {name: json.loads(found[f"roughness.{name}"]) for name in (*fields, "on")}
-    assert as_json == {"points": table, "names": ["a", "b"], "none": [None, 1], "empty": [], "on": True}
-    assert found["roughness.numbers"].tolist() == [1, 2.5]
-
-
 def test_dataset_of_a_result_that_was_read_back(folder):
     """The same file, to the last byte."""
     again = Result.load(folder).to_xarray()
@@ -220,18 +139,13 @@ def test_skin_that_was_read_back_is_that_of_the_run(folder, data):
         np.testing.assert_array_equal(state.skin.p_n, data["skin_p_n"].sel(state=name).values[known])
 
 
-def test_skins_of_several_meshes_come_back_without_filling(folder, tmp_path):
-    """Five facets of one point in one state, as they were."""
-    result = Result.load(folder)
-    whole = result.charged.skin
-    few = Skin(whole.ridge[:5], *(getattr(whole, name)[:5, :1] for name in quantities.SKIN))
-    assert not dataset.save(replace(result, folder=tmp_path, charged=replace(result.charged, skin=few)))
-    _, found = dataset.read(tmp_path, ())
-    np.testing.assert_array_equal(found["charged"].skin.x, few.x)
-    np.testing.assert_array_equal(found["uncharged"].skin.p_n, result.uncharged.skin.p_n)
-
-
-@pytest.mark.parametrize("content", [None, b"", b"CDF\x02", "half"])
+@pytest.mark.parametrize(
+    "content",
+    [
+        None,
+        "half",
+    ],
+)
 def test_skin_is_left_out_where_the_dataset_is_not_whole(folder, tmp_path, content):
     """All other numbers are those of the tables."""
     copy = Path(shutil.copytree(folder, tmp_path / "run", ignore=shutil.ignore_patterns("*.bp", "*.png", "*.npz")))
@@ -280,13 +194,6 @@ def test_swept_keys_are_coordinates(tmp_path):
     assert "voltage" not in data.attrs and data.attrs["friction"] == 0.25
 
 
-def test_swept_names_are_text(tmp_path):
-    axes = {"materials.exponent": ["printed", "abaqus"], "roughness.h_rms": [2e-6, 3e-6]}
-    data = fp.sweep(fp.Scene(), tmp_path, model="cylinders", **axes).to_xarray()
-    assert data["materials.exponent"].values.tolist() == ["printed", "abaqus"]
-    assert data["roughness.h_rms"].attrs["units"] == "m"
-
-
 # -- faults ----------------------------------------------------------------------------------------------
 def full(file, text):
     """Find no room for a dataset."""
@@ -318,17 +225,34 @@ def test_error_of_the_program_is_no_note(tmp_path, monkeypatch):
     assert (tmp_path / "summary.json").exists() and not (tmp_path / "result.nc").exists()
 
 
-def test_full_disk_loses_no_table_of_a_sweep(tmp_path, monkeypatch):
-    monkeypatch.setattr(files, "replace", full)
-    found = fp.sweep(fp.Scene(), tmp_path, model="cylinders", voltage=[0, 100])
-    assert found.notes[1:] == ("sweep.nc was not written: No space left on device; all other files are complete",)
-    assert str(found).endswith(found.notes[1]) and len(rows_of(tmp_path, "table")) == 2
+# -- Energy densities at the mechanoreceptors' sites in the named states: in sweeps and reports, as  ---
+def test_sites_of_a_sweep_are_those_of_its_states(folder, tmp_path):
+    data = xarray.load_dataset(folder / "result.nc")
+    found = Sweep({"voltage": (50.0,)}, (Result.load(folder),), tmp_path)
+    swept = found.to_xarray()
+    assert swept["state_merkel_sed"].dims == ("voltage", "state", "ridge")
+    assert swept["state_meissner_sed"].dims == ("voltage", "state", "ridge", "side")
+    state = found[0].charged
+    ridges = swept["ridge"].values
+    mine = swept.sel(voltage=50.0, state="charged")
+    for name in ("merkel_sed", "meissner_sed"):
+        np.testing.assert_array_equal(mine[f"state_{name}"], data[name].sel(step=state.step, ridge=ridges))
+        assert mine[f"state_{name}"].notnull().all()
+        assert swept[f"state_{name}"].sel(state="full_slip").isnull().all()
+        assert swept[f"state_{name}"].attrs == data[name].attrs
 
 
-def test_without_xarray_the_sentence_says_what_to_install(tmp_path, monkeypatch):
-    def missing(sweep):
-        raise ImportError("No module named 'xarray'")
-
-    monkeypatch.setattr(fp.Sweep, "to_xarray", missing)
-    found = fp.sweep(fp.Scene(), tmp_path, model="cylinders", voltage=[0])
-    assert found.notes == ("sweep.nc was not written: No module named 'xarray'; pip install xarray",)
+def test_report_has_the_sites_of_the_table(folder):
+    """The largest energy density of each named state, and that of each ridge."""
+    result = Result.load(folder)
+    page = run_page.page(result)
+    assert 'href="#receptors"' in page
+    part = page[page.index('id="receptors"') :]
+    part = part[: part.index("</section>")]
+    rows = [row for row in rows_of(folder, "receptors") if int(row["step"]) == result.charged.step]
+    most = max(rows, key=lambda row: float(row["merkel_sed"]))
+    first = part[: part.index("Every ridge")]
+    assert f"<td>{1e-3 * float(most['merkel_sed']):.4g}</td>" in first and f"<td>{most['ridge']}</td>" in first
+    for row in rows:
+        assert f"<td>{1e-3 * float(row['merkel_sed']):.4g}</td>" in part
+    assert "receptors" not in run_page.page(fp.run(model="cylinders")).partition("</nav>")[0]

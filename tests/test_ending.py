@@ -1,7 +1,6 @@
 """How a run ends that is killed, asked to stop, alone in trouble, or out of room: nothing written before is lost."""
 
 import json
-import logging
 import os
 import resource
 import signal
@@ -15,7 +14,6 @@ from mpi4py import MPI
 
 from fingerpad.io.files import Table, replace_json
 from fingerpad.io.interrupt import Interrupt, Interrupted
-from fingerpad.io.writing import Writer
 from tests.measures import accepted
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -74,18 +72,6 @@ def test_asked_to_stop(tmp_path, number):
     assert len(accepted(tmp_path)) == summary["steps"] >= GOOD
 
 
-@pytest.mark.long
-def test_several_signals_at_once_are_one(tmp_path):
-    """Terminals, launchers and batch systems send more than one; another one a second later would act at once."""
-    with start(tmp_path) as process:
-        for number in (signal.SIGTERM, signal.SIGHUP, signal.SIGTERM):
-            process.send_signal(number)
-        out, err = process.communicate(timeout=300)
-    assert process.returncode in (128 + signal.SIGTERM, 128 + signal.SIGHUP)
-    assert json.loads((tmp_path / "summary.json").read_text(encoding="utf-8"))["interrupted"] in ("SIGTERM", "SIGHUP")
-    assert err.count("the run ends after its present step; another one ends it at once") == 1
-
-
 def test_signals_that_mpirun_passes_on(tmp_path):
     """It kills its ranks a second after SIGINT; environment/run sends SIGUSR1 in its place."""
     with start(tmp_path, ranks=2) as process:
@@ -95,18 +81,6 @@ def test_signals_that_mpirun_passes_on(tmp_path):
     assert "stopped by SIGINT after step" in out
     summary = json.loads((tmp_path / "summary.json").read_text(encoding="utf-8"))
     assert summary["interrupted"] == "SIGINT" and summary["ranks"] == 2
-
-
-def test_logs_of_the_caller_are_the_callers():
-    """A program may have a log of its own for this package; the run's log is another one."""
-    mine, handler = logging.getLogger("fingerpad"), logging.NullHandler()
-    mine.addHandler(handler)
-    level = mine.level
-    log = Writer(None, MPI.COMM_SELF).log
-    try:
-        assert mine.handlers == [handler] and mine.level == level and handler not in log.handlers
-    finally:
-        mine.removeHandler(handler)
 
 
 def test_a_second_signal_acts_at_once(monkeypatch):
@@ -202,14 +176,6 @@ def test_no_room_for_a_row(tmp_path):
     found = accepted(tmp_path)
     assert 3 < len(found) < 10
     assert found == [{name: str(value) for name, value in row.items()} for row in rows[: len(found)]]
-
-
-def test_numbers_that_json_lacks_are_null(tmp_path):
-    """Other programs could not read them, and hours of a run are not lost by one: no rate of growth is inf."""
-    data = {"lambda_min": float("inf"), "shares": [float("nan"), 1.0], "number": (2, None)}
-    replace_json(tmp_path / "summary.json", data)
-    text = (tmp_path / "summary.json").read_text()
-    assert json.loads(text) == {"lambda_min": None, "shares": [None, 1.0], "number": [2, None]}
 
 
 def test_no_room_for_a_summary(tmp_path):

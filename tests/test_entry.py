@@ -43,12 +43,10 @@ def clean(tmp_path_factory) -> str:
     return done.stdout
 
 
-@pytest.mark.parametrize("first", ["import fingerpad.startup", "import fingerpad.runs.full"])
-def test_nothing_is_taken_from_the_current_folder(tmp_path, clean, first):
-    """Neither by a program nor by a script of one's own."""
+def test_nothing_is_taken_from_the_current_folder(tmp_path, clean):
     for name, text in FOUND.items():
         (tmp_path / name).write_text(text.format(folder=tmp_path))
-    done = python(tmp_path, first + STATE)
+    done = python(tmp_path, "import fingerpad.runs.full" + STATE)
     assert (done.returncode, done.stdout) == (0, clean), done.stderr
     assert "UCX" not in done.stderr
 
@@ -61,6 +59,7 @@ def test_without_it_they_would_be(tmp_path, clean):
     assert done.stdout == "True ['found']\n77 77.0\n"
 
 
+@pytest.mark.slow
 def test_nothing_is_taken_from_the_home_folder(tmp_path, clean):
     """Its files were written for other programs; the control shows that these libraries read them."""
     place, home = tmp_path / "place", tmp_path / "home"
@@ -74,17 +73,6 @@ def test_nothing_is_taken_from_the_home_folder(tmp_path, clean):
     ]
     assert found[0].stdout == "True ['found']\n77\n"
     assert found[1].stdout == clean.replace(" 1.5\n", "\n"), found[1].stderr
-
-
-def test_pictures_are_the_same_with_a_style_in_the_home_folder(tmp_path):
-    """Of a matplotlibrc there; outside of the pictures it is obeyed."""
-    folder = tmp_path / ".config" / "matplotlib"
-    folder.mkdir(parents=True)
-    (folder / "matplotlibrc").write_text("lines.markersize: 77\ntext.usetex: True\n")
-    code = "import matplotlib; from fingerpad.io.style import look\n"
-    code += "r = matplotlib.rcParams; before = r['lines.markersize']\n"
-    code += "with look(): print(before, r['lines.markersize'], r['text.usetex'])\nprint(r['lines.markersize'])"
-    assert python(tmp_path, code, HOME=str(tmp_path)).stdout == "77.0 6.0 False\n77.0\n"
 
 
 def test_the_environment_and_the_command_line_are_obeyed(tmp_path):

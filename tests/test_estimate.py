@@ -46,14 +46,6 @@ def test_accidentally_small_change_is_not_believed(name, left):
     assert found.share(name) == pytest.approx(left, rel=1e-12)
 
 
-def test_quantity_that_is_new_has_its_last_change_alone():
-    """A site whose ridge touches on the finer meshes only."""
-    found = MeshParameter()
-    found.record({}, {"full_slip_sed_3": 1.0})
-    found.record({"full_slip_sed_3": 1.3}, {"full_slip_sed_3": 1.0})
-    assert found.share("full_slip_sed_3") == pytest.approx(0.1, rel=1e-12)
-
-
 def test_ridges_that_change_both_ways_do_not_cancel():
     """Sixteen that go up and down by 0.1, a sum that does not change: 0.4, as if their signs were random."""
     found = MeshParameter()
@@ -79,12 +71,6 @@ def test_each_parameter_has_its_own_factor_of_safety():
     assert errors(parameters, ["q"])["q"] == pytest.approx(ONCE * 0.05 + MORE * 0.025, rel=1e-12)
 
 
-def test_a_parameter_that_does_not_act_on_a_quantity_is_left_out():
-    """The steps of normal contact say nothing of full slip."""
-    parameters = {"a": parameter(law(1.0), 0), "steps": MeshParameter([{"other": 1.0}])}
-    assert errors(parameters, ["q"])["q"] == pytest.approx(ONCE * 0.05, rel=1e-12)
-
-
 def test_nothing_is_halved_within_the_tolerance():
     """The tolerance holds for the share of 0.05 with its factor of safety."""
     assert to_refine({"a": parameter(law(1.0), 0)}, {"q": ONCE * 0.0501}) == []
@@ -98,11 +84,3 @@ def test_as_few_are_halved_as_will_do(allowed, keys):
     """Shares of 0.05 and 0.005 become half at first order; each may spend half of what is allowed."""
     parameters = {"b": parameter(law(1.0, 0.01), 0), "a": parameter(law(1.0, 0.1), 0)}
     assert to_refine(parameters, {"q": ONCE * allowed}) == keys
-
-
-def test_one_that_does_not_matter_is_not_halved_for_another():
-    """Of two quantities, the second has no share of the parameter b."""
-    other = MeshParameter()
-    other.record({"p": 1.0}, {"p": 0.9})
-    parameters = {"a": parameter(law(1.0), 0), "b": other}
-    assert to_refine(parameters, {"q": 0.01}) == ["a"]

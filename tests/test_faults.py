@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 
-from fingerpad.runs import attempt
+from fingerpad.runs import restarts
 from fingerpad.scene import from_data
 from geometry.bodies import block
 from geometry.mesh import load
@@ -29,7 +29,7 @@ GOOD = 2  # steps accepted before a fault
 @pytest.fixture(autouse=True)
 def one_start(monkeypatch):
     """A fault is one of its mesh: no run starts again with smaller elements."""
-    monkeypatch.setattr(attempt, "FINEST", 1.0)
+    monkeypatch.setattr(restarts, "FINEST", 1.0)
 
 
 @pytest.fixture

@@ -105,7 +105,7 @@ def test_copy_is_alone_and_goes(tmp_path):
 
 
 # -- what libraries would read by themselves ---------------------------------------------------------------
-@pytest.mark.parametrize("name", ["mine.msh.opt", "mine.opt", ".gmsh-options", ".gmshrc", "mesh.msh.opt"])
+@pytest.mark.parametrize("name", ["mine.msh.opt", ".gmsh-options", ".gmshrc"])
 def test_neighbours_of_a_mesh_are_not_run(tmp_path, monkeypatch, name):
     """gmsh merges NAME.msh.opt with NAME.msh; the control shows that it does."""
     path, script = write(tmp_path / "mine.msh"), tmp_path / name
@@ -120,8 +120,7 @@ def test_neighbours_of_a_mesh_are_not_run(tmp_path, monkeypatch, name):
             assert (tmp_path / "run").exists()
 
 
-@pytest.mark.parametrize("name", [".gmsh-options", ".gmshrc"])
-@pytest.mark.parametrize("variable", ["HOME", "GMSH_HOME"])
+@pytest.mark.parametrize(("name", "variable"), [(".gmsh-options", "HOME"), (".gmshrc", "GMSH_HOME")])
 def test_options_of_gmsh_in_the_home_have_no_effect(tmp_path, name, variable):
     """As its window saves them; the control shows that gmsh reads them."""
     (tmp_path / name).write_text("Mesh.MeshSizeFactor = 2;\n", encoding="utf-8")

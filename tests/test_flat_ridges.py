@@ -101,12 +101,14 @@ def pressed():
     return found
 
 
+@pytest.mark.slow
 def test_no_ridge_is_below_the_least_ratio(pressed):
     """Two profiles, at every force: the attraction beside the contact is left out of it, some 15 %."""
     for _, p_c, ratio in pressed:
         assert (ratio > least(p_c, 170.0)[0]).all()
 
 
+@pytest.mark.slow
 def test_flat_ridge_has_the_larger_air_gap(pressed):
     """Under the largest force; its contact is more than one and a half times as long."""
     (_, flat, _), (_, sinusoid, _) = pressed

@@ -13,12 +13,10 @@ import pytest
 from PIL import Image
 
 from fingerpad.io.files import read_object
-from fingerpad.io.kept_drawing import finger_of, skin_of
+from fingerpad.io.kept_drawing import finger_of
 from fingerpad.io.place import Place, PlaceError, Serial, full_scene
-from fingerpad.io.result import Result
 from fingerpad.reduced import cylinders
 from fingerpad.reduced.models import find
-from fingerpad.report import run_page
 from fingerpad.report.page import picture
 from fingerpad.report.write import write
 from fingerpad.runs.context import RunContext
@@ -86,24 +84,6 @@ def test_summary_with_a_value_of_another_kind(answered, tmp_path, key, value):
             assert str(copy)[-20:] in str(error) or "copy" in str(error)
 
 
-def test_program_s_error_in_a_report_is_not_hidden(answered, monkeypatch):
-    """It is named, and is the cause."""
-    monkeypatch.setattr(run_page, "page", lambda found: {}["nothing"])
-    with pytest.raises(SceneError, match="can be made of its files .KeyError: 'nothing'") as refusal:
-        write(answered)
-    assert isinstance(refusal.value.__cause__, KeyError)
-
-
-def test_value_that_is_no_number_is_named(answered, tmp_path):
-    copy = Path(shutil.copytree(answered, tmp_path / "copy"))
-    summary = json.loads((copy / "summary.json").read_text())
-    summary["states"]["full_slip"]["f_t"] = [1]
-    (copy / "result.nc").unlink()
-    (copy / "summary.json").write_text(json.dumps(summary))
-    with pytest.raises(SceneError, match="not of a run .f_t of full_slip is no number"):
-        Result.load(copy)
-
-
 # -- pictures ------------------------------------------------------------------------------------------
 def test_picture_beyond_all_bounds_is_left_out(tmp_path):
     """Its header gives 20 000 x 20 000 pixels, 1.2 GB in colours."""
@@ -133,11 +113,3 @@ def test_arrays_of_no_finger_are_none(tmp_path, changes):
     np.savez(tmp_path / "whole.npz", **FINGER)
     np.savez(tmp_path / "other.npz", **(FINGER | changes))
     assert finger_of(tmp_path / "whole.npz").keys() == FINGER.keys() and finger_of(tmp_path / "other.npz") == {}
-
-
-def test_arrays_of_no_skin_are_none(tmp_path):
-    skin = {f"end_{name}": np.zeros(4) for name in ("x", "y", "p", "t", "p_el", "d_eq", "ridge")}
-    np.savez(tmp_path / "whole.npz", **skin)
-    np.savez(tmp_path / "other.npz", **(skin | {"end_p": np.zeros(5)}))
-    assert len(skin_of(tmp_path / "whole.npz", "end")) == 7
-    assert skin_of(tmp_path / "other.npz", "end") == skin_of(tmp_path / "whole.npz", "charged") == {}

@@ -207,11 +207,13 @@ def slid(law, way: float, formulation: Formulation = EPS) -> Body:
     return made
 
 
+@pytest.mark.slow
 @pytest.mark.mpi
 @pytest.mark.parametrize("sign", [1, -1])
 @pytest.mark.parametrize(
     "formulation", [EPS, AugmentedLagrangian(1e12, 1e10, 5e-9), Nitsche(10.0, 0)], ids=lambda f: type(f).__name__
 )
+@pytest.mark.slow
 def test_full_slip_bears_both_parts(formulation, sign):
     """f_T is mu times the contact force and the part of tau_0 of every point, against the motion, either way.
 
@@ -251,6 +253,7 @@ def test_unloading_leaves_no_friction():
     assert found[-1] == (0.0, 0.0)
 
 
+@pytest.mark.slow
 def test_energy_balance_closes_with_the_square_of_the_step():
     """Over a cycle of press, charge, slide, back, discharge and lift, as test_energy.py has it for Coulomb's law.
 

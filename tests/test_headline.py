@@ -2,7 +2,6 @@
 
 import math
 import re
-from dataclasses import replace
 
 import pytest
 
@@ -60,14 +59,6 @@ def test_waveform_with_some_full_slip_says_in_how_much():
         assert not any(each.what == "no full slip under a waveform" for each in trust.findings(found))
 
 
-def test_finger_that_does_not_rub_does_not_stick():
-    """Without friction there is none to be below that of sliding."""
-    still = waved(False, False)
-    loads = tuple(replace(load, extremes=load.extremes | {"f_t": replace(load.extremes["f_t"], min=0.0, max=0.0)})
-                  for load in still.loads)  # fmt: skip
-    assert "sticks" not in head(replace(still, loads=loads)) + str(replace(still, loads=loads))
-
-
 # -- what ± holds ------------------------------------------------------------------------------------------
 @pytest.mark.parametrize(("error", "words"), [(0.0026, "solved to ± 0.0026; what"), (math.nan, "holds: solved; what")])
 def test_verdict_has_the_error_of_the_headline(monkeypatch, error, words):
@@ -77,18 +68,6 @@ def test_verdict_has_the_error_of_the_headline(monkeypatch, error, words):
     assert f"{words} the finger and the model assume is not in it." in page
     assert '<a href="#trust">' in page and "can be used" not in page
     assert bool(re.search(r"= 0\.4000 ± 0\.0026</h1>", page)) == (error == 0.0026)
-
-
-def test_unit_of_the_error_is_that_of_the_headline(monkeypatch):
-    monkeypatch.setattr(trust, "findings", lambda result: [])
-    page = head(Result(fp.Scene(), "full", None, state(error=Errors(contact_length=2e-5)), None))
-    assert "solved to ± 0.020 mm; what" in page
-
-
-def test_verdict_with_a_caution_has_no_link(monkeypatch):
-    monkeypatch.setattr(trust, "findings", lambda result: [trust.Finding("mesh", trust.CARE, "It is coarse.")])
-    page = head(Result(fp.Scene(), "full", None, None, state(error=Errors(mu_app=0.0026))))
-    assert "Use with care: mesh. It is coarse." in page and "href" not in page
 
 
 def test_plus_minus_is_explained_where_it_is_printed():

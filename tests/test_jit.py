@@ -1,6 +1,5 @@
 """The cache of compiled forms: several processes, killed and stopped ones, and compilers that fail."""
 
-import errno
 import os
 import shutil
 import signal
@@ -10,10 +9,7 @@ import sysconfig
 import time
 from pathlib import Path
 
-import numpy as np
 import pytest
-import ufl
-from dolfinx import fem, mesh
 from mpi4py import MPI
 
 from fingerpad.cli import main
@@ -108,6 +104,7 @@ def test_stopped_compile_loses_nothing(others, monkeypatch, capfd):
     assert integral() == 2.5 and capfd.readouterr().err == ""
 
 
+@pytest.mark.slow
 def test_two_processes_compile_a_form_once(others):
     """The second waits, says so, and takes what the first has compiled."""
     first, second = others.start(), others.start()
@@ -122,11 +119,9 @@ def test_two_processes_compile_a_form_once(others):
 @pytest.mark.parametrize(
     ("left", "compiled"),
     [
-        ("source", True),  # by FFCx alone, killed in mid-compile
-        ("source finished", True),
-        ("finished", True),
-        ("source finished empty", True),  # a machine that lost its power
-        ("library finished", False),  # FFCx, once another process has deleted the source
+        ("source", True),
+        ("source finished empty", True),
+        ("library finished", False),
     ],
 )
 def test_what_is_not_whole_is_compiled_again(cache, tmp_path, monkeypatch, capfd, left, compiled):
@@ -147,16 +142,6 @@ def test_what_is_not_whole_is_compiled_again(cache, tmp_path, monkeypatch, capfd
     assert (cache / f"{name}.c").exists() is compiled or "source" in left
 
 
-def test_without_locks(cache, monkeypatch):
-    """Some file systems have none: processes then compile a form several times."""
-
-    def refuse(file, how):
-        raise OSError(errno.ENOLCK, "no locks")
-
-    monkeypatch.setattr(jit.fcntl, "flock", refuse)
-    assert integral() == 2.5
-
-
 def test_compiler_that_fails_is_one_sentence(cache, monkeypatch):
     """It names the cause; with a compiler that works the next compile succeeds."""
     monkeypatch.setenv("CC", "false")
@@ -174,12 +159,6 @@ def test_compiler_that_gets_a_signal_starts_again(cache, tmp_path, monkeypatch):
     compiler.chmod(0o755)
     monkeypatch.setenv("CC", str(compiler))
     assert integral() == 2.5 and (tmp_path / "once").exists()
-
-
-def test_cache_that_cannot_be_written_is_one_sentence(cache):
-    cache.touch()
-    with pytest.raises(jit.CompileError, match="^a form cannot be compiled .* exists: .*cache"):
-        integral()
 
 
 def test_command_refuses_where_the_compiler_fails(cache, monkeypatch, tmp_path, capfd):
@@ -218,13 +197,3 @@ def test_ranks_that_work_alone_share_a_cache(tmp_path, monkeypatch):
     MPI.COMM_WORLD.barrier()
     assert integral() == 2.5
     MPI.COMM_WORLD.barrier()
-
-
-def test_compiled_forms_keep_what_is_no_number():
-    """The logarithm of a negative Jacobian determinant is NaN, in each cell that is inside out and in no other."""
-    square = mesh.create_unit_square(MPI.COMM_SELF, 2, 2)
-    cells = fem.functionspace(square, ("Discontinuous Lagrange", 0))
-    J, v = fem.Function(cells), ufl.TestFunction(cells)
-    J.x.array[:] = np.linspace(-1.0, 2.0, len(J.x.array))
-    form = fem.form((ufl.ln(J) - ufl.ln(J) + J / J) * v * ufl.dx, jit_options=jit.OPTIONS)
-    assert np.array_equal(np.isnan(fem.assemble_vector(form).array), J.x.array < 0)

@@ -42,14 +42,6 @@ def test_modulus_of_the_skin_is_the_given_materials():
     assert laws.skin_modulus(own) == pytest.approx(laws.skin_modulus(Scene()), rel=1e-12)
 
 
-def test_cylinders_take_no_mesh(tmp_path):
-    file = tmp_path / "mine.msh"
-    file.write_text("", encoding="utf-8")
-    scene = Scene(geometry={"file": file})
-    with pytest.raises(SceneError, match="answers for fingers of the scene's own geometry"):
-        cylinders.solve(scene)
-
-
 def test_rule_of_thumb_takes_a_law():
     """More friction rolls the finger further, by the coefficient at a ridge's pressure."""
     plain, rough = (feasibility.by_rule(Scene(friction=law)) for law in (Coulomb(0.25), Derjaguin(0.25, 2e4)))

@@ -55,14 +55,6 @@ def test_link_under_the_name_of_a_result_is_refused(out, victim, name, target):
         Place(out, {}, Serial()).__enter__()
 
 
-def test_folder_may_be_reached_by_a_link(out, tmp_path):
-    """Of the user; and its other links are no concern of a run."""
-    (tmp_path / "link").symlink_to(out)
-    (out / "latest").symlink_to(tmp_path)
-    fp.run(model="cylinders", out=tmp_path / "link")
-    assert (out / "summary.json").exists()
-
-
 @pytest.mark.parametrize(
     ("name", "start"),
     [

@@ -1,7 +1,6 @@
 """A small finger under voltages over time: as by loads by hand, and what is the same whatever the sign or the place."""
 
 import math
-import re
 import tomllib
 from itertools import pairwise
 from pathlib import Path
@@ -95,9 +94,8 @@ def test_waveform_is_the_loads_by_hand():
 
 
 def test_sign_of_the_voltage_changes_nothing():
-    """Bit for bit: of a constant voltage and of a table, and where a sign changes between two loads."""
+    """Bit for bit: of a table, and where a sign changes between two loads."""
     for up, down in (
-        ([{"name": "charge", "voltage": 90.0}], [{"name": "charge", "voltage": -90.0}]),
         (
             [{"name": "a", "voltage": 50.0}, {"name": "b", "voltage": 90.0}],
             [{"name": "a", "voltage": 50.0}, {"name": "b", "voltage": -90.0}],
@@ -137,14 +135,6 @@ def test_every_state_is_at_the_voltage_of_its_time(wave):
 
     for state in states:
         assert state.voltage == pytest.approx(voltage(state.time), rel=1e-9, abs=1e-6)
-
-
-@pytest.mark.mpi
-def test_load_may_have_the_name_of_the_first_touch():
-    """The first touch is no part of a load's way; the steps of a load of its name are."""
-    parts, asked = [], by_rule(scene(PRESS | {"name": "touch"}))
-    Simulation(FingerModel(asked, plan(asked)), MPI.COMM_WORLD, lambda step, done: parts.append(done)).run()
-    assert parts[0] == 0.0 and parts[-1] == 1.0 and parts == sorted(parts)
 
 
 @pytest.mark.mpi
@@ -192,14 +182,6 @@ def test_parts_of_a_jump_are_no_extremes():
     assert least["f_electrostatic"].min == min(state.f_electrostatic for state in own)
 
 
-def test_first_load_over_time_begins_unloaded():
-    """As its mean does; a later one begins with the state before."""
-    press = {"name": "press", "bone_height": -20e-6, "duration": 1.0}
-    first, second = result(press, {"name": "more", "bone_height": -30e-6, "duration": 1.0}).loads
-    assert first.extremes["contact_length"].min == 0.0
-    assert second.extremes["contact_length"].min == first.end.contact_length
-
-
 def test_course_of_a_square():
     """Its jumps are cut into steps, its plateaus are not; what is done is counted in time, not by the pieces."""
     load = Load(name="wave", duration=2 / 60, voltage=WAVE | {"waveform": "square"})
@@ -234,6 +216,7 @@ def test_bone_at_a_height():
     assert forces[80.0] < 0.99 * forces[0.0]
 
 
+@pytest.mark.long
 @pytest.mark.mpi
 def test_twice_the_samples():
     """They change mean and spectrum by less than 1 % of the largest amplitude."""
@@ -244,20 +227,6 @@ def test_twice_the_samples():
     largest = max(twice.f_t_amplitude)
     assert np.abs(np.subtract(once.f_t_amplitude, twice.f_t_amplitude)).max() < 1e-2 * largest
     assert once.mean["f_t"] == pytest.approx(twice.mean["f_t"], abs=1e-2 * largest)
-
-
-@pytest.mark.mpi
-def test_square_of_a_file_is_the_square():
-    """Given by its corners alone: mean and amplitudes up to the time that its jumps take."""
-    jump = 1e-6 / 60
-    table = {"waveform": "file", "times": [0.0, 0.5 / 60, 0.5 / 60 + jump, 1 / 60], "voltages": [80.0, 80.0, 0.0, 0.0]}
-    square = {"waveform": "square", "amplitude": 40.0, "offset": 40.0, "frequency": 60.0}
-    given, same_one = (
-        result(PRESS, SLIDE, BY | {"voltage": voltage}).loads[2].over_time for voltage in (table, square)
-    )
-    assert given.mean["f_t"] == pytest.approx(same_one.mean["f_t"], rel=1e-4)
-    largest = max(same_one.f_t_amplitude)
-    assert given.f_t_amplitude[:6] == pytest.approx(same_one.f_t_amplitude[:6], abs=1e-3 * largest)
 
 
 # -- results -------------------------------------------------------------------------------------------
@@ -295,23 +264,7 @@ def test_results_of_a_run(tmp_path):
     assert "Loads over time" in shown and "sine of 80 V about 20 V at 60 Hz" in shown and NOTE in shown
 
 
-def test_line_of_a_load_over_time_without_friction():
-    """Of a press that takes time; its friction force is roundoff."""
-    found = str(result(PRESS | {"duration": 0.1}))
-    length = re.search(r"^  press: L_R (\S+) to (\S+) mm, mean (\S+) mm$", found, re.MULTILINE)
-    assert length and float(length[1]) <= float(length[3]) <= float(length[2])
-
-
-def test_run_without_time_has_none(tmp_path):
-    """No column, no picture, no key: the files of such a run stay as they were."""
-    found = result(PRESS, SLIDE, out=tmp_path)
-    assert "time" not in (tmp_path / "steps.csv").read_text().splitlines()[0]
-    assert not (tmp_path / "time.png").exists() and NOTE not in found.notes
-    assert "over_time" not in str(found.to_dict()) and "time" not in str(found.loads[0].to_dict()["extremes"])
-    with pytest.raises(ValueError, match="no load over time"):
-        found.plot("time")
-
-
+@pytest.mark.long
 def test_mean_from_steps_that_are_too_long_is_told(tmp_path):
     """Friction turns round, and the finger leaves the screen, within less than a step: the remark names both loads.
 
@@ -332,21 +285,3 @@ def test_mean_from_steps_that_are_too_long_is_told(tmp_path):
     assert abs(means[0] - means[1]) < long.loads[2].over_time.mean_change["f_t"]
     assert long.loads[2].extremes["f_t"].max == pytest.approx(long.loads[1].end.f_t, rel=1e-9), "where it began"
     assert long.to_dict()["loads"][2]["over_time"]["mean_change"]["f_t"] > 0
-
-
-def test_headline_is_not_of_a_wave_in_which_the_finger_rests():
-    """Its friction is roundoff: the contact length is shown."""
-    found = result(PRESS, {"name": "hold", "duration": 1 / 60, "voltage": WAVE})
-    assert not found.loads[1].rubs(found.record["force_error"])
-    shown = page(found)
-    assert "<h1>L<sub>R</sub> = " in shown and "in the load hold, over time" not in shown
-
-
-def test_first_touch_has_no_estimated_errors():
-    """A finger that slides as it is pressed has no normal contact, of which errors could be estimated."""
-    found = result(
-        PRESS | {"bone_x": 1e-4}, {"name": "charge", "voltage": 50.0}, output=FINGER["output"] | {"errors": True}
-    )
-    assert found.charged is None and found.full_slip is not None
-    estimated = found.record["accuracy"]["quantities"]
-    assert estimated and not any(key.startswith("normal_") for key in estimated)

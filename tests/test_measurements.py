@@ -7,12 +7,9 @@ import shutil
 import numpy as np
 import pandas as pd
 import pytest
-from matplotlib.figure import Figure
 
 import fingerpad as fp
 from fingerpad.cli import main
-from fingerpad.cli.compare_data import _panel
-from fingerpad.measurements.compare import beside
 from fingerpad.measurements.computed import computed
 from fingerpad.measurements.table import Measured, read
 from fingerpad.runs.sweep import sweep
@@ -110,12 +107,8 @@ def test_what_is_compared(grid):
             "no quantity; it has the columns Fn .N., U, CoF, and must have one of .* as in {'CoF': 'friction .1.'}",
         ),
         ({"CoF": "friction"}, "column 3: 'CoF' has no unit; write 'friction .1.' in the head or by columns"),
-        ({"CoF": "frction (1)"}, "the column 'CoF' is 'frction'; it must be one of force, voltage, friction,"),
-        ({"Cof": "friction (1)"}, "the table has no column 'Cof'; it has Fn .N., U, CoF$"),
         ({"CoF": "friction (1)", "Fn (N)": "force"}, "has no voltage, and its column 'U' may be one; name it"),
         ({"CoF": "friction (1)", "U": ""}, "has no force, and its column .* it out by {'Fn .N.': ''}"),
-        ({"CoF": "friction (1)", "Fn (N)": "voltage"}, "unit of voltage is 'N'; its unit is not a unit of voltage"),
-        ({"CoF": "friction (1)", "U": "friction (1)"}, "two columns have the name friction; give one, and leave out"),
     ],
 )
 def test_no_column_is_guessed(grid, columns, words):
@@ -123,14 +116,6 @@ def test_no_column_is_guessed(grid, columns, words):
     frame = pd.DataFrame({"Fn (N)": [0.5], "U": [100], "CoF": [0.3]})
     with pytest.raises(SceneError, match=words):
         fp.compare(frame, grid, columns)
-
-
-def test_column_may_be_left_out(grid):
-    """Of two that could be a condition, or of two quantities."""
-    frame = pd.DataFrame({"force (N/m)": [25], "V": [7], "friction (1)": [0.3], "attraction (N/m)": [1.0]})
-    one = [result for result in grid if result.scene.voltage == 0]
-    found = fp.compare(frame, one, {"V": "", "attraction (N/m)": None})
-    assert found.voltage.tolist() == [0] and found.attrs["quantity"] == "friction" and not found.attrs["ignored"]
 
 
 HEADS = "force (N/m), friction (1)\n"
@@ -141,55 +126,23 @@ HEADS = "force (N/m), friction (1)\n"
     [
         ("force, friction (1)\n1, 2\n", "column 1: 'force' has no unit; write 'force (N/m)' in the head or by columns"),
         ("force (furlong), friction (1)\n1, 2\n", "column 1: the unit of force is 'furlong'; its unit is not"),
-        ("force (g), friction (1)\n1, 2\n", "force per length; it must be in N/m, or in N for a whole finger"),
         ("force (N/m), friction force (N)\n1, 2\n", "it must be in N, as another column is of a whole finger"),
         ("voltage (g), friction (1)\n1, 2\n", "its unit is not a unit of voltage; it must be in V"),
-        ("force (wibble), friction (1)\n1, 2\n", "the unit of force is 'wibble'; its unit is not known"),
         ("voltage (V), friction (N)\n1, 2\n", "column 2: the unit of friction is 'N'; it must be 1"),
         ("force (N), contact length (mm)\n1, 2\n", "has contact length, and a whole finger, which has a column in new"),
-        ("force (N/m), contact area (mm^2)\n1, 2\n", "column 1: the unit of force is 'N/m'; its unit is not a unit of"),
-        ("force (N), area (mm^2)\n1, 2\n", "has the columns force (N), area (mm^2), and must have one of"),
         (HEADS + "1, 2\n3,\n", "line 4, column 2: the friction is missing; leave the row out"),
-        (HEADS + "1, 2\n\n3\n", "line 5, column 2: the friction is missing"),
         (HEADS + ", 2\n", "line 3, column 1: the force is missing"),
-        (HEADS + "1, nan\n", "line 3, column 2: the friction is 'nan'; it must be a finite number greater than 0"),
         (HEADS + "1, -0.2\n", "the friction is '-0.2'; it must be a finite number greater than 0"),
-        ("voltage (V), friction (1)\ninf, 0.2\n", "the voltage is 'inf'; it must be a finite number"),
-        ("friction (1), spread (1)\n0.2, -1\n", "the spread is '-1'; it must be a finite number, 0 or more"),
         (HEADS + "1, 1_0\n", "line 3, column 2: the friction is '1_0'; it must be a finite number"),
-        (HEADS + "1, high\n", "line 3, column 2: the friction is 'high'; it must be a finite number"),
         (HEADS + "1, 0,2\n", "line 3 has 3 cells below 2 columns; decimals have points"),
-        ("force (N/m); friction (1)\n1; 0,2\n", "line 3, column 2: the friction is '0,2'; it must be a finite number"),
-        ("# state: charged\n" + HEADS + "1, 2\n", "has friction at the state charged; before the"),
         ("# State: Charged\nforce (N/m), friction force (N/m)\n1, 2\n", "has friction force at the state charged; bef"),
-        ("# state: sideways\n" + HEADS + "1, 2\n", "state is 'sideways'; it must be one of uncharged, ch"),
-        (HEADS, "has no rows of numbers below a header"),
         ("", "has no rows of numbers below a header"),
-        ("force (N/m), voltage (V)\n1, 2\n", "and must have one of friction, friction force"),
-        ("friction (1), attraction (N/m)\n1, 2\n", "has friction, attraction, and must have one of"),
         ("force (N/m), force (N/mm), friction (1)\n1, 2, 3\n", "two columns have the name force"),
-        ("force (N/m), friction (1), spread (mm)\n1, 2, 3\n", "column 3: the unit of spread is 'mm'; it must be 1"),
-        (f"{HEADS}1, {'2' * 200_000}\n", "column 2: the friction is '2222"),
-        ("a," * 200_000 + "friction (1)\n1, 2\n", "line 2 has 200001 columns; at most 1000 are read"),
-        (f"# source: a{' ' * 200_000}b\nforce{' ' * 200_000}(N/m), sum (1)\n1, 2\n", "has the columns force "),
-        (f'{HEADS}1, "2\n3, 4\n', "is no table in CSV: "),
-        (f'{HEADS}1, "2\n3"\n4, 5\n', "is no table in CSV: a cell in quotation marks does not end in its line"),
     ],
 )
 def test_tables_are_refused(table, capsys, text, words):
     """In one sentence, before the folder of results is looked at."""
     assert words in refused(capsys, "compare-data", str(table(text)), "--run", "nowhere")
-
-
-def test_command_line_is_refused(table, tmp_path, capsys):
-    (tmp_path / "mine.csv").write_bytes(b"\xff\xfe\x00")
-    assert "is not text in UTF-8" in refused(capsys, "compare-data", str(tmp_path / "mine.csv"), "--run", "x")
-    assert "cannot be read" in refused(capsys, "compare-data", str(tmp_path / "none.csv"), "--run", "x")
-    file = str(table(HEADS + "1, 2\n"))
-    assert "--column is 'CoF'; it must be HEAD=NAME" in refused(
-        capsys, "compare-data", file, "--column", "CoF", "--run", "x"
-    )
-    assert "state is 'no'; it must be one of" in refused(capsys, "compare-data", file, "--state", "no", "--run", "x")
 
 
 def test_tables_in_the_repository_are_read():
@@ -198,19 +151,6 @@ def test_tables_in_the_repository_are_read():
     assert files
     for file in files:
         assert {"source", "people"} <= set(read(file).about) and {"doi", "url"} & set(read(file).about)
-
-
-def test_sign_of_a_measured_voltage_is_left_out(table):
-    """The attraction goes with U²."""
-    assert read(table("voltage (V), friction (1)\n-100, 0.2\n0, 0.2\n")).rows.voltage.tolist() == [100.0, 0.0]
-
-
-def test_row_without_a_spread_is_one(folder, table, capsys):
-    """The empty cell may also be missing; the others are counted."""
-    text = "force (N/m), voltage (V), friction (1), spread (1)\n25, 0, 0.25, 0.1\n25, 100, 0.1,\n75, 0, 0.25\n"
-    np.testing.assert_array_equal(read(table(text)).rows.spread, [0.1, np.nan, np.nan])
-    assert main(["compare-data", str(table(text)), "--sweep", str(folder)]) == 0
-    assert "Within the spread: 1 of 1 rows that have a spread.\n" in capsys.readouterr().out
 
 
 # -- computed values -----------------------------------------------------------------------------------------
@@ -235,35 +175,6 @@ def test_computed_values_are_those_of_the_sweep(folder):
     assert between[0] == pytest.approx(rows[25, 100] * 2**power, rel=1e-12)
     assert between[1] == pytest.approx(0.75 * rows[25, 0] + 0.25 * rows[25, 100], rel=1e-12)
     assert np.isnan(at(found, [10.0, 25.0], [100.0, 201.0])).all()
-
-
-def test_folder_and_sweep_are_alike(grid):
-    """A sweep is its runs, and its folder is its table."""
-    np.testing.assert_array_equal(computed(grid, asked()).points, computed(grid.folder, asked()).points)
-
-
-def test_sign_of_a_voltage_does_not_count(folder, tmp_path):
-    """A sweep over both signs is the one over one of them, between its points too."""
-    sweep(Scene(), tmp_path, model="cylinders", voltage=[-200, -100, 0, 100, 200], f_ext=[25, 75])
-    force, voltage = np.array([30.0, 50.0, 75.0]), np.array([150.0, -30.0, -200.0])
-    both, one = computed(tmp_path, asked()), computed(folder, asked())
-    np.testing.assert_allclose(at(both, force, voltage), at(one, force, abs(voltage)), rtol=1e-12)
-
-
-def test_failed_run_leaves_the_uncharged_state_of_another(tmp_path):
-    """All voltages of a force have the same uncharged state; here the first and the last run have none."""
-    table = tmp_path / "table.csv"
-    rows = "25,0,,lost\n25,50,1e-3,\n25,100,1e-3,\n25,200,,lost\n"
-    table.write_text(f"f_ext,voltage,uncharged_contact_length,failure\n{rows}")
-    assert at(computed(tmp_path, asked("contact length", "uncharged")), [25.0], [0.0])[0] == 1e-3
-
-
-def test_missing_points_are_not_compared(tmp_path):
-    """A failed run leaves its neighbours as they are."""
-    rows = "25,0,0.2,\n75,0,0.2,\n25,100,,lost\n75,100,0.3,\n"
-    (tmp_path / "table.csv").write_text(f"f_ext,voltage,full_slip_mu_app,failure\n{rows}")
-    found = at(computed(tmp_path, asked()), [25.0, 25.0, 75.0, 50.0], [0.0, 100.0, 100.0, 100.0])
-    assert list(np.isnan(found)) == [False, True, False, True]
 
 
 # -- the command ---------------------------------------------------------------------------------------------
@@ -313,22 +224,6 @@ def test_numbers_are_written(folder, table, tmp_path, capsys):
     assert (tmp_path / "first.csv").read_bytes() == before
 
 
-def test_picture_has_the_values_of_the_table(folder, table):
-    """Lines go as the table is interpolated, in U² and not straight; only computed points are marked."""
-    lines = "25, 0, 1\n25, 50, 1\n25, 150, 1\n50, 0, 1\n50, 100, 1\n"
-    found = read(table("force (N/m), voltage (V), friction (1)\n" + lines))
-    known = computed(folder, found)
-    ax = Figure().subplots()
-    _panel(ax, beside(found, known), known)
-    drawn = {line.get_label(): line.get_xydata() for line in ax.lines if line.get_label().startswith("computed")}
-    for force in (25, 50):
-        volts, friction = drawn[f"computed, {force} N/m"].T
-        np.testing.assert_array_equal(friction, at(known, np.full(len(volts), force), volts))
-        assert len(volts) > 100
-    marked = [line.get_xdata() for line in ax.lines if line.get_marker() == "."]
-    assert [list(volts) for volts in marked] == [[0, 100, 200], []]
-
-
 def test_errors_of_a_sweep_count_with_the_spread(folder, table, tmp_path, capsys):
     """They are interpolated as the values are; a value without an error has a dash."""
     heads = "f_ext,voltage,full_slip_mu_app,full_slip_mu_app_error,failure"
@@ -374,18 +269,3 @@ def test_rows_whose_value_is_zero_are_told_apart(folder, table, capsys):
     assert main(["compare-data", str(table(text + "25, 100, 3\n500, 100, 3\n")), "--sweep", str(folder)]) == 0
     out = capsys.readouterr().out
     assert "since no value is computed there: 1 of 3 rows." in out and "computed value is 0 there: 1 of 3 rows." in out
-
-
-def test_folders_are_told_apart(folder, table, tmp_path, capsys):
-    file = str(table("friction (1)\n0.3\n"))
-    assert "is not a folder" in refused(capsys, "compare-data", file, "--run", str(tmp_path / "none"))
-    assert "arguments are required: --run/--sweep" in refused(capsys, "compare-data", file)
-    assert "its folder is not there" in refused(capsys, "compare-data", file, "--run", "x", "--out", "none/x.png")
-    several = refused(capsys, "compare-data", file, "--run", str(folder), str(folder))
-    assert "is given with others; give one sweep, or runs" in several
-    third = tmp_path / "third"
-    sweep(Scene(), third, model="cylinders", friction=[0.2, 0.3])
-    words = "is over friction, and {} has forces in N/m; give one over f_ext and voltage alone, or runs"
-    assert words.format(file) in refused(capsys, "compare-data", file, "--sweep", str(third))
-    with pytest.raises(SceneError, match=r"friction is 0\.2 in .* and 0\.3 in .*; give runs that differ in force and"):
-        fp.compare(file, fp.sweep(Scene(), model="cylinders", friction=[0.2, 0.3]))

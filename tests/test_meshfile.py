@@ -313,21 +313,7 @@ def test_other_file_is_refused_and_not_run(place, text):
     assert os.listdir(place.parent) == ["mine.msh"]
 
 
-def test_name_in_another_encoding_is_refused(place):
-    """An ö of Latin-1; gmsh takes bytes as they are."""
-    write(place, version=2.2)
-    place.write_bytes(place.read_bytes().replace(b'"ridge 0"', b'"r\xf6cken"'))
-    with pytest.raises(GeometryError, match=r"mine.msh: group \d+ has a name that is no text in UTF-8"):
-        load(MPI.COMM_SELF, geometry.file(place))
-
-
-def test_mesh_by_another_name_is_refused(place):
-    """By its end gmsh would take it for a script."""
-    script = write(place).rename(place.with_suffix(".geo"))
-    with pytest.raises(GeometryError, match=r"mine\.geo is no mesh of gmsh; it must be a \.msh file"):
-        load(MPI.COMM_SELF, geometry.file(script))
-
-
+@pytest.mark.slow
 def test_page_runs(tmp_path, monkeypatch):
     """The example of the documentation runs as written."""
     page = Path(__file__).parents[1] / "docs" / "mesh.md"

@@ -68,12 +68,6 @@ def test_what_matters_for_a_while_stays(data):
     assert needed.friction
 
 
-def test_wanted_output_is_no_new_name_for_old_runs():
-    """A scene that wants everything has the parameters it had before the key was there, and finds its runs again."""
-    assert "output" not in Scene().parameters()
-    assert not from_data({"output": {"receptors": False}}).parameters()["output"]["receptors"]
-
-
 # -- forms -------------------------------------------------------------------------------------------------
 @pytest.fixture(scope="module")
 def body():
@@ -175,21 +169,6 @@ def test_run_without_voltage(pressed, tmp_path, monkeypatch):
     assert {"what": "attraction and the air gaps of the ridges", "reason": "no load has a voltage"} in less["omitted"]
     assert json.loads((folder / "summary.json").read_text(encoding="utf-8"))["omitted"] == less["omitted"]
     assert "left out: no load has a voltage" in (folder / "run.log").read_text(encoding="utf-8")
-
-
-def test_run_without_receptors(pressed, tmp_path, capsys):
-    """Elements at the receptors are far from the contact: its numbers move by less than 1 % on this coarse mesh."""
-    _, whole = pressed
-    data = {"history": [{"name": "press", "bone_height": -60e-6}], "output": {"receptors": False}}
-    summary_of(data, tmp_path)
-    (tmp_path / "receptors.csv").write_text("of an earlier run\n", encoding="utf-8")
-    capsys.readouterr()
-    less = summary_of(data, tmp_path)
-    assert less["charged_f_contact"] == pytest.approx(whole["charged_f_contact"], rel=0.01)
-    assert less["unknowns"] < whole["unknowns"]
-    assert not (tmp_path / "receptors.csv").exists()
-    assert (tmp_path / "finger_press.png").exists()
-    assert capsys.readouterr().out.count("output.receptors is false") == 1
 
 
 @pytest.mark.parametrize(

@@ -1,9 +1,6 @@
 """A scene on the mesh of a gmsh file: the same numbers as on its own mesh, what is left out, and what is refused."""
 
-import csv
-import hashlib
 import html
-import io
 import json
 import re
 import shlex
@@ -65,32 +62,6 @@ def test_same_numbers_as_on_its_own_mesh(place):
     assert file.charged.bone_height == pytest.approx(own.charged.bone_height, rel=1e-9)
     assert file.charged.contact_length == pytest.approx(own.charged.contact_length, rel=1e-9)
     assert file.steps[-1].mesh_contact < 100e-6  # that of the file: the shortest facet that can touch
-
-
-def test_key_of_a_file_is_the_argument(place, tmp_path):
-    """The same run to the last digit, and the same scene in its folder; a path is looked for beside the file."""
-    write(place, finger(2e-3))
-    loads = '[[history]]\nname = "press"\nf_ext = 5.0\n\n[[history]]\nname = "nudge"\nbone_x = 1e-9\n'
-    rest = "friction = 0.0\n\n[output]\nerrors = false\nreceptors = false\n"
-    file = place.with_name("scene.toml")
-    file.write_text(f'{rest}\n[geometry]\nfile = "mine.msh"\n\n{loads}', encoding="utf-8")
-    by_key = fp.run(fp.Scene.load(file), out=tmp_path / "key")
-    history = [{"name": "press", "f_ext": 5.0}, {"name": "nudge", "bone_x": 1e-9}]
-    by_argument = fp.run(scene(history=history, geometry={"file": place}), out=tmp_path / "argument")
-    for name in ("steps.csv", "ridges.csv", "scene.json"):
-        kept = [(tmp_path / door / name).read_text(encoding="utf-8") for door in ("key", "argument")]
-        rows = [csv.DictReader(io.StringIO(text)) for text in kept]
-        table = [[{k: x for k, x in row.items() if "seconds" not in str(k)} for row in each] for each in rows]
-        assert table[0] == table[1]
-    summary = json.loads((tmp_path / "key" / "summary.json").read_text(encoding="utf-8"))
-    assert summary["laws"]["mesh"] == str(place)
-    assert summary["parameters"]["geometry"]["file_sha256"] == hashlib.sha256(place.read_bytes()).hexdigest()
-    assert by_key.charged.contact_length == by_argument.charged.contact_length > 0
-    command = html.unescape(again(summary["parameters"], "full"))
-    assert fp.Scene(**summary["parameters"]) == fp.Scene.load(file)
-    assert 'fp.Scene.load("scene.json")' in command
-    for door in ("key", "argument"):  # and its folder gives it again
-        assert fp.Scene.load(tmp_path / door / "scene.json").parameters() == fp.Scene.load(file).parameters()
 
 
 @pytest.mark.parametrize(
@@ -175,18 +146,6 @@ def test_check_reads_and_draws_the_file(place, tmp_path, capsys):
     assert "is no mesh of gmsh" in capsys.readouterr().err
 
 
-def test_study_with_a_mesh_runs_its_points(place, tmp_path):
-    """Each in a process of its own, from what is kept of the scene; the path starts at the file of the study."""
-    write(place)
-    file = place.with_name("study.toml")
-    text = 'friction = 0.0\n[geometry]\nfile = "mine.msh"\n[[history]]\nname = "press"\nf_ext = 2.0\n'
-    file.write_text(f'{text}[output]\nerrors = false\n[sweep]\n"history[0].f_ext" = [1.0, 2.0]\n', encoding="utf-8")
-    assert main(["sweep", str(file), "--out", str(tmp_path / "out"), "--jobs", "1", "--quiet"]) == 0
-    with (tmp_path / "out" / "table.csv").open(encoding="utf-8", newline="") as rows:
-        forces = [float(row["history[0].f_ext"]) for row in csv.DictReader(rows) if not row["failure"]]
-    assert forces == [1.0, 2.0]
-
-
 def test_skin_outside_the_ridges_touches(place):
     """With ridge 0 alone ready for contact, its neighbours come down: the run stops and says what the file lacks."""
     with pytest.warns(UserWarning, match="outer skin"):
@@ -194,13 +153,6 @@ def test_skin_outside_the_ridges_touches(place):
     assert "skin of the group 'outer skin' is at a height of -" in result.failure
     assert "mine.msh must have more ridges, or f_ext be smaller" in result.failure
     assert len(result.steps) > 0
-
-
-def test_one_ridge_of_one_layer_runs(place):
-    """A body that is no finger: one layer, one ridge, no outer skin to watch."""
-    result = fp.run(scene(2.0, geometry={"file": write(place)}))
-    assert result.failure is None or result.failure == ""
-    assert result.charged.f_contact == pytest.approx(2.0, rel=1e-6)
 
 
 def test_what_is_left_out_is_said(place):

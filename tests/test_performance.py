@@ -13,11 +13,6 @@ ROOT = Path(__file__).resolve().parents[1]
 SMALL = ROOT / "demos" / "scenes" / "small_finger.toml"
 
 
-def test_exponent_of_a_power():
-    n = [1e4, 1e5, 1e6]
-    assert performance.exponent(n, [3 * x**1.25 for x in n]) == pytest.approx(1.25)
-
-
 def test_parts_are_all_of_the_processor_time(tmp_path):
     """What is charged to the parts adds up to what the process took, less its last lines; 2 % is a tenth of a second.
 
@@ -32,21 +27,6 @@ def test_parts_are_all_of_the_processor_time(tmp_path):
     assert performance.unit(found) > 0
 
 
-def test_busy_machine_is_refused(monkeypatch, tmp_path, capsys):
-    """Two ranks are not timed beside other work, and nothing is kept of them."""
-    monkeypatch.setattr(os, "getloadavg", lambda: (2.0, 2.0, 2.0))
-    performance.measure(["ranks"], tmp_path)
-    assert "the load average is 2.00" in capsys.readouterr().err
-    assert not list(tmp_path.iterdir())
-
-
-def test_pair_of_the_median_ratio_is_shown():
-    pairs = [{"1": {"wall": {"LU": 3.0}}, "2": {"wall": {"LU": two}}} for two in (1.5, 3.0, 2.0)]
-    found = performance._middle(pairs)
-    assert found["2"] == pairs[2]["2"]
-    assert found["ratios"] == [1.0, 1.5, 2.0]
-
-
 def test_explicit_dynamics_end_in_the_equilibrium():
     """A ridge of facets of 40 um, led along the loads over eight periods: forces and contact lengths within 3 %.
 
@@ -57,19 +37,6 @@ def test_explicit_dynamics_end_in_the_equilibrium():
         found = explicit.lead(40e-6, scaled, base["frequencies"][scaled], 8.0)
         assert found["ratio"] < 0.1
         assert performance.worst(found, base) < 0.03
-
-
-def test_lumped_mass_is_that_of_the_body():
-    mass = explicit.Ridge(40e-6).mass(scaled=False)
-    assert mass.sum() == pytest.approx(483e-6 * 600e-6 - 483e-6 * 50e-6, rel=0.02)  # the skin is a polygon
-    assert mass.min() > 0
-
-
-def test_task_of_an_array_without_a_voltage_is_told():
-    environment = {**os.environ, "VOLTAGES": "50 100", "SLURM_ARRAY_TASK_ID": "2"}
-    command = [str(ROOT / "demos" / "slurm_sweep.sh")]
-    done = subprocess.run(command, env=environment, capture_output=True, text=True, check=False, cwd=ROOT)
-    assert done.returncode == 2 and "task 2 has no voltage: VOLTAGES has 2; give --array=0-1" in done.stderr
 
 
 def test_sweep_as_an_array_of_jobs(tmp_path):

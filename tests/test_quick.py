@@ -16,7 +16,7 @@ def test_each_module_is_imported_by_a_quick_test():
     """In a process of its own: what the files of the quick tests import, and what that imports.
 
     The program imports a command where it is given, and what draws where a picture is asked for; test_command does.
-    Reports and their pictures are of whole runs, which make check leaves out: test_report and test_kept_drawing.
+    Reports, their pictures and processes of sweeps are of whole runs, which make check leaves out: test_report.
     """
     packages = ("geometry", "variational", "fingerpad")
     files = [file.relative_to(ROOT) for package in packages for file in (ROOT / package).rglob("*.py")]
@@ -24,7 +24,12 @@ def test_each_module_is_imported_by_a_quick_test():
     imports = [
         *(f"tests.{name}" for name in QUICK),
         *(f"fingerpad.cli.{name.replace('-', '_')}" for name in [*COMMANDS, "plot", "section"]),
-        *("fingerpad.report.run_page", "fingerpad.report.sweep_page", "fingerpad.io.kept_drawing"),
+        *(
+            "fingerpad.report.run_page",
+            "fingerpad.report.sweep_page",
+            "fingerpad.io.kept_drawing",
+            "fingerpad.runs.one",
+        ),
     ]
     code = "\n".join(["import sys", *(f"import {name}" for name in imports), "print(*sys.modules)"])
     done = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, check=True)

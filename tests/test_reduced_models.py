@@ -65,12 +65,6 @@ def test_sweep(tmp_path):
     assert "--model block" in (tmp_path / "report.html").read_text(encoding="utf-8")
 
 
-def test_compare(tmp_path, capsys):
-    """Beside the closed form, with its own column."""
-    assert main(["compare", "--model", "block", "cylinders", "--out", str(tmp_path), "--quiet"]) == 0
-    assert capsys.readouterr().out.split("\n")[0].split() == ["cylinders", "block"]
-
-
 def test_newtons():
     """A force on the whole finger sums slices over its points; the coefficient of all is that of each."""
     found = fp.run(Scene(friction=0.3, voltage=0.0, force=0.5), model="block")

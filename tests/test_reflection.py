@@ -48,6 +48,7 @@ def test_concave_pair_stays():
     assert np.array_equal(found, given)
 
 
+@pytest.mark.slow
 @pytest.mark.mpi
 @pytest.mark.parametrize("half", [True, False])
 def test_sharp_tips_are_meshed(half):

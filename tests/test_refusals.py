@@ -11,7 +11,7 @@ from fingerpad.model.feasibility import check
 from fingerpad.scene import SceneError
 from fingerpad.scene import scene as scenes
 
-SCENES = Path(__file__).parent.parent / "demos/scenes"
+ROOT = Path(__file__).parent.parent
 
 
 def refusal(path: Path | None = None, **overrides) -> str:
@@ -27,77 +27,33 @@ def refusal(path: Path | None = None, **overrides) -> str:
     ("key", "value", "message"),
     [
         ("f_ext", -3, "f_ext is -3 N/m; it must be from 0.001 to 5000 N/m"),
-        ("f_ext", 0, "f_ext is 0 N/m; it must be from 0.001 to 5000 N/m"),
         ("f_ext", float("nan"), "f_ext is nan; it must be a finite number"),
-        ("f_ext", float("inf"), "f_ext is inf; it must be a finite number"),
         ("f_ext", True, "f_ext is true; it must be a number"),
         ("f_ext", [1], "f_ext is [1]; it must be a number"),
-        ("voltage", "high", "voltage is 'high'; it must be a number in V or a text such as '1 V'"),
-        ("voltage", "200", "voltage is '200'; it has no unit; it must be a number in V or a text such as '200 V'"),
         ("friction", "0.25", "friction is '0.25'; it must be a number"),
         ("voltage", -1e9, "voltage is -1000000000 V; it must be 0 or from 0.001 to 5000 V, with either sign"),
-        ("friction", -0.1, "friction is -0.1; it must be 0 or from 1e-06 to 2"),
         ("friction", 2.1, "friction is 2.1; it must be 0 or from 1e-06 to 2"),
-        ("slide_length", 0, "slide_length is 0 m; it must be from 1e-09 to 0.1 m"),
         ("mesh", 3, "mesh is 3; it must be a table of keys"),
-        ("materials", 3, "materials is 3; it must be a table of keys"),
-        ("materials.dermis", 3, "materials.dermis is 3; it must be a table of keys"),
-        (
-            "mesh.contact", "5e-6",
-            "mesh.contact is '5e-6'; it has no unit; it must be a number in m or a text such as '5e-6 m'",
-        ),
-        ("mesh.contact", float("nan"), "mesh.contact is nan; it must be a finite number"),
-        ("mesh.contact", -5e-6, "mesh.contact is -5e-06 m; it must be from 1e-08 to 0.01 m"),
         ("mesh.growth", 1.5, "mesh.growth is 1.5; it must be from 0.0001 to 1"),
-        ("materials.dermis.poisson", 0.5, "materials.dermis.poisson is 0.5; it must be from -0.9 to 0.4999"),
-        ("materials.nail.poisson", -1, "materials.nail.poisson is -1; it must be from -0.9 to 0.4999"),
-        ("materials.nail.young", 0, "materials.nail.young is 0 Pa; it must be from 1 to 1e+12 Pa"),
-        (
-            "materials.dermis.shear_modulus", -1,
-            "materials.dermis.shear_modulus is -1 Pa; it must be from 1 to 1e+12 Pa",
-        ),
         (
             "materials.subcutis.alpha", 0,
             "materials.subcutis.alpha is 0; it must be from 0.01 to 50, with either sign",
         ),
-        ("materials.exponent", "ansys", "materials.exponent is 'ansys'; it must be 'printed' or 'abaqus'"),
-        ("electric.eps_i", 0.5, "electric.eps_i is 0.5; it must be from 1 to 1e+07"),
-        ("electric.d_i", 0, "electric.d_i is 0 m; it must be from 1e-09 to 0.01 m"),
         ("roughness.h_rms", 0, "roughness.h_rms is 0 m; it must be from 1e-09 to 0.001 m"),
-        (
-            "roughness.p_floor", 1e6,
-            "roughness.p_floor is 1000000; it must be below the pressure at zero separation, 2.597e+05 Pa",
-        ),
         (
             "roughness.gamma", 2,
             "roughness.p_floor is 1000, where the air gap would be held at 3.13e+07 m; it must be below 1 m: take a "
             "larger p_floor, or a smaller gamma or h_rms",
         ),
         ("contact.eps_n", 0, "contact.eps_n is 0 Pa/m; it must be from 1e+07 to 1e+17 Pa/m"),
-        (
-            "contact.formulation", "mortar",
-            "contact.formulation is 'mortar'; it must be 'penalty', 'nitsche', 'augmented' or a law of your own, as "
-            "'module:Class'",
-        ),
         ("contact.length", "area", "contact.length is 'area'; it must be 'pressure' or 'gap'"),
-        (
-            "numerics.element", "P4",
-            "numerics.element is 'P4'; it must be 'P1', 'P2', 'P2 reduced', 'P2-P1' or 'P3'",
-        ),
         ("numerics.coupling_cap", 1.5, "numerics.coupling_cap is 1.5; it must be a whole number"),
-        ("geometry.ridge_count", 5.0, "geometry.ridge_count is 5.0; it must be a whole number"),
-        ("numerics.quadrature_points", 9, "numerics.quadrature_points is 9; it must be at most 8"),
         (
             "numerics.quadrature_points", 2,
             "numerics.quadrature_points is 2; it must be at least 3 for numerics.element 'P2'",
         ),
         ("numerics.tolerance", 0, "numerics.tolerance is 0; it must be from 1e-12 to 1e-07"),
         ("numerics.coupling_cap", 0, "numerics.coupling_cap is 0; it must be at least 1"),
-        (
-            "geometry.ridge_count", 54,
-            "geometry.ridge_count is 54; it must be odd, so that one ridge is at x = 0",
-        ),
-        ("geometry.width", 0, "geometry.width is 0 m; it must be from 0.001 to 0.1 m"),
     ],
 )  # fmt: skip
 def test_impossible_value(key, value, message):
@@ -113,20 +69,7 @@ def test_impossible_value(key, value, message):
             10.0,
             "contact.gamma_0 is not a key of contact with the law penalty; keys are eps_n, eps_t",
         ),
-        (
-            "nitsche",
-            "eps_n",
-            1e12,
-            "contact.eps_n is not a key of contact with the law nitsche; keys are gamma_0, theta",
-        ),
-        (
-            "augmented",
-            "theta",
-            0,
-            "contact.theta is not a key of contact with the law augmented; keys are eps_n, eps_t, tolerance",
-        ),
         ("augmented", "tolerance", 0, "contact.tolerance is 0 m; it must be from 1e-12 to 1e-06 m"),
-        ("nitsche", "gamma_0", -1, "contact.gamma_0 is -1; it must be from 0.001 to 1e+06"),
         ("nitsche", "theta", 2, "contact.theta is 2; it must be -1, 0 or 1"),
     ],
 )
@@ -154,23 +97,11 @@ def test_impossible_geometry_and_mesh():
             "[materials.dermis]\nnu = 0.4",
             "materials.dermis.nu is not a key of materials.dermis with the law Ogden; keys are shear_modulus, alpha",
         ),
-        (
-            "[materials.bone]\nyoung = 1",
-            "materials.bone is not a key of materials; keys are exponent, subcutis, dermis,",
-        ),
-        (
-            '[[history]]\nname = "a"\nf_ext = 1\nu = 3',
-            "history[0].u is not a key of history[0]; keys are name, f_ext, bone_height, voltage, bone_x,",
-        ),
         ("f_ext = 1979-05-27", "f_ext is '1979-05-27'; its unit is not known; it must be a number in N/m"),
     ],
 )
 def test_unknown_key(write, text, start):
     assert refusal(write(text)).startswith(start)
-
-
-def test_override_of_something_that_is_no_table(write):
-    assert refusal(write("mesh = 3"), mesh__contact=1e-6) == "mesh is 3; it must be a table of keys"
 
 
 def test_first_of_several(write):
@@ -214,14 +145,10 @@ DOTS = "a." * 400_000 + "a"
     "text",
     [
         f"{DOTS} = 1",
-        f"[{DOTS}]",
         f"x = {{{DOTS} = 1}}",
         f'x = {{s = """\n""", {DOTS} = 1}}',
-        f'# """\n{DOTS} = 1\n# """',
         f'x = "\\"" # "\n{DOTS} = 1',
-        f"x = '\\' # '\n{DOTS} = 1",
         '"=".' * 200_000 + "a = 1",
-        "a . " * 200_000 + "a = 1",
     ],
     ids=lambda text: text[:12],
 )
@@ -242,25 +169,14 @@ def test_dots_that_are_no_key(write):
     ("text", "message"),
     [
         ("f_ext = " + "9" * 400, "f_ext has some 400 digits; at most 300 are read"),
-        ("numerics.coupling_cap = " + "9" * 30, "numerics.coupling_cap is 1e+30; it must be at most 1000"),
-        ("voltage = " + "9" * 30, "voltage is 1e+30 V; it must be 0 or from 0.001 to 5000 V"),
         ("f_ext = " + "[" * 5000 + "]" * 5000, "nested too deep"),
         (f"{'a.' * 3000}a = 1", "a.a.a has lists or tables that are nested too deep"),
         ('"" = 1', "'' is not a key of a scene; keys are f_ext, force, voltage,"),
-        ('"mesh.contact" = 1', "'mesh.contact' is not a key of a scene;"),
-        ('"a\\nb" = 1', "'a\\nb' is not a key of a scene;"),
         (f"{'k' * 100_000} = 1", f"{'k' * 37}... is not a key of a scene;"),
         (f'voltage = "{"v" * 100_000}"', f"voltage is '{'v' * 55}...'; it must be a number"),
         (f"{'k' * 100_000}", "is not TOML: Expected '=' after a key"),
-        ("geometry.ridge_profile = []", "geometry.ridge_profile is empty; it must have at least one entry"),
-        ("geometry.ridge_profile = [nan]", "geometry.ridge_profile[0] is nan; it must be a finite number"),
         ("geometry.ridge_profile = [1, inf]", "geometry.ridge_profile[1] is inf; it must be a finite number"),
-        (
-            f"geometry.ridge_profile = {[1] * 500}",
-            "geometry.ridge_profile has too many entries; it must have at most 16",
-        ),
         ("ridge_count = 9", "ridge_count is not a key of a scene; did you mean geometry.ridge_count?"),
-        ("mesh.ridge_cuont = 9", "mesh.ridge_cuont is not a key of mesh; did you mean geometry.ridge_count?"),
         ("dermis.alpha = 9", "dermis is not a key of a scene; did you mean materials.dermis?"),
         ("until_full_slip = true", "until_full_slip is not a key of a scene; did you mean history[0].until_full_slip?"),
     ],
@@ -277,28 +193,11 @@ def test_odd_text(write, text, message):
     [
         ("geometry.width", 16, "16 m; it must be from 0.001 to 0.1 m (lengths are in m; did you mean 0.016?)"),
         ("geometry.sc_thickness", 425, "425 m; .*did you mean 0.000425"),
-        ("geometry.sc_thickness", 1e-9, "1e-09 m; it must be from 1e-06 to 0.01 m$"),
-        ("geometry.nail_thickness", 1e-9, "1e-09 m; it must be from 1e-05"),
         ("roughness.h_rms", 1.97, "1.97 m; .*did you mean 1.97e-06"),
-        ("mesh.contact", 5, "5 m; .*did you mean 5e-06"),
-        ("mesh.coarsest", 1, "1 m; .*did you mean 0.001"),
-        ("slide_length", 5, "5 m; .*did you mean 0.005"),
-        ("geometry.ridge_amplitude", 100, "100 m; .*did you mean 0.0001"),
         ("materials.stratum_corneum.shear_modulus", 0.087, "0.087 Pa; .*did you mean 87000"),
         ("contact.eps_n", 1.5, "1.5 Pa/m; .*did you mean 1.5e"),
-        ("f_ext", 75e3, "75000 N/m; .*did you mean 75?"),
         ("f_ext", 1e300, "1e+300 N/m; it must be from 0.001 to 5000 N/m$"),
-        ("voltage", 1e9, "1000000000 V; it must be 0 or from 0.001 to 5000 V, with either sign$"),
-        ("voltage", 2e14, "2e+14 V; it must be"),
         ("numerics.step_scale", 1e-9, "1e-09; it must be from 0.001 to 10$"),
-        ("numerics.coupling_tolerance", 0.9, "0.9; it must be from 1e-12 to 0.001$"),
-        ("numerics.tolerance", 0.9, "0.9; it must be from 1e-12 to 1e-07$"),
-        ("mesh.growth", 1e-9, "1e-09; it must be from 0.0001 to 1$"),
-        ("mesh.coarsest", 1e-9, "1e-09 m; it must be from 1e-08"),
-        ("mesh.touching_half_arc", 1e308, "1e+308 m; it must be from 1e-06 to 0.2 m$"),
-        ("geometry.width", 1e308, "1e+308 m; it must be from 0.001 to 0.1 m$"),
-        ("geometry.height", 5e-324, "4.94065645841e-324 m; it must be from 0.001 to 0.1 m$"),
-        ("geometry.merkel_offset", 1.0, "1 m; .*did you mean 1e-06"),
         ("geometry.merkel_offset", 900e-6, "0.0009 m; it must be below the thickness of the viable epidermis"),
     ],
 )
@@ -331,3 +230,80 @@ def test_what_is_no_scene_is_refused(call, scene):
 def test_wrong_arguments_are_refused(call, words):
     with pytest.raises(SceneError, match=words):
         call()
+
+
+# -- A history of loads that cannot be run is refused in one short sentence ---
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("history = []", "history is empty; it must have at least one entry"),
+        ("history = 3", "history is 3; it must be a list"),
+        ("[[history]]\nf_ext = 3", "history[0].name is missing; it must be given"),
+        ('[[history]]\nname = "a"\nf_ext = -1', "history[0].f_ext is -1 N/m; it must be 0 or from 0.001 to 5000 N/m"),
+        (
+            '[[history]]\nname = "a"\nf_ext = 0',
+            "history[0].name is 'a', which ends at f_ext 0 and voltage 0, where nothing holds the skin on the screen; "
+            "one of the two must be greater than 0, or a bone_height be given",
+        ),
+        (
+            '[[history]]\nname = "a"\nf_ext = 1\nuntil_full_slip = 1',
+            "history[0].until_full_slip is 1; it must be true or false",
+        ),
+        (
+            '[[history]]\nname = "a"\nf_ext = 1\nbone_height = -1e-3',
+            "history[0].f_ext is 1 and history[0].bone_height is -0.001; at most one of the two can be prescribed",
+        ),
+        (
+            '[[history]]\nname = "a"\nf_ext = 1\n[[history]]\nname = "b"\nuntil_full_slip = true',
+            "history[1].name is 'b' and nothing else is given; it must come with at least one of "
+            "history[1].f_ext, history[1].bone_height, history[1].voltage, history[1].bone_x and history[1].bone_x_by",
+        ),
+        (
+            '[[history]]\nname = "a"\nf_ext = 1\n[[history]]\nname = "b"\nvoltage = 80\nbone_x = 1e-3\n'
+            "until_full_slip = true",
+            "history[1].voltage is 80 and history[1].until_full_slip is true, which may stop before that is reached; "
+            "history[1].voltage must come in a load of its own",
+        ),
+        (
+            '[[history]]\nname = "a/b"\nf_ext = 1',
+            "history[0].name is 'a/b'; it must be without '/', since files are named by it",
+        ),
+        (
+            '[[history]]\nname = ".a"\nf_ext = 1',
+            "history[0].name is '.a'; it must not begin with '.', since files are named by it",
+        ),
+        *(
+            (
+                f'[[history]]\nname = "{first}1+1"\nf_ext = 1',
+                f"history[0].name is '{first}1+1'; it must not begin with '{first}', which makes a formula of it when "
+                "a table is opened",
+            )
+            for first in "=+@\uff1d"
+        ),
+        ('[[history]]\nname = " "\nf_ext = 1', "history[0].name is ' '; it must have a letter or a digit"),
+        (
+            f'[[history]]\nname = "{"n" * 300}"\nf_ext = 1',
+            f"history[0].name is '{'n' * 55}...'; it must be of 100 bytes at most, since files are named by it",
+        ),
+        (
+            '[[history]]\nname = "voltage"\nf_ext = 1\n[[history]]\nname = "voltage"\nf_ext = 2',
+            "history[1].name is 'voltage' and history[0].name is 'voltage'; each load must have a name of its own, "
+            "also where spaces become _ and letters have no case, since files are named by it",
+        ),
+        (
+            '[[history]]\nname = "a"\nvoltage = 200',
+            "history[0].name is 'a', with neither f_ext nor bone_height; the first load must give one of them",
+        ),
+    ],
+)
+def test_impossible_history(write, text, message):
+    assert refusal(write(text)) == message
+
+
+@pytest.mark.parametrize(("key", "value"), [("f_ext", 50.0), ("voltage", 0.0), ("slide_length", 1e-3)])
+def test_history_and_a_default_load_s_value(key, value):
+    """Also where the value given is the default: it would be silently ignored."""
+    for given in (value, getattr(fp.Scene(), key)):
+        assert refusal(ROOT / "demos" / "scenes" / "voltage_while_sliding.toml", **{key: given}) == (
+            f"{key} is {given:g} and history is given too; with a history each load states its own values"
+        )

@@ -17,7 +17,7 @@ from fingerpad.report import run_page, trust
 from fingerpad.report.write import NAME, write
 from fingerpad.runs.context import RunContext
 from fingerpad.runs.solve import solved
-from fingerpad.scene import Scene, SceneError
+from fingerpad.scene import Scene
 from tests.browser import SIZES, asked
 from tests.small_finger import small
 
@@ -91,64 +91,12 @@ def test_browser_opens_it_and_steps_through_the_states(page, tmp_path, size):
     assert all(gap > 5 for gap in found["gaps"]), "the title of an axis touches its numbers"
 
 
-def test_key_numbers_fit_a_phone(page, tmp_path):
-    """All columns at once: that of full slip is the last."""
-    program = """
-    const tables = [...document.querySelectorAll(".wide")].filter((box) => box.querySelector("table.numbers"));
-    return tables.slice(0, 2).map((box) => [box.scrollWidth, box.clientWidth]);"""
-    found = asked(page, program, tmp_path, width=390, height=844)
-    assert len(found) == 2 and all(needed <= there for needed, there in found)
-
-
 def test_numbers_stand_there_without_scripts(page, folder, tmp_path):
     result = Result.load(folder)
     found = asked(page, TEXT, tmp_path, width=390, height=844, scripts=False)
     assert f"{result.full_slip.f_electrostatic:.3f}" in found["text"]
     assert found["hidden"], "controls that do nothing are shown"
     assert found["wide"] <= 390
-
-
-@pytest.mark.parametrize("way", [1, -1])
-def test_friction_over_that_without_attraction_has_no_sign(folder, way):
-    result = Result.load(folder)
-    slip = replace(result.full_slip, mu_app=way * 0.5)
-    assert ", 2.00 times the 0.25 without attraction" in run_page.page(replace(result, full_slip=slip))
-
-
-def test_contact_lengths_of_the_ridges_add_up(page, folder):
-    """In every saved state; each length is rounded to 0.05 µm."""
-    frames = data(page)["finger"]["frames"]
-    assert len(frames) >= 3
-    for frame in frames:
-        whole = float(re.search(r"L_R = ([0-9.]+) mm", frame["about"])[1])
-        assert sum(ridge["length"] for ridge in frame["skin"]) == pytest.approx(whole, abs=1.5e-3)
-
-
-def test_every_parameter_is_listed_with_its_unit(page):
-    rows = re.findall(r'<tr><th scope="row">([\w.]+)</th><td>(.*?)</td><td>(.*?)</td>', page)
-    found = {key: (value, unit) for key, value, unit in rows}
-    assert found["roughness.h_rms"] == ("3.1e-06", "m")
-    assert found["geometry.width"] == ("0.004", "m")
-
-
-def test_picture_that_is_no_picture_is_left_out(copy):
-    (copy / "surface.png").write_bytes(b"")
-    (copy / "surface_press.npz").write_bytes(b"PK")
-    page = write(copy).read_text(encoding="utf-8")
-    assert "data:image/png" not in page
-    assert "surface.png is left out: it is no picture of a run, or not a whole one." in page
-    assert "surface_press.npz is left out: it has no arrays of a run." in page
-
-
-def test_jumps_are_marked(folder):
-    result = Result.load(folder)
-    middle = result.steps[-3]
-    jumped = replace(middle, record=replace(middle.record, jump=True, energy_released=1e-3, released_error=1e-6))
-    steps = tuple(jumped if state is middle else state for state in result.steps)
-    shown = data(run_page.page(replace(result, steps=steps)))["steps"]
-    assert shown["jump"][shown["step"].index(middle.step)] == 1
-    words = {each.what: each.words for each in trust.findings(replace(result, steps=steps))}["jumps"]
-    assert f"{middle.step} (slide)" in words
 
 
 # -- trust -------------------------------------------------------------------------------------------------
@@ -167,33 +115,10 @@ def test_what_is_wrong_is_told(folder, changes, what, kind):
     assert {each.what: each.verdict for each in found}[what] == kind
 
 
-def test_worst_finding_leads(folder):
-    found = trust.findings(replace(Result.load(folder), failure="the load slide was not reached"))
-    kind, words = trust.verdict(found)
-    assert kind == trust.BAD and "the load slide was not reached" in words
-
-
-def test_end_by_a_signal_is_told_once(folder):
-    failure = "stopped by SIGTERM after step 5; the same command goes on from there"
-    found = trust.findings(replace(Result.load(folder), failure=failure, interrupted="SIGTERM"))
-    assert found[0].words == "Stopped by SIGTERM after step 5; the same command goes on from there."
-    assert trust.verdict(found)[1].count("SIGTERM") == 1
-
-
-def test_contacts_of_enough_facets_and_other_formulations_are_not_told(folder):
-    result = Result.load(folder)
-    state = replace(result.full_slip, contact_length=4.1 * 2 * 40e-6, ridges_in_contact=2, mesh_contact=40e-6)
-    assert FEW not in [each.what for each in trust.findings(replace(result, full_slip=state))]
-    nitsche = result.scene.replace(contact={"formulation": "nitsche"})
-    few = replace(result, scene=nitsche, full_slip=replace(state, contact_length=40e-6))
-    assert FEW not in [each.what for each in trust.findings(few)]
-
-
 @pytest.mark.parametrize(
     ("error", "what", "words"),
     [
         (0.019, "mesh", "1.9 % of its value"),
-        (0.09, "the mesh is coarse", "good for trends"),
         (0.11, "the mesh is coarse", "too coarse for more than a trend"),
         (float("nan"), "errors are not estimated", "no estimate"),
     ],
@@ -205,32 +130,6 @@ def test_size_of_the_error_is_told(folder, error, what, words):
     found = {each.what: each for each in trust.findings(replace(result, full_slip=state))}
     assert words in found[what].words
     assert found[what].verdict == (trust.GOOD if error < 0.02 else trust.CARE)
-
-
-@pytest.mark.parametrize(("value", "error"), [(1e-15, 1e-10), (0.25, 1e-12), (0.25, 0.025)])
-def test_larger_error_is_told_and_roundoff_of_friction_is_not(folder, value, error):
-    """Without friction, without voltage, and with an error of 10 % in µ_app; the contact length has 20 %."""
-    result = Result.load(folder)
-    slip = result.full_slip
-    errors = replace(slip.error, mu_app=error, contact_length=0.2 * slip.contact_length)
-    found = trust.findings(replace(result, full_slip=replace(slip, mu_app=value, error=errors)))
-    told = {each.what: each.words for each in found}["the mesh is coarse"]
-    assert told.startswith("The estimated discretisation error of the contact length is 20 % of its value.")
-
-
-@pytest.mark.parametrize(("energy", "words"), [(1e-3, "released 0.001 J/m"), (1e-7, "released 1.1e-06 J/m at most")])
-def test_energy_of_jumps_is_told_where_it_is_known(folder, energy, words):
-    result = Result.load(folder)
-    step = result.steps[-1]
-    jumped = replace(step, record=replace(step.record, jump=True, energy_released=energy, released_error=1e-6))
-    found = trust.findings(replace(result, steps=(*result.steps[:-1], jumped)))
-    assert words in {each.what: each.words for each in found}["jumps"]
-
-
-@pytest.mark.parametrize(("failure", "kind"), [("the load slide was not reached", trust.BAD), ("", trust.CARE)])
-def test_slide_without_full_slip_is_told(folder, failure, kind):
-    found = trust.findings(replace(Result.load(folder), full_slip=None, failure=failure))
-    assert {each.what: each.verdict for each in found}["full slip was not reached"] == kind
 
 
 def test_full_slip_without_a_coefficient_has_its_force(folder):
@@ -261,16 +160,11 @@ def test_half_written_run_is_reported_as_such(copy):
     ("files", "words"),
     [
         ({}, "holds no results of fingerpad"),
-        ({"notes.txt": "hello"}, "holds no results of fingerpad"),
         ({"summary.json": '{"f_ext": 75,'}, "its files are not whole, or not of a run"),
-        ({"summary.json": "[1, 2]"}, "its files are not whole, or not of a run"),
         ({"summary.json": '{"failure": "f_ext is too large"}'}, "was refused and has no results: f_ext is too large"),
-        ({"table.csv": "a,b\n1,2\n"}, "is not the table of a sweep"),
         ({"table.csv": "voltage,full_slip_mu_app,failure\n100,0.3,\n200"}, "is cut short"),
         ({"scene.json": "{}"}, "has no accepted step yet"),
-        ({"scene.json": "{}", "steps.csv": "step\n"}, "has no accepted step yet"),
         ({"summary.json": "[" * 100_000}, "its files are not whole, or not of a run"),
-        ({"scene.json": "[" * 100_000, "steps.csv": "step\n"}, "cannot be read"),
         ({"full/0123/asked.json": "{}"}, "has not ended (0 runs are there)"),
     ],
 )
@@ -284,47 +178,12 @@ def test_bad_folder_is_refused_in_a_sentence(tmp_path, capsys, files, words):
     assert not (tmp_path / NAME).exists()
 
 
-def test_result_without_a_coefficient_is_read_back(tmp_path):
-    """As of a finger that slides while nothing presses it."""
-    solved(Scene(), find("cylinders"), RunContext(tmp_path))
-    summary = json.loads((tmp_path / "summary.json").read_text(encoding="utf-8"))
-    summary["states"]["full_slip"]["mu_app"] = None
-    (tmp_path / "summary.json").write_text(json.dumps(summary), encoding="utf-8")
-    (tmp_path / "result.nc").unlink()
-    read = Result.load(tmp_path)
-    assert math.isnan(read.full_slip.mu_app) and read.full_slip.f_t == summary["full_slip_f_t"]
-    assert write(tmp_path).exists() and read.to_dict()["full_slip_mu_app"] is None
-
-
-def test_run_without_an_accepted_step_is_read_back(copy):
-    """Its first step failed: there is a failure and no table."""
-    summary = json.loads((copy / "summary.json").read_text(encoding="utf-8"))
-    known = {
-        key: value for key, value in summary.items() if not key.startswith(("uncharged_", "charged_", "full_slip_"))
-    }
-    failed = known | {"steps": 0, "loads": [], "states": {}, "failure": "no equilibrium"}
-    (copy / "summary.json").write_text(json.dumps(failed), encoding="utf-8")
-    for file in copy.glob("*.csv"):
-        file.unlink()
-    assert Result.load(copy).failure == "no equilibrium"
-
-
-def test_folder_that_is_not_there(tmp_path):
-    with pytest.raises(SceneError, match="is not a folder"):
-        write(tmp_path / "nowhere")
-
-
 def test_report_that_fails_does_not_cost_the_run(tmp_path, monkeypatch, capsys):
     monkeypatch.setattr(run_page, "page", lambda result: 1 / 0)
     result = solved(Scene(), find("cylinders"), RunContext(tmp_path))
     assert result.full_slip.mu_app == json.loads((tmp_path / "summary.json").read_text())["full_slip_mu_app"]
     assert not (tmp_path / NAME).exists()
     assert "no report of" in capsys.readouterr().err
-
-
-def data(page: str) -> dict:
-    """Return what the charts of a page are drawn from."""
-    return json.loads(re.search(r'<script type="application/json" id="data">(.*?)</script>', page, re.DOTALL)[1])
 
 
 @pytest.mark.parametrize("model", ["full", "cylinders"])

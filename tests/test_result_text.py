@@ -47,9 +47,3 @@ def test_cheaper_models_say_what_computed_them(tmp_path):
     assert fp.__version__ in fp.Result.load(tmp_path).to_xarray().attrs["provenance"]
     with pytest.raises(fp.SceneError, match="its model was cylinders, and is full now"):
         fp.run(out=tmp_path)
-
-
-def test_results_are_shown_as_they_are_printed(tmp_path):
-    """In a notebook: without the values of all steps."""
-    result, curve = fp.run(model="cylinders"), fp.sweep(model="cylinders", out=tmp_path, voltage=[0.0])
-    assert repr(result) == str(result) and repr(curve) == str(curve)

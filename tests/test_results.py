@@ -10,7 +10,7 @@ from mpi4py import MPI
 from petsc4py import PETSc
 
 from fingerpad.accuracy.solves import StateRecorder
-from fingerpad.io import console, drawing, writing
+from fingerpad.io import drawing, writing
 from fingerpad.io.drawing import Profile
 from fingerpad.io.states import RESULTS, named
 from fingerpad.model import report
@@ -76,39 +76,6 @@ def test_charged_while_it_slides(tmp_path, titles):
     assert "$U$ = 100 V, bone at $x$ = 0.6 mm" in titles["finger_charge_while_sliding"]
     assert "$U$ = 0 V" in titles["Normal contact"] and "$U$ = 100 V" in titles["Full slip"]
     assert "$f_{ext}$ = 1 N/m, $U$ = 0 to 100 V" in titles["history"] and "$U$ = 0 to 100 V" in titles["surface"]
-
-
-def test_skin_is_drawn_without_sliding(tmp_path, titles):
-    """A run that only presses has the skin at the end of its load, and no history of sliding."""
-    run(from_data(LEAN | {"history": [PRESS]}), tmp_path, MPI.COMM_WORLD, pictures=True)
-    assert {"surface", "surface_press", "finger_press"} <= set(titles) and "history" not in titles
-    assert "$f_{ext}$ = 1 N/m, $U$ = 0 V" in titles["After press"]
-    with np.load(tmp_path / "surface_press.npz") as arrays:
-        assert set(arrays["end_ridge"][arrays["end_p"] > 0]) == {-1.0, 0.0, 1.0}, "the central three touch"
-
-
-HEIGHT = {"name": "press", "bone_height": -20e-6}
-BACK = {"name": "back", "bone_x": 0.0}
-
-
-@pytest.mark.parametrize(
-    ("history", "load", "f_ext"),
-    [
-        ([PRESS, SLIDE, {"name": "lift", "f_ext": 0.5}], "lift", 0.5),
-        ([HEIGHT, SLIDE, {"name": "charge", "voltage": 80.0}], "slide", None),
-        ([HEIGHT, SLIDE, {"name": "charge", "voltage": 80.0}, SLIDE | {"name": "slide on"}], "slide on", None),
-        ([PRESS, SLIDE | {"bone_x": 0.3e-3}, BACK], "back", 1.0),
-    ],
-    ids=["lift", "height", "two slips", "there and back"],
-)
-def test_headline_is_the_last_full_slip(tmp_path, history, load, f_ext):
-    """Whatever came after the full slip, and whichever of height and force was given."""
-    summary = run(from_data(LEAN | {"history": history}), tmp_path, MPI.COMM_WORLD, pictures=True)
-    assert summary["full_slip_load"] == load
-    assert f_ext is None or summary["full_slip_f_ext"] == pytest.approx(f_ext, rel=1e-9)
-    assert (summary["charged_load"], summary["charged_bone_x"]) == ("press", 0.0)
-    assert abs(summary["charged_mu_app"]) < 0.01
-    assert float(rows_of(tmp_path)[-1]["f_ext"]) == summary["f_ext"]
 
 
 CHARGE, SLIDE_ON = {"name": "charge", "voltage": 60.0}, {"name": "slide on", "bone_x": 0.6e-3}
@@ -279,18 +246,6 @@ def test_headline_states_are_shown_on_the_final_mesh(refined):
 
 
 # -- jumps -------------------------------------------------------------------------------------------------
-@pytest.mark.parametrize(
-    ("released", "error", "words"),
-    [
-        (-2.4e-5, 3e-5, "energy released below 3e-05 J/m"),
-        (2.4e-5, 3e-5, "energy released below 5.4e-05 J/m"),
-        (2.4e-4, 3e-5, "0.00024 ± 3e-05 J/m released"),
-    ],
-)
-def test_energy_hidden_by_its_error_is_not_said(released, error, words):
-    """A jump cannot gain energy; what is released is at most the value and its error."""
-    record = SimpleNamespace(energy_released=released, released_error=error)
-    assert console._released(SimpleNamespace(record=record)) == words
 
 
 def test_profile_is_sorted_along_each_ridge():
@@ -301,22 +256,3 @@ def test_profile_is_sorted_along_each_ridge():
     found = drawing._along(profile, "full slip", state, "")
     assert found.x[[0, 1, 3, 4]] == pytest.approx([0.0, 1e-3, 2e-3, 3e-3]) and np.isnan(found.x[[2, 5]]).all()
     assert found.d_eq[[0, 3]] == pytest.approx([1e-6, 2e-6])
-
-
-def test_way_through_the_air_is_no_sliding(tmp_path, titles):
-    """The bone goes half a millimetre aside before it presses: normal contact is that of the place it presses at."""
-    place = 0.5e-3
-    away = {"name": "away", "bone_height": 20e-6, "bone_x": place}
-    loads = [away, PRESS, {"name": "charge", "voltage": 100.0}, SLIDE | {"bone_x": place + 1e-3}]
-    summary = run(from_data(LEAN | {"history": loads}), tmp_path, MPI.COMM_WORLD, pictures=True)
-    assert (summary["charged_load"], summary["charged_voltage"]) == ("charge", 100.0)
-    assert summary["uncharged_load"] == "press"
-    assert summary["charged_bone_x"] == pytest.approx(place, rel=1e-12)
-    assert summary["full_slip_mu_app"] > 0.5 and summary["full_slip_bone_x"] > place
-    assert "0.5 mm" in titles["Charged normal contact"]
-
-
-def test_remark_on_the_scene_is_a_caution(tmp_path):
-    """A roughness as long as ridges, of a press alone."""
-    found = run(from_data(LEAN | {"history": [PRESS], "roughness": {"wavelength": 400e-6}}), tmp_path)
-    assert [text for text in found["cautions"] if text.startswith("roughness.wavelength is 0.0004 m, above half of")]

@@ -18,7 +18,6 @@ from fingerpad.cli import run as command
 from fingerpad.io.checkpoint import Checkpoint, CheckpointError
 from fingerpad.io.drawing import Drawing
 from fingerpad.io.writing import Writer
-from fingerpad.model.simulation import Simulation
 from fingerpad.runs.batch import key, sweep
 from fingerpad.scene import SceneError
 from tests.test_history import Own
@@ -251,24 +250,6 @@ def test_refusals(cut_short, tmp_path_factory, capsys):
     head.write_text(text, encoding="utf-8")
     fp.run(scene(), out=cut_short, resume=True)  # from the part before the one that was deleted
     refused("its run has reached its end", cut_short)
-
-
-@pytest.mark.parametrize("folder", [False, True])
-def test_run_that_stops_before_its_first_checkpoint(tmp_path, monkeypatch, folder):
-    """The failure promises no more than there is, and to go on is refused for what it is."""
-    accepted = Simulation._accepted
-
-    def stop(self, *given):
-        signal.raise_signal(signal.SIGTERM)
-        return accepted(self, *given)
-
-    monkeypatch.setattr(Simulation, "_accepted", stop)
-    with pytest.raises(SystemExit) as ended:
-        fp.run(scene(), out=tmp_path if folder else None)
-    kept = "; every accepted step is in the folder of results, and the same command starts again" if folder else ""
-    assert ended.value.result.failure == "stopped by SIGTERM after step 1" + kept
-    if folder:
-        refused("has no checkpoint to go on from: its run has not come to one", tmp_path)
 
 
 def test_refused_options(tmp_path):

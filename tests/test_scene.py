@@ -1,8 +1,6 @@
 """Scenes: defaults are the paper's, and what is given wins."""
 
 import json
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
@@ -51,11 +49,6 @@ def test_default_air_gap_without_contact():
     assert Scene().closure()(0.0).d_eq == pytest.approx(11.8e-6, abs=0.05e-6)
 
 
-def test_closure_takes_the_scene_s_roughness():
-    closure = scenes.load(None, {"roughness.h_rms": 2e-6}).roughness
-    assert (closure.h_0, closure.h_rms, closure.gamma) == (Scene().h_0, 2e-6, 0.5)
-
-
 # -- files and overrides -------------------------------------------------------------------------------
 def test_file_and_overrides(write):
     path = write("f_ext = 30\nvoltage = 100.0\n[mesh]\ncontact = 10e-6\nreceptor = 30e-6\n")
@@ -67,24 +60,6 @@ def test_file_and_overrides(write):
 def test_part_of_a_layer_keeps_the_rest(write):
     dermis = scenes.load(write("[materials.dermis]\nshear_modulus = 3e3\n")).materials.dermis
     assert (dermis.shear_modulus, dermis.alpha, dermis.poisson) == (3e3, -14.53, 0.48)
-
-
-def test_history(write):
-    path = write(
-        '[[history]]\nname = "touch"\nbone_height = -1e-4\n'
-        '[[history]]\nname = "on"\nbone_x = 1e-3\nuntil_full_slip = true\n'
-    )
-    assert scenes.load(path).loads() == (
-        Load(name="touch", bone_height=-1e-4),
-        Load(name="on", bone_x=1e-3, until_full_slip=True),
-    )
-
-
-def test_friendly_names(write):
-    """Spaces and letters of any alphabet."""
-    names = ["charge while sliding", "Größe – 200 V", "压", "a.b", "3"]
-    path = write("\n".join(f'[[history]]\nname = "{name}"\nf_ext = 5' for name in names))
-    assert [load.name for load in scenes.load(path).loads()] == names
 
 
 def test_no_force_where_the_skin_is_held(write):
@@ -152,16 +127,3 @@ def test_scene_of_a_run_s_folder_is_a_scene(tmp_path):
         Scene.load(file)
     with pytest.raises(SceneError, match="cannot be read: No such file"):
         Scene.load(tmp_path / "other.json")
-
-
-def test_package_imports_nothing():
-    code = "import sys; import fingerpad; sys.exit(any(m in sys.modules for m in ('numpy', 'pydantic', 'gmsh')))"
-    assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
-
-
-def test_copies_of_the_standard_library_are_checked():
-    """``copy.replace`` of Python 3.13 calls this method."""
-    assert Scene().__replace__(f_ext=5.0, mesh={"contact": 10e-6}).mesh.receptor == Scene().mesh.receptor
-    for changes in ({"f_exxt": 5.0}, {"f_ext": -5.0}):
-        with pytest.raises(SceneError, match=r"f_exxt|f_ext is -5 N/m"):
-            Scene().__replace__(**changes)

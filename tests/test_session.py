@@ -41,17 +41,6 @@ def test_callers_session_and_ours_are_apart(session):
     gmsh.initialize(interruptible=False)
 
 
-def test_model_without_a_name_stays_without_one():
-    """As of a script that begins with gmsh.initialize() alone."""
-    gmsh.initialize(interruptible=False)
-    try:
-        before = gmsh.model.list()
-        coordinates()
-        assert gmsh.model.list() == before and gmsh.model.getCurrent() == before[0] == ""
-    finally:
-        gmsh.finalize()
-
-
 def test_callers_session_outlives_a_failure(session):
     def fail() -> float:
         raise ValueError("no body")

@@ -1,4 +1,4 @@
-"""Every command line that a page shows runs, with a small scene in the place of the reader's own."""
+"""What pages show runs, with a small scene in the place of the reader's own: command lines, laws, the tutorial."""
 
 import re
 import shlex
@@ -12,6 +12,8 @@ import pytest
 import fingerpad as fp
 from fingerpad import cli
 from fingerpad.io.checkpoint import Checkpoint
+from fingerpad.scene import from_data
+from tests.pages import alike, blocks, printed
 from tests.runs import no_pictures
 from variational.roughness.selfaffine import SelfAffine
 
@@ -95,10 +97,41 @@ def test_shown_command_runs(line, folder, capsys, monkeypatch):
     assert [name for name in written if not (folder / name).exists()] == []
 
 
-def test_commands_are_shown():
-    """The lines were found, one for each command of the first page about them at least."""
-    assert len({line.split()[1] for line in SHOWN}) >= 8
+# -- Python ------------------------------------------------------------------------------------------------
+def test_own_laws_run_as_written(monkeypatch):
+    """With another scene; each law acts: the gap is constant, and friction is its limit summed over the skin."""
+    small = from_data(tomllib.loads(SMALL))
+    laws = (ROOT / "docs" / "laws.md").read_text(encoding="utf-8")
+    monkeypatch.setattr(fp, "Scene", small.replace, raising=False)
+    names: dict = {}
+    printed(blocks(laws)[0][0], names)
+    slip, p = names["result"].full_slip, names["p"]
+    touching = slip.ridges.length > 0
+    np.testing.assert_allclose(slip.d_eq[touching], 2e-6, rtol=1e-12)
+    shear = slip.skin.t_t
+    assert p.shape == shear.shape
+    used = names["result"].to_dict()["laws"]
+    assert (used["friction"].partition("(")[0], used["dermis"].partition("(")[0]) == ("Adhesive", "Soft")
+    assert "ConstantGap" in used["closure"]
+    # Between the Coulomb part alone and the whole of tau_0 on the current area in contact.
+    low, high = 0.3 * slip.f_contact, 0.3 * slip.f_contact + 5e3 * 1.5 * slip.contact_length
+    assert low < abs(slip.f_t) < high
+    printed(blocks(laws)[1][0], names)
+    assert small.replace(friction=names["Bounded"](0.4)).friction.tau == 20e3
+    with pytest.raises(fp.SceneError, match="friction.mu_f is 3; it must be from 0.01 to 2"):
+        small.replace(friction=names["Bounded"](3.0))
+    printed(blocks(laws)[2][0], names)
+    cap = names["Cap"]()
+    cap.check()
+    assert cap.limit(1e5) == cap.tau and cap.limit(1e4) == 5e3
 
 
-def test_small_scene_is_one():
-    assert set(tomllib.loads(SMALL)) == {"f_ext", "voltage", "geometry", "mesh", "output"}
+def test_tutorial_prints_what_it_shows(tmp_path, monkeypatch):
+    """One block after the other; numbers within 2 %, since the mesh may differ from one version of gmsh to the next."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "demos").symlink_to(ROOT / "demos")
+    names: dict = {}
+    for block, output in blocks((ROOT / "docs" / "tutorial.md").read_text(encoding="utf-8")):
+        found = printed(block, names)
+        assert not output or alike(output, found, 0.02), found
+    assert {file.name for file in tmp_path.glob("*.png")} == {"surface.png", "history.png", "friction.png"}

@@ -60,6 +60,7 @@ def within(path: Path, links: set[str]) -> Iterator[tuple[Path, str]]:
             yield (path.parent / unquote(parts.path)).resolve() if parts.path else path, unquote(parts.fragment)
 
 
+@pytest.mark.long
 def test_site(site):
     """Built whole and without a warning; links and anchors exist; nothing comes from a network. One build for all."""
     pages = {path: Page(path.read_text(encoding="utf-8")) for path in site.rglob("*.html")}
@@ -98,21 +99,3 @@ def text(page: Path) -> str:
 def test_files_that_a_page_names_exist(page):
     named = re.findall(rf"`({OWN}/[\w./-]*)`", text(page))
     assert [name for name in named if not (ROOT / name).exists() and not name.startswith("demos/output")] == []
-
-
-def test_make_targets_that_pages_name_exist():
-    makefile = (ROOT / "Makefile").read_text(encoding="utf-8")
-    named = {name for page in [*PAGES, Path("CONTRIBUTING.md")] for name in re.findall(r"`make ([a-z-]+)", text(page))}
-    assert len(named) > 5 and {name for name in named if f"\n{name}:" not in makefile} == set()
-
-
-def test_every_page_is_in_the_navigation():
-    """Of the site, as of the code host: docs/README.md has its own test."""
-    index = text(Path("docs/site/index.md"))
-    missing = [page for page in PAGES if page.parent == Path("docs") and f"\n../{page.stem}\n" not in index]
-    assert missing == [Path("docs/README.md")]
-
-
-def test_every_scene_is_shown():
-    page = text(Path("docs/site/scenes.md"))
-    assert [scene.name for scene in (ROOT / "demos" / "scenes").glob("*.toml") if scene.name not in page] == []

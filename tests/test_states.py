@@ -7,7 +7,6 @@ from dataclasses import replace
 import pytest
 
 from fingerpad.io import states
-from fingerpad.io.quantities import cell
 from fingerpad.scene import Load
 from variational.state import ContactState
 
@@ -153,15 +152,6 @@ def test_slide_charge_slide(pressed):
     assert pressed.names()["charged"] == ("press", 0.0, 0.0)
 
 
-def test_ends_in_the_middle_of_a_slip(pressed):
-    """A full slip that was not held leaves the one before."""
-    pressed.slide("slide", 0.4e-3)
-    pressed.still("charge", voltage=80.0)
-    pressed.slide("slide on", 0.55e-3)
-    assert pressed.rows[-1].slip_began == pressed.rows[-2].step and not pressed.rows[-1].slip_held
-    assert pressed.names()["full_slip"] == ("slide", 0.0, 0.1)
-
-
 def test_there_and_back(pressed):
     """A bone that comes back to x = 0 makes no normal contact, and its full slip is one the other way."""
     pressed.slide("there", 0.4e-3)
@@ -172,21 +162,6 @@ def test_there_and_back(pressed):
     assert states.named(pressed.rows)["full_slip"].f_t < 0
 
 
-def test_full_slip_at_x_0_on_the_way_back(pressed):
-    """The bone has moved, wherever it is now."""
-    pressed.slide("there", 0.1e-3)
-    pressed.slide("back", -0.3e-3)
-    assert pressed.names()["full_slip"] == ("back", 0.0, 0.0)
-
-
-def test_lift_after_the_slip(pressed):
-    """Unloading that sticks leaves the full slip at the load that it had."""
-    pressed.slide("slide", 0.4e-3)
-    pressed.still("lift", f_ext=0.5)
-    assert states.named(pressed.rows)["full_slip"].f_ext == 2.0
-    assert pressed.rows[-1].f_ext == 0.5
-
-
 def test_charging_while_it_slides(pressed):
     """Each voltage is a full slip of its own, which none of these was held; where it stays, the slip is held."""
     pressed.slide("slide", 0.4e-3)
@@ -195,19 +170,6 @@ def test_charging_while_it_slides(pressed):
     assert pressed.rows[-1].slip_began == pressed.rows[-1].step
     pressed.slide("slide on", 1.1e-3)
     assert pressed.names()["full_slip"] == ("charge while sliding", 200.0, 0.8)
-
-
-def test_voltage_that_goes_up_and_down(pressed):
-    """Charged by turns while it slides: no full slip is held, and uncharged is what was before the first voltage."""
-    for k, voltage in enumerate((80.0, 0.0, 80.0, 0.0), start=1):
-        pressed.slide(f"part {k}", 0.3e-3 * k, voltages=voltage)
-    assert pressed.names() == {"uncharged": ("press", 0.0, 0.0), "charged": ("press", 0.0, 0.0)}
-
-
-def test_voltage_before_sliding_that_goes_up_and_down(pressed):
-    for voltage in (80.0, 0.0, 80.0):
-        pressed.still(f"to {voltage:g}", voltage=voltage)
-    assert pressed.names() == {"uncharged": ("press", 0.0, 0.0), "charged": ("to 80", 80.0, 0.0)}
 
 
 def test_all_points_slip_without_friction_before_the_bone_moves():
@@ -288,30 +250,6 @@ def test_touch_belongs_to_the_load_on_the_way():
     assert [load.name for load in stopped] == ["press"], "a run stopped in the first touch"
 
 
-def test_normal_contact_after_a_way_through_the_air():
-    """The bone is carried 1 mm aside before it is pressed: normal contact is there, and the headline is its slip."""
-    history = History()
-    history.f_ext = 0.0
-    history.still("wait", f_ext=0.0)
-    history.slide("away", 1e-3)
-    history.still("press", f_ext=1.0)
-    history.still("charge", voltage=100.0)
-    history.slide("slide", 1.5e-3)
-    names = history.names()
-    assert names["uncharged"] == ("press", 0.0, 1.0)
-    assert names["charged"] == ("charge", 100.0, 1.0)
-    assert names["full_slip"][0] == "slide" and names["full_slip"][2] > 1.0
-
-
-def test_bone_that_moves_as_it_touches_has_no_normal_contact():
-    history = History()
-    history.f_ext = 0.0
-    history.still("wait", f_ext=0.0)
-    history.x, history.f_ext = 50e-6, 1.0
-    history.slide("slide", 0.5e-3)
-    assert "charged" not in states.named(history.rows) and "full_slip" in states.named(history.rows)
-
-
 @pytest.mark.parametrize("slides", [False, True])
 def test_first_touch_is_no_named_state(slides):
     """Its depth is the program's: 0.17 N/m where a load asks for 0.05 N/m, charged or sliding."""
@@ -328,23 +266,3 @@ def test_first_touch_is_no_named_state(slides):
     press = next(states.load_results(history.rows, [Load(name="press", f_ext=0.05)], lambda k, end: None))
     own = [state.contact_length for state in history.rows if state.load == "press"]
     assert press.extremes["contact_length"].max == max(own)
-
-
-def test_path_that_ends_in_a_first_touch_has_no_named_state():
-    """Where the names of its loads are known, as in the report of a run that was cut short."""
-    history = History()
-    history.still("touch", f_ext=0.17)
-    assert not states.named(history.rows, ["press"])
-    assert states.named(history.rows, ["touch"])["uncharged"].f_ext == pytest.approx(0.17)
-    press = next(states.load_results(history.rows, [Load(name="press", f_ext=1.0)], lambda k, end: None))
-    assert press.extremes["f_t"].max == 0.0, "the touch is all there is"
-
-
-@pytest.mark.parametrize(
-    ("key", "value", "text"),
-    [("f_ext", 75.0, "75.00"), ("f_ext", 0.002, "0.002"), ("f_ext", 3e-15, "0.00"), ("mu_app", math.nan, "–")]
-    + [("mu_app", -0.0, "0.0000"), ("f_t", -1e-17, "0.000"), ("f_t", -0.0004, "-0.0004")],
-)
-def test_small_numbers_keep_digits(key, value, text):
-    """What is not roundoff is not shown as zero."""
-    assert cell(key, value) == text

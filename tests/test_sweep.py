@@ -11,17 +11,13 @@ from pathlib import Path
 
 import pytest
 
-from fingerpad.installed import source
 from fingerpad.io.files import replace
-from fingerpad.io.result import Result
 from fingerpad.runs import batch as module
 from fingerpad.runs import processes
 from fingerpad.runs.batch import key, result, sweep
 from fingerpad.runs.processes import End, Pool
 from fingerpad.runs.processes import run as run_module
-from fingerpad.runs.sweep import _older
-from fingerpad.runs.sweep_results import Sweep
-from fingerpad.scene import Scene, from_data
+from fingerpad.scene import from_data
 from tests.small_finger import small
 
 
@@ -125,23 +121,6 @@ def test_run_out_of_time_is_named(tmp_path):
     assert summary == {"failure": "TIME_LIMIT: not done after 1 s of processor time"}
 
 
-def echo(k):
-    return End(0, "", "", str(k))
-
-
-def test_pool_stops_starting_when_time_is_over():
-    ends = []
-    left = Pool[int, End](echo, jobs=2, hours=0.0).run(range(3), lambda *end: ends.append(end))
-    assert (left, ends) == (3, [])
-
-
-def test_pool_reports_every_job_once():
-    ends = []
-    assert Pool[int, End](echo, jobs=2).run(range(5), lambda k, end, left: ends.append((k, left))) == 0
-    assert sorted(k for k, _ in ends) == [0, 1, 2, 3, 4]
-    assert sorted((left for _, left in ends), reverse=True) == [4, 3, 2, 1, 0]
-
-
 @pytest.fixture
 def waits(monkeypatch):
     """An event: a pool has begun its jobs and waits for them."""
@@ -210,41 +189,9 @@ def test_job_that_waits_for_its_turn_is_not_begun(waits):
     assert [end.reason for end in ends] == ["STOPPED"]
 
 
-def test_jobs_are_no_ranks_of_a_launcher(monkeypatch):
-    """Else MPI would take each for the rank of the sweep itself, as in a batch system's job."""
-    monkeypatch.setenv("OMPI_COMM_WORLD_RANK", "1")
-    monkeypatch.setenv("PMIX_RANK", "1")
-    code = "import os; print([name for name in os.environ if name.startswith(('OMPI_COMM', 'PMIX'))])"
-    assert run_module("timeit", ["-n1", "-r1", code], 10.0).stdout.startswith("[]\n")
-
-
-def test_crash_says_its_last_words():
-    end = run_module("fingerpad.runs.one", ["no scene.json", "nowhere", "5", "full"], 5.0)
-    assert end.reason == "CRASH_1"
-    assert "no scene.json" in end.message
-
-
-def test_points_of_another_state_of_the_program_are_told(tmp_path):
-    """Kept points are taken over whatever computed them, and the sweep says how many that were."""
-    versions = ({"source": source()}, {"source": "0123456789ab"}, {})
-    found = [Result(Scene(), "full", None, None, None, record={"provenance": {"versions": v}}) for v in versions]
-    study = Sweep({"voltage": (0.0, 1.0, 2.0)}, tuple(found), tmp_path)
-    assert _older(study, tmp_path / "full").startswith("1 of 3 points are of another state of the program; delete")
-    assert _older(Sweep({"voltage": (0.0,)}, tuple(found[:1]), tmp_path), tmp_path) == ""
-
-
 def test_two_processes_may_write_a_file_at_once(tmp_path):
     """As the tasks of an array do with the table of their sweep; one of them is whole at the end."""
     with ThreadPoolExecutor(4) as pool:
         list(pool.map(lambda k: replace(tmp_path / "table.csv", f"{k}\n" * 1000), range(400)))
     lines = (tmp_path / "table.csv").read_text().splitlines()
     assert len(lines) == 1000 and len(set(lines)) == 1 and [file.name for file in tmp_path.iterdir()] == ["table.csv"]
-
-
-def test_failure_is_that_of_the_last_try(started, tmp_path):
-    """A point that had too little memory before, and crashes now."""
-    scene = from_data({"f_ext": 666})
-    (tmp_path / key(scene)).mkdir()
-    old = {"f_ext": 666, "failure": "found no equilibrium: MUMPS_OUT_OF_MEMORY"}
-    (tmp_path / key(scene) / "summary.json").write_text(json.dumps(old))
-    assert sweep({"point": scene}, tmp_path)["point"] == {"failure": "CRASH_-11: segmentation fault"}

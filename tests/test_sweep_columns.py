@@ -1,7 +1,6 @@
 """A sweep over the amplitude of a drive: what its table, its dataset, its text and its report have of it."""
 
 import csv
-import json
 import math
 from dataclasses import replace
 
@@ -10,7 +9,6 @@ import pytest
 import xarray
 
 import fingerpad as fp
-from fingerpad.report.write import write
 from fingerpad.runs.sweep_results import Sweep, _stacked
 from fingerpad.slices.finger import WholeFinger
 from tests.test_loads_over_time import BY, PRESS, SLIDE, WAVE, scene
@@ -66,54 +64,6 @@ def test_dataset_has_the_loads_of_all_points(folder):
         amplitudes = data["load_f_t_amplitude"][k].sel(load=NAME)
         np.testing.assert_array_equal(amplitudes, result.loads[2].over_time.f_t_amplitude)
     assert most[2].isnull().all() and data["failure"].values[2] == "no equilibrium"
-
-
-def test_report_begins_with_the_load_over_time(folder):
-    page = write(folder.folder).read_text(encoding="utf-8")
-    most = folder.results[1].loads[2].extremes["mu_app"].max
-    assert f"<h1>µ<sub>app</sub> from 0.250 to {most:.3f}</h1>" in page
-    assert f"in the load {NAME}, over {KEY} (V): 40, 80, 120; µ_app from 0.250 to 0.250 at full slip" in page
-    assert page.index("Loads over time") < page.index("Friction and contact at full slip")
-    assert f"over {KEY}</title>" in page  # and over nothing else: a load's column is no swept key
-
-
-def test_headline_of_a_sweep_is_of_its_waveform(folder, tmp_path):
-    """Not of a press that takes time before it, nor of a wave in which the finger rests; both cares are told."""
-    press = {"load_press_mu_app_min": -1e-18, "load_press_mu_app_max": 1e-18, "load_press_contact_length_mean": 1.0}
-    rest = {f"load_rest_{key}": 0.0 for key in ("mu_app_min", "mu_app_max", "f_t_amplitude", "contact_length_mean")}
-    rows = [
-        {"voltage": 1.0, "full_slip_contact_length": 1e-3, **press, **more, **rest, "failure": ""}
-        for more in (
-            {f"load_w_{key}": value for key, value in zip(WAVES, (0.2, 0.3, 0.1, 1.0), strict=True)},
-            {f"load_w_{key}": "" for key in WAVES},
-        )
-    ]
-    rows[1] |= {"voltage": 2.0, "full_slip_contact_length": ""}
-    with (tmp_path / "table.csv").open("w", encoding="utf-8", newline="") as file:
-        out = csv.DictWriter(file, list(rows[0]))
-        out.writeheader()
-        out.writerows(rows)
-    asked = {"parameters": fp.Scene().parameters(), "model": "full", "cautions": ["a", "b", "c", "d"]}
-    (tmp_path / "sweep.json").write_text(json.dumps(asked), encoding="utf-8")
-    page = write(tmp_path).read_text(encoding="utf-8")
-    assert "<h1>µ<sub>app</sub> from 0.200 to 0.300</h1>" in page and "in the load w, over" in page
-    assert "1 of 2 points have no full slip. Limits of validity are reached: a; b; c; and 1 more." in page
-    assert "<li>d</li>" in page
-    (tmp_path / "table.csv").write_text(
-        (tmp_path / "table.csv").read_text(encoding="utf-8").replace("1.0,0.001,", "1.0,,"), encoding="utf-8"
-    )
-    none = write(tmp_path).read_text(encoding="utf-8")
-    assert "2 of 2 points have no full slip." in none and "No point reached" not in none
-
-
-WAVES = ("mu_app_min", "mu_app_max", "f_t_amplitude", "contact_length_mean")
-
-
-def test_cautions_that_differ_in_numbers_are_one(tmp_path):
-    cautions = [f"roughness.wavelength is {x:.3g} m, above half" for x in (2.6e-4, 3e-4, 1e-3)]
-    results = [fp.Result(fp.Scene(), "full", None, None, None, cautions=(text, "another")) for text in cautions]
-    found = Sweep({"voltage": (1.0, 2.0, 3.0)}, tuple(results), tmp_path).cautions()
-    assert found == [f"{cautions[0]} (3 of 3 points)", "another (3 of 3 points)"]
 
 
 def test_places_along_a_dimension_are_those_of_labels():

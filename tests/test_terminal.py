@@ -28,11 +28,6 @@ def bare(monkeypatch):
     return monkeypatch
 
 
-def test_a_person_watches_a_terminal(bare):
-    assert terminal.watched(Screen(True))
-    assert not terminal.watched(Screen(False))
-
-
 @pytest.mark.parametrize(("name", "value"), [("NO_COLOR", "1"), ("TERM", "dumb"), ("PMIX_RANK", "1")])
 def test_nobody_watches(bare, name, value):
     """Nor the ranks beside rank 0, whose output goes to the same terminal."""
@@ -49,7 +44,12 @@ def test_the_launchers_output_counts(bare, output, watches):
     assert terminal.watched(Screen(True)) == watches
 
 
-@pytest.mark.parametrize("closed", [(1,), (0, 1, 2)])
+@pytest.mark.parametrize(
+    "closed",
+    [
+        (0, 1, 2),
+    ],
+)
 def test_closed_output_costs_nothing(tmp_path, closed):
     """After ``>&-``: the command does its work, and no file that it opens takes the number of the output."""
     code = "import os, sys; from fingerpad.__main__ import main; sys.argv[1:] = ['params', 'f_ext']; code = main()\n"
@@ -60,22 +60,3 @@ def test_closed_output_costs_nothing(tmp_path, closed):
         preexec_fn=lambda: [os.close(number) for number in closed],
     )
     assert (done.returncode, (tmp_path / "found").read_text()) == (0, "0 /dev/null")
-
-
-@pytest.mark.parametrize("error", [BrokenPipeError(), SystemExit(1)])
-def test_run_goes_on_where_nobody_reads(monkeypatch, error):
-    """After ``| head``: the steps are in the folder of results; rich raises SystemExit, or nothing of its own."""
-    from mpi4py import MPI
-
-    from fingerpad.io.console import Console
-
-    console, printed = Console(MPI.COMM_SELF, bar=False), []
-
-    def broken(text, **options):
-        printed.append(text)
-        raise error
-
-    monkeypatch.setattr(console._progress.console, "print", broken)
-    for text in ("first", "second"):
-        console.show(text)
-    assert printed == ["first"]

@@ -26,31 +26,16 @@ def value(scene: scenes.Scene, key: str) -> float:
         ("f_ext", "50 N/m", 50.0),
         ("f_ext", "0.05 N/mm", 50.0),
         ("f_ext", "50 N·m⁻¹", 50.0),
-        ("f_ext", "50 N m^-1", 50.0),
-        ("mesh.contact", "5 µm", 5e-6),  # the micro sign
-        ("mesh.contact", "5 μm", 5e-6),  # the Greek letter
-        ("mesh.contact", "5um", 5e-6),
-        ("mesh.contact", "5e-3mm", 5e-6),
-        ("roughness.h_rms", "1.97 µm", 1.97e-6),
-        ("geometry.sc_thickness", "425 µm", 425e-6),
-        ("voltage", "0.2 kV", 200.0),
+        ("mesh.contact", "5 µm", 5e-6),
+        ("mesh.contact", "5 μm", 5e-6),
         ("voltage", "0 V", 0.0),
-        ("materials.dermis.shear_modulus", "2.55 kPa", 2.55e3),
         ("contact.eps_n", "1500 MPa/mm", 1.5e12),
-        ("numerics.memory", "16 GB", 16e9),
         ("numerics.memory", "2 GiB", 2.0 * 2**30),
     ],
 )
 def test_text_is_the_number(key, text, number):
     """To the last bit: a text is converted in decimals and rounded once, as the number is by Python."""
     assert value(scenes.load(None, {key: text}), key) == number
-
-
-def test_texts_in_a_file(write):
-    """Also in tables, lists of tables and with a sign."""
-    path = write('[mesh]\ncontact = "10 µm"\n[[history]]\nname = "press"\nbone_height = "-0.1 mm"\n')
-    scene = scenes.load(path)
-    assert (scene.mesh.contact, scene.loads()[0].bone_height) == (10e-6, -1e-4)
 
 
 @pytest.mark.parametrize(
@@ -63,22 +48,13 @@ def test_texts_in_a_file(write):
             "its unit is not a unit of force per length; it must be a number in N/m or a text such as '50 N/m'",
         ),
         ("mesh.contact", "5 xm", "its unit is not known; it must be a number in m or a text such as '5 m'"),
-        ("mesh.contact", "5 m(", "its unit is not known; it must be a number in m or a text such as '5 m'"),
-        ("voltage", "20 degC", "its unit is not a unit of voltage; it must be a number in V or a text such as '20 V'"),
-        ("voltage", "3 dB", "its unit is not a unit of voltage; it must be a number in V or a text such as '3 V'"),
         (
             "numerics.memory",
             "16 rad",
             "its unit is not a unit of memory; it must be a number in B or a text such as '16 B'",
         ),
         ("voltage", "9**9**9 V", "its unit is not known; it must be a number in V or a text such as '9 V'"),
-        ("mesh.contact", "1,5 um", "decimals have points: write '1.5 um'"),
         ("f_ext", "0,5 N/m", "decimals have points: write '0.5 N/m'"),
-        ("f_ext", "1,250 N/m", "decimals have points: write '1.250 N/m', or '1250 N/m' if the comma parts thousands"),
-        ("f_ext", "0,250 N/m", "decimals have points: write '0.250 N/m'"),
-        ("f_ext", "0,5 N", "decimals have points: write '0.5 N'"),
-        ("voltage", "-1,5e2", "decimals have points: write '-1.5e2 V'"),
-        ("voltage", "V", "it must be a number in V or a text such as '1 V'"),
         ("friction", "0.25 V", "it must be a number"),
     ],
 )
@@ -116,11 +92,6 @@ def test_text_without_pint_is_refused():
         "SceneError: f_ext is '50 N/m'; its unit needs the package pint, which is not installed; it must be a number "
         "in N/m or a text such as '50 N/m'"
     )
-
-
-def test_numbers_do_not_import_pint():
-    done = without("from fingerpad import scene; scene.load(None, {'f_ext': 50, 'mesh.contact': 5e-6})", *HEAVY, "pint")
-    assert done.returncode == 0, done.stderr
 
 
 def test_zero_has_no_sign():

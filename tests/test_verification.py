@@ -4,11 +4,10 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 
-from benchmarks.harness import DOCS, Made, keep, kept
-from benchmarks.verification import case as page
+from benchmarks.harness import DOCS, kept
 from benchmarks.verification.__main__ import AREAS
 from benchmarks.verification.adhesion import maugis_force, maugis_ratio
-from benchmarks.verification.case import Case, Row
+from benchmarks.verification.case import Row
 
 CASES = [case for cases in AREAS.values() for case in cases]
 
@@ -54,38 +53,6 @@ def test_maugis_tractions():
     assert integral(pressure) == pytest.approx(expected, rel=1e-7)
     gaps = [gap(x) - gap(0.0) for x in (0.5 * a, a, c)]
     assert gaps == pytest.approx([0.0, 0.0, h_0], abs=1e-7 * h_0)
-
-
-def test_names_are_unique():
-    assert len({case.name for case in CASES}) == len(CASES)
-
-
-@pytest.mark.parametrize(
-    ("row", "error", "holds"),
-    [
-        (Row("a", 1.1, 1.0, 0.2, ""), 0.1, True),
-        (Row("a", -1.3, -1.0, 0.2, ""), 0.3, False),
-        (Row("a", 4.1, 4.0, 0.2, "", absolute=True), 0.1, True),
-        (Row("a", np.nan, 4.0, 0.2, ""), np.nan, False),
-    ],
-)
-def test_error(row, error, holds):
-    assert row.error == pytest.approx(error, nan_ok=True)
-    assert row.holds is holds
-
-
-def test_page(tmp_path):
-    """A number that is off is marked, and the kept numbers are unrounded."""
-    good = Row("width (m)", 1.0000001, 1.0, 1e-3, "mesh", order=1.96)
-    bad = Row("force (N)", 2.0, 1.0, 1e-3, "mesh")
-    case = Case("Some case", "somebody", lambda small: ())
-    found = page.numbers({"Area": [(case, (good, bad))]})
-    keep("verification", found, Made("0.1.0", "abc1234", "2026-11-21"), tmp_path)
-    text = page.draw(tmp_path).read_text(encoding="utf-8")
-    assert "1 of 2 computed numbers in 1 cases" in text
-    assert "**!** 1 (rel.)" in text
-    assert "1.96" in text
-    assert kept("verification", tmp_path).numbers["Area"][0]["rows"][0]["computed"] == 1.0000001
 
 
 def test_numbers_in_git_are_of_every_case():

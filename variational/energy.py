@@ -30,6 +30,7 @@ sides of the jump. Where this error is larger than what is released even the sig
 """
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 from dolfinx import fem
@@ -39,7 +40,9 @@ from numpy.typing import NDArray
 from variational.attraction.electroadhesion import ELECTROSTATIC
 from variational.attraction.insulator import VACUUM_PERMITTIVITY
 from variational.contact.formulation import SurfaceState
-from variational.problem import Problem
+
+if TYPE_CHECKING:
+    from variational.problem import Problem
 
 Array = NDArray[np.float64]
 
@@ -83,7 +86,7 @@ class EnergyBook:
     """Keeps the energies of accepted states; only reads the problem."""
 
     def __init__(
-        self, problem: Problem, surface: SurfaceState, bone: Array, reaction: Array, d_eq: Array, copies: int = 1
+        self, problem: "Problem", surface: SurfaceState, bone: Array, reaction: Array, d_eq: Array, copies: int = 1
     ) -> None:
         """Start from an equilibrium; arguments as in :meth:`step`, and of how many copies of it the body is made.
 

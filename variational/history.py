@@ -12,14 +12,16 @@ between solves (:mod:`~variational.contact.augmented`).
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from dolfinx import fem
 from numpy.typing import NDArray
 
 from variational import compat, jit
-from variational.surface import Surface
+
+if TYPE_CHECKING:
+    from variational.surface import Surface
 
 Array = NDArray[np.float64]
 Values = Mapping[str, Array]
@@ -99,7 +101,7 @@ class History:
         imposed: values that forms and rules read.
     """
 
-    def __init__(self, surface: Surface) -> None:
+    def __init__(self, surface: "Surface") -> None:
         """Start without a field.
 
         Args:

@@ -11,7 +11,7 @@ import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import basix
 import numpy as np
@@ -23,7 +23,9 @@ from numpy.typing import NDArray
 from variational import compat, kinematics
 from variational.cellwise import Cellwise, owned_cells
 from variational.materials import stress
-from variational.problem import Problem
+
+if TYPE_CHECKING:
+    from variational.problem import Problem
 
 Array = NDArray[np.float64]
 
@@ -35,7 +37,7 @@ class Fields:
         displacement, stress, sed: as they were last written; the last two discontinuous and linear in each cell.
     """
 
-    def __init__(self, problem: Problem, folder: Path | str) -> None:
+    def __init__(self, problem: "Problem", folder: Path | str) -> None:
         """Open ``displacement.bp``, ``stress.bp`` and ``sed.bp``.
 
         Args:
@@ -99,7 +101,9 @@ class Fields:
             raise OSError(int(found[1]), os.strerror(int(found[1]))) from None
 
 
-def _sampled(problem: Problem, name: str, expressions: Mapping[tuple[int, ...], Any]) -> tuple[fem.Function, Cellwise]:
+def _sampled(
+    problem: "Problem", name: str, expressions: Mapping[tuple[int, ...], Any]
+) -> tuple[fem.Function, Cellwise]:
     """Return a function, discontinuous and linear in each cell, and what samples the expressions at its nodes."""
     shape = next(iter(expressions.values())).ufl_shape
     space = fem.functionspace(problem.mesh, ("Discontinuous Lagrange", 1, shape))
@@ -110,7 +114,7 @@ def _sampled(problem: Problem, name: str, expressions: Mapping[tuple[int, ...], 
 class MeanDensity:
     """Means of the strain energy density over cells."""
 
-    def __init__(self, problem: Problem) -> None:
+    def __init__(self, problem: "Problem") -> None:
         """Compile the densities at the quadrature points of a cell."""
         # Degree 2 integrates the linear solid's energy at P2 exactly.
         points, weights = basix.make_quadrature(basix.CellType.triangle, 2)
@@ -122,7 +126,7 @@ class MeanDensity:
         return np.asarray(self._weights @ self._sample.evaluate()[:, :, 0].T)
 
 
-def sed_per_cell(problem: Problem) -> tuple[NDArray[np.int32], Array]:
+def sed_per_cell(problem: "Problem") -> tuple[NDArray[np.int32], Array]:
     """Return the cells of this rank and the mean strain energy density of each (J/m^3 of reference volume)."""
     return owned_cells(problem.mesh), MeanDensity(problem).evaluate()
 
@@ -143,7 +147,7 @@ class Snapshot:
     """Tag of each cell, zero where it has none, shape (cells,)."""
 
 
-def gather_mesh(problem: Problem) -> Snapshot | None:
+def gather_mesh(problem: "Problem") -> Snapshot | None:
     """Bring the current state to rank 0, None on the others; numbered as the mesh was before it was distributed."""
     mesh = problem.mesh
     cells, sed = sed_per_cell(problem)

@@ -22,6 +22,7 @@ never solves.
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache
+from typing import TYPE_CHECKING
 
 import dolfinx
 import numpy as np
@@ -35,9 +36,11 @@ from variational.contact.friction import Friction, law_of
 from variational.element import ELEMENTS, at_centroid
 from variational.history import History, SkinField
 from variational.materials import stress
-from variational.materials.material import Material
 from variational.pressure import LayerwisePressure
-from variational.surface import Surface
+
+if TYPE_CHECKING:
+    from variational.materials.material import Material
+    from variational.surface import Surface
 
 STICKS, SLIPS = 1e-9, -1e-9  # first guesses for points on the friction cone
 
@@ -104,8 +107,8 @@ class Problem:
         self,
         mesh: dolfinx.mesh.Mesh,
         cell_tags: dolfinx.mesh.MeshTags,
-        surface: Surface,
-        solids: Mapping[int, Material],
+        surface: "Surface",
+        solids: Mapping[int, "Material"],
         interface: Interface,
         element: str = "P2",
     ) -> None:
@@ -207,7 +210,7 @@ class Problem:
         self.history.add(SkinField("pressure", self.contact.p_n, self.multiplier))
         self.history.add(SkinField("x", self.x, follows=self.x), unloaded)
 
-    def _laws(self, solids: Mapping[int, Material], cellwise: fem.FunctionSpace) -> dict[tuple[int, ...], Material]:
+    def _laws(self, solids: Mapping[int, "Material"], cellwise: fem.FunctionSpace) -> dict[tuple[int, ...], "Material"]:
         """Return the law of each group of layers, one kernel a law: numbers are fields with one value a cell."""
         groups: list[list[int]] = []
         for tag, solid in solids.items():
@@ -229,7 +232,7 @@ class Problem:
             found[tuple(group)] = first.with_values(fields)
         return found
 
-    def _pressure(self, solids: Mapping[int, Material]) -> LayerwisePressure | None:
+    def _pressure(self, solids: Mapping[int, "Material"]) -> LayerwisePressure | None:
         """Return the pressure of the layers whose law has a volumetric part, None if there is none."""
         skins = {tag: solid.shear_modulus for tag, solid in solids.items() if solid.volumetric is not None}
         return LayerwisePressure(self.mesh, self.cell_tags, tuple(skins), max(skins.values())) if skins else None
@@ -252,7 +255,7 @@ class Problem:
         behind_all = found.pop()
         return stress.first_piola_kirchhoff(self.laws[behind_all], F, self.pressures[behind_all])
 
-    def _skin_stiffness(self, solids: Mapping[int, Material], cellwise: fem.FunctionSpace) -> fem.Function:
+    def _skin_stiffness(self, solids: Mapping[int, "Material"], cellwise: fem.FunctionSpace) -> fem.Function:
         """Return the constrained modulus behind the touching skin over the facets' lengths (Pa/m), cell by cell."""
         f = fem.Function(cellwise)
         for tag, solid in solids.items():

@@ -1,13 +1,16 @@
 """What a tribologist looks at, reduced over the surface and all ranks."""
 
 from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from variational.contact.formulation import SurfaceState
 from variational.contact.friction import CONE_ROUNDOFF
-from variational.problem import Problem
+
+if TYPE_CHECKING:
+    from variational.problem import Problem
 
 Array = NDArray[np.float64]
 
@@ -37,7 +40,7 @@ class RidgeLoads:
 class Observer:
     """Evaluates the surface of a problem."""
 
-    def __init__(self, problem: Problem, mirrored: bool = False) -> None:
+    def __init__(self, problem: "Problem", mirrored: bool = False) -> None:
         """Take the problem.
 
         Args:

@@ -17,7 +17,7 @@ from variational.compat import cell_geometry
 from variational.contact.penalty import Penalty
 from variational.materials.ogden import Ogden
 from variational.problem import Interface
-from variational.solvers.equations import Control
+from variational.solvers.target import Control
 
 _MM = 1e-3  # m
 _STIFFNESS = 1e9  # Pa/m in a N/mm^3

@@ -26,7 +26,7 @@ Not estimated: the effect on normal contact of a friction history that is the fi
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import fields, replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from mpi4py import MPI
 
@@ -36,12 +36,14 @@ from fingerpad.io.interrupt import Interrupted
 from fingerpad.io.quantities import QUANTITIES
 from fingerpad.io.states import WORDS
 from fingerpad.model.options import FingerModel
-from fingerpad.model.simulation import RestartRequired
 from fingerpad.richardson import MeshParameter, errors, plus_minus, to_refine
 from geometry.profiles import GeometryError
 from variational.element import ELEMENTS
 from variational.solvers.continuation import StepFailed
 from variational.state import RESULTS, ContactState, Errors
+
+if TYPE_CHECKING:
+    from fingerpad.model.simulation import RestartRequired
 
 _SIZES = {"contact": ("contact",), "bulk": ("growth", "interface", "coarsest"), "receptor": ("receptor",)}
 _ROUNDS = 6  # of refinement
@@ -109,7 +111,7 @@ class Refinement:
         self.parameters = {key: MeshParameter(degree=degree) for key in keys}
         self.refinements = dict.fromkeys(keys, 0)
 
-    def run(self) -> RestartRequired | None:
+    def run(self) -> "RestartRequired | None":
         """Estimate, and refine until what is asked for is met or cannot be; collective.
 
         Returns:

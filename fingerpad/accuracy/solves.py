@@ -4,7 +4,7 @@ import math
 import time
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from mpi4py import MPI
@@ -13,7 +13,6 @@ from numpy.typing import ArrayLike, NDArray
 from fingerpad.accuracy.rigid_screen import over_stiffer
 from fingerpad.io.drawing import View
 from fingerpad.io.states import WORDS, before_sliding
-from fingerpad.model.finger import Step
 from fingerpad.model.options import FingerModel
 from fingerpad.model.record import Viewer
 from fingerpad.model.simulation import RestartRequired, Simulation
@@ -24,6 +23,9 @@ from variational.receptors import Receptors
 from variational.solvers.continuation import StepFailed
 from variational.solvers.transfer import StateSnapshot, take_snapshot
 from variational.state import ContactState
+
+if TYPE_CHECKING:
+    from fingerpad.model.finger import Step
 
 Array = NDArray[np.float64]
 
@@ -101,7 +103,7 @@ class StateRecorder:
         self.states: dict[str, State] = {}
         self.views: dict[str, View] = {}
 
-    def record(self, step: Step) -> None:
+    def record(self, step: "Step") -> None:
         """Record an accepted step; collective."""
         states, state = self._simulation.states, step.state
         if state.ridges_in_contact > 0 and not step.touches and len(before_sliding(states)) == len(states):
@@ -230,7 +232,7 @@ class Solves:
         self._pause()
         recorder: StateRecorder | None = None
 
-        def on_step(step: Step, done: float) -> None:
+        def on_step(step: "Step", done: float) -> None:
             assert recorder is not None
             recorder.record(step)
 

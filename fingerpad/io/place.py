@@ -17,9 +17,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, BinaryIO, TypeVar
 
 from fingerpad.io.files import lock_file, read_object, remove, replace_json
-from fingerpad.scene import Scene, SceneError, from_data
-from fingerpad.scene.messages import ends
+from fingerpad.scene.messages import SceneError, ends
 from fingerpad.scene.reading import DEFAULT_MODEL
+from fingerpad.scene.scene import Scene, from_data
 
 if TYPE_CHECKING:
     from mpi4py import MPI

@@ -23,10 +23,10 @@ from fingerpad.io.quantities import (
 )
 from fingerpad.io.quantities import read as read_outputs
 from fingerpad.io.states import STATES, LoadResult, called, load_results
-from fingerpad.scene import SceneError, as_kept
 from fingerpad.scene.laws import coefficient
-from fingerpad.scene.messages import clip
+from fingerpad.scene.messages import SceneError, clip
 from fingerpad.scene.reading import DEFAULT_MODEL
+from fingerpad.scene.scene import as_kept
 from variational.state import CONDITIONS, RESULTS, ContactState, Errors
 
 if TYPE_CHECKING:

@@ -14,13 +14,15 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import asdict, dataclass
 from itertools import groupby
 from operator import attrgetter
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from fingerpad.io.over_time import OverTime, over_time, without_parts_of_jumps
 from fingerpad.io.quantities import EXTREMES
-from fingerpad.scene import Load
 from fingerpad.scene.waveform import Waveform
 from variational.state import CONDITIONS, RESULTS, ContactState
+
+if TYPE_CHECKING:
+    from fingerpad.scene import Load
 
 STILL = 1e-12  # m, largest sideways displacement of a bone at rest
 SLIDE_ON = 0.2e-3  # m, further sliding over which the forces of full slip are constant
@@ -205,7 +207,7 @@ class LoadResult:
 
 
 def load_results(
-    rows: Sequence[ContactState], loads: Sequence[Load], stable: Callable[[int, ContactState], bool | None]
+    rows: Sequence[ContactState], loads: Sequence["Load"], stable: Callable[[int, ContactState], bool | None]
 ) -> Iterator[LoadResult]:
     """Yield the result of each load.
 

@@ -3,7 +3,7 @@
 import logging
 import logging.handlers
 from collections.abc import Iterator, Mapping
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from mpi4py import MPI
@@ -12,10 +12,12 @@ from fingerpad.io import dataset
 from fingerpad.io.files import Table, replace_json
 from fingerpad.io.place import Place
 from fingerpad.io.quantities import FIELDS
-from fingerpad.io.result import Result
 from variational.output import Fields
 from variational.problem import Problem
 from variational.state import ContactState
+
+if TYPE_CHECKING:
+    from fingerpad.io.result import Result
 
 _LOG = "run.log"
 
@@ -91,7 +93,7 @@ class Writer:
         if self._place is not None and self._comm.rank == 0:
             replace_json(self._place.folder / "summary.json", found)
 
-    def dataset(self, result: Result) -> str:
+    def dataset(self, result: "Result") -> str:
         """Write ``result.nc`` on rank 0; return on every rank why it is missing, empty where it is not; collective."""
         if self._place is None:
             return ""

@@ -3,11 +3,13 @@
 import os
 import re
 from collections.abc import Mapping, Sequence
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
-from fingerpad.io.result import Result
-from fingerpad.scene import SceneError, as_kept
-from fingerpad.scene.messages import clip, show
+from fingerpad.scene import as_kept
+from fingerpad.scene.messages import SceneError, clip, show
+
+if TYPE_CHECKING:
+    from fingerpad.io.result import Result
 
 _FREE = re.compile(
     r"(history\[\d+\]\.)?(f_ext|force|voltage)"  # the conditions of a measurement,
@@ -23,7 +25,7 @@ class _Difference(NamedTuple):
     other: Any
 
 
-def refuse_mixed(runs: Sequence[Result]) -> None:
+def refuse_mixed(runs: Sequence["Result"]) -> None:
     """Refuse runs that differ in more than force and voltage: their values are no function of the two.
 
     Raises:
@@ -37,7 +39,7 @@ def refuse_mixed(runs: Sequence[Result]) -> None:
             )
 
 
-def folder(run: Result) -> str:
+def folder(run: "Result") -> str:
     """Return the folder of a run for a message: its end, where it is long."""
     if run.folder is None:
         return "a run"
@@ -46,7 +48,7 @@ def folder(run: Result) -> str:
     return clip(name, _MOST)
 
 
-def _conditions(run: Result) -> dict[str, Any]:
+def _conditions(run: "Result") -> dict[str, Any]:
     """Return the model of a run and every key of its scene."""
     kept = run.record.get("parameters") or run.scene.parameters()
     scene = as_kept(kept)

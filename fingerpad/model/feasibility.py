@@ -15,14 +15,17 @@ which holds two meshes at a time, takes more as well.
 
 import math
 import re
+from typing import TYPE_CHECKING
 
 from fingerpad.io.pace import about
 from fingerpad.model.options import FingerModel, ModelOptions, plan
-from fingerpad.scene import Numerics, Scene
 from fingerpad.scene.messages import SceneError, qualify
 from geometry import sizing
 from geometry.parameters import Fingertip, MeshSize
 from geometry.profiles import GeometryError
+
+if TYPE_CHECKING:
+    from fingerpad.scene import Numerics, Scene
 
 PROGRAM = 0.23e9
 """Bytes of the program itself."""
@@ -35,7 +38,7 @@ _LEAST = 2  # ridges on either side
 _PRESSURE = 30e3  # Pa, mean contact pressure of ridges, at which a friction law other than Coulomb's is evaluated
 
 
-def check(scene: Scene) -> None:
+def check(scene: "Scene") -> None:
     """Refuse a scene whose finger cannot be built or meshed.
 
     Raises:
@@ -52,7 +55,7 @@ def check(scene: Scene) -> None:
         raise SceneError(qualify(message, "geometry.", Fingertip.model_fields)) from None
 
 
-def by_rule(scene: Scene) -> Scene:
+def by_rule(scene: "Scene") -> "Scene":
     """Return the scene with a ``mesh.touching_half_arc``, by the rule of thumb where it gives none."""
     if scene.mesh.touching_half_arc is not None:
         return scene
@@ -106,7 +109,7 @@ def refuse_mesh(points: int, triangles: int, model: FingerModel) -> None:
             model.mesh)  # fmt: skip
 
 
-def refuse_sizes(finger: Fingertip, size: MeshSize, numerics: Numerics, needed: ModelOptions) -> None:
+def refuse_sizes(finger: Fingertip, size: MeshSize, numerics: "Numerics", needed: ModelOptions) -> None:
     """Refuse element sizes whose mesh would need more memory than is allowed, by a lower bound, before it is made.
 
     Args:
@@ -123,7 +126,7 @@ def refuse_sizes(finger: Fingertip, size: MeshSize, numerics: Numerics, needed: 
             size)  # fmt: skip
 
 
-def _refuse(has: str, triangles: int, number: int, numerics: Numerics, finger: Fingertip, size: MeshSize) -> None:
+def _refuse(has: str, triangles: int, number: int, numerics: "Numerics", finger: Fingertip, size: MeshSize) -> None:
     allowed = f"numerics.memory allows {numerics.memory / 1e9:g} GB"
     if numerics.memory <= PROGRAM:
         raise GeometryError(f"{allowed}, and the program takes {PROGRAM / 1e9:g} GB without a mesh; raise it")

@@ -11,12 +11,15 @@ from collections.abc import Mapping
 from copy import copy
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import TYPE_CHECKING
 
-from fingerpad.scene import Load, Numerics, Scene
 from geometry.parameters import Fingertip, MeshSize
 from geometry.sizing import touching_ridges
 from variational.contact.formulation import Formulation
 from variational.materials.material import Material
+
+if TYPE_CHECKING:
+    from fingerpad.scene import Load, Numerics, Scene
 
 
 @dataclass(frozen=True)
@@ -66,7 +69,7 @@ _HALF = Omission(
 )
 
 
-def plan(scene: Scene) -> ModelOptions:
+def plan(scene: "Scene") -> ModelOptions:
     """Return what a scene needs; a pure function of it."""
     voltage = any(load.voltage for load in scene.loads())
     friction, receptors = scene.friction_law() is not None, scene.output.receptors
@@ -114,7 +117,7 @@ class FingerModel:
         asked: largest relative errors allowed, by quantity; empty where no accuracy is asked for.
     """
 
-    def __init__(self, scene: Scene, options: ModelOptions) -> None:
+    def __init__(self, scene: "Scene", options: ModelOptions) -> None:
         """Read a scene.
 
         Args:
@@ -142,8 +145,8 @@ class FingerModel:
         options: ModelOptions | None = None,
         mesh: MeshSize | None = None,
         contact: Formulation | None = None,
-        loads: tuple[Load, ...] | None = None,
-        numerics: Numerics | None = None,
+        loads: tuple["Load", ...] | None = None,
+        numerics: "Numerics | None" = None,
     ) -> "FingerModel":
         """Return a copy with some values changed, as the attributes are described; those left out stay."""
         found = copy(self)

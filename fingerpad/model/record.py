@@ -5,7 +5,7 @@ The whole finger is shown whatever mesh and half of it the model has.
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from mpi4py import MPI
@@ -14,12 +14,14 @@ from numpy.typing import NDArray
 from fingerpad.io import states
 from fingerpad.io.drawing import Drawing, End, Profile, View
 from fingerpad.model import symmetry
-from fingerpad.model.finger import Finger, Step
-from fingerpad.model.stability import Checked
 from fingerpad.scene import Load
 from variational.output import Snapshot, gather_mesh
 from variational.receptors import Receptors
 from variational.state import ContactState, Sites
+
+if TYPE_CHECKING:
+    from fingerpad.model.finger import Finger, Step
+    from fingerpad.model.stability import Checked
 
 Array = NDArray[np.float64]
 _PROFILE = ("x", "y", "p_n", "t_t", "p_el", "area_x", "area_y")
@@ -28,7 +30,7 @@ _PROFILE = ("x", "y", "p_n", "t_t", "p_el", "area_x", "area_y")
 class Viewer:
     """Collects the states of a finger for tables and pictures."""
 
-    def __init__(self, finger: Finger) -> None:
+    def __init__(self, finger: "Finger") -> None:
         """Find the receptor sites, if they are part of the model."""
         self._finger = finger
         profiles = finger.profiles
@@ -37,12 +39,12 @@ class Viewer:
             sites[:, 0] = np.abs(sites[:, 0])
         self._sites = Receptors(finger.problem, sites) if finger.options.receptors else None
 
-    def view(self, step: Step) -> View:
+    def view(self, step: "Step") -> View:
         """Return all that is shown of the present state, that of the step; collective."""
         profile, (snapshot, merkel) = self.profile(step), self.picture()
         return View(replace(step.state, sites=self.sites()), self._finger.size, profile, snapshot, merkel)
 
-    def profile(self, step: Step) -> Profile | None:
+    def profile(self, step: "Step") -> Profile | None:
         """Return the skin of a step, the present one, on rank 0, None elsewhere; collective."""
         surface, skin = self._finger.problem.surface, self._finger.continuation.surface_state
         values = surface.gather(np.stack([getattr(skin, name) for name in _PROFILE]))
@@ -82,7 +84,7 @@ class PathRecord:
         ends: the finger at the end of each load, by load, on rank 0.
     """
 
-    def __init__(self, comm: MPI.Comm, checks: Mapping[int, Checked]) -> None:
+    def __init__(self, comm: MPI.Comm, checks: Mapping[int, "Checked"]) -> None:
         """Keep nothing yet.
 
         Args:
@@ -126,7 +128,7 @@ class PathRecord:
                 found[name] = replace(found[name], stable=verdict, lambda_min=least, gain=check.gain)
         return found
 
-    def _check(self, state: ContactState) -> Checked | None:
+    def _check(self, state: ContactState) -> "Checked | None":
         """Return the stability of a state, or of another one of the same full slip; None where none was examined."""
         same = [other.step for other in self.states if other.slip_began == state.slip_began > 0]
         return next((self._checks[k] for k in (state.step, *same) if k in self._checks), None)

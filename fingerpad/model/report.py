@@ -4,7 +4,7 @@ import json
 import logging
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from fingerpad.io import states
 from fingerpad.io.console import Console
@@ -12,12 +12,14 @@ from fingerpad.io.drawing import End, View
 from fingerpad.io.quantities import Output, valued
 from fingerpad.io.writing import Writer, ridge_rows, site_rows
 from fingerpad.model.cost import Clock
-from fingerpad.model.finger import Step
 from fingerpad.model.options import Omission
 from fingerpad.model.record import PathRecord, Viewer
-from fingerpad.model.simulation import Simulation
 from variational.solvers import checkpoint
 from variational.state import ContactState
+
+if TYPE_CHECKING:
+    from fingerpad.model.finger import Step
+    from fingerpad.model.simulation import Simulation
 
 
 class Report:
@@ -29,7 +31,7 @@ class Report:
 
     def __init__(
         self,
-        simulation: Simulation,
+        simulation: "Simulation",
         omitted: Sequence[Omission],
         loads: Sequence[str],
         writer: Writer,
@@ -62,7 +64,7 @@ class Report:
         console.show(f"{finger.unknowns} unknowns, {len(finger.ridges)} ridges that can touch")
         console.head()
 
-    def step(self, step: Step, done: float) -> None:
+    def step(self, step: "Step", done: float) -> None:
         """Report an accepted step; collective.
 
         Args:
@@ -93,7 +95,7 @@ class Report:
             for row in rows:
                 self._writer.row(f"{name}{end}", {**first, **row, "mesh_contact": size})
 
-    def _log(self, step: Step, state: ContactState) -> None:
+    def _log(self, step: "Step", state: ContactState) -> None:
         log = self._writer.log
         log.info("step %s coupling iterations %s", json.dumps(state.row()), step.attempt.changes)
         for cut in step.attempt.cutbacks:

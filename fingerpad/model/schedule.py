@@ -3,15 +3,18 @@
 from dataclasses import replace
 from functools import partial
 from itertools import pairwise
+from typing import TYPE_CHECKING
 
-from fingerpad.scene import Load
 from fingerpad.scene.waveform import Sample, Waveform
 from variational.solvers.continuation import Target
+
+if TYPE_CHECKING:
+    from fingerpad.scene import Load
 
 _BEGIN = 60e-6  # m, with which a slide begins
 
 
-def targets(load: Load, x: float, step_scale: float) -> list[Target]:
+def targets(load: "Load", x: float, step_scale: float) -> list[Target]:
     """Return what to reach for a load, one after the other.
 
     Args:

@@ -3,16 +3,14 @@
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from mpi4py import MPI
 
 from fingerpad.io.states import FIRST_TOUCH, SLIDE_ON
 from fingerpad.model.contact_zone import ContactZone, FingerExceeded
-from fingerpad.model.finger import Finger, Step
-from fingerpad.model.half_finger import HalfFinger
-from fingerpad.model.options import FingerModel
+from fingerpad.model.finger import Finger, HalfFinger, Step
 from fingerpad.model.schedule import targets
 from fingerpad.model.stability import Checked, FullSlip, StabilityChecks
 from fingerpad.model.state import refuse_strained, step_record
@@ -25,13 +23,16 @@ from variational.solvers.target import Target
 from variational.solvers.transfer import StateSnapshot, restore
 from variational.state import ContactState
 
+if TYPE_CHECKING:
+    from fingerpad.model.options import FingerModel
+
 
 @dataclass(frozen=True)
 class RestartRequired:
     """The loads must be gone through again, since an omitted part of the model turned out to matter."""
 
     reason: str
-    model: FingerModel
+    model: "FingerModel"
     """With more ridges that can touch, a finer mesh, or more parts."""
 
 
@@ -46,7 +47,7 @@ class Simulation:
 
     def __init__(
         self,
-        model: FingerModel,
+        model: "FingerModel",
         comm: MPI.Comm,
         on_step: Callable[[Step, float], None] = lambda step, done: None,
         on_load: Callable[[], None] = lambda: None,

@@ -6,18 +6,20 @@ since the screen is uniform.
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from fingerpad.io.states import SLIDE_ON, full_slip
-from fingerpad.model.finger import Finger
 from fingerpad.model.state import steady
 from variational.solvers.continuation import StepFailed
 from variational.solvers.failure import NotConverged
 from variational.solvers.stability import Stability, StabilityCheck
 from variational.solvers.target import Target
 from variational.state import ContactState
+
+if TYPE_CHECKING:
+    from fingerpad.model.finger import Finger
 
 
 @dataclass(frozen=True)
@@ -46,7 +48,7 @@ class Checked:
 class StabilityChecks(dict[int, Checked]):
     """Stability by step."""
 
-    def __init__(self, finger: Finger) -> None:
+    def __init__(self, finger: "Finger") -> None:
         """Take the finger."""
         super().__init__()
         self._finger, self._check = finger, StabilityCheck(finger.solver)
@@ -79,7 +81,7 @@ class StabilityChecks(dict[int, Checked]):
 class FullSlip:
     """Slides a finger on at full slip and compares the forces."""
 
-    def __init__(self, finger: Finger) -> None:
+    def __init__(self, finger: "Finger") -> None:
         """Take the finger."""
         self._finger = finger
 

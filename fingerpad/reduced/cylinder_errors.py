@@ -8,7 +8,7 @@ from collections.abc import Mapping
 
 from fingerpad.io.quantities import QUANTITIES
 from fingerpad.io.states import WORDS
-from fingerpad.scene import Scene
+from fingerpad.scene.scene import Scene
 
 Bands = Mapping[str, Mapping[str, float]]
 """Relative errors by state and quantity."""

@@ -9,13 +9,13 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, ClassVar
 
-from fingerpad.io.result import Result
-from fingerpad.scene import Scene, SceneError
-from fingerpad.scene.messages import show
+from fingerpad.scene.messages import SceneError, show
 from variational.state import ContactState, Errors
 
 if TYPE_CHECKING:
+    from fingerpad.io.result import Result
     from fingerpad.runs.context import RunContext
+    from fingerpad.scene import Scene
 
 STATES = ("charged", "full_slip")
 """For which reduced models answer, by their names in :mod:`fingerpad.io.states`."""
@@ -38,7 +38,7 @@ class Model(ABC):
     traces: ClassVar[str] = "traces over the force"
     """What a force in newtons is summed over, in words."""
 
-    def check(self, scene: Scene) -> None:
+    def check(self, scene: "Scene") -> None:
         """Refuse a scene before the work, in one sentence; by default one with a history or a mesh of its own.
 
         Raises:
@@ -47,7 +47,7 @@ class Model(ABC):
         refuse_others(scene, self.name)
 
     @abstractmethod
-    def solve(self, scene: Scene, context: "RunContext") -> Result:
+    def solve(self, scene: "Scene", context: "RunContext") -> "Result":
         """Return the result of a scene; collective.
 
         Args:
@@ -59,7 +59,7 @@ class Model(ABC):
         """
 
     def over_forces(
-        self, scene: Scene, f_ext: Sequence[float], state: str, solve: Callable[[Scene], Result]
+        self, scene: "Scene", f_ext: Sequence[float], state: str, solve: Callable[["Scene"], "Result"]
     ) -> list[ContactState]:
         """Return a state of a scene under each of several external forces, for a force in newtons.
 
@@ -81,7 +81,7 @@ class Model(ABC):
         return states
 
 
-def at_rest(scene: Scene, contact: Mapping[str, float], error: Errors | None = None) -> ContactState:
+def at_rest(scene: "Scene", contact: Mapping[str, float], error: Errors | None = None) -> ContactState:
     """Return normal contact; by symmetry there is no friction.
 
     Args:
@@ -92,7 +92,7 @@ def at_rest(scene: Scene, contact: Mapping[str, float], error: Errors | None = N
     return _state(scene, contact, 0.0, error)
 
 
-def at_slip(scene: Scene, contact: Mapping[str, float], error: Errors | None = None) -> ContactState:
+def at_slip(scene: "Scene", contact: Mapping[str, float], error: Errors | None = None) -> ContactState:
     """Return full slip: f_T is the limit of friction, of the mean pressure over the contact length.
 
     Coulomb's is mu_0 times the contact force, however that is spread. Arguments as of :func:`at_rest`.
@@ -102,7 +102,7 @@ def at_slip(scene: Scene, contact: Mapping[str, float], error: Errors | None = N
     return _state(scene, contact, f_t, error)
 
 
-def _state(scene: Scene, contact: Mapping[str, float], f_t: float, error: Errors | None) -> ContactState:
+def _state(scene: "Scene", contact: Mapping[str, float], f_t: float, error: Errors | None) -> ContactState:
     values: dict[str, Any] = {name: value for name, value in contact.items() if name != "ridges_in_contact"}
     return ContactState(
         f_ext=scene.f_ext,
@@ -115,7 +115,7 @@ def _state(scene: Scene, contact: Mapping[str, float], f_t: float, error: Errors
     )
 
 
-def refuse_others(scene: Scene, model: str) -> None:
+def refuse_others(scene: "Scene", model: str) -> None:
     """Refuse a scene whose loads are not press, charge and slide, or whose finger has a mesh of its own.
 
     Raises:

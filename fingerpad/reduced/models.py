@@ -2,15 +2,15 @@
 
 from typing import TYPE_CHECKING
 
-from fingerpad.io.result import Result
 from fingerpad.model import feasibility
 from fingerpad.reduced.cylinders import Cylinders
 from fingerpad.reduced.model import Model
-from fingerpad.scene import Scene, SceneError
-from fingerpad.scene.messages import show
+from fingerpad.scene import Scene
+from fingerpad.scene.messages import SceneError, show
 from fingerpad.scene.reading import DEFAULT_MODEL
 
 if TYPE_CHECKING:
+    from fingerpad.io.result import Result
     from fingerpad.runs.context import RunContext
 
 
@@ -25,7 +25,7 @@ class Full(Model):
         """Refuse a scene whose finger cannot be built or meshed, see :func:`fingerpad.model.feasibility.check`."""
         feasibility.check(scene)
 
-    def solve(self, scene: Scene, context: "RunContext") -> Result:
+    def solve(self, scene: Scene, context: "RunContext") -> "Result":
         """Reach every load, see :func:`fingerpad.runs.full.run`; collective."""
         from fingerpad.runs import full  # finite elements
 

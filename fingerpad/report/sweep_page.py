@@ -3,16 +3,18 @@
 import itertools
 import math
 from collections.abc import Iterable, Mapping
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from fingerpad.io.quantities import PER_LENGTH, QUANTITIES, Output
 from fingerpad.io.states import WORDS
 from fingerpad.report import page as html
 from fingerpad.report import parameters
-from fingerpad.report.source import Table
 from fingerpad.runs.sweep_columns import LOAD, described, in_time, loads, shown, text
 from fingerpad.scene.reading import DEFAULT_MODEL
 from fingerpad.slices import solid
+
+if TYPE_CHECKING:
+    from fingerpad.report.source import Table
 
 _CHARTS = ("mu_app", "f_t", "contact_length", "contact_area")
 _TOLD = 3  # cautions in the headline
@@ -24,7 +26,7 @@ _IN_TIME = {  # column of a load over time, behind its name
 }
 
 
-def page(table: Table) -> str:
+def page(table: "Table") -> str:
     """Return the page of a sweep."""
     title = f"fingerpad: sweep over {', '.join(table.axes)}"
     made = (_head, _over_time, _study, _points, _failed, _parameters, _cite)
@@ -32,13 +34,13 @@ def page(table: Table) -> str:
     return html.page(title, "\n".join(filter(None, parts)), {"sweep": _curves(table)})
 
 
-def _shown(table: Table) -> tuple[str, dict[str, Output]]:
+def _shown(table: "Table") -> tuple[str, dict[str, Output]]:
     """Return the state in words and the columns of it that the page shows."""
     state, columns = shown(table.rows[0], table.whole, table.outputs)
     return WORDS[state], columns
 
 
-def _head(table: Table) -> str:
+def _head(table: "Table") -> str:
     state, columns = _shown(table)
     slid = [row for row in table.rows if _reached(row, columns)]
     number = f"No point reached {state}"
@@ -73,7 +75,7 @@ def _head(table: Table) -> str:
     )
 
 
-def _wave(table: Table) -> tuple[str, float, float] | None:
+def _wave(table: "Table") -> tuple[str, float, float] | None:
     """Return the last load with a spectrum in which the finger rubs, and the least and the largest µ_app there."""
     for name in reversed(loads(table.rows[0])):
         column = f"{LOAD}_{name}"
@@ -101,7 +103,7 @@ def _reached(row: Mapping[str, Any], columns: Iterable[str]) -> bool:
     return any(_read(row.get(column)) is not None for column in columns)
 
 
-def _varied(table: Table) -> str:
+def _varied(table: "Table") -> str:
     words = []
     for key in table.axes:
         values = list(dict.fromkeys(row[key] for row in table.rows))
@@ -110,7 +112,7 @@ def _varied(table: Table) -> str:
     return "; ".join(words)
 
 
-def _over_time(table: Table) -> str:
+def _over_time(table: "Table") -> str:
     """Return friction and contact in loads over time, which no state at full slip has; nothing without such a load."""
     parts = list[str]()
     for name in loads(table.rows[0]):
@@ -125,7 +127,7 @@ def _over_time(table: Table) -> str:
     return html.section("time", "Loads over time", *parts) if parts else ""
 
 
-def _charts(table: Table) -> dict[str, tuple[str, str]]:
+def _charts(table: "Table") -> dict[str, tuple[str, str]]:
     """Return the column and the title of each chart by the name of its place on the page."""
     drawn = _drawn(_shown(table)[1])
     found = {f"sweep_{key}": (column, quantity.title) for key, (column, quantity) in drawn.items()}
@@ -137,7 +139,7 @@ def _charts(table: Table) -> dict[str, tuple[str, str]]:
     return found
 
 
-def _study(table: Table) -> str:
+def _study(table: "Table") -> str:
     state, columns = _shown(table)
     over = f"at {state} over the sweep"
     charts = [
@@ -151,7 +153,7 @@ def _study(table: Table) -> str:
     return html.section("study", title, without, *charts, html.paragraph(note, "note"))
 
 
-def _points(table: Table) -> str:
+def _points(table: "Table") -> str:
     state, columns = _shown(table)
     rows = []
     for row in table.rows:
@@ -173,7 +175,7 @@ def _points(table: Table) -> str:
     )
 
 
-def _failed(table: Table) -> str:
+def _failed(table: "Table") -> str:
     rows = [
         (", ".join(f"{key} = {_plain(row[key])}" for key in table.axes), row["failure"])
         for row in table.rows
@@ -187,14 +189,14 @@ def _failed(table: Table) -> str:
     )
 
 
-def _parameters(table: Table) -> str:
+def _parameters(table: "Table") -> str:
     if table.parameters is None:
         words = "The folder has no sweep.json, and so no scene: an earlier version of fingerpad wrote it."
         return html.section("parameters", "Parameters", html.paragraph(words))
     return html.section("parameters", "Parameters", parameters.all_of(table.parameters, table.axes))
 
 
-def _cite(table: Table) -> str:
+def _cite(table: "Table") -> str:
     given = {} if table.parameters is None else parameters.changed(table.parameters)
     kept = {key: value for key, value in given.items() if not (key in table.axes or "[" in key or value is None)}
     options = [parameters.option_of(key, value) for key, value in kept.items()]
@@ -225,7 +227,7 @@ def _toml(cell: str) -> str:
     return cell.lower() if cell in ("True", "False") else parameters.toml(cell)
 
 
-def _curves(table: Table) -> dict[str, Any]:
+def _curves(table: "Table") -> dict[str, Any]:
     """Return one curve for each value of all axes but the one along x, which is that with most numbers."""
     charts, scales = _charts(table), {column: quantity.scale for column, quantity in _shown(table)[1].items()}
     numbers = {key: {row[key] for row in table.rows if _read(row[key]) is not None} for key in table.axes}

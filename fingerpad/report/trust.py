@@ -2,13 +2,15 @@
 
 import math
 from collections.abc import Iterator
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
-from fingerpad.io.result import Result
 from fingerpad.io.states import called
 from fingerpad.reduced.cylinder_errors import in_words
 from fingerpad.reduced.models import follows_path
 from variational.state import ContactState
+
+if TYPE_CHECKING:
+    from fingerpad.io.result import Result
 
 GOOD, CARE, BAD = "holds", "care", "fails"
 _SMALL, _LARGE = 0.02, 0.1
@@ -28,7 +30,7 @@ class Finding(NamedTuple):
     words: str
 
 
-def findings(result: Result) -> list[Finding]:
+def findings(result: "Result") -> list[Finding]:
     """Return what was looked at, in the order in which a reader needs it."""
     found = [_end(result)]
     found += _full_slip(result)
@@ -55,19 +57,19 @@ def verdict(found: list[Finding], error: str = "") -> tuple[str, str]:
     return GOOD, f"All that was examined holds: {solved}; what the finger and the model assume is not in it."
 
 
-def _cautions(result: Result) -> Iterator[Finding]:
+def _cautions(result: "Result") -> Iterator[Finding]:
     for text in result.cautions:
         yield Finding("limit of validity", CARE, f"{text[0].upper()}{text[1:].removesuffix('.')}.")
 
 
-def _end(result: Result) -> Finding:
+def _end(result: "Result") -> Finding:
     if result.failure:
         words = result.failure[0].upper() + result.failure[1:] + "." if result.interrupted else result.failure
         return Finding("the run did not finish", BAD, words)
     return Finding("end of the run", GOOD, "Every load was reached.")
 
 
-def _full_slip(result: Result) -> Iterator[Finding]:
+def _full_slip(result: "Result") -> Iterator[Finding]:
     if result.full_slip is not None and follows_path(result.model):
         words = "Every point in contact slips one way, and the forces stayed the same over a further 0.2 mm."
         yield Finding("full slip", GOOD, words)
@@ -81,7 +83,7 @@ def _full_slip(result: Result) -> Iterator[Finding]:
             yield Finding("no full slip under a waveform", CARE, f"In the load {load.name} {load.sticking}.")
 
 
-def _mesh(result: Result) -> Iterator[Finding]:
+def _mesh(result: "Result") -> Iterator[Finding]:
     """Judge the errors of friction and contact length, and tell the larger one."""
     state = result.full_slip or result.charged
     if state is None:
@@ -101,7 +103,7 @@ def _mesh(result: Result) -> Iterator[Finding]:
         yield Finding("the mesh is coarse", CARE, f"{words} The mesh is {more}; a smaller mesh.contact reduces it.")
 
 
-def _shares(result: Result, state: ContactState) -> dict[str, float]:
+def _shares(result: "Result", state: ContactState) -> dict[str, float]:
     """Return the relative errors of friction and contact length by name; NaN of one that is not estimated.
 
     A friction whose error is below the roundoff of the forces does not depend on the mesh, and is left out.
@@ -120,7 +122,7 @@ def _share(error: float, value: float) -> float:
     return error / abs(value) if value else math.nan
 
 
-def _facets(result: Result, state: ContactState) -> Iterator[Finding]:
+def _facets(result: "Result", state: ContactState) -> Iterator[Finding]:
     """Find contacts of few facets, on which the effect of the penalty's springs is not resolved."""
     springs = result.scene.contact.law.over_stiffer_screen() is not None
     if not (springs and state.ridges_in_contact and state.mesh_contact):
@@ -132,7 +134,7 @@ def _facets(result: Result, state: ContactState) -> Iterator[Finding]:
         yield Finding("contacts of few facets", CARE, f"{words} {more}")
 
 
-def _balance(result: Result) -> Iterator[Finding]:
+def _balance(result: "Result") -> Iterator[Finding]:
     state, floor = result.full_slip or result.charged or result.uncharged, result.record.get("force_error")
     if state is None or math.isnan(state.f_contact):
         return
@@ -147,7 +149,7 @@ def _balance(result: Result) -> Iterator[Finding]:
     )
 
 
-def _stability(result: Result) -> Iterator[Finding]:
+def _stability(result: "Result") -> Iterator[Finding]:
     known = {name: state.stable for name, state in result.named.items() if state.stable is not None}
     if not known:
         yield Finding("stability is not examined", CARE, "The stability of the named states was not examined.")
@@ -162,7 +164,7 @@ def _stability(result: Result) -> Iterator[Finding]:
         yield Finding("stability", GOOD, words)
 
 
-def _jumps(result: Result) -> Iterator[Finding]:
+def _jumps(result: "Result") -> Iterator[Finding]:
     steps = [state for state in result.steps if _jumped(state)]
     if not steps:
         if result.steps:
@@ -179,7 +181,7 @@ def _jumps(result: Result) -> Iterator[Finding]:
     )
 
 
-def _restarts(result: Result) -> Iterator[Finding]:
+def _restarts(result: "Result") -> Iterator[Finding]:
     restarts = result.record.get("restarts") or []
     if restarts:
         why = "; ".join(str(each.get("reason", "")) for each in restarts if isinstance(each, dict))

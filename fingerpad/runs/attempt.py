@@ -1,7 +1,6 @@
 """One attempt at a run: the path of its loads on one mesh, and the errors of its states."""
 
-import logging
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from typing import Any
@@ -21,12 +20,12 @@ from fingerpad.io.states import long_steps
 from fingerpad.io.writing import Writer
 from fingerpad.model import cautions
 from fingerpad.model.cost import Clock
-from fingerpad.model.finger import Finger, Step, meshed
-from fingerpad.model.hints import finer_mesh_may_help, hint
+from fingerpad.model.finger import Step, meshed
 from fingerpad.model.options import FingerModel
 from fingerpad.model.report import Report
 from fingerpad.model.simulation import RestartRequired, Simulation
 from fingerpad.model.state import broken, force_error
+from fingerpad.runs.restarts import Restarts, finer, hint
 from fingerpad.scene import Scene
 from fingerpad.scene.laws import coefficient, used
 from fingerpad.scene.reading import DEFAULT_MODEL
@@ -36,76 +35,9 @@ from fingerpad.startup import MPI
 from geometry.profiles import GeometryError
 from variational.solvers.checkpoint import OtherBody
 from variational.solvers.continuation import StepFailed
-from variational.state import ContactState
 
 STEPS = 5
 """Accepted steps from one checkpoint to the next, at most; there is one at the end of each load."""
-FINEST = 5e-6
-"""Contact size (m) down to which a run starts again by itself where the path of its loads cannot be followed."""
-
-
-class Restarts:
-    """Reports restarts and keeps them.
-
-    Attributes:
-        table: the restarts, ready for JSON.
-        notes: remarks for a reader of the result, on the restarts with smaller elements.
-    """
-
-    def __init__(self, log: logging.Logger, console: Console) -> None:
-        """Start without any."""
-        self._log, self._console = log, console
-        self.table: list[dict[str, Any]] = []
-        self.notes: list[str] = []
-        self._seconds = 0.0
-
-    def kept(self) -> dict[str, Any]:
-        """Return what another process needs to go on."""
-        return {"table": self.table, "notes": self.notes, "seconds": self._seconds}
-
-    def resume(self, kept: Mapping[str, Any]) -> None:
-        """Go on from what another process kept."""
-        self.table, self.notes, self._seconds = kept["table"], kept["notes"], kept["seconds"]
-
-    def record(self, restart: RestartRequired, states: Sequence[ContactState], finger: Finger, clock: Clock) -> None:
-        """Record a restart; collective.
-
-        Args:
-            restart: what is to be added, and why.
-            states: accepted until here.
-            finger: with the model until here.
-            clock: of the run.
-        """
-        mesh = restart.model.mesh
-        step, load = (states[-1].step, states[-1].load) if states else (0, "start")
-        whole, seconds = restart.model.options.both_halves, clock.processor_seconds()
-        halves = " and both halves of the finger" if whole and not finger.options.both_halves else ""
-        added = f"mesh.touching_half_arc {mesh.touching_half_arc:g} m{halves}"
-        if mesh.contact < finger.size.contact:
-            added = f"mesh.contact {mesh.contact:g} m"
-            size = finger.size.contact * 1e6
-            self.notes.append(
-                f"No equilibrium was found with a contact size of {size:g} µm; the run started again with half of it."
-            )
-        text = f"step {step} ({load}): {restart.reason}; all loads again with {added}"
-        self._console.show(f"fingerpad: {text}")
-        self._log.warning(text)
-        counts = finger.solver.counts
-        self.table.append(
-            {
-                "step": step,
-                "load": load,
-                "reason": restart.reason,
-                "contact": mesh.contact,
-                "touching_half_arc": mesh.touching_half_arc,
-                "both_halves": whole,
-                "unknowns": finger.unknowns,
-                "newton_iterations": counts.newton,
-                "factorisations": counts.factorisations,
-                "processor_seconds": seconds - self._seconds,
-            }
-        )
-        self._seconds = seconds
 
 
 @dataclass(frozen=True)
@@ -242,7 +174,7 @@ class Attempt:
             self._ended["failure"] = "; ".join(filter(None, (str(error), tip)))
             if isinstance(error, Interrupted):
                 self._ended["interrupted"] = error.signal.name
-            return None if reached else _finer(self._model, error, self._comm)
+            return None if reached else finer(self._model, error, self._comm)
 
     def _affordable(self, restart: RestartRequired | None) -> RestartRequired | None:
         """Return a restart within the memory allowed; None, with a failure, for another one."""
@@ -332,23 +264,3 @@ class Attempt:
             "omitted": [omission.to_dict() for omission in model.omitted],
             **{f"seconds_{phase}": value for phase, value in seconds.items()},
         }
-
-
-def _finer(model: FingerModel, error: StepFailed, comm: MPI.Comm) -> RestartRequired | None:
-    """Return a restart with half the contact size, where that may help and is possible; collective.
-
-    Args:
-        model: whose loads were not reached.
-        error: why not.
-        comm: communicator of the run.
-    """
-    helps = model.mesh_file is None and finer_mesh_may_help(error, bool(model.asked))
-    contact = model.mesh.contact / 2
-    if not helps or contact < FINEST:
-        return None
-    finer = model.changed(mesh=model.mesh.model_copy(update={"contact": contact}))
-    try:
-        meshed(finer, comm)
-    except GeometryError:  # more than the memory allowed
-        return None
-    return RestartRequired(str(error), finer)

@@ -21,16 +21,16 @@ from fingerpad.io.writing import Writer
 from fingerpad.model.cost import Clock
 from fingerpad.model.feasibility import by_rule
 from fingerpad.model.options import FingerModel, plan
-from fingerpad.runs.attempt import Attempt, Restarts, Session
+from fingerpad.runs.attempt import Attempt, Session
 from fingerpad.runs.context import RunContext
+from fingerpad.runs.restarts import Restarts
 from fingerpad.scene import Scene, SceneError
 from fingerpad.scene.laws import coefficient
 from fingerpad.scene.reading import DEFAULT_MODEL
 from fingerpad.startup import MPI
 from geometry.parameters import MeshSize
 from geometry.profiles import GeometryError
-from variational.solvers.equations import Control
-from variational.solvers.target import Progress
+from variational.solvers.target import Control, Progress
 from variational.solvers.timing import Counts
 from variational.solvers.transfer import SkinState, StateSnapshot
 from variational.state import ContactState, Errors, RidgeStates, StepRecord

@@ -15,15 +15,15 @@ from fingerpad.io.place import Serial, on_rank_0
 from fingerpad.io.quantities import Output
 from fingerpad.io.quantities import checked as checked_outputs
 from fingerpad.io.result import Result
-from fingerpad.reduced.model import Model
 from fingerpad.reduced.models import find
 from fingerpad.runs.context import RunContext
-from fingerpad.scene import Scene, SceneError
-from fingerpad.scene.messages import show
+from fingerpad.scene import Scene
+from fingerpad.scene.messages import SceneError, show
 from fingerpad.scene.reading import DEFAULT_MODEL, flat
 from variational.coefficients import LawError
 
 if TYPE_CHECKING:
+    from fingerpad.reduced.model import Model
     from fingerpad.startup import MPI
 
 
@@ -92,7 +92,7 @@ def _ended(result: Result) -> BaseException:
     return error
 
 
-def solved(scene: Scene, model: Model, context: RunContext) -> Result:
+def solved(scene: Scene, model: "Model", context: RunContext) -> Result:
     """Return what a model answers to a scene with all its laws; collective.
 
     Args:
@@ -117,7 +117,7 @@ def solved(scene: Scene, model: Model, context: RunContext) -> Result:
     return result
 
 
-def _solved(scene: Scene, model: Model, context: RunContext) -> Result:
+def _solved(scene: Scene, model: "Model", context: RunContext) -> Result:
     """Return what a model answers, its results written into a folder; collective; arguments as of :func:`solved`."""
     with needed_by(f"the model {model.name!r}"):
         if model.meshes:
@@ -154,7 +154,7 @@ def _refuse_different(scene: Scene, comm: "MPI.Comm | Serial") -> None:
                 )
 
 
-def _whole(scene: Scene, model: Model, context: RunContext) -> Result:
+def _whole(scene: Scene, model: "Model", context: RunContext) -> Result:
     """Return the result of a force on the whole finger: a sweep of scenes without one, each in a folder of its own.
 
     What an earlier run of the same scene has finished is taken from there, and what it began goes on.
@@ -176,7 +176,7 @@ def _whole(scene: Scene, model: Model, context: RunContext) -> Result:
     return found if found.interrupted else kept(found, context)
 
 
-def _gone_on(scene: Scene, model: Model, context: RunContext) -> Result:
+def _gone_on(scene: Scene, model: "Model", context: RunContext) -> Result:
     """Return the result of a scene that its folder may have, whole or in part; collective."""
     from fingerpad.io.checkpoint import CheckpointError
     from fingerpad.runs.batch import finished

@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from numbers import Integral
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -17,16 +17,18 @@ from fingerpad.io.files import below, check_folder, replace_json
 from fingerpad.io.quantities import Output
 from fingerpad.io.quantities import checked as checked_outputs
 from fingerpad.io.result import Result
-from fingerpad.reduced.model import Model
 from fingerpad.reduced.models import MODELS, find
 from fingerpad.report.write import attempt
 from fingerpad.runs.context import RunContext
 from fingerpad.runs.solve import checked, solved
 from fingerpad.runs.sweep_results import FILE, Sweep
-from fingerpad.scene import Scene, SceneError
-from fingerpad.scene.messages import clip, show
+from fingerpad.scene import Scene
+from fingerpad.scene.messages import SceneError, clip, show
 from fingerpad.scene.reading import DEFAULT_MODEL, plain, put
 from fingerpad.scene.remarks import leakage
+
+if TYPE_CHECKING:
+    from fingerpad.reduced.model import Model
 
 FILES = ("table.csv", FILE, "report.html", "sweep.json")
 """What a sweep writes into its folder beside its points."""
@@ -193,14 +195,14 @@ class _Point(NamedTuple):
         return Result(self.scene, model, None, None, None, failure=why)
 
 
-def _here(point: _Point, model: Model) -> Result:
+def _here(point: _Point, model: "Model") -> Result:
     try:
         return solved(point.scene, model, RunContext())
     except SceneError as error:
         return point.failed(model.name, str(error))
 
 
-def _in_processes(points: Sequence[_Point], folder: Path, jobs: int, model: Model, quiet: bool) -> list[Result]:
+def _in_processes(points: Sequence[_Point], folder: Path, jobs: int, model: "Model", quiet: bool) -> list[Result]:
     """Return the results of points, those that can be run in processes of their own, kept by their parameters."""
     from fingerpad.runs import batch
 

@@ -8,14 +8,16 @@ frequency of that. Under a force on the whole finger there are columns of that a
 import math
 import re
 from collections.abc import Iterable, Iterator, Mapping
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from fingerpad.io.quantities import FINGER, FRICTION, QUANTITIES, SWEPT, Output, cell
-from fingerpad.io.result import Result
 from fingerpad.io.states import STATES, LoadResult
 from fingerpad.scene import Scene
 from fingerpad.scene.keys import Key, every
 from fingerpad.slices.finger import WholeFinger
+
+if TYPE_CHECKING:
+    from fingerpad.io.result import Result
 
 LOAD = "load"
 """Beginning of the columns of a load over time."""
@@ -25,7 +27,7 @@ _IN_TIME = ("mu_app", "f_t", "contact_length")
 _ENDS = {"min": "least", "max": "largest", "mean": "mean"}
 
 
-def row(result: Result) -> dict[str, Any]:
+def row(result: "Result") -> dict[str, Any]:
     """Return the values of a point in SI units by column, and its failure."""
     if result.whole:
         return (_newtons(result.finger) if result.finger is not None else {}) | {"failure": result.failure}
@@ -92,7 +94,7 @@ def _of_finger(state: str, key: str) -> str:
     return f"{state}_finger_{key}"
 
 
-def newtons_of(result: Result) -> str:
+def newtons_of(result: "Result") -> str:
     """Return friction of the whole finger at full slip (N) as it is printed."""
     if result.finger is None or "full_slip" not in result.finger.states:
         return "–"

@@ -16,7 +16,6 @@ from numpy.typing import NDArray
 from fingerpad.io import dataset
 from fingerpad.io.files import replace
 from fingerpad.io.quantities import FINGER, PER_LENGTH, QUANTITIES, Output
-from fingerpad.io.result import Result
 from fingerpad.io.states import STATES, WORDS
 from fingerpad.runs.sweep_columns import described, head, newtons_of, printed, row, shown, tables
 from fingerpad.slices import solid
@@ -24,6 +23,8 @@ from variational.state import CONDITIONS, RESULTS
 
 if TYPE_CHECKING:
     import xarray
+
+    from fingerpad.io.result import Result
 
 FILE = "sweep.nc"
 _OF_POINT = {"state", "load", "harmonic", "ridge", "side"}  # dimensions of a point; steps and skin are in its folder
@@ -35,7 +36,7 @@ class Sweep:
 
     axes: dict[str, tuple[Any, ...]]
     """Values by key, in SI."""
-    results: tuple[Result, ...]
+    results: tuple["Result", ...]
     folder: Path | None
     """Of the results, each in a folder of its own, of ``table.csv`` and of ``sweep.nc``, an absolute path."""
     notes: tuple[str, ...] = ()
@@ -50,11 +51,11 @@ class Sweep:
         """Return the number of points."""
         return len(self.results)
 
-    def __iter__(self) -> Iterator[Result]:
+    def __iter__(self) -> Iterator["Result"]:
         """Return the results in order."""
         return iter(self.results)
 
-    def __getitem__(self, k: int) -> Result:
+    def __getitem__(self, k: int) -> "Result":
         """Return a result by its place."""
         return self.results[k]
 
@@ -250,7 +251,7 @@ def _stacked(points: Sequence[dataset.Variables], axes: tuple[str, ...], shape: 
     return found
 
 
-def _of_point(result: Result, whole: bool) -> dataset.Variables:
+def _of_point(result: "Result", whole: bool) -> dataset.Variables:
     """Return the variables of a point; of one of several forces of a run the sums over the whole finger alone."""
     every = dataset.variables(result).items()
     return {

@@ -6,7 +6,7 @@ A number is in SI units, or a text with its unit (:mod:`geometry.units`).
 from collections.abc import Mapping
 from dataclasses import is_dataclass
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 from pydantic import Field, ValidationError, model_validator
 
@@ -31,8 +31,10 @@ from fingerpad.scene.waveform import Volts
 from geometry.parameters import MeshSize
 from geometry.units import computed, within
 from variational.contact.friction import Friction, law_of
-from variational.materials.material import Material
 from variational.roughness.closure import Closure
+
+if TYPE_CHECKING:
+    from variational.materials.material import Material
 
 
 class Scene(Part):
@@ -168,7 +170,7 @@ class Scene(Part):
         """Return the law of friction, None without friction; raises as :meth:`closure` does."""
         return law_of(_known("friction", self.friction))
 
-    def solids(self) -> dict[int, Material]:
+    def solids(self) -> dict[int, "Material"]:
         """Return the material of each layer's tag; raises as :meth:`closure` does."""
         return {tag: _known(f"materials.{name}", getattr(self.materials, name)) for name, tag in LAYERS.items()}
 

@@ -9,13 +9,14 @@ error of this estimate beside traces of the full model. A scene with a ``force``
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fingerpad.io.result import Result
 from fingerpad.reduced import cylinders
-from fingerpad.scene import Scene, SceneError
+from fingerpad.scene import Scene
 from fingerpad.scene.laws import coefficient
+from fingerpad.scene.messages import SceneError
 from fingerpad.slices import errors
 from fingerpad.slices.finger import WholeFinger, in_order
 from fingerpad.slices.profile import profile
@@ -23,11 +24,14 @@ from fingerpad.slices.total import at_force, at_indentation, deepest
 from fingerpad.slices.trace import LEAST, Trace, TraceError, columns, trace
 from variational.state import ContactState
 
+if TYPE_CHECKING:
+    from fingerpad.io.result import Result
+
 SOURCE = "estimated from the run's press and its centre by charged cylinders; a force in newtons computes traces"
 _MOST = 12  # points of the trace
 
 
-def with_newtons(result: Result) -> Result:
+def with_newtons(result: "Result") -> "Result":
     """Return a result with its whole finger, or with a note why there is none.
 
     Args:

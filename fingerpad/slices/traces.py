@@ -8,15 +8,15 @@ force is reached is made again to a larger one.
 
 from collections.abc import Callable, Iterable
 from dataclasses import fields, replace
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from fingerpad.io.answer import Cost
 from fingerpad.io.result import Result
 from fingerpad.io.states import WORDS
-from fingerpad.reduced.model import Model
-from fingerpad.scene import Scene, SceneError
+from fingerpad.scene import Scene
+from fingerpad.scene.messages import SceneError
 from fingerpad.scene.slices import LINE, POINT, POWER
 from fingerpad.slices import errors
 from fingerpad.slices.finger import WholeFinger, in_order
@@ -25,6 +25,9 @@ from fingerpad.slices.total import BeyondTrace, Total, at_force
 from fingerpad.slices.trace import Trace, TraceError, trace
 from geometry.units import computed
 from variational.state import ContactState, Errors
+
+if TYPE_CHECKING:
+    from fingerpad.reduced.model import Model
 
 Solve = Callable[[Scene, str], Result]
 """Returns the result of a scene; takes a name for the folder of its files."""
@@ -56,7 +59,7 @@ class Traced(NamedTuple):
     """The finger under the force, once it was found on the trace."""
 
 
-def whole(scene: Scene, model: Model, solve: Solve) -> Result:
+def whole(scene: Scene, model: "Model", solve: Solve) -> Result:
     """Return the result of a force on the whole finger; collective.
 
     Args:
@@ -121,7 +124,7 @@ def points(result: Result, name: str) -> list[ContactState]:
     return [state for state in result.steps if state.load in ("charge", "raise") and state.voltage == voltage]
 
 
-def _followed(scene: Scene, model: Model, solve: Solve) -> dict[str, Traced]:
+def _followed(scene: Scene, model: "Model", solve: Solve) -> dict[str, Traced]:
     """Return the traces of a scene by state, that of the result last; arguments as of :func:`whole`."""
     reach = _Reach(scene, profile(scene.slices), model, solve)
     found = {"uncharged": reach.follow("uncharged")}
@@ -132,7 +135,7 @@ def _followed(scene: Scene, model: Model, solve: Solve) -> dict[str, Traced]:
     return found
 
 
-def _summed(scene: Scene, model: Model, found: dict[str, Traced]) -> WholeFinger:
+def _summed(scene: Scene, model: "Model", found: dict[str, Traced]) -> WholeFinger:
     """Return the finger on its traces."""
     totals = {name: each.total for name, each in found.items() if each.total is not None}
     known = {name: {errors.MESH: errors.discretisation(_end(each, name))} for name, each in found.items()}
@@ -229,7 +232,7 @@ class _Stopped(Exception):  # noqa: N818
 class _Reach:
     """Follows traces to forces that are large enough."""
 
-    def __init__(self, scene: Scene, finger: Profile, model: Model, solve: Solve) -> None:
+    def __init__(self, scene: Scene, finger: Profile, model: "Model", solve: Solve) -> None:
         assert scene.force is not None
         self._scene, self._force = scene.replace(force=None), scene.force
         self._finger, self._model, self._solve = finger, model, solve

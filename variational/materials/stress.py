@@ -8,14 +8,18 @@ part is p I, p positive in tension: an element may have a better p than the one 
 (:mod:`variational.element`).
 """
 
+from typing import TYPE_CHECKING
+
 import ufl
 from ufl.classes import Variable
 
 from variational import kinematics
-from variational.materials.material import Material
+
+if TYPE_CHECKING:
+    from variational.materials.material import Material
 
 
-def first_piola_kirchhoff(solid: Material, F, p=None):
+def first_piola_kirchhoff(solid: "Material", F, p=None):
     """Return the first Piola-Kirchhoff stress P = dW/dF (Pa), shape (2, 2); by default the pressure p is that of F."""
     F = Variable(F, kinematics.GRADIENT)
     H = kinematics.displacement_gradient(F)
@@ -23,7 +27,7 @@ def first_piola_kirchhoff(solid: Material, F, p=None):
     return ufl.diff(solid.distortion(H), F) + p * kinematics.cofactor(F)
 
 
-def cauchy(solid: Material, F, p=None):
+def cauchy(solid: "Material", F, p=None):
     """Return the Cauchy stress (Pa), shape (3, 3), z normal to the plane; by default the pressure p is that of F."""
     p = solid.pressure(kinematics.displacement_gradient(F)) if p is None else p
     sigma = first_piola_kirchhoff(solid, F, p) * F.T / ufl.det(F)

@@ -1,13 +1,16 @@
 """The accepted state of a coupled problem, to which a rejected attempt returns."""
 
 from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
-from variational.history import Values
-from variational.solvers.coupling import Coupling
-from variational.solvers.equations import Control
+from variational.solvers.target import Control
+
+if TYPE_CHECKING:
+    from variational.history import Values
+    from variational.solvers.coupling import Coupling
 
 Array = NDArray[np.float64]
 
@@ -20,7 +23,7 @@ class AcceptedState:
     """This rank's unknowns."""
     bone: Array
     """The bone's translation (m), shape (2,)."""
-    history: Values
+    history: "Values"
     """Accepted values of the history's fields."""
     d_eq: Array
     """Equivalent air gaps (m), shape (ridges,)."""
@@ -35,7 +38,7 @@ class AcceptedState:
         return float(self.bone[1]) if self.control.y is None else self.control.y
 
     @classmethod
-    def of(cls, coupling: Coupling) -> "AcceptedState":
+    def of(cls, coupling: "Coupling") -> "AcceptedState":
         """Return the present state; collective."""
         solver, problem = coupling.solver, coupling.solver.problem
         return cls(
@@ -48,7 +51,7 @@ class AcceptedState:
             solver.reaction.copy(),
         )
 
-    def restore(self, coupling: Coupling) -> None:
+    def restore(self, coupling: "Coupling") -> None:
         """Return to the state; collective."""
         solver, problem = coupling.solver, coupling.solver.problem
         solver.x.array_w[:] = self.x

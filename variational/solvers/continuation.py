@@ -10,6 +10,7 @@ attempt restores the last accepted state.
 
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 from mpi4py import MPI
@@ -17,12 +18,13 @@ from numpy.typing import NDArray
 from petsc4py import PETSc
 
 from variational.solvers.accepted import AcceptedState
-from variational.solvers.coupling import Coupling
-from variational.solvers.equations import Control
 from variational.solvers.failure import NotConverged
 from variational.solvers.homotopy import relax
 from variational.solvers.onset import return_to_onset
-from variational.solvers.target import Progress, Target, Way
+from variational.solvers.target import Control, Progress, Target, Way
+
+if TYPE_CHECKING:
+    from variational.solvers.coupling import Coupling
 
 Array = NDArray[np.float64]
 
@@ -80,7 +82,7 @@ class Continuation:
 
     def __init__(
         self,
-        coupling: Coupling,
+        coupling: "Coupling",
         on_accept: Callable[[Target, float, Attempt], bool | None] = lambda target, part, attempt: None,
         touch_depth: float = 5e-6,
         step_scale: float = 1.0,

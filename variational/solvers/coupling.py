@@ -25,6 +25,7 @@ does not help, pseudo-transient continuation follows at once. Solves at air gaps
 """
 
 from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 from mpi4py import MPI
@@ -35,8 +36,10 @@ from variational.quantities import Observer
 from variational.roughness.closure import Closure, air_gaps, check
 from variational.solvers.failure import NotConverged
 from variational.solvers.iteration import EXACT, StopRule
-from variational.solvers.newton import Solver
 from variational.solvers.secant import Secants
+
+if TYPE_CHECKING:
+    from variational.solvers.newton import Solver
 
 Array = NDArray[np.float64]
 # Solves at air gaps that change again are not exact. They leave a part of what the load brought out of balance, at most
@@ -73,7 +76,7 @@ class Coupling:
 
     def __init__(
         self,
-        solver: Solver,
+        solver: "Solver",
         observer: Observer,
         closure: Closure | None,
         tolerance: float = 1e-6,

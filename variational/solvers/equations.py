@@ -1,7 +1,7 @@
 """Residual and tangent of a load: the weak form in the solver's unknowns, with rows that are prescribed."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 from dolfinx import fem
@@ -9,30 +9,16 @@ from mpi4py import MPI
 from numpy.typing import NDArray
 from petsc4py import PETSc
 
-from variational.problem import Problem
+from variational.solvers.failure import OUTSIDE
 from variational.solvers.layout import RigidRimLayout
+from variational.solvers.target import Control
 from variational.solvers.timing import Timings
+
+if TYPE_CHECKING:
+    from variational.problem import Problem
 
 Array = NDArray[np.float64]
 Rows = NDArray[np.int64]
-OUTSIDE = 1e30  # N/m: norm of the residual where J <= 0 somewhere
-
-
-@dataclass
-class Control:
-    """What is prescribed of the bone: its translation in x, and in y either a translation or a force."""
-
-    x: float = 0.0
-    """Translation (m)."""
-    y: float | None = 0.0
-    """Translation (m), or None under force control."""
-    force: float = 0.0
-    """External force per length pressing down (N/m), where y is None."""
-
-    @property
-    def translation(self) -> list[float]:
-        """The translations (m) that are prescribed: in x, or in x and y."""
-        return [self.x] if self.y is None else [self.x, self.y]
 
 
 class Equations:
@@ -53,7 +39,7 @@ class Equations:
 
     def __init__(
         self,
-        problem: Problem,
+        problem: "Problem",
         rim_facets: NDArray[np.int32],
         fixed: Sequence[tuple[NDArray[np.int32], float]] = (),
         moving_sides: NDArray[np.int32] | None = None,

@@ -9,8 +9,7 @@ _MUMPS = {
     "MUMPS_OUT_OF_WORKSPACE": (-8, -9, -11, -14, -15, -17, -18, -20),
     "MUMPS_OUT_OF_MEMORY": (-5, -7, -13, -19, -22),
 }
-
-
+OUTSIDE = 1e30  # N/m: norm of the residual where J <= 0 somewhere
 _REASONS = {value: name for name, value in vars(PETSc.SNES.ConvergedReason).items() if isinstance(value, int)}
 
 

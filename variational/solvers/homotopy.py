@@ -3,13 +3,17 @@
 It leads from a state that is no equilibrium to one (Allgower and Georg 1990, doi 10.1007/978-3-642-61257-2).
 """
 
+from typing import TYPE_CHECKING
+
 from variational.solvers.failure import NotConverged
-from variational.solvers.newton import Solver
+
+if TYPE_CHECKING:
+    from variational.solvers.newton import Solver
 
 _SMALLEST_PART = 1 / 8
 
 
-def relax(solver: Solver, part: float, skin: bool = False) -> None:
+def relax(solver: "Solver", part: float, skin: bool = False) -> None:
     """Bring the solver's state into balance at frozen air gaps; collective.
 
     Args:

@@ -18,17 +18,21 @@ the layer stays as it is.
 """
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 from mpi4py import MPI
 from petsc4py import PETSc
 
 from variational.solvers.anderson import Anderson
-from variational.solvers.equations import OUTSIDE, Equations
+from variational.solvers.failure import OUTSIDE
 from variational.solvers.skin_layer import SkinLayer
 from variational.solvers.tangent import Tangent
 from variational.solvers.timing import Counts
 from variational.solvers.transient import EulerShift
+
+if TYPE_CHECKING:
+    from variational.solvers.equations import Equations
 
 PREFIX = "fingerpad_"
 # MUMPS, an LU of an unsymmetric matrix; full Newton steps, see above.
@@ -82,7 +86,7 @@ class Iteration:
             roundoff, above its tolerance; zero if it met that.
     """
 
-    def __init__(self, equations: Equations, counts: Counts, force_scale: float, tolerance: float) -> None:
+    def __init__(self, equations: "Equations", counts: Counts, force_scale: float, tolerance: float) -> None:
         """Set SNES up; the arguments are those of :class:`variational.solvers.newton.Solver`."""
         self.equations, self.layout, self.counts = equations, equations.layout, counts
         self.tangent, self.force_scale = Tangent(equations, counts), force_scale

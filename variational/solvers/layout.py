@@ -15,6 +15,8 @@ The pressures of a mixed element (:mod:`variational.pressure`) come first among 
 goes on from the displacement's local unknowns to the pressure's, and forms are added to the matrix block by block.
 """
 
+from typing import TYPE_CHECKING
+
 import dolfinx
 import numpy as np
 from dolfinx import fem
@@ -22,7 +24,8 @@ from dolfinx.fem import petsc as fem_petsc
 from numpy.typing import NDArray
 from petsc4py import PETSc
 
-from variational.pressure import LayerwisePressure
+if TYPE_CHECKING:
+    from variational.pressure import LayerwisePressure
 
 Array = NDArray[np.float64]
 
@@ -40,7 +43,7 @@ class RigidRimLayout:
     """
 
     def __init__(
-        self, V: fem.FunctionSpace, rim_facets: NDArray[np.int32], pressure: LayerwisePressure | None = None
+        self, V: fem.FunctionSpace, rim_facets: NDArray[np.int32], pressure: "LayerwisePressure | None" = None
     ) -> None:
         """Number the unknowns.
 

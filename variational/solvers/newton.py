@@ -14,6 +14,7 @@ equilibrium that is lost and ends in one of the unchanged equations.
 """
 
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 from mpi4py import MPI
@@ -21,10 +22,13 @@ from numpy.typing import NDArray
 from petsc4py import PETSc
 
 from variational.problem import SLIPS, STICKS
-from variational.solvers.equations import OUTSIDE, Control, Equations
-from variational.solvers.failure import snes_failure
+from variational.solvers.failure import OUTSIDE, snes_failure
 from variational.solvers.iteration import EXACT, Iteration, StopRule
+from variational.solvers.target import Control
 from variational.solvers.timing import Counts
+
+if TYPE_CHECKING:
+    from variational.solvers.equations import Equations
 
 Array = NDArray[np.float64]
 _SIDEWAYS = 0.95  # part of the last residual that is friction's, above which points do not come to stick (0.999 where
@@ -46,7 +50,7 @@ class Solver:
         timings: seconds by phase.
     """
 
-    def __init__(self, equations: Equations, force_scale: float, tolerance: float = 1e-9) -> None:
+    def __init__(self, equations: "Equations", force_scale: float, tolerance: float = 1e-9) -> None:
         """Set SNES up.
 
         Args:

@@ -11,16 +11,19 @@ slip, and every other point has slipped: a solution of the same equations. The e
 work of friction up to it, therefore do not depend on how far the last step went.
 """
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 from mpi4py import MPI
 
-from variational.quantities import Observer
-from variational.solvers.newton import Solver
+if TYPE_CHECKING:
+    from variational.quantities import Observer
+    from variational.solvers.newton import Solver
 
 _LEFT = 1e-9  # part of the way back that is left, so that the last point stays at the limit of friction
 
 
-def return_to_onset(solver: Solver, observer: Observer, way: float) -> float:
+def return_to_onset(solver: "Solver", observer: "Observer", way: float) -> float:
     """Translate a body in full slip back to where full slip began in the present step; collective.
 
     Args:

@@ -16,6 +16,8 @@ The elements behind the skin belong to it: the skin's nodes alone, with all othe
 move. A second row of elements saves no factorisation.
 """
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 import ufl
 from dolfinx import fem, la
@@ -25,7 +27,10 @@ from numpy.typing import NDArray
 from petsc4py import PETSc
 
 from variational import jit
-from variational.solvers.equations import OUTSIDE, Equations
+from variational.solvers.failure import OUTSIDE
+
+if TYPE_CHECKING:
+    from variational.solvers.equations import Equations
 
 Array = NDArray[np.float64]
 Nodes = NDArray[np.bool_]
@@ -53,7 +58,7 @@ class _Weak:
 class SkinLayer:
     """The skin near the screen and the elements behind it."""
 
-    def __init__(self, equations: Equations) -> None:
+    def __init__(self, equations: "Equations") -> None:
         """Start without a layer; collective.
 
         Args:

@@ -26,6 +26,7 @@ examined one after the other: the tangent of the whole does not couple the two.
 """
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -33,7 +34,9 @@ from petsc4py import PETSc
 
 from variational.problem import SLIPS
 from variational.solvers.failure import NotConverged, linear_failure
-from variational.solvers.newton import Solver
+
+if TYPE_CHECKING:
+    from variational.solvers.newton import Solver
 
 Array = NDArray[np.float64]
 Rows = NDArray[np.int64]
@@ -63,7 +66,7 @@ class Stability:
 class StabilityCheck:
     """Examines the solver's present state; leaves solver and problem as they were."""
 
-    def __init__(self, solver: Solver) -> None:
+    def __init__(self, solver: "Solver") -> None:
         """Examine a solver's states."""
         self.solver = solver
         # Kept from check to check with the analysis of the pattern, which is always the same.

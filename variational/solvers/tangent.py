@@ -1,16 +1,20 @@
 """The tangent of a solve and its factorisation, which several iterations may share."""
 
+from typing import TYPE_CHECKING
+
 from petsc4py import PETSc
 
-from variational.solvers.equations import Equations
-from variational.solvers.layout import RigidRimLayout
 from variational.solvers.timing import Counts
+
+if TYPE_CHECKING:
+    from variational.solvers.equations import Equations
+    from variational.solvers.layout import RigidRimLayout
 
 
 class _Relative:
     """The derivative of the residual by the relative unknowns: the tangent K after their change to displacements."""
 
-    def __init__(self, layout: RigidRimLayout, K: PETSc.Mat) -> None:
+    def __init__(self, layout: "RigidRimLayout", K: PETSc.Mat) -> None:
         self.layout, self.K = layout, K
         self._moved = layout.create_vector()
 
@@ -34,7 +38,7 @@ class Tangent:
         kept: the present iteration uses a factorisation made before it.
     """
 
-    def __init__(self, equations: Equations, counts: Counts) -> None:
+    def __init__(self, equations: "Equations", counts: Counts) -> None:
         """Start without a factorisation; factorisations are added to ``counts``."""
         self.equations, self.counts = equations, counts
         self.matrix = equations.layout.create_matrix()

@@ -1,4 +1,4 @@
-"""A load to reach, the loads on the way to it, and how far a path has come."""
+"""What is prescribed of the bone, a load to reach, the loads on the way to it, and how far a path has come."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -6,11 +6,26 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from variational.solvers.equations import Control
-
 Array = NDArray[np.float64]
 # How far one step may go: parts of sqrt(f_ext) and of U^2, and metres of the bone.
 _FORCE, _VOLTAGE, _SINK, _SLIDE = 0.134, 0.5, 40e-6, 120e-6
+
+
+@dataclass
+class Control:
+    """What is prescribed of the bone: its translation in x, and in y either a translation or a force."""
+
+    x: float = 0.0
+    """Translation (m)."""
+    y: float | None = 0.0
+    """Translation (m), or None under force control."""
+    force: float = 0.0
+    """External force per length pressing down (N/m), where y is None."""
+
+    @property
+    def translation(self) -> list[float]:
+        """The translations (m) that are prescribed: in x, or in x and y."""
+        return [self.x] if self.y is None else [self.x, self.y]
 
 
 @dataclass(frozen=True)

@@ -38,7 +38,7 @@ from variational import compat
 from variational.contact.formulation import SurfaceState
 from variational.problem import Problem
 from variational.solvers.coupling import Coupling
-from variational.solvers.equations import Control
+from variational.solvers.target import Control
 
 Array = NDArray[np.float64]
 _CANDIDATES = 32  # triangles about a point, by their centroids; sizes of neighbours differ by far less

@@ -1,0 +1,151 @@
+"""Pages as text: README, CONTRIBUTING and docs/ name what exists, agree with each other, and are in short sentences."""
+
+import ast
+import re
+import shlex
+
+import pytest
+
+from fingerpad import cli
+from fingerpad.cli.params import page
+from fingerpad.scene import Scene
+from fingerpad.scene.keys import every
+from tests.pages import ROOT, alike, blocks, printed, sentences, words
+
+PAGES = ["README.md", "CONTRIBUTING.md", "demos/README.md"]
+PAGES += [f"docs/{page.name}" for page in sorted((ROOT / "docs").glob("*.md"))]
+README, LAWS, COMMAND = (
+    (ROOT / name).read_text(encoding="utf-8") for name in ("README.md", "docs/laws.md", "docs/command.md")
+)
+COMMANDS = [line.split("#")[0] for line in re.findall(r"^    (?:mpirun .*)?(fingerpad .*)$", COMMAND, re.MULTILINE)]
+
+
+def code(block: str) -> list[str]:
+    return [line for line in (line.split("  #")[0].strip() for line in block.splitlines()) if line]
+
+
+def test_readme_fits_a_screen():
+    assert len(README.splitlines()) <= 65
+
+
+def test_door_is_the_demo():
+    """Every line of Python of the README is one of the first demo, which runs them; so is the body of docs/laws.md."""
+    demo = code((ROOT / "demos" / "first_run.py").read_text(encoding="utf-8"))
+    lines = [line for block, _ in [*blocks(README), blocks(LAWS)[-1]] for line in code(block)]
+    assert len(lines) > 10 and [line for line in lines if line not in demo] == []
+
+
+def test_closed_form_prints_the_readme(tmp_path, monkeypatch):
+    """To the last digit printed: one of roundoff may be rounded the other way."""
+    monkeypatch.chdir(tmp_path)
+    block, output = blocks(README)[0]
+    first = block.partition("result =")[0]
+    assert alike(output.partition("section at the centre")[0], printed(first, {}), 0.0)
+
+
+def test_full_run_of_the_readme_is_the_kept_one():
+    """The default scene's friction is that of docs/errors.md, whose runs take minutes, to the digits printed there."""
+    page = (ROOT / "docs" / "errors.md").read_text(encoding="utf-8")
+    kept = re.search(r"^\| µ_app, full slip \| ([0-9.]+) \|", page, re.MULTILINE)
+    found = re.search(r"µ_app = ([0-9.]+) ± ", README)
+    assert kept is not None and found is not None
+    assert float(found[1]) == pytest.approx(float(kept[1]), abs=6e-5)
+
+
+def test_claims_of_the_readme_are_those_of_its_pages():
+    """The effect is that of the output below it; the count of verified numbers is that of docs/verification.md."""
+    found = re.search(r"µ_app = ([0-9.]+) ± ", README)
+    count = re.search(r"(\d+ of \d+) numbers", README)
+    assert found is not None and f"from 0.25 to {float(found[1]):.2f}" in README
+    assert count is not None and count[1] in (ROOT / "docs" / "verification.md").read_text(encoding="utf-8")
+
+
+def test_commands_are_known(capsys):
+    """Each command's options are its own: with an option that no command has, only that one is refused."""
+    for line in COMMANDS:
+        assert cli.main([*shlex.split(line)[1:], "--no-such-option"]) == 2
+        assert "--no-such-option is not an option" in capsys.readouterr().err, line
+
+
+def test_every_page_is_in_the_index():
+    index = (ROOT / "docs" / "README.md").read_text(encoding="utf-8")
+    assert [page.name for page in (ROOT / "docs").glob("*.md") if f"({page.name})" not in index] == ["README.md"]
+
+
+# -- words: short sentences, and none of the code's own dialect -----------------------------------------
+MEAN, LONGEST = 20, 40
+PRIVATE = [
+    r"rungs?", r"knobs?", r"woken", r"(?<!contact )zones?", r"knows?", r"says nothing", r"leapt", r"creeps?",
+    r"hopeless", r"fits and starts", r"taken up again", r"sees", r"asks", r"feels nothing", r"gets? there",
+    r"one's own", r"as good as none", r"swallows?", r"tells?", r"what it owes",
+]  # fmt: skip
+
+
+def text(page: str) -> str:
+    return (ROOT / page).read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize("page", PAGES)
+def test_page(page):
+    """Below 20 words on average, none above 40 (in a cell too); links lead somewhere; normal contact is the charged."""
+    prose, cells = sentences(text(page))
+    assert sum(map(words, prose)) / len(prose) < MEAN
+    assert [sentence for sentence in [*prose, *cells] if words(sentence) > LONGEST] == []
+    assert re.findall(rf"\b(?:{'|'.join(PRIVATE)})\b", text(page), re.IGNORECASE) == []
+    assert re.findall(r"normal contact (?:without|at 0 V|before the voltage)", text(page)) == []
+    links = re.findall(r"\]\((?!http)([^)#\s]+)\)", text(page))
+    assert [link for link in links if not (ROOT / page).parent.joinpath(link).exists()] == []
+
+
+# -- places in the code that docs/model.md names; files are read, not imported ----------------------------
+PAGE = (ROOT / "docs" / "model.md").read_text(encoding="utf-8")
+PLACES = sorted(set(re.findall(r"`([a-z_.]+):(\w+)`", PAGE)))
+METHODS = re.findall(r"\| `(\w+)` \|$", PAGE, re.MULTILINE)
+
+
+def names(body: list[ast.stmt]) -> set[str]:
+    found = {node.name for node in body if isinstance(node, ast.FunctionDef | ast.ClassDef)}
+    targets = [t for node in body if isinstance(node, ast.Assign) for t in node.targets]
+    targets += [node.target for node in body if isinstance(node, ast.AnnAssign)]
+    return found | {target.id for target in targets if isinstance(target, ast.Name)}
+
+
+def tree(module: str) -> ast.Module:
+    return ast.parse((ROOT / f"{module.replace('.', '/')}.py").read_text(encoding="utf-8"))
+
+
+def test_places_exist():
+    assert [place for place in PLACES if place[1] not in names(tree(place[0]).body)] == []
+
+
+def test_every_equation_has_a_place():
+    """In the paragraph before or after it; those of the table of section 5 are in its last column."""
+    paragraphs = re.split(r"\n\s*\n", PAGE)
+    equations = [k for k, paragraph in enumerate(paragraphs) if paragraph.startswith("$$")]
+    assert len(equations) >= 6
+    lone = [k for k in equations if not any(re.search(r"`[a-z_.]+:\w+`", paragraphs[i]) for i in (k - 1, k + 1))]
+    assert [paragraphs[k] for k in lone] == []
+
+
+def test_methods_of_the_bearing_area_model_exist():
+    (model,) = (n for n in tree("variational.roughness.bam").body if getattr(n, "name", "") == "BearingArea")
+    assert isinstance(model, ast.ClassDef) and len(METHODS) >= 5 and set(METHODS) <= names(model.body)
+
+
+def test_every_equation_of_the_paper_has_a_place():
+    """Numbers 1 to 15 are on the page, alone or in a range; Eq. 8 is the roughness's spectrum."""
+    assert len(PLACES) > 25
+    ranges = re.findall(r"(?:Eqs?\. |^\| )(\d+)(?:(?: and |, )(\d+))?", PAGE, re.MULTILINE)
+    assert {int(number) for pair in ranges for number in pair if number} >= set(range(1, 16))
+
+
+# -- the scene reference -----------------------------------------------------------------------------------
+
+
+def test_page_is_the_generated_one():
+    """If not: fingerpad params --markdown > docs/scene.md."""
+    assert text("docs/scene.md") == page(list(every(Scene))) + "\n"
+
+
+def test_every_key_has_a_meaning():
+    assert [key.name for key in every(Scene) if not key.meaning] == []
