@@ -13,7 +13,7 @@ from fingerpad.cli import sweep as cli_sweep
 from fingerpad.report import parameters
 from fingerpad.report.write import NAME, write
 from fingerpad.runs.sweep import sweep
-from fingerpad.scene import Scene, from_data, override
+from fingerpad.scene import Scene, SceneError, from_data, override
 from tests.browser import SIZES, asked
 
 
@@ -81,3 +81,10 @@ def test_sweep_is_reproduced_by_what_its_report_says(tmp_path, axes):
     data, along = cli_sweep.study(tmp_path / "study.toml" if study else None, given["--set"], given["--over"])
     assert from_data(data).parameters() == scene.parameters()
     assert {key: tuple(values) for key, values in along.items()} == found.axes
+
+
+def test_sweep_without_its_scene_is_refused(tmp_path):
+    sweep(Scene(), tmp_path, model="cylinders", voltage=[0, 100])
+    (tmp_path / "sweep.json").unlink()
+    with pytest.raises(SceneError, match=r"sweep.json in .* cannot be read"):
+        write(tmp_path)

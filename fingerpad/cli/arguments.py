@@ -92,9 +92,13 @@ class Parser(argparse.ArgumentParser):
                 pair: dict[str, Any] = {"nargs": 2, "metavar": ("X", "Y")} if key.allowed.startswith("list") else {}
                 self.add_argument(f"--{key.name.removeprefix(table)[1:]}", **pair, help=key.meaning)
 
-    def add_out(self, default: str, what: str) -> None:
-        """Add the folder that results go to."""
-        self.add_argument("--out", type=path, metavar="PATH", default=Path(default), help=what)
+    def add_out(self, default: str, what: str, quiet: str = "") -> None:
+        """Add the folder that results go to, and ``--quiet`` where the command prints something alone with it."""
+        words = f"{what} (default: {default})"
+        self.add_argument("--out", type=path, metavar="PATH", default=Path(default), help=words)
+        if quiet:
+            words = f"print the {quiet} alone: no line of a step or a run, no progress bar"
+            self.add_argument("--quiet", action="store_true", help=words)
 
     def add_file(self, option: str, kind: Kind, what: str, default: str | None = None, dest: str | None = None) -> None:
         """Add a file that the command writes, which is refused where it may not be replaced.

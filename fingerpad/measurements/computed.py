@@ -1,9 +1,12 @@
 """A quantity of finished runs or of a sweep over force and voltage, and between their points; no dolfinx."""
 
 import math
-from collections.abc import Iterator, Sequence
+import os
+import re
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -11,12 +14,13 @@ from numpy.typing import NDArray
 
 from fingerpad.io.result import Result
 from fingerpad.io.states import WORDS, before_sliding
-from fingerpad.measurements.one_scene import folder, refuse_mixed
 from fingerpad.measurements.table import Measured
 from fingerpad.report.source import Table
 from fingerpad.report.source import read as content
 from fingerpad.runs.sweep_results import Sweep
-from fingerpad.scene.messages import SceneError, clip
+from fingerpad.scene import as_kept
+from fingerpad.scene.messages import SceneError, clip, show
+from fingerpad.scene.reading import flat
 from fingerpad.slices.finger import WholeFinger
 
 Array = NDArray[np.float64]
@@ -27,6 +31,12 @@ CLOSE = 0.01
 _NEAR = 1e-6  # relative difference of conditions that count as the same
 _SAME_VALUE = 1e-4  # relative, of values at the same conditions: beyond any tolerance of the solvers
 _NAMED = 4  # voltages in a message
+_FREE = re.compile(  # keys in which runs may differ:
+    r"(history\[\d+\]\.)?(f_ext|force|voltage)"  # the conditions of a measurement,
+    r"|history\[\d+\]\.(bone_height|name)"  # the force by another control, and a word for it,
+    r"|output\.(errors|each_load|receptors)|numerics\.memory"  # and what changes no value
+)
+_MOST = 50  # characters of a folder in a message
 
 
 class Computed:
@@ -189,7 +199,7 @@ def _of_finger(run: Result, finger: WholeFinger, table: Measured) -> dict[str, f
 
 def _of_sweep(sweep: Table, table: Measured) -> pd.DataFrame:
     """Return the values in the table of a sweep."""
-    keys, fixed = {"force": "force" if table.whole else "f_ext", "voltage": "voltage"}, sweep.parameters or {}
+    keys, fixed = {"force": "force" if table.whole else "f_ext", "voltage": "voltage"}, sweep.parameters
     if not set(sweep.axes) <= set(keys.values()) <= {*sweep.axes, *fixed}:
         raise SceneError(
             f"{_place(sweep)} is over {', '.join(sweep.axes)}, and {table.name} has forces in {table.force_unit}; "
@@ -215,3 +225,44 @@ def _of_sweep(sweep: Table, table: Measured) -> pd.DataFrame:
 
 def _place(sweep: Table) -> str:
     return f"the sweep in {clip(str(sweep.folder), 80)}"
+
+
+def refuse_mixed(runs: Sequence[Result]) -> None:
+    """Refuse runs that differ in more than force and voltage: their values are no function of the two.
+
+    Raises:
+        SceneError: the first key that differs, its two values and the two folders.
+    """
+    every = [_conditions(run) for run in runs]
+    for run, other in zip(runs[1:], every[1:], strict=True):
+        for key in dict.fromkeys([*every[0], *other]):
+            values = every[0].get(key), other.get(key)
+            if values[0] != values[1] and not _FREE.fullmatch(key):
+                one, two = (_shown(value) for value in values)
+                raise SceneError(
+                    f"{key} is {one} in {folder(runs[0])} and {two} in {folder(run)}; "
+                    "give runs that differ in force and voltage alone"
+                )
+
+
+def folder(run: Result) -> str:
+    """Return the folder of a run for a message: its end, where it is long."""
+    if run.folder is None:
+        return "a run"
+    name = min(str(run.folder), os.path.relpath(run.folder), key=len)
+    return clip(name if len(name) <= _MOST else "..." + name[3 - _MOST :], _MOST)
+
+
+def _conditions(run: Result) -> dict[str, Any]:
+    """Return the model of a run and every key of its scene, with the size of lists and tables."""
+    kept = as_kept(run.record.get("parameters") or run.scene.parameters()).model_dump(mode="json")
+    lists = {key: f"a list of {len(value)}" for key, value in kept.items() if isinstance(value, list)}
+    tables = {key: f"a table of {len(value)}" for key, value in kept.items() if isinstance(value, Mapping)}
+    return {"model": run.model} | lists | flat(kept) | tables
+
+
+def _shown(value: Any) -> str:
+    """Return a value for a message; lists and tables by their size."""
+    if value is None:
+        return "not given"
+    return str(value) if str(value).startswith(("a list of", "a table of")) else clip(show(value), 40)

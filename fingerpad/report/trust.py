@@ -165,7 +165,7 @@ def _stability(result: "Result") -> Iterator[Finding]:
 
 
 def _jumps(result: "Result") -> Iterator[Finding]:
-    steps = [state for state in result.steps if _jumped(state)]
+    steps = [state for state in result.steps if jumped(state)]
     if not steps:
         if result.steps:
             yield Finding("jumps", GOOD, "No part of the skin jumped.")
@@ -196,7 +196,8 @@ def _restarts(result: "Result") -> Iterator[Finding]:
         yield Finding("cut steps", GOOD, words)
 
 
-def _jumped(state: ContactState) -> bool:
+def jumped(state: ContactState) -> bool:
+    """Return whether part of the skin jumped in the step of a state."""
     return state.record is not None and state.record.jump
 
 
