@@ -4,8 +4,8 @@ python3 -m benchmarks.structure [--modules]     a second; needs nothing but Pyth
 
 Prints lines by folder, modules, the levels of their imports, circles, modules of one importer and the modules that a
 scene passes. A module's level is one above the highest of those that are imported at its head; a second number counts
-those for type checkers as well. Circles and importers count all imports, also inside functions. A scene passes a module where a function has a
-parameter, or returns a value, that is annotated as a Scene.
+those for type checkers as well. Circles and importers count all imports, also inside functions. A scene passes a
+module where a function has a parameter, or returns a value, that is annotated as a Scene.
 """
 
 import argparse
