@@ -20,7 +20,7 @@ from fingerpad.scene.messages import SceneError, clip, ends
 from geometry.units import to_si
 
 _PETSC = "-fingerpad_"  # prefix of PETSc's options
-_NEAR = 0.6  # likeness, from 0 to 1, at which an option may have been meant
+_MIN_LIKENESS = 0.6  # likeness, from 0 to 1, at which an option may have been meant
 
 
 class Kind(NamedTuple):
@@ -240,7 +240,7 @@ def _instead(word: str, options: Iterable[str], petsc: bool) -> str:
     """Return what may have been meant by a word that is no option."""
     own = [option for option in options if option.startswith("--")]
     name = word[:60].lstrip("-").partition("=")[0].lower()
-    near = get_close_matches(name.replace("_", "-"), [option[2:] for option in own], n=1, cutoff=_NEAR)
+    near = get_close_matches(name.replace("_", "-"), [option[2:] for option in own], n=1, cutoff=_MIN_LIKENESS)
     if near:
         return f"did you mean --{near[0]}?"
     key = _key(name.replace("-", "_")) if "--set" in own else None

@@ -239,7 +239,7 @@ CHANGES = {"error": "estimated discretisation error", "penalty": "estimated chan
 EXTREMES = ("mu_app", "f_t", "contact_length", "f_electrostatic")
 """Quantities of a load of which extremes and means are kept, beside outputs of one's own."""
 SWEPT = (*EXTREMES, "ridges_in_contact")
-"""Quantities of a named state in the table of a sweep, likewise."""
+"""Quantities of a named state in the table of a sweep, beside outputs of one's own."""
 FRICTION = ("mu_app", "f_t")
 """Quantities that are printed at full slip alone."""
 PER_LENGTH = (

@@ -28,8 +28,8 @@ Source = Result | Sweep | Table | str | Path
 """What values are taken from: a result, a sweep, or the folder of one."""
 CLOSE = 0.01
 """Relative distance of a force beyond the known ones up to which their end stands for it."""
-_NEAR = 1e-6  # relative difference of conditions that count as the same
-_SAME_VALUE = 1e-4  # relative, of values at the same conditions: beyond any tolerance of the solvers
+_CONDITION_TOLERANCE = 1e-6  # relative difference of conditions that count as the same
+_VALUE_TOLERANCE = 1e-4  # relative, of values at the same conditions: beyond any tolerance of the solvers
 _NAMED = 4  # voltages in a message
 _FREE = re.compile(  # keys in which runs may differ:
     r"(history\[\d+\]\.)?(f_ext|force|voltage)"  # the conditions of a measurement,
@@ -74,7 +74,7 @@ class Computed:
 
 
 def _span(forces: Array) -> str:
-    single = math.isclose(forces[0], forces[-1], rel_tol=_NEAR)
+    single = math.isclose(forces[0], forces[-1], rel_tol=_CONDITION_TOLERANCE)
     return f"{forces[0]:g}" if single else f"{forces[0]:g} to {forces[-1]:g}"
 
 
@@ -83,7 +83,7 @@ def _over_force(force: float, known: Array, values: Array) -> Array:
     end = float(np.clip(force, known[0], known[-1]))
     x = end if math.isclose(force, end, rel_tol=CLOSE) else force
     linear = _between(x, known, values)
-    if not known[0] < x < known[-1] or np.isclose(known, x, rtol=_NEAR, atol=0.0).any():
+    if not known[0] < x < known[-1] or np.isclose(known, x, rtol=_CONDITION_TOLERANCE, atol=0.0).any():
         return linear
     k = int(np.searchsorted(known, x))
     low, high = values[k - 1], values[k]
@@ -94,7 +94,7 @@ def _over_force(force: float, known: Array, values: Array) -> Array:
 
 def _between(x: float, known: Array, values: Array) -> Array:
     """Return the values at one of the known places up to roundoff, or linear between two of them; NaN beyond."""
-    near = np.flatnonzero(np.isclose(known, x, rtol=_NEAR, atol=0.0))
+    near = np.flatnonzero(np.isclose(known, x, rtol=_CONDITION_TOLERANCE, atol=0.0))
     if near.size:
         return np.asarray(values[near[0]])
     inside = known[0] < x < known[-1]
@@ -138,7 +138,7 @@ def _of_runs(runs: Sequence[Result], table: Measured) -> pd.DataFrame:
                 points.append(point)
                 of.append(run)
             known = [each["error"] for each in (points[k], point) if not math.isnan(each["error"])]
-            allowed = _SAME_VALUE * abs(points[k]["value"]) + sum(known)
+            allowed = _VALUE_TOLERANCE * abs(points[k]["value"]) + sum(known)
             if of[k] is not run and abs(points[k]["value"] - point["value"]) > allowed:
                 raise SceneError(
                     f"{table.quantity} is {points[k]['value']:.6g} in {folder(of[k])} and {point['value']:.6g} in "
@@ -154,7 +154,7 @@ def _of_runs(runs: Sequence[Result], table: Measured) -> pd.DataFrame:
 
 def _same(one: dict[str, float], other: dict[str, float]) -> bool:
     """Return whether two points have the same force and voltage up to roundoff."""
-    return all(math.isclose(one[key], other[key], rel_tol=_NEAR) for key in ("force", "voltage"))
+    return all(math.isclose(one[key], other[key], rel_tol=_CONDITION_TOLERANCE) for key in ("force", "voltage"))
 
 
 def _section(run: Result, table: Measured) -> Iterator[dict[str, float]]:

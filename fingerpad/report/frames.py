@@ -24,7 +24,7 @@ from variational.state import ContactState
 Array = NDArray[np.float64]
 _MM, _UM, _KPA = 1e3, 1e6, 1e-3
 _COLUMNS = 520  # of the grid
-_MOST = 12  # states with an image
+_MAX_FRAMES = 12  # states with an image
 _EMPTY = 32767
 _BELOW, _ABOVE, _BESIDE = -0.15, 1.25, 0.6  # mm of the view around the contact
 
@@ -179,7 +179,8 @@ def _view(skins: list[list[dict[str, Any]]]) -> list[float] | None:
 
 def _chosen(stems: list[str]) -> set[str]:
     """Return the states that get an image, spread over all."""
-    places = np.unique(np.linspace(0, len(stems) - 1, min(len(stems), _MOST)).round().astype(int)) if stems else []
+    count = min(len(stems), _MAX_FRAMES)
+    places = np.unique(np.linspace(0, len(stems) - 1, count).round().astype(int)) if stems else []
     return {stems[int(k)] for k in places}
 
 

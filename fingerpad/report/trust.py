@@ -16,7 +16,7 @@ GOOD, CARE, BAD = "holds", "care", "fails"
 _SMALL, _LARGE = 0.02, 0.1
 """Relative errors below which an error is small, and above which the mesh is too coarse for more than a trend."""
 
-_FEW = 4
+_MIN_FACETS = 4
 """Facets in contact on a ridge below which the effect of a rigid screen is doubtful: at two or three,
 a few Gauss points bear the contact, and their number changes with the stiffness."""
 
@@ -128,8 +128,8 @@ def _facets(result: "Result", state: ContactState) -> Iterator[Finding]:
     if not (springs and state.ridges_in_contact and state.mesh_contact):
         return
     facets = state.contact_length / state.ridges_in_contact / state.mesh_contact
-    if facets < _FEW:
-        words = f"A ridge touches with {facets:.1f} facets in the mean, fewer than {_FEW}."
+    if facets < _MIN_FACETS:
+        words = f"A ridge touches with {facets:.1f} facets in the mean, fewer than {_MIN_FACETS}."
         more = "What a rigid screen would change is not reliable there; a smaller mesh.contact resolves it."
         yield Finding("contacts of few facets", CARE, f"{words} {more}")
 

@@ -126,7 +126,7 @@ class Sweep:
         """Return the sweep as one dataset with units, as ``sweep.nc`` has it.
 
         Returns:
-            The named states of every point along the swept keys and ``state``, as in the dataset of a run; likewise its
+            The named states of every point along the swept keys and ``state``, as in the dataset of a run; also its
             loads, ridges, sites and sums over the whole finger, where a point has them; its failure and cost. The
             attributes are the parameters that all points share. Under a force on the whole finger there are
             sums over it alone.
