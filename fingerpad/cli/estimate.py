@@ -26,8 +26,8 @@ _NEWTONS = (
     replace(FINGER["f_ext"], name="force"),
     QUANTITIES["voltage"],
     *(FINGER[key] for key in _WHOLE),
-    QUANTITIES["f_ext"],
-    replace(QUANTITIES["mu_app"], name="mu_app_of_section"),
+    replace(QUANTITIES["f_ext"], words="f_ext of section"),
+    replace(QUANTITIES["mu_app"], name="mu_app_of_section", words="µ_app of section"),
 )
 _EXAMPLES = """
     fingerpad estimate --force "0.1, 0.3, 0.5 N" --voltage 0,100,200
