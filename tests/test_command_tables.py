@@ -119,6 +119,8 @@ def test_sweep_prints_and_keeps_a_table(tmp_path, capsys):
     [
         ([], "nothing is varied; give a table [sweep]"),
         (["--over", "voltage"], "--over voltage is no KEY=RANGE"),
+        (["--over", "voltage=0,5", "--over", "voltage=9"], "--over voltage is given twice"),
+        (["--over", "voltage=0,-5500"], "voltage is -5500 V; it must be"),
         (["--over", "volts=0,5"], "volts is not a key of a scene; did you mean voltage?"),
         (["--over", "voltage=0,5", "--set", "voltage=5"], "--set voltage is given and voltage is varied"),
         (["--over", "voltage=5,5"], "voltage of the sweep is [5, 5]; each value must be there once"),
