@@ -3,9 +3,9 @@
 python3 -m benchmarks.structure [--modules]     a second; needs nothing but Python
 
 Prints lines by folder, modules, the levels of their imports, circles, modules of one importer and the modules that a
-scene passes. A module's level is one above the highest of those that are imported at its head. Circles and importers
-count all imports, also inside functions and for type checkers. A scene passes a module where a function has a
-parameter, or returns a value, that is annotated as a Scene.
+scene passes. A module's level is one above the highest of those that are imported at its head; a second number counts
+those for type checkers as well. Circles and importers count all imports, also inside functions. A scene passes a
+module where a function has a parameter, or returns a value, that is annotated as a Scene.
 """
 
 import argparse
@@ -43,17 +43,17 @@ def lines(path: Path) -> int:
     return len(path.read_text(encoding="utf-8").splitlines())
 
 
-def imports(files: Mapping[str, Path], head: bool = False) -> dict[str, set[str]]:
+def imports(files: Mapping[str, Path], inside: tuple[type[ast.AST], ...] = (ast.AST,)) -> dict[str, set[str]]:
     """Return by module the other modules of the product that it imports.
 
     Args:
         files: of the product by module.
-        head: whether the imports at the head of a module alone count.
+        inside: kinds of statements whose inner imports count; without any, those at the head of a module alone do.
     """
-    return {name: set(_imported(tree(path), files, head)) - {name} for name, path in files.items()}
+    return {name: set(_imported(tree(path), files, inside)) - {name} for name, path in files.items()}
 
 
-def _imported(part: ast.AST, files: Mapping[str, Path], head: bool) -> Iterator[str]:
+def _imported(part: ast.AST, files: Mapping[str, Path], inside: tuple[type[ast.AST], ...]) -> Iterator[str]:
     """Yield the modules that a part of a program imports."""
     for node in ast.iter_child_nodes(part):
         if isinstance(node, ast.Import):
@@ -63,8 +63,8 @@ def _imported(part: ast.AST, files: Mapping[str, Path], head: bool) -> Iterator[
                 inner = f"{node.module}.{alias.name}"
                 if inner in files or node.module in files:
                     yield inner if inner in files else node.module
-        if not head:
-            yield from _imported(node, files, head)
+        if isinstance(node, inside):
+            yield from _imported(node, files, inside)
 
 
 def circles(graph: Graph) -> list[list[str]]:
@@ -135,8 +135,9 @@ def main() -> None:
     sys.setrecursionlimit(10_000)
     graph = imports(files)
     importers = Counter(other for each in graph.values() for other in each)
-    level, scene = levels(imports(files, head=True)), passed(files)
-    print(f"import levels: {max(level.values())}")
+    level, scene = levels(imports(files, ())), passed(files)
+    typed = levels(imports(files, (ast.If,)))
+    print(f"import levels: {max(level.values())}; {max(typed.values())} with imports for type checkers")
     found = [", ".join(group) for group in circles(graph) if len(group) > 1]
     print(f"circles: {len(found)}", *found, sep="\n  ")
     print(f"modules of one importer: {sum(importers[name] == 1 for name in files)}")

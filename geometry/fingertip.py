@@ -40,7 +40,7 @@ def build(finger: Fingertip, size: MeshSize, receptors: bool = True, half: bool 
 
 @lru_cache(maxsize=4)  # a path's half and whole, and after meshes for three errors the one for the penalty's effect
 def _half(finger: Fingertip, size: MeshSize, receptors: bool) -> HalfMesh:
-    """Mesh the half at x >= 0 in the current gmsh session; arguments as of :func:`build`."""
+    """Mesh the half at x >= 0 in the current gmsh session, see :func:`build`."""
     profiles = check(finger, size)
     touching = [j for j in touching_ridges(finger, size) if j >= 0]
     curves = _curves(profiles, touching)

@@ -101,7 +101,7 @@ def swapped(points: NDArray[np.float64], skin: Nodes, layers: Mapping[int, Nodes
     Args:
         points: nodes, shape (nodes, 2) or more columns.
         skin: facets that can touch, shape (facets, 2), numbers of nodes from 1.
-        layers: triangles by layer, shape (triangles, 3) each, likewise.
+        layers: triangles by layer, shape (triangles, 3) each, numbers of nodes from 1.
     """
     sides = {frozenset(map(int, side)) for side in skin}
     return {tag: _swapped(points, sides, triangles) for tag, triangles in layers.items()}

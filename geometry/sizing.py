@@ -9,7 +9,7 @@ from geometry.parameters import Fingertip, MeshSize
 from geometry.profiles import GeometryError, Profiles
 
 Array = NDArray[np.float64]
-_FEWEST = 3  # ridges
+_MIN_RIDGES = 3  # of a finger
 _CLEAR = 1e-7  # m, between two layers, several times what their samples may miss
 _APART = 1e-6  # m, between points that the mesh has where the nail begins
 _FASTER = 2.0  # growth from a tip over that elsewhere; at 4 the densities of the default finger are 4 % off
@@ -105,16 +105,15 @@ def check_shape(profiles: Profiles) -> None:
     if profiles.ridged_arc + f.ridge_wavelength > profiles.nail_arc:
         most = int(2 * profiles.nail_arc / f.ridge_wavelength - 2)
         most -= 1 - most % 2
-        few = (
-            f"{_FEWEST} do where ridge_wavelength is {_rounded_down(2 * profiles.nail_arc / (_FEWEST + 2)):g} m or less"
-        )
+        largest = _rounded_down(2 * profiles.nail_arc / (_MIN_RIDGES + 2))
+        few = f"{_MIN_RIDGES} do where ridge_wavelength is {largest:g} m or less"
         raise GeometryError(
             f"ridge_count {f.ridge_count} of ridge_wavelength {f.ridge_wavelength:g} m do not fit between "
-            f"the nail's edges; {f'at most {most} do' if most >= _FEWEST else few}"
+            f"the nail's edges; {f'at most {most} do' if most >= _MIN_RIDGES else few}"
         )
-    if f.ridge_count < _FEWEST:
+    if f.ridge_count < _MIN_RIDGES:
         raise GeometryError(
-            f"ridge_count is {f.ridge_count}; a whole finger has {_FEWEST} ridges at least, since the last one on "
+            f"ridge_count is {f.ridge_count}; a whole finger has {_MIN_RIDGES} ridges at least, since the last one on "
             "either side must not touch"
         )
     ridges = profiles.ridged_arc + f.ridge_wavelength  # the flanks outside go over into the smooth skin

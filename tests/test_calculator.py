@@ -14,7 +14,7 @@ from typing import Any
 import pytest
 
 import fingerpad as fp
-from fingerpad.calculator import fields
+from fingerpad.calculator import page as fields
 from fingerpad.calculator.page import page
 from fingerpad.cli import main
 from fingerpad.reduced import cylinder_errors, cylinders

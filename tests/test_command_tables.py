@@ -17,7 +17,7 @@ def test_estimate_is_the_closed_form(tmp_path, capsys):
     file = tmp_path / "mu.csv"
     assert main(["estimate", "--f-ext", "50,75", "--voltage", "0:100:2", "--csv", str(file)]) == 0
     out = capsys.readouterr().out
-    assert "Known error: mu_app and friction within 2.4 %, attraction within 5.0 %, contact within 6.3 % of 44" in out
+    assert "Known error: µ_app and f_T within 2.4 %, f_el within 5.0 %, L_R within 6.3 % of 44" in out
     assert out.count(LEAKAGE) == 1
     with file.open(encoding="utf-8", newline="") as stream:
         rows = list(csv.DictReader(stream))

@@ -7,9 +7,8 @@ import pytest
 
 import fingerpad as fp
 from fingerpad.io.result import Result
-from fingerpad.measurements import one_scene
 from fingerpad.measurements.compare import beside
-from fingerpad.measurements.computed import computed
+from fingerpad.measurements.computed import computed, refuse_mixed
 from fingerpad.measurements.table import read
 from fingerpad.runs.solve import run
 from fingerpad.scene import Scene, SceneError
@@ -166,9 +165,9 @@ def test_forces_on_the_finger_may_differ():
     def under(force, **changes):
         return Result(Scene(force=force, **changes), "full", None, None, None)
 
-    one_scene.refuse_mixed([under(0.3, voltage=100), under(0.5, voltage=150), Result(Scene(), "full", *[None] * 3)])
+    refuse_mixed([under(0.3, voltage=100), under(0.5, voltage=150), Result(Scene(), "full", *[None] * 3)])
     with pytest.raises(SceneError, match=r"friction is 0\.25 in a run and 0\.3 in a run"):
-        one_scene.refuse_mixed([under(0.3), under(0.5, friction=0.3)])
+        refuse_mixed([under(0.3), under(0.5, friction=0.3)])
 
 
 def test_histories_may_differ_in_force_and_voltage():
@@ -178,8 +177,8 @@ def test_histories_may_differ_in_force_and_voltage():
         loads = [{"name": "press"} | press, {"name": "on", "voltage": volts}, {"name": "off", "bone_x": way}]
         return Result(Scene(history=loads), "full", None, None, None)
 
-    one_scene.refuse_mixed([history({"f_ext": 20}, 100, 1e-3), history({"bone_height": -1e-3}, 200, 1e-3)])
+    refuse_mixed([history({"f_ext": 20}, 100, 1e-3), history({"bone_height": -1e-3}, 200, 1e-3)])
     with pytest.raises(SceneError, match=r"history\[2\].bone_x is 0.001 in a run and 0.002 in a run"):
-        one_scene.refuse_mixed([history({"f_ext": 20}, 100, 1e-3), history({"f_ext": 20}, 100, 2e-3)])
+        refuse_mixed([history({"f_ext": 20}, 100, 1e-3), history({"f_ext": 20}, 100, 2e-3)])
     with pytest.raises(SceneError, match="history is not given in a run and a list of 3 in a run"):
-        one_scene.refuse_mixed([Result(Scene(), "full", None, None, None), history({"f_ext": 20}, 100, 1e-3)])
+        refuse_mixed([Result(Scene(), "full", None, None, None), history({"f_ext": 20}, 100, 1e-3)])

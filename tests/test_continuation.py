@@ -101,8 +101,8 @@ def test_skin_from_above_is_pressed_in_before_force_takes_over():
 
 def test_load_of_ever_smaller_steps_is_given_up(sliding, monkeypatch):
     """Steps that stay small do not go on for ever: the message says how many there were, and where they led."""
-    monkeypatch.setattr(continuation, "_MANY_STEPS", 0)
-    monkeypatch.setattr(continuation, "_FEW_STEPS", 7)
+    monkeypatch.setattr(continuation, "_MAX_STEPS_PER_LARGEST", 0)
+    monkeypatch.setattr(continuation, "_MAX_FURTHER_STEPS", 7)
     with pytest.raises(StepFailed, match=r"% done\) found no equilibrium beyond .* TOO_SMALL_STEPS, 7 of them"):
         sliding(0.235e-3, 0.260e-3)
 

@@ -213,7 +213,6 @@ def slid(law, way: float, formulation: Formulation = EPS) -> Body:
 @pytest.mark.parametrize(
     "formulation", [EPS, AugmentedLagrangian(1e12, 1e10, 5e-9), Nitsche(10.0, 0)], ids=lambda f: type(f).__name__
 )
-@pytest.mark.slow
 def test_full_slip_bears_both_parts(formulation, sign):
     """f_T is mu times the contact force and the part of tau_0 of every point, against the motion, either way.
 

@@ -195,7 +195,7 @@ def test_misfit_is_printed_and_drawn(folder, table, tmp_path, capsys):
     assert "Misfit: computed over measured 0.5 (geometric mean of 3), at most a factor of 2.\n" in out
     assert "scaled by one factor (2): at most a factor of 1.\n" in out
     assert "±" not in out and "Within the spread: 3 of 3." in out and "no value is computed there: 1 of 4 rows." in out
-    assert re.search(r"^ +75 +0 +0\.5 +0\.75 +0\.25 +-0\.25 +-50$", out, re.MULTILINE)
+    assert re.search(r"^ *75\.000 +0\.0 +0\.5000 +0\.7500 +0\.2500 +-0\.2500 +-50\.0$", out, re.MULTILINE)
     assert (tmp_path / "out.png").stat().st_size > 10_000
 
 
@@ -239,8 +239,8 @@ def test_errors_of_a_sweep_count_with_the_spread(folder, table, tmp_path, capsys
     file = table("force (N/m), voltage (V), friction (1), spread (1)\n" + lines)
     assert main(["compare-data", str(file), "--sweep", str(place)]) == 0
     out = capsys.readouterr().out
-    assert re.search(r"^ +25 +86.6 +0.33 +0.011 +0.375 +0.035 +0.045 +13.6$", out, re.MULTILINE)
-    assert re.search(r"^ +25 +200 +0.51 +0.02 +0.5 +– +-0.01 +-1.96$", out, re.MULTILINE)
+    assert re.search(r"^ *25.000 +86.6 +0.3300 +0.0110 +0.3750 +0.0350 +0.0450 +13.6$", out, re.MULTILINE)
+    assert re.search(r"^ *25.000 +200.0 +0.5100 +0.0200 +0.5000 +– +-0.0100 +-2.0$", out, re.MULTILINE)
     assert "±: estimated discretisation error of the computed value, of the mesh alone.\n" in out
     assert "Within the spread plus the error of the computed value: 3 of 4.\n" in out
 

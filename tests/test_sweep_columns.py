@@ -1,6 +1,7 @@
 """A sweep over the amplitude of a drive: what its table, its dataset, its text and its report have of it."""
 
 import csv
+import json
 import math
 from dataclasses import replace
 
@@ -27,6 +28,8 @@ def folder(tmp_path_factory):
     failed = fp.Result(results[0].scene, "full", None, None, None, failure="no equilibrium")
     done = Sweep({KEY: (40.0, 80.0, 120.0)}, (*results, failed), place)
     done.to_csv(place / "table.csv")
+    asked = {"parameters": results[0].scene.parameters(), "model": "full"}
+    (place / "sweep.json").write_text(json.dumps(asked), encoding="utf-8")
     assert not done.save()
     return done
 

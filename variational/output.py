@@ -138,7 +138,7 @@ class Snapshot:
     x: Array
     """Reference positions of the vertices (m), shape (vertices, 2)."""
     u: Array
-    """Their displacements (m), likewise."""
+    """Their displacements (m), shape (vertices, 2)."""
     triangles: NDArray[np.int64]
     """Vertices of each cell, shape (cells, 3)."""
     sed: Array

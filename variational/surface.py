@@ -168,8 +168,8 @@ class Surface:
 
         Args:
             x: current abscissae at the points (m), shape (facets, points).
-            y: current heights at the points (m), likewise.
-            gap: likewise.
+            y: current heights at the points (m), shape (facets, points).
+            gap: gaps at the points (m), shape (facets, points).
         """
         lengths = np.zeros(len(x))
         # A polynomial lies between its least and its largest Bernstein coefficient: most facets are found open or

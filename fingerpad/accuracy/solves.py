@@ -180,7 +180,15 @@ class Solves:
         show: Callable[[str], None],
         pause: Callable[[], None],
     ) -> None:
-        """Start with the path's states; arguments as of :class:`fingerpad.accuracy.refinement.Refinement`."""
+        """Start with the path's states.
+
+        Args:
+            model: of the path.
+            path: its states.
+            comm: communicator of the meshes.
+            show: prints a line.
+            pause: called before each solve; may raise to stop.
+        """
         self._model = model
         self._comm, self._show, self._pause = comm, show, pause
         self.found = [path]

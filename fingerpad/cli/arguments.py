@@ -20,7 +20,7 @@ from fingerpad.scene.messages import SceneError, clip, ends
 from geometry.units import to_si
 
 _PETSC = "-fingerpad_"  # prefix of PETSc's options
-_NEAR = 0.6  # likeness, from 0 to 1, at which an option may have been meant
+_MIN_LIKENESS = 0.6  # likeness, from 0 to 1, at which an option may have been meant
 
 
 class Kind(NamedTuple):
@@ -92,9 +92,13 @@ class Parser(argparse.ArgumentParser):
                 pair: dict[str, Any] = {"nargs": 2, "metavar": ("X", "Y")} if key.allowed.startswith("list") else {}
                 self.add_argument(f"--{key.name.removeprefix(table)[1:]}", **pair, help=key.meaning)
 
-    def add_out(self, default: str, what: str) -> None:
-        """Add the folder that results go to."""
-        self.add_argument("--out", type=path, metavar="PATH", default=Path(default), help=what)
+    def add_out(self, default: str, what: str, quiet: str = "") -> None:
+        """Add the folder that results go to, and ``--quiet`` where the command prints something alone with it."""
+        words = f"{what} (default: {default})"
+        self.add_argument("--out", type=path, metavar="PATH", default=Path(default), help=words)
+        if quiet:
+            words = f"print the {quiet} alone: no line of a step or a run, no progress bar"
+            self.add_argument("--quiet", action="store_true", help=words)
 
     def add_file(self, option: str, kind: Kind, what: str, default: str | None = None, dest: str | None = None) -> None:
         """Add a file that the command writes, which is refused where it may not be replaced.
@@ -236,7 +240,7 @@ def _instead(word: str, options: Iterable[str], petsc: bool) -> str:
     """Return what may have been meant by a word that is no option."""
     own = [option for option in options if option.startswith("--")]
     name = word[:60].lstrip("-").partition("=")[0].lower()
-    near = get_close_matches(name.replace("_", "-"), [option[2:] for option in own], n=1, cutoff=_NEAR)
+    near = get_close_matches(name.replace("_", "-"), [option[2:] for option in own], n=1, cutoff=_MIN_LIKENESS)
     if near:
         return f"did you mean --{near[0]}?"
     key = _key(name.replace("-", "_")) if "--set" in own else None

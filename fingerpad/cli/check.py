@@ -29,7 +29,7 @@ def main(argv: Sequence[str]) -> int:
     """Describe a run; return the exit code."""
     parser = Parser("check", _EXAMPLES)
     parser.add_scene()
-    parser.add_out("results", "folder of the picture mesh.png (default: results)")
+    parser.add_out("results", "folder of the picture mesh.png")
     args = parser.read(argv)
     scene = scene_of(args)
     check_folder(args.out)

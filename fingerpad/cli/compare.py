@@ -30,7 +30,7 @@ def main(argv: Sequence[str]) -> int:
     """Compare models; return the exit code."""
     parser = Parser("compare", _EXAMPLES)
     parser.add_scene()
-    parser.add_out("results", "folder of the full run (default: results)")
+    parser.add_out("results", "folder of the full run", quiet="table")
     parser.add_argument(
         "--model",
         nargs="+",
@@ -41,7 +41,6 @@ def main(argv: Sequence[str]) -> int:
     parser.add_argument("--contact-length", type=quantity, metavar="M", help="cylinders: the length in contact, 1.6 mm")
     parser.add_argument("--ridges", type=positive, metavar="N", help="cylinders: on so many ridges")
     parser.add_argument("--run", type=path, metavar="DIR", help="cylinders: contact lengths of this full run")
-    parser.add_argument("--quiet", action="store_true", help="print the table alone: no steps, no progress bar")
     args, petsc = parser.read_with_petsc(argv)
     given = [name for name in ("contact_length", "ridges", "run") if getattr(args, name) is not None]
     if given and Cylinders.name not in args.model:

@@ -10,6 +10,7 @@ import numpy as np
 
 from fingerpad.cli import tables
 from fingerpad.cli.arguments import Parser, echo, path
+from fingerpad.io.quantities import Output
 from fingerpad.io.states import WORDS
 from fingerpad.io.style import plain
 from fingerpad.scene.messages import SceneError, clip
@@ -25,10 +26,10 @@ _EXAMPLES = """
     fingerpad compare-data data/measured/ayyildiz2018.csv --run results/mine
     fingerpad compare-data lab.csv --column "Fn=force (N)" --column "CoF=friction (1)" --run results/mine
 """
-_SCALES = {"m": ("mm", 1e3), "m^2": ("mm²", 1e6), "N/m": ("N/m", 1.0), "N": ("N", 1.0), "1": ("", 1.0)}
+_UNITS = {"m": "mm", "m^2": "mm²", "1": ""}  # of the screen, where they are not those of files
 _ABOUT = ("table", "state", "quantity", "unit", "force_unit")  # of a row in a file, which has rows of every table
 _VALUES = ("force", "voltage", "measured", "spread", "computed", "error", "difference", "relative_difference")
-_COLUMNS = tuple(tables.Column(key, key) for key in (*_ABOUT, *_VALUES))
+_COLUMNS = tuple(Output(key, "") for key in (*_ABOUT, *_VALUES))
 _NAMED = 4  # curves in the legend of a picture
 _DRAWN = 201  # places of a curve
 
@@ -84,14 +85,13 @@ def _rows(compared: "pd.DataFrame") -> list[dict[str, str | float | None]]:
 def _lines(compared: "pd.DataFrame") -> Iterator[str]:
     """Yield table and misfit as text."""
     about, found, errors = compared.attrs, compared.attrs["misfit"], compared.error.notna().any()
-    unit, scale = _SCALES[about["unit"]]
+    unit = _UNITS.get(about["unit"], about["unit"])
+    named = ("measured", "spread", "computed", *(["error"] if errors else []), "difference")
     columns = [
-        tables.Column("force", "force", about["force_unit"]),
-        tables.Column("voltage", "voltage", "V"),
-        *(tables.Column(key, key, unit, scale) for key in ("measured", "spread", "computed")),
-        *([tables.Column("error", "±", unit, scale, ".2g")] if errors else []),
-        tables.Column("difference", "difference", unit, scale, ".3g"),
-        tables.Column("relative_difference", "relative", "%", 100.0, ".3g"),
+        Output("force", about["force_unit"]),
+        Output("voltage", "V", digits=1),
+        *(Output(key, unit, words="±" if key == "error" else key, digits=4) for key in named),
+        Output("relative_difference", "%", words="relative", digits=1),
     ]
     yield f"{about['quantity']} at {WORDS[about['state']]}: {clip(about['source'], 200)}"
     more = [f"{name} {about[name]}" for name in ("doi", "url", "people") if name in about]
@@ -133,7 +133,8 @@ def _panel(ax: "Axes", rows: "pd.DataFrame", known: "Computed") -> None:
     from fingerpad.measurements.computed import CLOSE
 
     about, points = rows.attrs, known.points
-    unit, scale = _SCALES[about["unit"]]
+    unit = _UNITS.get(about["unit"], about["unit"])
+    scale = Output("", unit).scale
     over_voltage = rows.voltage.nunique() > rows.force.nunique()
     x, other, name = ("voltage", "force", about["force_unit"]) if over_voltage else ("force", "voltage", "V")
     axis = np.union1d(points[x], np.linspace(points[x].min(), points[x].max(), _DRAWN))

@@ -1,12 +1,13 @@
 """``fingerpad estimate``: friction over force and voltage by the closed form, without finite elements."""
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 from fingerpad.cli import tables
 from fingerpad.cli.arguments import Parser, echo, scene_of, several
-from fingerpad.io.quantities import PER_LENGTH
+from fingerpad.io.quantities import FINGER, PER_LENGTH, QUANTITIES
 from fingerpad.io.result import Result
 from fingerpad.model.cautions import on_states
 from fingerpad.reduced import cylinder_errors, cylinders
@@ -18,25 +19,15 @@ from fingerpad.scene.messages import SceneError
 from fingerpad.scene.remarks import LEAKAGE, remarks
 from fingerpad.slices import solid
 
-_COLUMNS = (
-    tables.Column("f_ext", "force", "N/m"),
-    tables.Column("voltage", "voltage", "V"),
-    tables.Column("mu_app", "mu_app", digits=".3f"),
-    tables.Column("f_t", "friction", "N/m"),
-    tables.Column("f_electrostatic", "attraction", "N/m"),
-    tables.Column("contact_length", "contact", "mm", 1e3, ".3f"),
-    tables.Column("ridges_in_contact", "ridges", digits=".0f"),
-)
+_SECTION = ("f_ext", "voltage", "mu_app", "f_t", "f_electrostatic", "contact_length", "ridges_in_contact")
+_COLUMNS = tuple(QUANTITIES[key] for key in _SECTION)
+_WHOLE = ("mu_app", "f_t", "f_electrostatic", "contact_area", "gross_area")
 _NEWTONS = (
-    tables.Column("force", "force", "N"),
-    tables.Column("voltage", "voltage", "V"),
-    tables.Column("mu_app", "mu_app", digits=".3f"),
-    tables.Column("f_t", "friction", "N", digits=".4f"),
-    tables.Column("f_electrostatic", "attraction", "N", digits=".4f"),
-    tables.Column("contact_area", "ridge area", "mm²", 1e6, ".2f"),
-    tables.Column("gross_area", "gross area", "mm²", 1e6, ".1f"),
-    tables.Column("f_ext", "centre", "N/m", digits=".4g"),
-    tables.Column("mu_app_of_section", "its mu_app", digits=".3f"),
+    replace(FINGER["f_ext"], name="force"),
+    QUANTITIES["voltage"],
+    *(FINGER[key] for key in _WHOLE),
+    QUANTITIES["f_ext"],
+    replace(QUANTITIES["mu_app"], name="mu_app_of_section"),
 )
 _EXAMPLES = """
     fingerpad estimate --force "0.1, 0.3, 0.5 N" --voltage 0,100,200
@@ -66,9 +57,9 @@ def main(argv: Sequence[str]) -> int:
     echo(f"Friction coefficient {mu_0:g}.\n" if mu_0 is not None else f"Friction {used(scene)['friction']}.\n")
     echo(tables.text(columns, rows))
     if key == "f_ext":
-        echo("\nmu_app is friction over force, at full slip; contact is the length of skin on the screen.")
+        echo("\nµ_app is friction over force, at full slip; L_R is the length of skin on the screen.")
     else:
-        echo("\nmu_app is friction over force of the whole finger, at full slip; the last two columns are of the")
+        echo("\nµ_app is friction over force of the whole finger, at full slip; the last two columns are of the")
         echo("section at the centre of the finger.")
     states = [row["state"] for row in rows if "state" in row]
     limits = (f"{text[0].upper()}{text[1:]}." for text in on_states(states, scene.closure()))
@@ -113,9 +104,9 @@ def _row(found: Result) -> dict[str, Any]:
     """Return what the columns show of a result."""
     slip, finger = found.full_slip, found.finger
     if finger is None:
-        return {c.key: getattr(slip, c.key) for c in _COLUMNS} | {"state": slip}
-    last = list(finger.states)[-1]
-    values = {c.key: finger.values(last)[c.key] for c in _NEWTONS if c.key in finger.values(last)}
+        return {key: getattr(slip, key) for key in _SECTION} | {"state": slip}
+    total = finger.values(list(finger.states)[-1])
+    values = {key: total[key] for key in _WHOLE if key in total}
     section = slip or found.charged
     assert section is not None
     return values | {"f_ext": section.f_ext, "mu_app_of_section": section.mu_app, "state": section}
@@ -127,7 +118,7 @@ def _known(scene: Scene, rows: Sequence[Mapping[str, Any]]) -> list[str]:
     mu, length, pull = (f"within {100 * bands[key]:.1f} %" for key in ("mu_app", "contact_length", "f_electrostatic"))
     runs = f"{cylinder_errors.KNOWN_RUNS} full runs at {cylinder_errors.where()}"
     of = "" if "force" not in rows[0] else " of the section"
-    said = [f"Known error{of}: mu_app and friction {mu}, attraction {pull}, contact {length} of {runs}."]
+    said = [f"Known error{of}: µ_app and f_T {mu}, f_el {pull}, L_R {length} of {runs}."]
     beyond = sum(cylinder_errors.outside(row["f_ext"], row["voltage"]) for row in rows if "f_ext" in row)
     if beyond:
         said.append(f"{beyond} of {len(rows)} points are outside of that; their error is not known.")

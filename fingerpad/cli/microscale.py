@@ -9,6 +9,7 @@ import numpy as np
 
 from fingerpad.cli import ranges, tables
 from fingerpad.cli.arguments import Parser, echo, quantity, scene_of, several
+from fingerpad.io.quantities import QUANTITIES, Output
 from fingerpad.model.cautions import on_closure
 from fingerpad.scene import Scene
 from fingerpad.scene.messages import SceneError
@@ -17,13 +18,13 @@ from variational.roughness.bam import STICKING, BearingArea
 
 _PRESSURES = "1e3:1e6:13:log"
 _COLUMNS = (
-    tables.Column("voltage", "voltage", "V"),
-    tables.Column("p_c", "pressure", "kPa", 1e-3),
-    tables.Column("u_bar", "separation", "µm", 1e6),
-    tables.Column("d_eq", "air gap", "µm", 1e6),
-    tables.Column("p_el", "attraction", "kPa", 1e-3),
-    tables.Column("p_ext", "external", "kPa", 1e-3),
-    tables.Column("area", "real area", "%", 100.0, ".3g"),
+    QUANTITIES["voltage"],
+    Output("p_c", "kPa", words="pressure", digits=2),
+    Output("u_bar", "µm", words="separation"),
+    Output("d_eq", "µm", words="air gap"),
+    Output("p_el", "kPa", words="attraction"),
+    Output("p_ext", "kPa", words="external"),
+    Output("area", "%", words="real area"),
 )
 _EXAMPLES = """
     fingerpad microscale --voltage 100,200 --p 1e3:1e6:50:log --plot micro.png

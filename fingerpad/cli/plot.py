@@ -17,7 +17,7 @@ from numpy.typing import ArrayLike
 from fingerpad.io import style
 
 _DASHES = ("-", "--", "-.", ":", (0, (6, 1, 1, 1, 1, 1)), (0, (8, 3)), (0, (1, 3)))
-_FEW = 15  # points up to which each has a marker
+_MAX_MARKERS = 15  # points up to which each has a marker
 
 
 @contextmanager
@@ -32,7 +32,8 @@ def panels(file: Path, title: str, count: int = 1) -> Iterator[tuple[Figure, lis
 
 def curve(ax: Axes, k: int, x: ArrayLike, y: ArrayLike, label: str, colour: Any = None) -> None:
     """Draw curve number k, with markers where its points are few; ``colour`` takes the place of the palette's."""
-    marker: dict[str, Any] = {"marker": style.MARKERS[k % len(style.MARKERS)], "ms": 5} if size(x) <= _FEW else {}
+    marked = size(x) <= _MAX_MARKERS
+    marker: dict[str, Any] = {"marker": style.MARKERS[k % len(style.MARKERS)], "ms": 5} if marked else {}
     colour = style.CATEGORIES[k % len(style.CATEGORIES)] if colour is None else colour
     ax.plot(x, y, color=colour, ls=_DASHES[k % len(_DASHES)], label=label, **marker)
 

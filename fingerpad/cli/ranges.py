@@ -11,7 +11,7 @@ import numpy as np
 
 from fingerpad.scene.messages import SceneError, clip
 
-_MOST = 10_000  # values of one range
+_MAX_VALUES = 10_000  # values of one range
 _NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
 _UNIT = r"(?![eE][-+]?\d)[A-Za-zµμ°%][^,:]*"
 _HOW = (
@@ -55,8 +55,8 @@ def _range(name: str, text: str) -> list[float]:
     if found is None:
         return []
     first, last, count = _number(found[1]), _number(found[2]), int(found[3][:9])
-    if not 1 <= count <= _MOST:
-        raise SceneError(f"{name} is {clip(text)}, of {count} values; it must be of 1 to {_MOST}")
+    if not 1 <= count <= _MAX_VALUES:
+        raise SceneError(f"{name} is {clip(text)}, of {count} values; it must be of 1 to {_MAX_VALUES}")
     if count == 1 and first != last:
         raise SceneError(f"{name} is {clip(text)}, one value with two ends; give a count of 2 or more")
     if found[4] and not (first > 0 and last > 0):

@@ -30,7 +30,7 @@ def main(argv: Sequence[str]) -> int:
     """Run a scene; return the exit code."""
     parser = Parser("run", _EXAMPLES)
     parser.add_scene()
-    parser.add_out(str(_OUT), "folder of the results (default: results)")
+    parser.add_out(str(_OUT), "folder of the results", quiet="result")
     parser.add_argument(
         "--model",
         choices=MODELS,
@@ -42,7 +42,6 @@ def main(argv: Sequence[str]) -> int:
         metavar="FORCE",
         help="force on the whole finger (N), as --set force: slices are summed over traces of the model",
     )
-    parser.add_argument("--quiet", action="store_true", help="print the result alone: no steps, no progress bar")
     args, petsc = parser.read_with_petsc(argv)
     args.model = args.model or model_of(args.scene)
     if args.resume is not None:

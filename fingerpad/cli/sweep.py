@@ -30,10 +30,9 @@ def main(argv: Sequence[str]) -> int:
     parser.add_scene()
     words = "values of a key: 0,50 or first:last:count, with a unit at the end or on each value; or words"
     parser.add_argument("--over", action="append", default=[], metavar="KEY=RANGE", help=words)
-    parser.add_out("results/sweep", "folder of all runs and of table.csv (default: results/sweep)")
+    parser.add_out("results/sweep", "folder of all runs and of table.csv", quiet="table")
     parser.add_argument("--jobs", type=positive, default=2, metavar="N", help="runs at a time (default: 2)")
     parser.add_argument("--model", choices=MODELS, default=DEFAULT_MODEL, help="model to run (default: %(default)s)")
-    parser.add_argument("--quiet", action="store_true", help="print the table alone: no line a run, no progress bar")
     args = parser.read(argv)
     check_folder(args.out)
     base, axes = study(args.scene, args.set, args.over)

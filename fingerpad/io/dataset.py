@@ -82,11 +82,14 @@ def save(result: "Answer") -> str:
 
 
 def write(file: Path, make: "Callable[[], xarray.Dataset]") -> str:
-    """Write a dataset; what was there stays until all of it is written; return as of :func:`save`.
+    """Write a dataset; what was there stays until all of it is written.
 
     Args:
         file: the path.
         make: makes the dataset.
+
+    Returns:
+        Why the file was not written, in one sentence; empty where it was.
     """
     try:
         files.replace(file, bytes(make().to_netcdf(engine="scipy", format="NETCDF3_64BIT")))

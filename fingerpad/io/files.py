@@ -19,10 +19,10 @@ from uuid import uuid4
 
 from fingerpad.scene.messages import SceneError, clip
 
-_MOST_BYTES = 200_000_000  # of a file that is read; a summary of a thousand loads has two millions
+_MAX_BYTES = 200_000_000  # of a file that is read; a summary of a thousand loads has two millions
 _FILES = 160  # bytes that the longest name of a file in a folder of results takes of a path
 _PATH = 80  # characters of a path in a sentence
-_MOST_DEPTH = 50  # of what it holds, which has some ten
+_MAX_DEPTH = 50  # of what it holds, which has some ten
 
 
 def replace(file: Path, text: str | bytes) -> None:
@@ -54,13 +54,13 @@ def read_object(file: Path) -> dict[str, Any]:
         ValueError: it is no ordinary file, too large, or holds something else than an object of some depth.
     """
     about = file.stat()
-    if not stat.S_ISREG(about.st_mode) or about.st_size > _MOST_BYTES:
-        raise ValueError(f"{file.name} is no ordinary file of at most {_MOST_BYTES} bytes")
+    if not stat.S_ISREG(about.st_mode) or about.st_size > _MAX_BYTES:
+        raise ValueError(f"{file.name} is no ordinary file of at most {_MAX_BYTES} bytes")
     try:
         found = json.loads(file.read_text(encoding="utf-8"))
     except RecursionError:
         found = None
-    if not isinstance(found, dict) or not _is_shallow(found, _MOST_DEPTH):
+    if not isinstance(found, dict) or not _is_shallow(found, _MAX_DEPTH):
         raise ValueError(f"{file.name} holds no object, or one that is nested too deep")
     return found
 

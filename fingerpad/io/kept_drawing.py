@@ -26,7 +26,7 @@ class KeptDrawing(Drawing):
     """Contact size (m) of the final mesh, where an accuracy was asked for."""
 
     def figure(self, kind: str, path: Path | None = None) -> Figure:
-        """Draw a picture as the run did; arguments and errors as of :meth:`fingerpad.io.drawing.Drawing.figure`."""
+        """Draw a picture as the run did, see :meth:`fingerpad.io.drawing.Drawing.figure`."""
         return self._read().figure(kind, path) if kind in _PICTURES else super().figure(kind, path)
 
     def _read(self) -> Drawing:
@@ -66,7 +66,7 @@ def finger_of(file: Path) -> dict[str, Any]:
 
 
 def skin_of(file: Path, prefix: str) -> dict[str, Any]:
-    """Return the skin of a state, by the names of :class:`fingerpad.io.skin_picture.SurfaceProfile`; none likewise.
+    """Return the skin of a state, by the names of :class:`fingerpad.io.skin_picture.SurfaceProfile`, or nothing.
 
     Args:
         file: of one state or several.

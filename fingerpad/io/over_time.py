@@ -34,10 +34,10 @@ NOTE = (
 HARMONICS, SAMPLED = 6, 4
 """Number of amplitudes in the spectrum of a wave, and of samples that friction has in a period of the last of them. A
 file, which may be a carrier under a slow envelope, has as many amplitudes as its samples allow, and no fewer."""
-_MOST = 200  # amplitudes
+_MAX_AMPLITUDES = 200  # of a waveform from a file
 Array = NDArray[np.float64]
 _POINTS, _WEIGHTS = np.polynomial.legendre.leggauss(20)
-_NEAR = 1e-9  # of a period: two times that are one
+_TIME_TOLERANCE = 1e-9  # of a period: two times that are one
 
 
 @dataclass(frozen=True)
@@ -80,7 +80,8 @@ def over_time(states: Sequence[ContactState], wave: Waveform | None) -> OverTime
     start, seconds = float(times[0]), float(times[-1] - times[0])
     if not seconds > 0:  # also where no load is over time
         return None
-    last = int(np.flatnonzero(times <= start + _NEAR * seconds)[-1])  # of those that take no time, as a first touch
+    # the last of those that take no time, as a first touch
+    last = int(np.flatnonzero(times <= start + _TIME_TOLERANCE * seconds)[-1])
     states, time = states[last:], times[last:] - start
     corners = [] if wave is None else wave.corners(seconds)
     names = (*EXTREMES, *states[-1].own)
@@ -92,10 +93,10 @@ def over_time(states: Sequence[ContactState], wave: Waveform | None) -> OverTime
     if wave is None:
         change = {name: _change(time, values[name], value) for name, value in mean.items() if not math.isnan(value)}
         return OverTime(start, seconds, mean, mean_change=change)
-    if (periods := int(seconds / wave.period + _NEAR)) < 1:
+    if (periods := int(seconds / wave.period + _TIME_TOLERANCE)) < 1:
         return OverTime(start, seconds, mean)
     samples = int(np.count_nonzero(time >= time[-1] - periods * wave.period)) // periods
-    count = min(max(HARMONICS, samples // SAMPLED), _MOST) if wave.waveform == "file" else HARMONICS
+    count = min(max(HARMONICS, samples // SAMPLED), _MAX_AMPLITUDES) if wave.waveform == "file" else HARMONICS
     found = spectrum(time, values["f_t"], wave.period, periods, corners, count)
     frequency = tuple(k / wave.period for k in range(1, count + 1))
     return OverTime(start, seconds, mean, periods, frequency, tuple(map(float, found)))
@@ -110,7 +111,7 @@ def without_parts_of_jumps(states: Sequence[ContactState], start: float = -math.
         states: in order, with their times.
         start: time at which a load begins (s), of which they are; of a jump there only the state behind it counts.
     """
-    near = _NEAR * (states[-1].time - states[0].time)
+    near = _TIME_TOLERANCE * (states[-1].time - states[0].time)
     kept = list[ContactState]()
     for k, state in enumerate(states):
         begins = state.time <= start + near or k == 0 or state.time - states[k - 1].time > near
@@ -135,7 +136,7 @@ def spectrum(
 
     Args:
         time: of the samples (s), shape (samples,), not decreasing; two of one time are a jump.
-        value: samples, likewise.
+        value: samples, shape (samples,).
         period: of the first frequency (s).
         periods: how many, back from the last time.
         corners: times (s) at which the curve has a corner.
@@ -154,7 +155,7 @@ def _rule(time: Array, value: Array, corners: Sequence[float], first: float = 0.
     """Return the points of a quadrature from a first time on, and the curve there times the weights."""
     from scipy.interpolate import PchipInterpolator  # not for those who only read scenes
 
-    near, places, parts = _NEAR * (time[-1] - time[0]), list[Array](), list[Array]()
+    near, places, parts = _TIME_TOLERANCE * (time[-1] - time[0]), list[Array](), list[Array]()
     jumps = set(map(int, np.flatnonzero(np.diff(time) <= near) + 1))
     known = np.sort(np.asarray(corners, dtype=float))
     beside = np.searchsorted(known, time)

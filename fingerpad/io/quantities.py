@@ -15,7 +15,9 @@ from geometry.units import in_si
 from variational.state import ContactState, StepRecord
 
 _NOTHING = 1e-6  # in the units of tables: below it all is roundoff
-_PRINTED = {"": ("1", 1.0), "mm": ("m", 1e3), "mm²": ("m^2", 1e6)}
+_PRINTED = {
+    "": ("1", 1.0), "%": ("1", 100.0), "mm": ("m", 1e3), "µm": ("m", 1e6), "mm²": ("m^2", 1e6), "kPa": ("Pa", 1e-3)
+}  # fmt: skip
 """Units of tables that are not those of files, which are SI units, and the factor from SI."""
 
 
@@ -51,10 +53,15 @@ class Output:
 
     @property
     def symbol(self) -> str:
-        """The last of the words where it is a symbol, such as µ_app, else all words."""
+        """The last of the words where it is a symbol, such as µ_app, else all words but the state of ridges."""
         words = self.words or self.name
         last = words.split()[-1]
-        return last if len(last) == 1 or "_" in last else words
+        return last if len(last) == 1 or "_" in last else words.removesuffix(" in contact")
+
+    @property
+    def head(self) -> str:
+        """Symbol and unit."""
+        return f"{self.symbol} ({self.unit})" if self.unit else self.symbol
 
     @property
     def title(self) -> str:
@@ -232,7 +239,7 @@ CHANGES = {"error": "estimated discretisation error", "penalty": "estimated chan
 EXTREMES = ("mu_app", "f_t", "contact_length", "f_electrostatic")
 """Quantities of a load of which extremes and means are kept, beside outputs of one's own."""
 SWEPT = (*EXTREMES, "ridges_in_contact")
-"""Quantities of a named state in the table of a sweep, likewise."""
+"""Quantities of a named state in the table of a sweep, beside outputs of one's own."""
 FRICTION = ("mu_app", "f_t")
 """Quantities that are printed at full slip alone."""
 PER_LENGTH = (

@@ -64,7 +64,7 @@ class Result(Answer):
         if kind == "footprint":
             if self.finger is None:
                 raise ValueError("the result has no whole finger to draw: a history has none, else a note says why")
-            from fingerpad.io.footprint_picture import footprint  # Matplotlib
+            from fingerpad.io.finger_picture import footprint  # Matplotlib
 
             return footprint(self.finger, None if path is None else Path(path)) if terminal.rank() == 0 else None
         if self.drawing is not None:

@@ -18,7 +18,7 @@ from fingerpad.io import style
 
 Array = NDArray[np.float64]
 _MM, _UM, _KPA = 1e3, 1e6, 1e-3
-_NEAR = 4  # points: the span of a saw tooth to either side
+_TOOTH_SPAN = 4  # points: the span of a saw tooth to either side
 _NOTHING = 1e-9  # of the contact force: an external force below is roundoff
 _COARSE = 0.1  # of the peak: deeper saw teeth are noted; 7 % at the default contact size
 
@@ -90,7 +90,7 @@ def surface(path: Path | str | None, states: Sequence[SurfaceProfile], title: st
 def saw_teeth(p: Array) -> float:
     """Return the depth of the deepest saw tooth of the contact pressure over its peak.
 
-    A tooth is a dip of the pressure between two larger ones, both within :data:`_NEAR` points, where every point
+    A tooth is a dip of the pressure between two larger ones, both within :data:`_TOOTH_SPAN` points, where every point
     between is under pressure. Four points are a facet's: teeth of a coarse mesh go up and down within one facet or two.
 
     Args:
@@ -99,8 +99,8 @@ def saw_teeth(p: Array) -> float:
     deepest, known = 0.0, np.nan_to_num(p)
     for patch in np.split(known, np.flatnonzero(known <= 0)):
         if len(patch):
-            largest = sliding_window_view(np.pad(patch, _NEAR), _NEAR).max(axis=1)
-            dips = np.minimum(largest[: len(patch)], largest[_NEAR + 1 :]) - patch
+            largest = sliding_window_view(np.pad(patch, _TOOTH_SPAN), _TOOTH_SPAN).max(axis=1)
+            dips = np.minimum(largest[: len(patch)], largest[_TOOTH_SPAN + 1 :]) - patch
             deepest = max(deepest, float(dips[patch > 0].max(initial=0.0)))
     return deepest / float(known.max()) if deepest else 0.0
 

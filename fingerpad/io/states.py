@@ -81,7 +81,14 @@ def full_slip(rows: Sequence[ContactState], row: ContactState, steady: float, le
 
 
 def unchanged(first: ContactState, row: ContactState, steady: float, least: float) -> bool:
-    """Return whether two states have the same amount of voltage and forces; arguments as for :func:`full_slip`."""
+    """Return whether two states have the same amount of voltage and forces.
+
+    Args:
+        first: the one state.
+        row: the other one.
+        steady: relative change of the forces that is not significant.
+        least: change of the forces (N/m) that is not significant.
+    """
     same = abs(abs(row.voltage) - abs(first.voltage)) <= _ROUNDOFF * abs(first.voltage)
     pairs = ((first.f_t, row.f_t), (first.f_ext, row.f_ext))
     return bool(same and all(abs(b - a) <= steady * abs(a) + least for a, b in pairs))
@@ -107,7 +114,12 @@ def _counts(row: ContactState, load: str) -> bool:
 
 
 def named(rows: Sequence[ContactState], names: Sequence[str] = ()) -> dict[str, ContactState]:
-    """Return the states of :data:`STATES` in a history so far, by name; arguments as of :func:`asked_for`."""
+    """Return the states of :data:`STATES` in a history so far, by name.
+
+    Args:
+        rows: states of the history.
+        names: of its loads in order; by default those that the last states have.
+    """
     asked = {row.step for row in asked_for(rows, names)}
     still = [row for row in before_sliding(rows) if row.ridges_in_contact > 0 and row.step in asked]
     uncharged = still[: next((k for k, row in enumerate(still) if row.voltage != 0), len(still))]

@@ -1,9 +1,12 @@
 """A quantity of finished runs or of a sweep over force and voltage, and between their points; no dolfinx."""
 
 import math
-from collections.abc import Iterator, Sequence
+import os
+import re
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -11,12 +14,13 @@ from numpy.typing import NDArray
 
 from fingerpad.io.result import Result
 from fingerpad.io.states import WORDS, before_sliding
-from fingerpad.measurements.one_scene import folder, refuse_mixed
 from fingerpad.measurements.table import Measured
 from fingerpad.report.source import Table
 from fingerpad.report.source import read as content
 from fingerpad.runs.sweep_results import Sweep
-from fingerpad.scene.messages import SceneError, clip
+from fingerpad.scene import as_kept
+from fingerpad.scene.messages import SceneError, clip, show
+from fingerpad.scene.reading import flat
 from fingerpad.slices.finger import WholeFinger
 
 Array = NDArray[np.float64]
@@ -24,9 +28,15 @@ Source = Result | Sweep | Table | str | Path
 """What values are taken from: a result, a sweep, or the folder of one."""
 CLOSE = 0.01
 """Relative distance of a force beyond the known ones up to which their end stands for it."""
-_NEAR = 1e-6  # relative difference of conditions that count as the same
-_SAME_VALUE = 1e-4  # relative, of values at the same conditions: beyond any tolerance of the solvers
+_CONDITION_TOLERANCE = 1e-6  # relative difference of conditions that count as the same
+_VALUE_TOLERANCE = 1e-4  # relative, of values at the same conditions: beyond any tolerance of the solvers
 _NAMED = 4  # voltages in a message
+_FREE = re.compile(  # keys in which runs may differ:
+    r"(history\[\d+\]\.)?(f_ext|force|voltage)"  # the conditions of a measurement,
+    r"|history\[\d+\]\.(bone_height|name)"  # the force by another control, and a word for it,
+    r"|output\.(errors|each_load|receptors)|numerics\.memory"  # and what changes no value
+)
+_MAX_LENGTH = 50  # characters of a folder in a message
 
 
 class Computed:
@@ -64,7 +74,7 @@ class Computed:
 
 
 def _span(forces: Array) -> str:
-    single = math.isclose(forces[0], forces[-1], rel_tol=_NEAR)
+    single = math.isclose(forces[0], forces[-1], rel_tol=_CONDITION_TOLERANCE)
     return f"{forces[0]:g}" if single else f"{forces[0]:g} to {forces[-1]:g}"
 
 
@@ -73,7 +83,7 @@ def _over_force(force: float, known: Array, values: Array) -> Array:
     end = float(np.clip(force, known[0], known[-1]))
     x = end if math.isclose(force, end, rel_tol=CLOSE) else force
     linear = _between(x, known, values)
-    if not known[0] < x < known[-1] or np.isclose(known, x, rtol=_NEAR, atol=0.0).any():
+    if not known[0] < x < known[-1] or np.isclose(known, x, rtol=_CONDITION_TOLERANCE, atol=0.0).any():
         return linear
     k = int(np.searchsorted(known, x))
     low, high = values[k - 1], values[k]
@@ -84,7 +94,7 @@ def _over_force(force: float, known: Array, values: Array) -> Array:
 
 def _between(x: float, known: Array, values: Array) -> Array:
     """Return the values at one of the known places up to roundoff, or linear between two of them; NaN beyond."""
-    near = np.flatnonzero(np.isclose(known, x, rtol=_NEAR, atol=0.0))
+    near = np.flatnonzero(np.isclose(known, x, rtol=_CONDITION_TOLERANCE, atol=0.0))
     if near.size:
         return np.asarray(values[near[0]])
     inside = known[0] < x < known[-1]
@@ -128,7 +138,7 @@ def _of_runs(runs: Sequence[Result], table: Measured) -> pd.DataFrame:
                 points.append(point)
                 of.append(run)
             known = [each["error"] for each in (points[k], point) if not math.isnan(each["error"])]
-            allowed = _SAME_VALUE * abs(points[k]["value"]) + sum(known)
+            allowed = _VALUE_TOLERANCE * abs(points[k]["value"]) + sum(known)
             if of[k] is not run and abs(points[k]["value"] - point["value"]) > allowed:
                 raise SceneError(
                     f"{table.quantity} is {points[k]['value']:.6g} in {folder(of[k])} and {point['value']:.6g} in "
@@ -144,7 +154,7 @@ def _of_runs(runs: Sequence[Result], table: Measured) -> pd.DataFrame:
 
 def _same(one: dict[str, float], other: dict[str, float]) -> bool:
     """Return whether two points have the same force and voltage up to roundoff."""
-    return all(math.isclose(one[key], other[key], rel_tol=_NEAR) for key in ("force", "voltage"))
+    return all(math.isclose(one[key], other[key], rel_tol=_CONDITION_TOLERANCE) for key in ("force", "voltage"))
 
 
 def _section(run: Result, table: Measured) -> Iterator[dict[str, float]]:
@@ -189,7 +199,7 @@ def _of_finger(run: Result, finger: WholeFinger, table: Measured) -> dict[str, f
 
 def _of_sweep(sweep: Table, table: Measured) -> pd.DataFrame:
     """Return the values in the table of a sweep."""
-    keys, fixed = {"force": "force" if table.whole else "f_ext", "voltage": "voltage"}, sweep.parameters or {}
+    keys, fixed = {"force": "force" if table.whole else "f_ext", "voltage": "voltage"}, sweep.parameters
     if not set(sweep.axes) <= set(keys.values()) <= {*sweep.axes, *fixed}:
         raise SceneError(
             f"{_place(sweep)} is over {', '.join(sweep.axes)}, and {table.name} has forces in {table.force_unit}; "
@@ -215,3 +225,44 @@ def _of_sweep(sweep: Table, table: Measured) -> pd.DataFrame:
 
 def _place(sweep: Table) -> str:
     return f"the sweep in {clip(str(sweep.folder), 80)}"
+
+
+def refuse_mixed(runs: Sequence[Result]) -> None:
+    """Refuse runs that differ in more than force and voltage: their values are no function of the two.
+
+    Raises:
+        SceneError: the first key that differs, its two values and the two folders.
+    """
+    every = [_conditions(run) for run in runs]
+    for run, other in zip(runs[1:], every[1:], strict=True):
+        for key in dict.fromkeys([*every[0], *other]):
+            values = every[0].get(key), other.get(key)
+            if values[0] != values[1] and not _FREE.fullmatch(key):
+                one, two = (_shown(value) for value in values)
+                raise SceneError(
+                    f"{key} is {one} in {folder(runs[0])} and {two} in {folder(run)}; "
+                    "give runs that differ in force and voltage alone"
+                )
+
+
+def folder(run: Result) -> str:
+    """Return the folder of a run for a message: its end, where it is long."""
+    if run.folder is None:
+        return "a run"
+    name = min(str(run.folder), os.path.relpath(run.folder), key=len)
+    return clip(name if len(name) <= _MAX_LENGTH else "..." + name[3 - _MAX_LENGTH :], _MAX_LENGTH)
+
+
+def _conditions(run: Result) -> dict[str, Any]:
+    """Return the model of a run and every key of its scene, with the size of lists and tables."""
+    kept = as_kept(run.record.get("parameters") or run.scene.parameters()).model_dump(mode="json")
+    lists = {key: f"a list of {len(value)}" for key, value in kept.items() if isinstance(value, list)}
+    tables = {key: f"a table of {len(value)}" for key, value in kept.items() if isinstance(value, Mapping)}
+    return {"model": run.model} | lists | flat(kept) | tables
+
+
+def _shown(value: Any) -> str:
+    """Return a value for a message; lists and tables by their size."""
+    if value is None:
+        return "not given"
+    return str(value) if str(value).startswith(("a list of", "a table of")) else clip(show(value), 40)

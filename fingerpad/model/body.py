@@ -157,7 +157,8 @@ class Body:
 
         Args:
             f_ext: external normal force on the bone (N/m), kept in what follows.
-            height: change of the bone's height from the unloaded position (m), negative when pressed; kept likewise.
+            height: change of the bone's height from the unloaded position (m), negative when pressed; it is kept in
+                what follows.
 
         Raises:
             ValueError: not one of the two is given, or ``f_ext`` is not positive.

@@ -15,7 +15,7 @@ from geometry import tags
 from geometry.mesh import TaggedMesh
 from variational.quantities import Observer, RidgeLoads
 
-_NEAR = 10e-6  # m, height of the skin at which an attraction of 200 V comes to 1 kPa
+_MIN_CLEARANCE = 10e-6  # m, height of the skin at which an attraction of 200 V comes to 1 kPa
 _MORE = 2  # ridges on either side that are added at least, or
 _PART = 0.25  # this part of those that could touch before
 
@@ -79,7 +79,7 @@ class ContactZone:
         last = [j for j, length in ((ridges[0], loads.length[0]), (ridges[-1], loads.length[-1])) if length > 0]
         if last:
             reason = f"ridge {last[0]}, the last one that is meshed to touch, is in contact"
-        elif lowest < (0.0 if wider is None else _NEAR):
+        elif lowest < (0.0 if wider is None else _MIN_CLEARANCE):
             reason = f"skin beyond the ridges that are meshed to touch is at a height of {lowest:.3g} m"
         else:
             return None

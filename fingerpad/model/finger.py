@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from fingerpad.model.options import FingerModel
 
 Array = NDArray[np.float64]
-_SAME = 1e-9  # m, within which two nodes are one
+_MAX_DISTANCE = 1e-9  # m, within which two nodes are one
 
 
 @dataclass(frozen=True)
@@ -249,7 +249,7 @@ class HalfFinger:
             there: the same of the finger.
         """
         far, found = cKDTree(self._together(here)).query(np.column_stack([np.abs(there[:, 0]), there[:, 1:]]))
-        if not self._comm.allreduce(float(np.max(far, initial=0.0)), op=MPI.MAX) < _SAME:
+        if not self._comm.allreduce(float(np.max(far, initial=0.0)), op=MPI.MAX) < _MAX_DISTANCE:
             raise RuntimeError("the finger's mesh is not its own mirror image")
         return np.asarray(found)
 

@@ -95,7 +95,12 @@ def at_rest(scene: "Scene", contact: Mapping[str, float], error: Errors | None =
 def at_slip(scene: "Scene", contact: Mapping[str, float], error: Errors | None = None) -> ContactState:
     """Return full slip: f_T is the limit of friction, of the mean pressure over the contact length.
 
-    Coulomb's is mu_0 times the contact force, however that is spread. Arguments as of :func:`at_rest`.
+    Coulomb's is mu_0 times the contact force, however that is spread.
+
+    Args:
+        scene: whose loads act.
+        contact: contact force, attraction, contact length and ridges in contact, and the bone's height if known.
+        error: estimated discretisation errors.
     """
     law = scene.friction_law()
     f_t = 0.0 if law is None else law.resultant(contact["f_contact"], contact["contact_length"])

@@ -18,12 +18,13 @@ from fingerpad.io.finger_picture import interfaces
 from fingerpad.io.kept_drawing import finger_of, skin_of
 from fingerpad.io.result import Result
 from fingerpad.io.states import WORDS, called, partial_slip
+from fingerpad.report import page as html
 from variational.state import ContactState
 
 Array = NDArray[np.float64]
 _MM, _UM, _KPA = 1e3, 1e6, 1e-3
 _COLUMNS = 520  # of the grid
-_MOST = 12  # states with an image
+_MAX_FRAMES = 12  # states with an image
 _EMPTY = 32767
 _BELOW, _ABOVE, _BESIDE = -0.15, 1.25, 0.6  # mm of the view around the contact
 
@@ -55,6 +56,51 @@ def frames(result: Result) -> dict[str, Any]:
         if skin or finger:
             shown.append({"label": frame.label, "about": _about(frame.state), "skin": skin, "finger": finger})
     return {"view": view, "frames": shown} if shown else {}
+
+
+def section(shown: dict[str, Any]) -> str:
+    """Return the section with slider, charts and a table of extremes; nothing without a state.
+
+    Args:
+        shown: of :func:`frames`.
+    """
+    if not shown:
+        return ""
+    labels = [frame["label"] for frame in shown["frames"]]
+    last = len(labels) - 1
+    options = "".join(f'<option value="{k}">{html.text(label)}</option>' for k, label in enumerate(labels))
+    controls = f"""<div class="controls needs-js">
+<label for="state">State</label><button type="button" id="back" aria-label="state before">◀</button>
+<input type="range" id="state" min="0" max="{last}" step="1" value="{last}">
+<button type="button" id="forth" aria-label="next state">▶</button>
+<select id="states" aria-label="state by name">{options}</select>
+</div><p class="about needs-js" id="about" aria-live="polite"></p>
+<div class="controls needs-js"><label for="ridge">Ridge</label>
+<select id="ridge"></select><output id="under" aria-live="polite"></output></div>"""
+    charts = (
+        html.chart("body", "Strain energy density in the deformed finger near the contact"),
+        html.chart("skin", "Contact pressure, attraction and shear traction along the skin"),
+        html.chart("one", "Contact pressure, attraction and height above the screen along one ridge"),
+    )
+    rows = [(frame["label"], peak, gap) for frame in shown["frames"] for peak, gap in [_extremes(frame["skin"])]]
+    heads = ("state", "highest contact pressure (kPa)", "air gap of the ridges in contact (µm)")
+    return html.section(
+        "finger",
+        "The deformed finger, state by state",
+        html.paragraph(
+            "Move the slider through the saved states. Point at a ridge, or choose it, to read its values.", "needs-js"
+        ),
+        controls,
+        *charts,
+        '<noscript><p class="note">The slider and charts need JavaScript; numbers and pictures do not.</p></noscript>',
+        html.table(heads, rows),
+    )
+
+
+def _extremes(skin: list[dict[str, Any]]) -> tuple[str, str]:
+    peak = max((value for ridge in skin for value in ridge["p"] if value is not None), default=None)
+    gaps = [ridge["gap"] for ridge in skin if ridge["length"] > 0 and ridge["gap"] is not None]
+    return ("–" if peak is None else f"{peak:.1f}", f"{min(gaps):.2f} to {max(gaps):.2f}" if gaps else "–")
 
 
 def _listed(result: Result) -> Iterator[_Frame]:
@@ -133,7 +179,8 @@ def _view(skins: list[list[dict[str, Any]]]) -> list[float] | None:
 
 def _chosen(stems: list[str]) -> set[str]:
     """Return the states that get an image, spread over all."""
-    places = np.unique(np.linspace(0, len(stems) - 1, min(len(stems), _MOST)).round().astype(int)) if stems else []
+    count = min(len(stems), _MAX_FRAMES)
+    places = np.unique(np.linspace(0, len(stems) - 1, count).round().astype(int)) if stems else []
     return {stems[int(k)] for k in places}
 
 

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 _COLOURS = 128  # of a picture's palette; the pictures have fewer hues, and a third of the bytes is left
-_MOST_PIXELS = 50_000_000  # of a picture; those of a run have two millions
+_MAX_PIXELS = 50_000_000  # of a picture; those of a run have two millions
 
 
 def text(words: object) -> str:
@@ -63,7 +63,7 @@ def picture(file: Path, words: str) -> str:
         return ""
     try:
         with Image.open(file, formats=("PNG",)) as drawn:
-            if drawn.width * drawn.height > _MOST_PIXELS:
+            if drawn.width * drawn.height > _MAX_PIXELS:
                 raise ValueError
             out = BytesIO()
             drawn.convert("RGB").quantize(_COLOURS, dither=Image.Dither.NONE).save(out, "PNG", optimize=True)

@@ -5,14 +5,17 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from fingerpad.io.kept_drawing import arrays_of
-from fingerpad.io.quantities import PER_LENGTH, PLUS_MINUS, cell
+from fingerpad.io.over_time import HARMONICS, NOTE
+from fingerpad.io.quantities import PER_LENGTH, PLUS_MINUS, QUANTITIES, Output
 from fingerpad.io.result import Result
 from fingerpad.io.states import before_sliding, called
 from fingerpad.reduced.models import MODELS
-from fingerpad.report import over_time, parameters, receptors, trust
 from fingerpad.report import page as html
-from fingerpad.report.frames import frames
+from fingerpad.report import parameters, trust
+from fingerpad.report.frames import frames, section
 from fingerpad.report.headline import MARKS, conditions, head
 
 _MM = 1e3
@@ -22,6 +25,12 @@ _LINKS = {
     "solver": "Solver", "parameters": "Parameters", "reproduce": "Reproduce",
 }  # fmt: skip
 _SECTION = "Section at the centre of the finger"
+_SLIDING = ("bone_x", "f_t", "mu_app", "contact_length", "ridges_in_contact")
+_BONE_X = Output("bone_x", "mm", words="bone x", digits=4)
+_RECEPTORS = (
+    "Strain energy density per reference volume (kPa) at the Merkel sites, at the tips of the intermediate ridges, and "
+    "at the Meissner sites, in the dermal papillae on either side. How nerves answer to it is not part of the model."
+)
 _SAID = {
     "footprint.png": "Gross contact (light), sum of the ridges' contact lengths (dark) and pressure, slice by slice",
     "time.png": "Voltage, friction force and contact length over time",
@@ -37,19 +46,19 @@ def page(result: Result) -> str:
     first = (_numbers, _newtons) if not result.whole else (_newtons, _numbers)
     sections = [
         _asked(result),
-        *(section(result) for section in first),
+        *(part(result) for part in first),
         _trust(result),
-        _finger(shown),
+        section(shown),
         _sliding(result),
-        over_time.section(result),
-        receptors.section(result),
+        _over_time(result),
+        _receptors(result),
         _pictures(result.folder),
         _model(result),
         _solver(result),
         html.section("parameters", "Parameters", parameters.all_of(_parameters(result))),
         _reproduce(result),
     ]
-    there = [name for section in sections for name in _LINKS if f'id="{name}"' in section]
+    there = [name for part in sections for name in _LINKS if f'id="{name}"' in part]
     links = "".join(f'<a href="#{name}">{_LINKS[name]}</a>' for name in there)
     body = "\n".join([head(result), f"<nav>{links}</nav>", *sections])
     return html.page(title, body, {"finger": shown, "steps": _columns(result), "errors": _errors(result)})
@@ -146,66 +155,68 @@ def _trust(result: Result) -> str:
     )
 
 
-def _finger(shown: dict[str, Any]) -> str:
-    if not shown:
-        return ""
-    labels = [frame["label"] for frame in shown["frames"]]
-    last = len(labels) - 1
-    options = "".join(f'<option value="{k}">{html.text(label)}</option>' for k, label in enumerate(labels))
-    controls = f"""<div class="controls needs-js">
-<label for="state">State</label><button type="button" id="back" aria-label="state before">◀</button>
-<input type="range" id="state" min="0" max="{last}" step="1" value="{last}">
-<button type="button" id="forth" aria-label="next state">▶</button>
-<select id="states" aria-label="state by name">{options}</select>
-</div><p class="about needs-js" id="about" aria-live="polite"></p>
-<div class="controls needs-js"><label for="ridge">Ridge</label>
-<select id="ridge"></select><output id="under" aria-live="polite"></output></div>"""
-    charts = (
-        html.chart("body", "Strain energy density in the deformed finger near the contact"),
-        html.chart("skin", "Contact pressure, attraction and shear traction along the skin"),
-        html.chart("one", "Contact pressure, attraction and height above the screen along one ridge"),
-    )
-    rows = [(frame["label"], peak, gap) for frame in shown["frames"] for peak, gap in [_extremes(frame["skin"])]]
-    heads = ("state", "highest contact pressure (kPa)", "air gap of the ridges in contact (µm)")
-    return html.section(
-        "finger",
-        "The deformed finger, state by state",
-        html.paragraph(
-            "Move the slider through the saved states. Point at a ridge, or choose it, to read its values.", "needs-js"
-        ),
-        controls,
-        *charts,
-        '<noscript><p class="note">The slider and charts need JavaScript; numbers and pictures do not.</p></noscript>',
-        html.table(heads, rows),
-    )
-
-
-def _extremes(skin: list[dict[str, Any]]) -> tuple[str, str]:
-    peak = max((value for ridge in skin for value in ridge["p"] if value is not None), default=None)
-    gaps = [ridge["gap"] for ridge in skin if ridge["length"] > 0 and ridge["gap"] is not None]
-    return ("–" if peak is None else f"{peak:.1f}", f"{min(gaps):.2f} to {max(gaps):.2f}" if gaps else "–")
-
-
 def _sliding(result: Result) -> str:
     still = len(before_sliding(result.steps))
     if still in (0, len(result.steps)):
         return ""
+    shown = [{**QUANTITIES, "bone_x": _BONE_X}[key] for key in _SLIDING]
     rows = [
-        (
-            str(state.step), f"{_MM * state.bone_x:.4g}", f"{state.f_t:z.3f}", cell("mu_app", state.mu_app),
-            f"{_MM * state.contact_length:.4f}", str(state.ridges_in_contact),
-            "jump" if state.record is not None and state.record.jump else "",
-        )
-        for state in result.steps[still - 1 :]
-    ]  # fmt: skip
-    heads = ("step", "bone x (mm)", "f_T (N/m)", "µ_app", "L_R (mm)", "ridges", "jump")
+        (str(s.step), *(each.shown(getattr(s, each.name)) for each in shown), "jump" if trust.jumped(s) else "")
+        for s in result.steps[still - 1 :]
+    ]
     return html.section(
         "sliding",
         "Friction and contact length over sliding",
         html.paragraph("Dotted lines and crosses mark steps in which part of the skin jumped."),
         html.chart("friction", "Friction and contact length over the sideways displacement of the bone"),
-        html.folded("The same as a table", html.table(heads, rows)),
+        html.folded("The same as a table", html.table(("step", *(each.head for each in shown), "jump"), rows)),
     )
+
+
+def _over_time(result: Result) -> str:
+    """Return extremes, means and the spectrum of friction of loads over time; nothing without such a load."""
+    f_t, length = QUANTITIES["f_t"], QUANTITIES["contact_length"]
+    rows, spectra = [], []
+    for load in result.loads:
+        passed, friction = load.over_time, load.extremes["f_t"]
+        if passed is None:
+            continue
+        ends = ((friction.min, friction.min_time), (friction.max, friction.max_time))
+        at = (f"{f_t.shown(value)} at {1e3 * time:.4g} ms" for value, time in ends)
+        means = (f_t.shown(passed.mean["f_t"]), *at, length.shown(passed.mean["contact_length"]))
+        rows.append((load.name, f"{1e3 * passed.seconds:.4g}", *means))
+        largest = sorted(zip(passed.f_t_amplitude, passed.frequency, strict=True), reverse=True)[:HARMONICS]
+        amplitudes = sorted((frequency, value) for value, frequency in largest)
+        spectra += [(load.name, f"{frequency:.4g}", f_t.shown(value)) for frequency, value in amplitudes]
+    if not rows:
+        return ""
+    friction_heads = (f"{end} {f_t.head}" for end in ("mean", "least", "largest"))
+    heads = ("load", "length (ms)", *friction_heads, f"mean {length.head}")
+    spectrum = html.table(("load", "frequency (Hz)", f"amplitude of {f_t.head}"), spectra) if spectra else ""
+    return html.section("time", "Loads over time", html.paragraph(NOTE), html.table(heads, rows), spectrum)
+
+
+def _receptors(result: Result) -> str:
+    """Return the largest densities of each named state and those at every ridge; nothing where a run has none."""
+    named = {called(name, state.voltage): state.sites for name, state in result.named.items()}
+    found = {words: sites for words, sites in named.items() if sites is not None and len(sites.number)}
+    if not found:
+        return ""
+    kinds = {
+        "a Merkel site": {words: 1e-3 * sites.merkel for words, sites in found.items()},
+        "a Meissner site": {words: 1e-3 * np.maximum(sites.left, sites.right) for words, sites in found.items()},
+    }
+    rows = [(f"largest at {site}", *(f"{each.max():.4g}" for each in kind.values())) for site, kind in kinds.items()]
+    merkel = kinds["a Merkel site"].values()
+    of = (str(int(sites.number[values.argmax()])) for sites, values in zip(found.values(), merkel, strict=True))
+    rows.insert(1, ("of the ridge", *of))
+    cells = [[f"{value:.4g}" for value in values] for kind in kinds.values() for values in kind.values()]
+    every = list(zip(map(str, next(iter(found.values())).number), *cells, strict=True))
+    heads = ("ridge", *(f"{site}, {words}" for site in ("Merkel", "larger Meissner") for words in found))
+    return html.section(
+        "receptors", "Mechanoreceptors", html.paragraph(_RECEPTORS), html.table(("", *found), rows, "numbers"),
+        html.folded("Every ridge", html.table(heads, every, "numbers")),
+    )  # fmt: skip
 
 
 def _pictures(folder: Path | None) -> str:
@@ -247,19 +258,16 @@ def _model(result: Result) -> str:
 
 def _solver(result: Result) -> str:
     cost = result.cost
-    rows = [
-        (name, value)
-        for name, value in (
-            ("wall time", f"{cost.wall_seconds:.0f} s"),
-            ("processor time", f"{cost.processor_seconds:.0f} s"),
-            ("memory", f"{cost.memory_mb:.0f} MB"),
-            ("ranks", str(cost.ranks)),
-            ("unknowns", str(cost.unknowns)),
-            ("Newton iterations of the loading path", str(cost.newton_iterations)),
-            ("its factorisations", str(cost.factorisations)),
-        )
-        if value not in ("0", "0 s", "0 MB")
-    ]
+    values = {
+        "wall time": f"{cost.wall_seconds:.0f} s",
+        "processor time": f"{cost.processor_seconds:.0f} s",
+        "memory": f"{cost.memory_mb:.0f} MB",
+        "ranks": str(cost.ranks),
+        "unknowns": str(cost.unknowns),
+        "Newton iterations of the loading path": str(cost.newton_iterations),
+        "its factorisations": str(cost.factorisations),
+    }
+    rows = [(name, value) for name, value in values.items() if value not in ("0", "0 s", "0 MB")]
     known = any(state.record is not None for state in result.steps)
     drawn = html.chart("work", "Newton iterations, factorisations and cut steps over the steps") if known else ""
     return html.section("solver", "Solver history", drawn, html.table(("", "whole run"), rows) if rows else "")
@@ -291,9 +299,8 @@ def _columns(result: Result) -> dict[str, list[Any]]:
         "length": [_number(_MM * state.contact_length) for state in steps],
         "first": [first],
     }
-    for key in ("newton_iterations", "factorisations", "cutbacks", "jump"):
-        found[key] = [0 if state.record is None else int(getattr(state.record, key)) for state in steps]
-    return found
+    work = ("newton_iterations", "factorisations", "cutbacks", "jump")
+    return found | {key: [0 if s.record is None else int(getattr(s.record, key)) for s in steps] for key in work}
 
 
 def _errors(result: Result) -> list[dict[str, Any]]:

@@ -26,8 +26,8 @@ class Table:
     axes: tuple[str, ...]
     """Keys that are varied."""
     rows: tuple[dict[str, str], ...]
-    parameters: dict[str, Any] | None
-    """Every parameter of the scene that it varies; None of a sweep by an earlier version, whose folder has none."""
+    parameters: dict[str, Any]
+    """Every parameter of the scene that it varies."""
     model: str = DEFAULT_MODEL
     version: str = ""
     """Of the program that made the table; empty where it is not known."""
@@ -41,13 +41,13 @@ class Table:
     @property
     def whole(self) -> bool:
         """Whether forces are those on the whole finger."""
-        return "force" in self.axes or "force" in (self.parameters or {})
+        return "force" in self.axes or "force" in self.parameters
 
     def forces(self) -> list[float]:
         """Return the forces on the whole finger (N)."""
         if "force" in self.axes:
             return [float(row["force"]) for row in self.rows]
-        return [float((self.parameters or {})["force"])] if self.whole else []
+        return [float(self.parameters["force"])] if self.whole else []
 
 
 def read(folder: Path) -> Result | Table:
@@ -120,7 +120,5 @@ def _sweep(folder: Path) -> Table:
         cautions, notes = (tuple(map(str, asked.get(name, ()))) for name in ("cautions", "notes"))
         outputs = read_outputs(asked.get("outputs", ()))
         return Table(folder, axes, rows, dict(asked["parameters"]), *more, cautions, notes, outputs)
-    except FileNotFoundError:
-        return Table(folder, axes, rows, None)
     except (OSError, ValueError, KeyError, TypeError) as error:
         raise SceneError(f"sweep.json in {name} cannot be read: {error}") from None

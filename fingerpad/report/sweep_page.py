@@ -190,14 +190,11 @@ def _failed(table: "Table") -> str:
 
 
 def _parameters(table: "Table") -> str:
-    if table.parameters is None:
-        words = "The folder has no sweep.json, and so no scene: an earlier version of fingerpad wrote it."
-        return html.section("parameters", "Parameters", html.paragraph(words))
     return html.section("parameters", "Parameters", parameters.all_of(table.parameters, table.axes))
 
 
 def _cite(table: "Table") -> str:
-    given = {} if table.parameters is None else parameters.changed(table.parameters)
+    given = parameters.changed(table.parameters)
     kept = {key: value for key, value in given.items() if not (key in table.axes or "[" in key or value is None)}
     options = [parameters.option_of(key, value) for key, value in kept.items()]
     options += [f"--model {table.model}"] if table.model != DEFAULT_MODEL else []
@@ -209,11 +206,8 @@ def _cite(table: "Table") -> str:
         lines = [f"{parameters.toml(key)} = [{', '.join(map(_toml, each))}]" for key, each in values.items()]
         command = " ".join(["fingerpad sweep study.toml", *options, "--out results/again"])
         code = "\n".join(["# study.toml", "[sweep]", *lines, "", "# the command", command])
-    note = ""
-    if table.parameters is None:
-        note = "Scene and model of the sweep are not in this line, since the folder does not have them."
-    elif any("[" in key and key not in table.axes for key in given):
-        note = "Loads of its own, and other lists of the scene, are not in this line."
+    lists = any("[" in key and key not in table.axes for key in given)
+    note = "Loads of its own, and other lists of the scene, are not in this line." if lists else ""
     return html.section(
         "reproduce", "How to reproduce and cite", f"<pre><code>{html.text(code)}</code></pre>",
         html.paragraph(note, "note") if note else "", parameters.cite(table.version),

@@ -16,7 +16,7 @@ GOOD, CARE, BAD = "holds", "care", "fails"
 _SMALL, _LARGE = 0.02, 0.1
 """Relative errors below which an error is small, and above which the mesh is too coarse for more than a trend."""
 
-_FEW = 4
+_MIN_FACETS = 4
 """Facets in contact on a ridge below which the effect of a rigid screen is doubtful: at two or three,
 a few Gauss points bear the contact, and their number changes with the stiffness."""
 
@@ -128,8 +128,8 @@ def _facets(result: "Result", state: ContactState) -> Iterator[Finding]:
     if not (springs and state.ridges_in_contact and state.mesh_contact):
         return
     facets = state.contact_length / state.ridges_in_contact / state.mesh_contact
-    if facets < _FEW:
-        words = f"A ridge touches with {facets:.1f} facets in the mean, fewer than {_FEW}."
+    if facets < _MIN_FACETS:
+        words = f"A ridge touches with {facets:.1f} facets in the mean, fewer than {_MIN_FACETS}."
         more = "What a rigid screen would change is not reliable there; a smaller mesh.contact resolves it."
         yield Finding("contacts of few facets", CARE, f"{words} {more}")
 
@@ -165,7 +165,7 @@ def _stability(result: "Result") -> Iterator[Finding]:
 
 
 def _jumps(result: "Result") -> Iterator[Finding]:
-    steps = [state for state in result.steps if _jumped(state)]
+    steps = [state for state in result.steps if jumped(state)]
     if not steps:
         if result.steps:
             yield Finding("jumps", GOOD, "No part of the skin jumped.")
@@ -196,7 +196,8 @@ def _restarts(result: "Result") -> Iterator[Finding]:
         yield Finding("cut steps", GOOD, words)
 
 
-def _jumped(state: ContactState) -> bool:
+def jumped(state: ContactState) -> bool:
+    """Return whether part of the skin jumped in the step of a state."""
     return state.record is not None and state.record.jump
 
 

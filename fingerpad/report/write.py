@@ -54,7 +54,7 @@ def draw_footprint(result: Result) -> None:
     """Write ``footprint.png`` at the end of a run with a whole finger; a line on the console where it fails; serial."""
     if result.finger is None or result.folder is None:
         return
-    from fingerpad.io.footprint_picture import footprint  # Matplotlib
+    from fingerpad.io.finger_picture import footprint  # Matplotlib
 
     try:
         footprint(result.finger, result.folder / "footprint.png")

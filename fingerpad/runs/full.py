@@ -9,11 +9,10 @@ from typing import Any
 import fingerpad.startup  # noqa: F401
 from fingerpad.accuracy.solves import State
 from fingerpad.io import petsc_options
-from fingerpad.io.abort import all_together, no_room
 from fingerpad.io.checkpoint import Checkpoint, CheckpointError
 from fingerpad.io.console import Console
 from fingerpad.io.drawing import Profile
-from fingerpad.io.interrupt import Interrupt
+from fingerpad.io.interrupt import Interrupt, all_together, no_room
 from fingerpad.io.provenance import provenance
 from fingerpad.io.quantities import Output, checked
 from fingerpad.io.result import Result

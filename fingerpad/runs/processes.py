@@ -140,7 +140,7 @@ class Pool(Generic[Key, Result]):
 
         Raises:
             KeyboardInterrupt: SIGINT, after the jobs that were running have ended.
-            SystemExit: SIGTERM or SIGHUP, likewise.
+            SystemExit: SIGTERM or SIGHUP, after the jobs that were running have ended.
         """
         waiting, stop = list(keys), time.monotonic() + 3600 * self.hours
         running: dict[Future[Result], Key] = {}

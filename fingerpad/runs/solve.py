@@ -53,7 +53,7 @@ def run(
     Raises:
         SceneError: the scene cannot be run, in one sentence.
         KeyboardInterrupt: Ctrl-C, after the present step; its attribute ``result`` has the steps accepted before.
-        SystemExit: SIGTERM or SIGHUP, likewise.
+        SystemExit: SIGTERM or SIGHUP, after the present step; its attribute ``result`` has the same.
     """
     scene, way = checked(scene), find(model)
     if out is not None and not isinstance(out, str | os.PathLike):
@@ -118,7 +118,7 @@ def solved(scene: Scene, model: "Model", context: RunContext) -> Result:
 
 
 def _solved(scene: Scene, model: "Model", context: RunContext) -> Result:
-    """Return what a model answers, its results written into a folder; collective; arguments as of :func:`solved`."""
+    """Return what a model answers to a scene without a force, written into a folder; collective."""
     with needed_by(f"the model {model.name!r}"):
         if model.meshes:
             from fingerpad.startup import MPI  # before any other import of the libraries that it starts

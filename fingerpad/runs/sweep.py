@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 
 FILES = ("table.csv", FILE, "report.html", "sweep.json")
 """What a sweep writes into its folder beside its points."""
-_MOST = 10_000  # points
+_MAX_POINTS = 10_000  # of a sweep
 _LIMIT = 4 * 3600.0  # s of processor time for one point
 
 
@@ -56,9 +56,9 @@ def sweep(
         scene: the scene; by default press, charge and slide of the default finger.
         out: folder of the results, of ``table.csv`` and of ``report.html``.
         jobs: points that are run at a time.
-        model: as of :func:`fingerpad.runs.solve.run`.
+        model: a name of :data:`fingerpad.reduced.models.MODELS`, ``"full"`` or ``"cylinders"``.
         quiet: whether to print no line for each point, and show no progress bar.
-        outputs: as of :func:`fingerpad.runs.solve.run`; the folders of the points do not have them.
+        outputs: further quantities, each computed from every state; the folders of the points do not have them.
         **axes: values by key: ``voltage=[0, 100, 200]``, or ``**{"roughness.h_rms": [2e-6, 3e-6]}``.
             With ``force`` tables and arrays are of the whole finger.
 
@@ -66,7 +66,7 @@ def sweep(
         SceneError: a key or a value that a scene cannot have, no values, a law that only this program knows and other
             processes cannot import, more than one rank of MPI, or a folder that holds a run.
         KeyboardInterrupt: Ctrl-C, after the present step of each running point; the same sweep goes on from there.
-        SystemExit: SIGTERM or SIGHUP, likewise.
+        SystemExit: SIGTERM or SIGHUP, after the present step of each running point.
     """
     scene, way = checked(scene), find(model)
     if terminal.ranks() > 1:
@@ -149,8 +149,8 @@ def _refuse_axes(axes: Mapping[str, Sequence[Any]]) -> None:
                 f"{key} of the sweep is {show(values)}; it must be a list of at least one value, none a list"
             )
     count = int(np.prod([len(values) for values in axes.values()]))
-    if count > _MOST:
-        raise SceneError(f"the sweep has {count} points; at most {_MOST} are allowed")
+    if count > _MAX_POINTS:
+        raise SceneError(f"the sweep has {count} points; at most {_MAX_POINTS} are allowed")
 
 
 def _values(scenes: Sequence[Scene], axes: Mapping[str, Sequence[Any]]) -> dict[str, tuple[Any, ...]]:

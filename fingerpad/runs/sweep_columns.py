@@ -118,15 +118,9 @@ def in_time(name: str, columns: Iterable[str]) -> dict[str, str]:
     friction = "mu_app" if f"{LOAD}_{name}_mu_app_mean" in there else "f_t"
     for key in (friction, "contact_length"):
         quantity = QUANTITIES[key]
-        words |= {f"{key}_{end}": f"{said} {head(quantity)}" for end, said in _ENDS.items()}
+        words |= {f"{key}_{end}": f"{said} {quantity.head}" for end, said in _ENDS.items()}
     words |= {"f_t_amplitude": "amplitude of f_T (N/m)", "f_t_frequency": "at (Hz)"}
     return {column: said for key, said in words.items() if (column := f"{LOAD}_{name}_{key}") in there}
-
-
-def head(quantity: Output) -> str:
-    """Return the symbol of a quantity, or its words where it has none, with the unit."""
-    name = quantity.symbol.removesuffix(" in contact")
-    return f"{name} ({quantity.unit})" if quantity.unit else name
 
 
 def text(column: str, value: float | None) -> str:

@@ -17,7 +17,7 @@ from fingerpad.io import dataset
 from fingerpad.io.files import replace
 from fingerpad.io.quantities import FINGER, PER_LENGTH, QUANTITIES, Output
 from fingerpad.io.states import STATES, WORDS
-from fingerpad.runs.sweep_columns import described, head, newtons_of, printed, row, shown, tables
+from fingerpad.runs.sweep_columns import described, newtons_of, printed, row, shown, tables
 from fingerpad.slices import solid
 from variational.state import CONDITIONS, RESULTS
 
@@ -126,7 +126,7 @@ class Sweep:
         """Return the sweep as one dataset with units, as ``sweep.nc`` has it.
 
         Returns:
-            The named states of every point along the swept keys and ``state``, as in the dataset of a run; likewise its
+            The named states of every point along the swept keys and ``state``, as in the dataset of a run; also its
             loads, ridges, sites and sums over the whole finger, where a point has them; its failure and cost. The
             attributes are the parameters that all points share. Under a force on the whole finger there are
             sums over it alone.
@@ -160,7 +160,7 @@ class Sweep:
         rows, axes = self.rows(), {key: _head(key) for key in self.axes}
         state, columns = shown((column for each in rows for column in each), self.whole, self.outputs)
         newtons = not self.whole and any(result.finger is not None for result in self.results)
-        table = [[*axes.values(), *map(head, columns.values()), *(["F_T (N)"] if newtons else [])]]
+        table = [[*axes.values(), *(each.head for each in columns.values()), *(["F_T (N)"] if newtons else [])]]
         for each, result in zip(rows, self.results, strict=True):
             first = [printed(each[key]) for key in axes]
             values = {column: each.get(column) for column in columns}
@@ -201,7 +201,7 @@ class _Lines(list[str]):
 
 def _head(key: str) -> str:
     if key in QUANTITIES:
-        return head(QUANTITIES[key])
+        return QUANTITIES[key].head
     meant = described(key)
     return key if meant is None or not meant.unit else f"{key} ({meant.unit})"
 

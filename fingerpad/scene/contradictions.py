@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 DEFAULT_HISTORY = ("f_ext", "voltage", "slide_length")
 """Keys of the default loads, which a history replaces."""
-_SAME = 1e-6  # relative difference of thicknesses that are the same
+_MAX_DIFFERENCE = 1e-6  # relative difference of thicknesses that are the same
 LARGEST_GAP = 1.0  # m, with which the attraction is as good as none
 
 
@@ -32,11 +32,11 @@ def refuse_contradictions(
     """Refuse the first contradiction between keys.
 
     Args:
-        accuracy: table of the scene, likewise ``output``, ``roughness`` and ``history``.
-        output: see there.
-        friction: key of the scene.
-        roughness: see there.
-        history: see there.
+        accuracy: table of the scene; None where no accuracy is asked for.
+        output: table of the scene.
+        friction: coefficient or law of friction, a key of the scene.
+        roughness: table or closure of the scene.
+        history: loads of the scene; None for press, charge and slide.
         given: the values of :data:`DEFAULT_HISTORY` that are given.
         step_scale: key of the numerics.
 
@@ -223,7 +223,7 @@ def refuse_thickness(closure: Any, h_0: float) -> None:
         ValueError: the two differ by more than roundoff.
     """
     own = getattr(closure, "h_0", h_0)
-    if isinstance(own, Real) and abs(float(own) - h_0) > _SAME * h_0:
+    if isinstance(own, Real) and abs(float(own) - h_0) > _MAX_DIFFERENCE * h_0:
         raise ValueError(
             f"the closure {type(closure).__name__} has h_0 = {float(own):.7g} m, and the attraction has an effective "
             f"insulator thickness h_0 of {h_0:.7g} m; the two must be the same"

@@ -9,7 +9,7 @@ from collections.abc import Sequence
 
 FINAL_STATES = ("charged normal contact", "full slip")
 """States that have files of their own where an accuracy is asked for."""
-_MOST_BYTES = 100  # of a name; a file system allows 255, of which the files take some
+_MAX_BYTES = 100  # of a name; a file system allows 255, of which the files take some
 _FORMULA = ("=", "+", "-", "@")  # of a cell in a spreadsheet, also as wide letters; a tab is forbidden anyway
 _FORBIDDEN = '/\\:*?"<>|'  # the first separates folders, the others are forbidden on memory sticks
 
@@ -22,8 +22,8 @@ def load_name(name: str) -> str:
     """
     if not name.strip():
         raise ValueError("it must have a letter or a digit")
-    if len(name.encode("utf-8", "surrogatepass")) > _MOST_BYTES:
-        raise ValueError(f"it must be of {_MOST_BYTES} bytes at most, since files are named by it")
+    if len(name.encode("utf-8", "surrogatepass")) > _MAX_BYTES:
+        raise ValueError(f"it must be of {_MAX_BYTES} bytes at most, since files are named by it")
     unfit = next((c for c in name if c in _FORBIDDEN or not c.isprintable()), None)
     if unfit is not None:
         raise ValueError(f"it must be without {unfit!r}, since files are named by it")

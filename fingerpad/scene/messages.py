@@ -9,7 +9,7 @@ from collections.abc import Iterable
 from typing import Any
 
 MOST = 280  # characters of a message; with the name of the program before it less than 300
-_MOST_VALUE = 60  # of a value that is quoted
+_MAX_VALUE = 60  # of a value that is quoted
 MOST_KEY = 40  # of a key
 
 LAW = "law"  # kind of the errors of a law, whose context has the text and the place
@@ -25,7 +25,7 @@ class SceneError(ValueError):
 
 
 # -- texts ---------------------------------------------------------------------------------------------
-def clip(text: str, most: int = _MOST_VALUE) -> str:
+def clip(text: str, most: int = _MAX_VALUE) -> str:
     """Return a text in one line of printable characters, at most so many of them."""
     text = "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in text[: most + 1])
     return text if len(text) <= most else text[: most - 3] + "..."
@@ -45,8 +45,8 @@ def show(value: Any) -> str:
     if isinstance(value, int | float):
         return f"{value:.12g}"
     text = repr(value)
-    if isinstance(value, str) and len(text) > _MOST_VALUE:
-        return clip(text, _MOST_VALUE - 1) + text[0]  # a quotation that is not closed would go on into the message
+    if isinstance(value, str) and len(text) > _MAX_VALUE:
+        return clip(text, _MAX_VALUE - 1) + text[0]  # a quotation that is not closed would go on into the message
     return clip(text)
 
 

@@ -21,9 +21,9 @@ from variational.roughness.closure import Closure
 
 DEFAULT_MODEL = "full"
 """Model of a run whose files name none, by :data:`fingerpad.reduced.models.MODELS`."""
-_MOST_DEPTH = 8  # of tables in lists in tables; a scene has 3
-_DEPTH = f"a scene has at most {_MOST_DEPTH} inside one another"
-_MOST_BITS = 1000  # of a whole number; floating point has 1024
+_MAX_DEPTH = 8  # of tables in lists in tables; a scene has 3
+_DEPTH = f"a scene has at most {_MAX_DEPTH} inside one another"
+_MAX_BITS = 1000  # of a whole number; floating point has 1024
 _PATH = 80  # characters of a path in a message
 _AFTER_VALUE = "Expected newline or end of document after a statement"  # tomllib, of 50,0 and of 50 N/m
 _NAME = r"[A-Za-z0-9_-]+(\[[0-9]{1,6}\])?"
@@ -137,7 +137,7 @@ def _toml(text: str) -> dict[str, Any]:
         RecursionError: a value is nested too deep.
     """
     for part in re.split(r"[^\w\s.-]|\n", _QUOTED.sub("_", text)):  # a key or a value, with all its dots
-        if part.count(".") > _MOST_DEPTH:
+        if part.count(".") > _MAX_DEPTH:
             raise _too_deep([name.strip() for name in part.split(".")])
     return tomllib.loads(text)
 
@@ -155,7 +155,7 @@ def plain(value: Any, place: tuple[int | str, ...] = ()) -> Any:
     Raises:
         SceneError: data that is nested too deep, or a whole number beyond floating point.
     """
-    if len(place) > _MOST_DEPTH:
+    if len(place) > _MAX_DEPTH:
         raise _too_deep(place)
     if isinstance(value, np.generic | np.ndarray):
         value = float(value) if isinstance(value, np.floating) else value.tolist()
@@ -172,7 +172,7 @@ def plain(value: Any, place: tuple[int | str, ...] = ()) -> Any:
     if hasattr(value, "magnitude") and hasattr(value, "units"):  # of pint; all digits, whatever its format for printing
         return f"{plain(value.magnitude, place)} {value.units:D}"
     if isinstance(value, int):
-        if value.bit_length() > _MOST_BITS:
+        if value.bit_length() > _MAX_BITS:
             raise SceneError(
                 f"{key_of(place)} has some {int(value.bit_length() * 0.30103)} digits; at most 300 are read"
             )
@@ -223,7 +223,7 @@ def put(data: dict[str, Any], key: str, value: Any) -> None:
     parts = [
         int(part[1:-1]) if part.startswith("[") else part for part in re.split(r"\.|(?=\[[0-9]{1,6}\](?:\.|$))", key)
     ]
-    if len(parts) > _MOST_DEPTH:
+    if len(parts) > _MAX_DEPTH:
         raise _too_deep(parts)
     here: Any = data
     for depth, part in enumerate(parts):

@@ -10,8 +10,8 @@ from pydantic import BaseModel, ValidationError
 from fingerpad.scene.messages import LAW, MOST_KEY, NUMBER, WAVE, clip, key_of, qualify, show
 from geometry.units import NO_QUANTITY, OUT_OF_RANGE, to_si
 
-_MOST_LIST = 150  # characters of a list of keys
-_NEAR = 0.6  # likeness, from 0 to 1, at which a key of the same table may have been meant,
+_MAX_LIST = 150  # characters of a list of keys
+_MIN_LIKENESS = 0.6  # likeness, from 0 to 1, at which a key of the same table may have been meant,
 _ELSEWHERE = 0.85  # or one of another table
 _TYPES = {
     "float_type": "a number",
@@ -128,7 +128,7 @@ def _instead(loc: tuple[int | str, ...], own: Sequence[str], every: Iterable[str
     """
     table, name = key_of(loc[:-1]), str(loc[-1])
     wanted = clip(name, MOST_KEY).lower().replace("-", "_")
-    keys = [(table, key, _NEAR) for key in own]
+    keys = [(table, key, _MIN_LIKENESS) for key in own]
     names = [name.replace("[]", "[0]").split(".") for name in every]
     tables = dict.fromkeys((".".join(name[:depth]), name[depth]) for name in names for depth in range(len(name)))
     keys += [(at, key, _ELSEWHERE) for at, key in tables if (at, key) != (table, wanted)]
@@ -141,4 +141,4 @@ def _instead(loc: tuple[int | str, ...], own: Sequence[str], every: Iterable[str
         where, key, _ = keys[-max(near)[1]]
         return f"did you mean {where}{'.' * bool(where)}{key}?"
     known = ", ".join(own)
-    return f"keys are {known if len(known) <= _MOST_LIST else known[:_MOST_LIST].rpartition(',')[0] + ' and others'}"
+    return f"keys are {known if len(known) <= _MAX_LIST else known[:_MAX_LIST].rpartition(',')[0] + ' and others'}"

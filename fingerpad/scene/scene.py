@@ -208,9 +208,9 @@ class Scene(Part):
             unused["output"] = True
         elif self.output.each_load:
             unused["output"] = {"each_load"}
-        if self.slices == Slices():  # likewise
+        if self.slices == Slices():  # as the output
             unused["slices"] = True
-        default = Numerics()  # likewise
+        default = Numerics()  # keys at their defaults, as the output
         unused["numerics"] = {n for n in ("step_scale", "memory") if getattr(self.numerics, n) == getattr(default, n)}
         found = self.model_dump(mode="json", exclude=unused)
         if self.geometry.file is not None:  # whose mesh has its own shape and sizes

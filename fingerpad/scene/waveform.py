@@ -33,7 +33,7 @@ MOST = 10_000
 _POINTS = 2000  # most points of a file
 _LEAST = 1e-3  # V; what is less in a table is 0: noise, or roundoff of a computed sine
 _HIGHEST = 5e3  # V
-_NEAR = 1e-9  # of a period: two times that are one
+_TIME_TOLERANCE = 1e-9  # of a period: two times that are one
 _SUDDEN = 0.01  # of the peak: a change of the voltage, within one sample before a piece of a table, that cuts the piece
 _OWN = 0.5  # of the piece's own change: a smaller change before it cuts no piece
 _NOTHING = 1e-12  # of the peak: a voltage that is roundoff of zero
@@ -168,7 +168,7 @@ class Waveform(Part):
             seconds: length of the load (s).
             step_scale: see ``numerics.step_scale``.
         """
-        near, before, found = _NEAR * self.period, (0.0, 0.0), list[Sample]()
+        near, before, found = _TIME_TOLERANCE * self.period, (0.0, 0.0), list[Sample]()
         for time, *values in self._points(_per_period(step_scale)):
             if time <= near:
                 found.append((0.0, values[-1]))
@@ -223,7 +223,7 @@ class Waveform(Part):
         if abs(ratio) < 1:
             first = math.asin(ratio) / (2 * math.pi) if sine else ratio / 4
             for zero in (first % 1.0, 0.5 - first):
-                if all(min(d := abs(zero - phase), 1 - d) > _NEAR for phase, _ in found):
+                if all(min(d := abs(zero - phase), 1 - d) > _TIME_TOLERANCE for phase, _ in found):
                     found.append((zero, 0.0))
         return sorted(found)
 
@@ -263,8 +263,8 @@ def _refined(times: tuple[float, ...], voltages: tuple[float, ...], most: float,
         crosses = u0 * u1 < 0
         ends = [(t0, u0), *([(t0 + (t1 - t0) * u0 / (u0 - u1), 0.0)] if crosses else []), (t1, u1)]
         for (a, ua), (b, ub) in zip(ends, ends[1:], strict=False):
-            by_time = math.ceil(even * (b - a) / (t1 - t0) - _NEAR)
-            by_voltage = math.ceil(abs(ub - ua) / most - _NEAR) if most > 0 else 1
+            by_time = math.ceil(even * (b - a) / (t1 - t0) - _TIME_TOLERANCE)
+            by_voltage = math.ceil(abs(ub - ua) / most - _TIME_TOLERANCE) if most > 0 else 1
             pieces = max(by_time, by_voltage, 1)
             for j in range(1, pieces):
                 yield a + (b - a) * j / pieces, ua + (ub - ua) * j / pieces

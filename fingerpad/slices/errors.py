@@ -14,7 +14,7 @@ _OF_SECTION = {  # whose relative error each has; the external force is prescrib
     "contact_area": "contact_length",
     "indentation": "bone_height",
 }
-_NEAR = 1e-3  # of the largest indentation: its change for the slope over the force
+_RELATIVE_STEP = 1e-3  # of the largest indentation: its change for the slope over the force
 MESH, ESTIMATED, POINTS = "mesh of the cross-section", "estimate beside the centre", "points of the traces"
 """Parts of an error, as they are printed."""
 ESTIMATE = {
@@ -96,7 +96,7 @@ def interpolation(finger: Profile, trace: Trace, total: Total, count: int) -> di
     if len(trace.depth) < LEAST:
         return {}
     values = total.values
-    less = at_indentation(finger, trace, total.delta - _NEAR * float(total.depth.max()), count).values
+    less = at_indentation(finger, trace, total.delta - _RELATIVE_STEP * float(total.depth.max()), count).values
     slope = {name: (values[name] - less[name]) / (values["f_ext"] - less["f_ext"]) for name in values}
 
     def change(coarse: Trace) -> dict[str, float]:

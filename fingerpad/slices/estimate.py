@@ -3,8 +3,8 @@
 A run of press, charge and slide has the cross-section's whole press without voltage, and one charged state and one full
 slip, at the scene's force. The slices away from the centre bear less. Their attraction and contact length are those
 of the model "cylinders" (:mod:`fingerpad.reduced.cylinders`) over the contact lengths of the run's own press, scaled to
-the run's own state at the centre; their indentation is that of the press, scaled likewise. ``docs/newtons.md`` has the
-error of this estimate beside traces of the full model. A scene with a ``force`` computes the traces.
+the run's own state at the centre; their indentation is that of the press, scaled to its own. ``docs/newtons.md`` has
+the error of this estimate beside traces of the full model. A scene with a ``force`` computes the traces.
 """
 
 from collections.abc import Mapping, Sequence
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from fingerpad.io.result import Result
 
 SOURCE = "estimated from the run's press and its centre by charged cylinders; a force in newtons computes traces"
-_MOST = 12  # points of the trace
+_MAX_POINTS = 12  # of the trace
 
 
 def with_newtons(result: "Result") -> "Result":
@@ -75,12 +75,12 @@ def estimate(scene: Scene, press: Sequence[ContactState], named: Mapping[str, Co
 
 
 def _thinned(press: Sequence[ContactState]) -> list[ContactState]:
-    """Return at most :data:`_MOST` states, the last one among them, about evenly in the logarithm of the force."""
+    """Return some states, the last one among them, about evenly in the logarithm of the force."""
     states = [state for state in press if state.f_ext > 0 and state.contact_length > 0]
     if len(states) < LEAST:
         raise TraceError(f"the press has {len(states)} states with a force; a trace must have {LEAST} at least")
     forces = np.log([state.f_ext for state in states])
-    wanted = np.linspace(forces[0], forces[-1], _MOST)
+    wanted = np.linspace(forces[0], forces[-1], _MAX_POINTS)
     return [states[k] for k in sorted({int(np.abs(forces - each).argmin()) for each in wanted})]
 
 

@@ -117,13 +117,13 @@ _gauss = cache(np.polynomial.legendre.leggauss)
 
 
 def at_force(profile: Profile, trace: Trace, force: float, count: int) -> Total:
-    """Return the finger under a force; arguments as of :func:`at_indentation`.
+    """Return the finger under a force.
 
     Args:
-        profile: see there.
-        trace: see there.
+        profile: the finger along its axis.
+        trace: of a slice on the scale 1.
         force: external force (N), greater than 0.
-        count: see there.
+        count: slices in each stretch of contact.
 
     Raises:
         BeyondTrace: the trace ends before the force is reached; the message has the largest force.

@@ -139,7 +139,12 @@ def trace(states: Iterable[ContactState], wavelength: float) -> Trace:
 
 
 def columns(states: Sequence[ContactState], wavelength: float) -> dict[str, Array]:
-    """Return the columns of states; arguments as of :func:`trace`."""
+    """Return the columns of a trace by name, shape (states,).
+
+    Args:
+        states: of the cross-section.
+        wavelength: of a ridge (m).
+    """
     found = {name: [abs(getattr(state, name)) for state in states] for name in NAMES if name != "gross_width"}
     found["gross_width"] = [gross_width(state, wavelength) for state in states]
     return {name: np.array(values, dtype=float) for name, values in found.items()}

@@ -125,7 +125,7 @@ def points(result: Result, name: str) -> list[ContactState]:
 
 
 def _followed(scene: Scene, model: "Model", solve: Solve) -> dict[str, Traced]:
-    """Return the traces of a scene by state, that of the result last; arguments as of :func:`whole`."""
+    """Return the traces of a scene with a force by state, that of the result last; collective."""
     reach = _Reach(scene, profile(scene.slices), model, solve)
     found = {"uncharged": reach.follow("uncharged")}
     if scene.voltage:

@@ -35,7 +35,7 @@ MODULUS = 1.0, 1e12, "Pa"
 """Range of a modulus: slime to diamond."""
 POISSON = -0.9, 0.4999
 """Range of Poisson's ratio: stability needs more than -1; above 0.4999 roundoff of the volume decides."""
-_SAME = 1e-6  # relative: a shear modulus that was written with seven digits is the energy's
+_MODULUS_TOLERANCE = 1e-6  # relative: a shear modulus that was written with seven digits is the energy's
 
 
 class Material(Law):
@@ -158,8 +158,8 @@ class Material(Law):
                 "the stretches of F / J^(1/3) has not"
             )
         least, largest = shear
-        if not (1 - _SAME) * least <= given <= (1 + _SAME) * largest:
-            found = f"{least:.7g}" + (f" to {largest:.7g}" if largest - least > _SAME * largest else "")
+        if not (1 - _MODULUS_TOLERANCE) * least <= given <= (1 + _MODULUS_TOLERANCE) * largest:
+            found = f"{least:.7g}" + (f" to {largest:.7g}" if largest - least > _MODULUS_TOLERANCE * largest else "")
             raise ValueError(
                 f"{self}: shear_modulus is {given:.7g} Pa; it must be that of the unloaded energy, {found} Pa"
             )

@@ -26,7 +26,7 @@ class AirGap(NamedTuple):
     d_eq: Array
     """Equivalent air gap (m), of the shape of the pressures."""
     derivative: Array | None = None
-    """d d_eq / d p_c (m/Pa), likewise; None where it is not known. No solver reads it."""
+    """d d_eq / d p_c (m/Pa), of the shape of the pressures; None where it is not known. No solver reads it."""
 
 
 class Closure(ABC):

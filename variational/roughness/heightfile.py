@@ -29,7 +29,7 @@ UNITS = {"m": 1.0, "cm": 1e-2, "mm": 1e-3, "um": 1e-6, "µm": 1e-6, "μm": 1e-6,
 """Units of length in m."""
 _HIGHEST = 1.0  # m, of what can be roughness
 _WIDEST = 0.1  # m, of a map of skin: five fingertips
-_SAME = 0.01  # relative difference of lengths that are the same
+_SPACING_TOLERANCE = 0.01  # relative difference of lengths that are the same
 _POINTS = 3  # columns of a text of points x, y, z
 # What separates numbers in SurfaceTopography's formats of text, whose readers skip lines that they do not understand.
 _TEXTS = {"asc": r"\s+", "xyz": r"[\s,;]+"}
@@ -131,7 +131,7 @@ def _refuse_numbering(path: Path, heights: Array) -> None:
     """
     for lines, name in ((heights[:, 1:], "line"), (heights[1:].T, "column")):
         steps = np.diff(lines, axis=1)
-        even = (steps[:, 0] != 0) & (np.ptp(steps, axis=1) < _SAME * np.abs(steps[:, 0]))
+        even = (steps[:, 0] != 0) & (np.ptp(steps, axis=1) < _SPACING_TOLERANCE * np.abs(steps[:, 0]))
         if even[0] and even.mean() < 0.5:
             raise ValueError(
                 f"{path} has values at equal steps in its first {name}, from {lines[0, 0]:g} to {lines[0, -1]:g}, "

@@ -8,7 +8,7 @@ proportion to the part of the map that is missing.
 
 A mark of missing pixels that nobody named, as -9999, or a saturated pixel, is a value far from all other heights. The
 smallest height is one where nothing lies between it and the next one over more than 20 interquartile ranges of the
-others, 27 standard deviations of Gaussian heights; likewise the largest. A groove, however deep, is measured at many
+others, 27 standard deviations of Gaussian heights; and so is the largest. A groove, however deep, is measured at many
 depths, so that its deepest pixel has others near. Pixels of the two extreme values do not count among the others, as
 they may be many. Where half of the others are equal, their whole range stands for that of the quartiles.
 """

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from variational.solvers.continuation import Continuation
 
 Array = NDArray[np.float64]
-_SAME = 1e-9  # m, within which two places are one
+_MAX_DISTANCE = 1e-9  # m, within which two places are one
 _KIND = 1.0  # m, by which the places of displacements in x and y and of pressures in each layer are set apart
 _SURFACE = [field.name for field in fields(SurfaceState) if field.name != "history"]
 
@@ -121,7 +121,7 @@ def order(path: "Continuation", places: dict[str, Array]) -> Callable[[str, Arra
         known = len(own) and len(whole)
         far, found[kind] = cKDTree(whole).query(own) if known else (np.full(len(own), np.inf), own[:, 0].astype(int))
         total = comm.allreduce(len(own))
-        if total != len(whole) or comm.allreduce(float(np.max(far, initial=0.0)), op=MPI.MAX) > _SAME:
+        if total != len(whole) or comm.allreduce(float(np.max(far, initial=0.0)), op=MPI.MAX) > _MAX_DISTANCE:
             raise OtherBody(f"{len(whole)} {kind} are kept, and the mesh has {total} or has them elsewhere")
     return lambda kind, values: np.asarray(values[found[kind]])
 

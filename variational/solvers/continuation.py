@@ -34,8 +34,9 @@ _MANY = 0.5  # part of the contact points that slip, above which they are expect
 _STEP_OVER = 1.5  # step tried where the loop over the scales cycles, over the one that led there
 # To an equilibrium from a state from elsewhere.
 _WAYS = ("at once", "under held skin", "part by part", "pseudo-transient")
-_FEW = 6  # factorisations; a step that took no more lets the next one grow
-_MANY_STEPS, _FEW_STEPS = 20, 100  # most steps of a load: so many for each of its largest steps, and so many more
+_EASY_FACTORISATIONS = 6  # factorisations; a step that took no more lets the next one grow
+_MAX_STEPS_PER_LARGEST = 20  # steps of a load for each of its largest steps, and
+_MAX_FURTHER_STEPS = 100  # more of them
 _UNCUT = 3  # steps in a row that were not cut, after which the next one grows however hard they were
 _CUT = 4  # steps in a row that were, each a part of what is left up to a jump that none gets over
 
@@ -176,7 +177,7 @@ class Continuation:
         slides = way.length != 0 and not target.continues
         if not resumed:
             p.step = largest / 2 if slides else largest
-        most = _FEW_STEPS + int(np.ceil(_MANY_STEPS / largest))
+        most = _MAX_FURTHER_STEPS + int(np.ceil(_MAX_STEPS_PER_LARGEST / largest))
         while p.part < 1:
             if p.part > 0 and target.until_full_slip and self.slip[1]:
                 return True
@@ -211,7 +212,7 @@ class Continuation:
             p.uncut, p.cut = (0, p.cut + 1) if attempt.cutbacks else (p.uncut + 1, 0)
             p.jumps |= attempt.pseudo_transient > 0
             p.step = within
-            if attempt.factorisations <= _FEW or p.uncut >= _UNCUT:
+            if attempt.factorisations <= _EASY_FACTORISATIONS or p.uncut >= _UNCUT:
                 p.step, p.uncut = min(2 * p.step, largest), 0
             if self.on_accept(target, p.part, attempt) is True:
                 return False

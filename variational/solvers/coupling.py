@@ -44,7 +44,7 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 # Solves at air gaps that change again are not exact. They leave a part of what the load brought out of balance, at most
 _FIRST, _LATER = StopRule(0.1, most=1e-3), StopRule(0.03)  # so much of the force scale; or of what air gaps brought,
-_NEARLY = 1e-3  # until the air gaps' relative error is below this;
+_SETTLED = 1e-3  # until the air gaps' relative error is below this;
 _ON_ITS_WAY = StopRule(0.5)  # where a ridge comes down, whose next air gap is known already.
 _HASTE = 2  # iterations in which the residual must fall where a ridge lets go, as there is a remedy then
 
@@ -186,7 +186,7 @@ class Coupling:
                 contact_history = formulation.corrected(state, contact_history)
                 problem.history.impose(contact_history)
             if charged:
-                settled = secants.settled(_NEARLY)
+                settled = secants.settled(_SETTLED)
                 self.set_air_gaps(secants.step())
                 stop = EXACT if settled else _ON_ITS_WAY if secants.closing else _LATER
         ridge, error = self.history.ridges[-1], self.history.errors[-1]

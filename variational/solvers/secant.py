@@ -28,7 +28,7 @@ _LEADS = 0.1  # of the largest move: else it is the other ridges' air gaps that 
 _FIRST = 0.01  # of d: how far the first step may go beyond r, whose gain is that of another load
 _OPENING = 0.05  # of d: r of a ridge that lets go, and
 _OPENED, _OPENS = 1.3, 1.02  # its air gap over that at the loop's start; the same of one that may let go
-_NEARLY = 0.9  # gain of a ridge that may
+_GAIN_OPENS = 0.9  # gain of a ridge that may
 _DOWN, _UP = 1 / 3, 1 / 2  # of d: longest step
 _JUMP = 0.1  # of d: how far a ridge past its fold goes at least
 
@@ -90,7 +90,7 @@ class Secants:
         It is the one whose air gap opened most in this loop. There is none while another ridge comes down.
         """
         opened = np.where(self._r > 0, d / self._start, 0.0)
-        near = (opened > _OPENS) | (np.nan_to_num(self.gain) > _NEARLY) & (self._r > 0)
+        near = (opened > _OPENS) | (np.nan_to_num(self.gain) > _GAIN_OPENS) & (self._r > 0)
         alone = bool((d > self._start / _OPENED).all()) and bool(near.any())
         most = np.arange(len(opened)) == int(np.argmax(np.where(near, opened, 0.0)))
         return most & alone & ~self._opened & (d < self._free)

@@ -35,10 +35,11 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 Nodes = NDArray[np.bool_]
 Domains = dict[fem.IntegralType, list[tuple[int, NDArray[np.int32]]]]
-_MOST = 12  # iterations
+_MAX_ITERATIONS = 12  # of a solve of the layer
 _HALVINGS = 5  # of a step which makes the layer's residual
 _GROWS = 10.0  # more than so many times as large
-_NEAR, _MARGIN = 1.0, 2.0  # finest facets: skin that is nearer to the screen belongs to the layer; when it is made anew
+_LAYER_HEIGHT = 1.0  # finest facets: skin that is nearer to the screen belongs to the layer;
+_MARGIN = 2.0  # the same, when it is made anew
 
 
 class _Weak:
@@ -85,7 +86,7 @@ class SkinLayer:
         """Make the layer anew if skin has come near the screen that is not in it; collective."""
         self._layout.to_nodes(x, self._nodal)
         height = self._height + self._nodal[2 * self._skin + 1] + self._layout.rigid_part(x)[1]
-        near = self._skin[height < _NEAR * self._finest]
+        near = self._skin[height < _LAYER_HEIGHT * self._finest]
         if not self._comm.allreduce(bool((~self._nodes[near]).any()), op=MPI.LOR):
             return
         self.free()
@@ -178,7 +179,7 @@ class SkinLayer:
         if first >= min(most, OUTSIDE / 2):
             return
         start = x.array_r[self._rows].copy()
-        for _ in range(_MOST):
+        for _ in range(_MAX_ITERATIONS):
             if size <= enough:
                 return
             size = self._iterate(ksp, x, f, max(first, size))

@@ -41,7 +41,7 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 Rows = NDArray[np.int64]
 _ETA = 2e8  # Pa/m, of the order of the softest disturbances of a fingerpad
-_MOST = 50  # vectors
+_MAX_VECTORS = 50  # of the Krylov space
 _ROUGH = 0.1  # residual of a Ritz pair over its own growth above which it is not significant
 _SETTLED = 1e-6  # residual of the Ritz pair over the largest growth
 _EMPTY = 1e-12  # of a vector's norm, below which the space is exhausted
@@ -179,10 +179,10 @@ class StabilityCheck:
         ksp.solve(Mw, w)  # into the range of the operator: what does not move the skin is left out
         M.mult(w, Mw)
         basis, masses = [], []
-        H = np.zeros((_MOST + 1, _MOST))
+        H = np.zeros((_MAX_VECTORS + 1, _MAX_VECTORS))
         norm = np.sqrt(w.dot(Mw))
         best = Stability(np.inf, False)
-        for k in range(_MOST):
+        for k in range(_MAX_VECTORS):
             basis.append(w / norm)
             masses.append(Mw / norm)
             ksp.solve(eta * masses[-1], w)
