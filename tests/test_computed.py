@@ -143,7 +143,7 @@ def test_runs_of_other_models_are_refused(tmp_path):
     """The model is no key of a scene."""
     runs = [Result(Scene(), model, None, None, None, folder=tmp_path / model) for model in ("full", "cylinders")]
     with pytest.raises(SceneError, match="model is 'full' in .*full and 'cylinders' in .*cylinders; give runs"):
-        one_scene.refuse_mixed(runs)
+        refuse_mixed(runs)
 
 
 def test_two_values_at_one_place_are_refused(table):
