@@ -308,3 +308,13 @@ def test_first_load_over_time_begins_unloaded():
     first, second = result(press, {"name": "more", "bone_height": -30e-6, "duration": 1.0}).loads
     assert first.extremes["contact_length"].min == 0.0
     assert second.extremes["contact_length"].min == first.end.contact_length
+
+
+def test_first_touch_has_no_estimated_errors():
+    """A finger that slides as it is pressed has no normal contact, of which errors could be estimated."""
+    found = result(
+        PRESS | {"bone_x": 1e-4}, {"name": "charge", "voltage": 50.0}, output=FINGER["output"] | {"errors": True}
+    )
+    assert found.charged is None and found.full_slip is not None
+    estimated = found.record["accuracy"]["quantities"]
+    assert estimated and not any(key.startswith("charged_") for key in estimated)

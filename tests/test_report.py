@@ -156,6 +156,27 @@ def test_half_written_run_is_reported_as_such(copy):
     assert f"has not ended, or was killed, after step {len(rows) - 2}" in write(copy).read_text(encoding="utf-8")
 
 
+def test_contact_lengths_of_the_ridges_add_up(page):
+    """In every saved state; each length is rounded to 0.05 µm."""
+    found = re.search(r'<script type="application/json" id="data">(.*?)</script>', page, re.DOTALL)[1]
+    frames = json.loads(found)["finger"]["frames"]
+    assert len(frames) >= 3
+    for frame in frames:
+        whole = float(re.search(r"L_R = ([0-9.]+) mm", frame["about"])[1])
+        assert sum(ridge["length"] for ridge in frame["skin"]) == pytest.approx(whole, abs=1.5e-3)
+
+
+def test_run_without_an_accepted_step_is_read_back(copy):
+    """Its first step failed: there is a failure and no table."""
+    summary = json.loads((copy / "summary.json").read_text(encoding="utf-8"))
+    known = {key: value for key, value in summary.items() if not key.startswith(("uncharged_", "charged_", "full_sl"))}
+    failed = known | {"steps": 0, "loads": [], "states": {}, "failure": "no equilibrium"}
+    (copy / "summary.json").write_text(json.dumps(failed), encoding="utf-8")
+    for file in copy.glob("*.csv"):
+        file.unlink()
+    assert Result.load(copy).failure == "no equilibrium"
+
+
 @pytest.mark.parametrize(
     ("files", "words"),
     [
