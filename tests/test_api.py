@@ -183,6 +183,7 @@ def test_sweep_is_taken_up_again(tmp_path, monkeypatch):
         ({"voltage": 100}, r"voltage of the sweep is 100; it must be a list, such as \[100\]"),
         ({"geometry.ridge_profile": [[1.0], [1.0, -0.1]]}, "it must be a list of at least one value, none a list"),
         ({"volt": [1.0]}, "did you mean voltage"),
+        (dict.fromkeys(("voltage", "f_ext"), list(range(1, 201))), "the sweep has 40000 points; at most 10000"),
     ],
 )
 def test_sweep_that_makes_no_sense_is_refused(tmp_path, axes, words):
@@ -197,3 +198,33 @@ def test_point_that_cannot_be_run_is_a_failure_of_its_own(tmp_path, monkeypatch)
     found = fp.sweep(fp.Scene(), tmp_path, **{"geometry.bone_centre": [2e-3, 8e-3]})
     assert len(asked) == 1 and found[1].failure == "CRASH_1: gone"
     assert found[0].failure.startswith("the bone touches the skin's layers") and "\n" not in found[0].failure
+
+
+def test_sweep_under_a_launcher_of_mpi_is_refused(monkeypatch, tmp_path):
+    monkeypatch.setenv("OMPI_COMM_WORLD_SIZE", "2")
+    with pytest.raises(fp.SceneError, match="start it without mpirun"):
+        fp.sweep(fp.Scene(), tmp_path, voltage=[0.0])
+
+
+def test_what_results_do_not_have_is_refused(ran, tmp_path):
+    """And a file in the place of a scene; each in a sentence that names what there is."""
+    found = fp.sweep(fp.Scene(), tmp_path, model="cylinders", voltage=[0.0])
+    with pytest.raises(ValueError, match="quantity is 'stable'; it must be one of f_ext"):
+        found.array("stable")
+    with pytest.raises(ValueError, match="state is 'slip'; it must be one of uncharged, charged, full_slip"):
+        found.array("mu_app", "slip")
+    with pytest.raises(ValueError, match="kind is 'movie'; it must be one of surface, finger, history, footprint"):
+        ran[0].plot("movie")
+    with pytest.raises(fp.SceneError, match="a file is read by Scene.load"):
+        fp.run("scene.toml")
+
+
+@pytest.mark.parametrize("change", [{"model": "full"}, {"voltage": 50.0}])
+def test_models_do_not_overwrite_each_other(tmp_path, change):
+    """A folder belongs to one scene and one model."""
+    fp.run(fp.Scene(), out=tmp_path, model="cylinders")
+    before = (tmp_path / "summary.json").read_bytes()
+    model = change.pop("model", "cylinders")
+    with pytest.raises(fp.SceneError, match="holds the results of another scene"):
+        fp.run(fp.Scene(**change), out=tmp_path, model=model)
+    assert (tmp_path / "summary.json").read_bytes() == before

@@ -48,3 +48,11 @@ def test_sentences_hold_of_the_numbers(found):
     assert low["d_eq"] > LEAST_GAP and low["mu_app"] < PAPER * (1 - NEAR)
     assert words["met_low"] < 170 < words["met_high"]
     assert min(words[key] for key in ("light_normal", "heavy_normal")) > 0
+
+
+def test_default_is_that_of_other_pages(found):
+    """The same scene at 10 µm, run for the models' page; the other counts the ridges that can touch by a rule."""
+    models = kept("models").numbers["scenes"]["75 N/m, 200 V"]["full"]["summary"]
+    reference = found["full"]["reference"]
+    assert reference["mu_app"] == pytest.approx(models["full_slip_mu_app"], rel=1e-5)
+    assert reference["charged"] == pytest.approx(models["charged_contact_length"], rel=1e-3)

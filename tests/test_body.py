@@ -44,6 +44,8 @@ def _slid(ranks: int) -> Body:
     [
         ({"shape": 3}, "shape is 3; it must be a shape of fingerpad.geometry, a mesh, or a file of one"),
         ({"element": "P7"}, "element is 'P7'; it must be one of P1, P2"),
+        ({"element": ["P1"]}, "element is .*; it must be one of P1, P2"),
+        ({"step_scale": float("nan")}, "step_scale is nan; it must be"),
         ({"contact": 3}, "contact is 3; it must be a Formulation"),
         ({"h_0": -1.0}, "h_0 is -1.0; it must be a finite number greater than 0"),
     ],
@@ -256,6 +258,9 @@ def test_material_of_a_layer_by_its_name():
         (lambda b: b.charge(100.0), "the body has no roughness, so that it has no air gap to charge"),
         (lambda b: b.press(), "press takes either f_ext, in N/m, or height, in m"),
         (lambda b: b.press(float("nan")), "f_ext is nan N/m; it must be a finite number"),
+        (lambda b: b.press(-1.0), "f_ext is -1 N/m; it must be positive"),
+        (lambda b: b.press("4.4 N"), "f_ext is '4.4 N'; its unit is not a unit of force per length"),
+        (lambda b: b.slide(), "slide takes a distance, in m, or until_full_slip=True"),
         (lambda b: b.slide(1e-3, until_full_slip=True), "the body has no friction"),
     ],
 )
@@ -271,6 +276,8 @@ def test_load_is_refused(call, message):
     [
         ({"stratum corneom": SKIN}, "'stratum corneom', which is no layer of the body; did you mean 'stratum corneum'"),
         (5.0, "material is 5.0; it must be a Material, or a dictionary of one for each layer"),
+        ({"stratum corneum": SKIN, "bone": SKIN}, "'bone', which is no layer of the body; its layers are 'stratum c"),
+        ({"stratum corneum": 5.0}, "the material of 'stratum corneum' is 5.0; it must be a Material"),
         ({}, "there is no material for the layer 'stratum corneum'"),
     ],
 )

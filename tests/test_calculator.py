@@ -313,6 +313,22 @@ def test_ranges_are_those_of_the_kept_runs():
     assert data["error"] == BANDS and data["runs"] == len(loads)
 
 
+def test_point_that_no_run_is_at_has_no_error(whole, tmp_path):
+    """Nor has a curve of another skin or screen a solid line; at 300 V it is dashed from 200 V on, exactly."""
+    beyond = [{"voltage": 201}, {"f_ext": 151}, {"f_ext": 4.9}]
+    other = [{"friction": 0.26}, {"electric.d_i": 2}, {"roughness.h_rms": 4}, {"length": 1.5, "ridges": 16}]
+    pages = shown(whole, tmp_path, *beyond, *other, {"voltage": 300})
+    for found in pages:
+        assert not any("±" in cell for cell in found["cells"].values())
+        assert found["caption"].endswith("error not known") and found["always"].endswith(", error not known")
+        assert "not known" in found["notes"]
+    for found in pages[len(beyond) : -1]:
+        assert [found[curve][part] for curve in ("voltage", "force") for part in ("solid", "bands")] == [0] * 4
+        assert all("dashed, since its error is not known" in words for words in found["captions"])
+    (first, last), (begin, end) = pages[-1]["voltage"]["ends"]
+    assert (last - begin) / (end - begin) == pytest.approx(200 / 300, abs=1e-3) and first == begin
+
+
 def test_known_point_has_its_errors(whole, tmp_path):
     """Of friction, attraction and contact length, in the digits of the value."""
     (found,) = shown(whole, tmp_path, {})

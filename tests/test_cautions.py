@@ -1,6 +1,6 @@
 """Cautions of a state are the same whatever computed it: a run, a body, a cheaper model, a table."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import pytest
@@ -117,3 +117,10 @@ def test_cylinders_and_tables(young, capsys):
     for command in ("estimate", "microscale"):
         assert main([command, "--set", f"roughness.young={young}"]) == 0
         assert "the closure is out of its range: the mean pressure of ridges is beyond" in capsys.readouterr().out
+
+
+def test_state_without_ridges_has_their_mean():
+    """Of a cheaper model, whose ridges are alike: 7 N/m on 40 um, 175 kPa."""
+    whole = state((5e4, 3e5), (1.0, 6.0))
+    alone = replace(whole, ridges=None, ridges_in_contact=2)
+    assert [on_states([alone], Gap(limit=limit)) != [] for limit in (1.7e5, 1.8e5)] == [True, False]

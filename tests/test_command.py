@@ -1,7 +1,10 @@
 """The command fingerpad: options win over the file, PETSc's options go through, bad input ends in one sentence."""
 
 import argparse
+import errno
 import json
+import os
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -67,6 +70,10 @@ def test_options_of_petsc_are_told_from_the_others(words, own, petsc):
         (["--set", "voltage=50", "--set", " voltage = 100"], "--set voltage is given twice; give one value"),
         (["--set", "f_ext=-3"], "f_ext is -3 N/m; it must be from 0.001 to 5000 N/m"),
         (["--set", "voltage"], "voltage is no change of a scene; it must be key=value"),
+        (["-voltage", "300"], "-voltage is not an option; did you mean --set voltage=...?"),
+        (["--out", f"{__file__}/below"], f"--out {__file__}/below cannot be a folder, since {__file__} is a file;"),
+        (["none.toml"], "scene file none.toml cannot be read:"),
+        ([str(SCENES / "voltage_while_sliding.toml"), "--set", "f_ext=50"], "f_ext is 50 and history is given"),
         (["--set", "f_exd=3"], "f_exd is not a key of a scene; did you mean f_ext?"),
         (["--voltage", "3"], "--voltage is not an option; did you mean --set voltage=...?"),
         (["-f_ext=3"], "-f_ext=3 is not an option; did you mean --set f_ext=...?"),
@@ -235,3 +242,40 @@ def test_bad_ranges(text, message):
     with pytest.raises(SceneError) as refusal:
         ranges.read("x", text)
     assert str(refusal.value).startswith(message)
+
+
+@pytest.mark.parametrize(("stop", "code"), [(KeyboardInterrupt(), 130), (SystemExit(143), 143)])
+def test_sweep_that_is_stopped_says_that_it_goes_on(capsys, monkeypatch, tmp_path, stop, code):
+    def stopped(*args, **axes):
+        raise stop
+
+    monkeypatch.setattr("fingerpad.cli.sweep.sweep", stopped)
+    assert main(["sweep", "--over", "voltage=0,100", "--out", str(tmp_path / "new")]) == code
+    assert "new, and the same command goes on" in capsys.readouterr().err
+
+
+def test_negative_voltages(capsys):
+    """A range of them after an equals sign, and a number also without."""
+    for words in (["--voltage=-200:200:3"], ["--voltage", "-200"]):
+        assert main(["estimate", *words]) == 0
+        assert re.search(r"^ *75(.0+)? +-200(.0)? ", capsys.readouterr().out, re.MULTILINE)
+
+
+def test_terminal_without_the_letters_gets_others():
+    """µ and ² are no letters of ASCII; the command prints a mark for each and goes on."""
+    command = [sys.executable, "-m", "fingerpad", "microscale", "--p", "1e4"]
+    environment = os.environ | {"PYTHONIOENCODING": "ascii"}
+    done = subprocess.run(command, env=environment, capture_output=True, text=True, check=False, cwd=ROOT)
+    assert done.returncode == 0 and "rms roughness 3.1 ?m" in done.stdout
+
+
+def test_file_that_cannot_be_written_is_named(capsys, tmp_path, monkeypatch):
+    """As on a disk that is full: in a sentence, after the table."""
+
+    def full(file, data):
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    monkeypatch.setattr(Path, "write_bytes", full)
+    assert main(["estimate", "--csv", str(tmp_path / "mu.csv")]) == 2
+    said = capsys.readouterr()
+    assert "µ_app" in said.out and "mu.csv cannot be used: No space left on device" in said.err

@@ -4,8 +4,9 @@ import csv
 
 import pytest
 
-from fingerpad.cli import main, microscale, sweep
+from fingerpad.cli import main, microscale, ranges, sweep
 from fingerpad.reduced import cylinders
+from fingerpad.runs.sweep import sweep as run_sweep
 from fingerpad.scene import Scene, from_data, keys, load
 from fingerpad.scene.remarks import LEAKAGE
 from tests.commands import refused
@@ -42,6 +43,10 @@ def test_estimate_says_where_its_error_is_not_known(capsys):
         ("estimate --csv nowhere/mu.csv", "its folder is not there"),
         ("estimate demos/scenes/unload.toml", "history is given; the model 'cylinders' answers for press, charge and"),
         ("microscale --p 0:1e5:3", "--p: 0.0 is not allowed; it must be greater than 0"),
+        ("microscale demos/scenes/sine_while_sliding.toml", "name those wanted by --voltage"),
+        ("estimate --plot mu.txt", "mu.txt cannot be a picture; its name must end with one of .png"),
+        ("params zebra", "no key of a scene has zebra in its name"),
+        ("mesh --out finger.stl", "finger.stl cannot be a mesh; its name must end with .msh"),
         ("compare --ridges 3", "one of --contact-length and --ridges is given without the other"),
         ("compare --run none --model cylinders", "none is not a folder of a finished run"),
         ("compare --contact-length 1.58 --ridges 16", "--contact-length is 1580 mm, longer than 16 ridges, 7.73 mm"),
@@ -119,6 +124,8 @@ def test_sweep_prints_and_keeps_a_table(tmp_path, capsys):
     [
         ([], "nothing is varied; give a table [sweep]"),
         (["--over", "voltage"], "--over voltage is no KEY=RANGE"),
+        (["--over", "voltage=0,5", "--over", "voltage=9"], "--over voltage is given twice"),
+        (["--over", "voltage=0,-5500"], "voltage is -5500 V; it must be"),
         (["--over", "volts=0,5"], "volts is not a key of a scene; did you mean voltage?"),
         (["--over", "voltage=0,5", "--set", "voltage=5"], "--set voltage is given and voltage is varied"),
         (["--over", "voltage=5,5"], "voltage of the sweep is [5, 5]; each value must be there once"),
@@ -161,3 +168,13 @@ def test_compare_takes_a_length_with_a_unit(capsys):
         printed.append([line for line in capsys.readouterr().out.splitlines() if "seconds" not in line])
     assert any("contact length" in line and "1.5800" in line for line in printed[0])
     assert [line for line in printed[0] if "time" not in line] == [line for line in printed[1] if "time" not in line]
+
+
+def test_sweep_over_keys_that_need_each_other_and_whole_numbers(tmp_path):
+    """Only the points are checked: a value may need that of another axis. Some keys take whole numbers alone."""
+    axes = {"contact.formulation": ["nitsche"], "contact.gamma_0": [1, 2]}
+    found = run_sweep(Scene(), tmp_path, model="cylinders", **axes)
+    assert [result.scene.contact.gamma_0 for result in found] == [1.0, 2.0]
+    for text in ("55,57", "55:59:3", "-3"):
+        assert all(isinstance(value, int) for value in ranges.read("x", text))
+    assert [type(value) for value in ranges.read("x", "0:1:3")] == [float] * 3

@@ -144,3 +144,14 @@ def test_map_smaller_than_the_longest_waves_is_told(tmp_path, capsys, width, tol
     topography = {"file": str(tmp_path / "map.npy"), "unit": "m", "size": [width, width]}
     scene = from_data({"roughness": {"topography": topography}})
     assert any("roughness ends at waves" in text for text in remarks(scene)) == told
+
+
+def test_values_that_a_scene_refuses_are_told(tmp_path, capsys):
+    """Heights in nm that are taken for um, with the question of their unit."""
+    h = SelfAffine().surface((64, 64), (400e-6, 400e-6), 3).heights * 1e9
+    np.savetxt(tmp_path / "skin.csv", h, delimiter=";")
+    size = ("--size", "0.4 mm", "0.4 mm")
+    assert main(["topography", str(tmp_path / "skin.csv"), "--unit", "um", *size]) == 0
+    line = next(line for line in capsys.readouterr().out.splitlines() if "refuses" in line)
+    assert line.startswith("# a scene refuses these values: roughness.h_rms is 0.00")
+    assert line.endswith("e-06?); is the unit of the heights right?")

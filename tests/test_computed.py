@@ -139,6 +139,26 @@ def test_runs_of_other_screens_are_refused(together, capsys):
     )
 
 
+def test_runs_of_other_models_are_refused(tmp_path):
+    """The model is no key of a scene."""
+    runs = [Result(Scene(), model, None, None, None, folder=tmp_path / model) for model in ("full", "cylinders")]
+    with pytest.raises(SceneError, match="model is 'full' in .*full and 'cylinders' in .*cylinders; give runs"):
+        refuse_mixed(runs)
+
+
+def test_two_values_at_one_place_are_refused(table):
+    """Roundoff of force, voltage and value is none, nor is what the errors allow."""
+    friction = read(table("force (N/m), voltage (V), friction (1)\n20, 100, 0.3\n"))
+
+    def slip(mu, f_ext=20.0, **more):
+        return Result(Scene(), "full", None, None, state(4, f_ext, 100.0, mu_app=mu, **more))
+
+    computed([slip(0.4), slip(0.4 + 1e-7, 20 + 1e-8)], friction)
+    computed([slip(0.4), slip(0.41, error=Errors(mu_app=0.02))], friction)  # on another mesh, for an accuracy
+    with pytest.raises(SceneError, match="friction is 0.4 in a run and 0.41 in a run, both at 20 N/m and 100 V; give"):
+        computed([slip(0.4), slip(0.41)], friction)
+
+
 def test_forces_on_the_finger_may_differ():
     """And be those at its centre; all else may not."""
 

@@ -83,6 +83,8 @@ def test_states_are_those_of_the_summary(folder, data):
         for key in ("step", "mu_app", "f_t", "contact_length", "ridges_in_contact", "bone_height"):
             assert float(data[f"state_{key}"].sel(state=name)) == values[key]
     assert np.isnan(data["state_mu_app"].sel(state="full_slip"))
+    missing = [int(data[f"state_{name}"].sel(state="full_slip")) for name in ("step", "ridges_in_contact", "stable")]
+    assert missing == [-1] * 3, "0 ridges would be a lifted finger"
     assert list(data["load"].values) == [load["name"] for load in summary["loads"]]
 
 
@@ -211,6 +213,13 @@ def test_full_disk_loses_the_dataset_alone(tmp_path, monkeypatch):
     assert json.loads((tmp_path / "summary.json").read_text(encoding="utf-8"))["notes"] == [note]
     assert note in (tmp_path / "run.log").read_text(encoding="utf-8")
     assert rows_of(tmp_path, "steps") and not (tmp_path / "result.nc").exists()
+
+
+def test_full_disk_loses_no_table_of_a_sweep(tmp_path, monkeypatch):
+    monkeypatch.setattr(files, "replace", full)
+    found = fp.sweep(fp.Scene(), tmp_path, model="cylinders", voltage=[0, 100])
+    assert found.notes[1:] == ("sweep.nc was not written: No space left on device; all other files are complete",)
+    assert str(found).endswith(found.notes[1]) and len(rows_of(tmp_path, "table")) == 2
 
 
 def test_error_of_the_program_is_no_note(tmp_path, monkeypatch):

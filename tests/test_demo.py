@@ -100,6 +100,14 @@ def test_normal_contact_is_symmetric(summary):
     assert abs(summary["charged_f_t"]) < 1e-3 * summary["full_slip_f_t"]
 
 
+def test_receptor_sites(coarse):
+    """Under a central ridge the stiff epidermis holds more energy than the soft papillae beside it."""
+    with (coarse / "receptors.csv").open(encoding="utf-8", newline="") as file:
+        last = {row["ridge"]: row for row in csv.DictReader(file)}
+    merkel, left, right = (float(last["0"][name]) for name in ("merkel_sed", "meissner_left", "meissner_right"))
+    assert merkel > max(left, right) > min(left, right) > 0
+
+
 def test_never_outside_the_cone(coarse):
     """No step's friction exceeds mu_0 times its contact force, to the solver's tolerance."""
     for row in steps(coarse):

@@ -88,8 +88,8 @@ def test_a_second_signal_acts_at_once(monkeypatch):
     monkeypatch.setattr("fingerpad.io.interrupt.time.monotonic", lambda: clock[0])
     monkeypatch.setattr("fingerpad.io.interrupt.os.kill", lambda *what: killed.append(what))
     with Interrupt(MPI.COMM_SELF) as interrupt:
-        for clock[0] in (0.0, 0.9):
-            signal.raise_signal(signal.SIGTERM)
+        for clock[0], number in ((0.0, signal.SIGTERM), (0.1, signal.SIGHUP), (0.9, signal.SIGTERM)):
+            signal.raise_signal(number)  # terminals, launchers and batch systems send more than one
         assert not killed
         clock[0] = 1.1
         signal.raise_signal(signal.SIGTERM)
@@ -190,3 +190,11 @@ def test_no_room_for_a_summary(tmp_path):
         resource.setrlimit(resource.RLIMIT_FSIZE, before)
     assert json.loads((tmp_path / "summary.json").read_text()) == {"old": 1}
     assert [file.name for file in tmp_path.iterdir()] == ["summary.json"]
+
+
+def test_numbers_that_json_lacks_are_null(tmp_path):
+    """Other programs could not read them, and hours of a run are not lost by one: no rate of growth is inf."""
+    data = {"lambda_min": float("inf"), "shares": [float("nan"), 1.0], "number": (2, None)}
+    replace_json(tmp_path / "summary.json", data)
+    text = (tmp_path / "summary.json").read_text()
+    assert json.loads(text) == {"lambda_min": None, "shares": [None, 1.0], "number": [2, None]}

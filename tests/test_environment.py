@@ -100,6 +100,8 @@ def test_what_can_be_written_to_is_bound_and_the_rest_is_read_only(checkout):
     [
         ("Can't chdir to /usr/x: No such file or directory", "the current folder is"),
         ("Creating new namespace failed: Operation not permitted", "the kernel refuses user namespaces"),
+        ("setting up uid map: Permission denied", "kernel.apparmor_restrict_unprivileged_userns"),
+        ("Can't mount proc on /newroot/proc: Device busy", "cannot be entered (bwrap: Can't mount proc"),
     ],
 )
 def test_what_bubblewrap_refuses(checkout, refusal, words):
@@ -117,7 +119,34 @@ def test_checkout_that_is_not_inside(checkout):
     assert f"the checkout is in {checkout}, and the private root has folders of its own there" in done.stderr
 
 
+@pytest.mark.parametrize(
+    ("before", "words"),
+    [("mkdir x && cd x && rmdir ../x", "the current folder is gone"), ("ulimit -n 16", "16 open files, and a")],
+)
+def test_where_no_command_can_run(checkout, tmp_path, before, words):
+    """Bubblewrap would end with a message of its own, and what it had started would stay."""
+    line = ["bash", "-c", f'{before} && exec "{checkout}/environment/run" true']
+    done = subprocess.run(line, env=environment(checkout), capture_output=True, text=True, cwd=tmp_path)
+    assert done.returncode == 1 and words in done.stderr
+
+
+def test_modules_of_the_project_are_not_looked_for_in_the_current_folder(checkout):
+    show = "import os; print(os.environ.get('PYTHONSAFEPATH'))"
+    assert enter(checkout, sys.executable, "-c", show, "-m fingerpad run").stdout == "1\n"
+    assert enter(checkout, sys.executable, "-c", show, "-m mine").stdout == "None\n"
+
+
 # -- signals -----------------------------------------------------------------------------------------------
+def test_what_the_caller_ignores_stays_ignored(checkout):
+    """nohup, and whatever a script starts in the background; the exit code is the command's."""
+    line = ["env", "--default-signal", "--ignore-signal=HUP,INT", str(checkout / "environment" / "run"), "brief"]
+    with subprocess.Popen(line, env=environment(checkout), stdout=subprocess.PIPE, text=True) as process:
+        assert process.stdout.readline() == "ready\n"
+        process.send_signal(signal.SIGHUP)
+        process.send_signal(signal.SIGINT)
+        assert process.stdout.read() == "got\n"
+    assert process.returncode == 42
+    assert "--die-with-parent" in told(checkout) and "exec bwrap" not in (HERE / "run").read_text()
 
 
 @pytest.mark.parametrize(
@@ -125,6 +154,9 @@ def test_checkout_that_is_not_inside(checkout):
     [
         ("command", "SIGINT", "SIGINT"),
         ("command", "SIGUSR1", "SIGUSR1"),
+        ("command", "SIGTERM", "SIGTERM"),
+        ("command", "SIGHUP", "SIGHUP"),
+        ("mpirun", "SIGHUP", "SIGUSR2"),
         ("mpirun", "SIGINT", "SIGUSR1"),
         ("mpirun", "SIGTERM", "SIGUSR2"),
     ],
@@ -241,3 +273,10 @@ def test_a_root_of_somebody_else_is_not_used(tmp_path, maker, place):
     done = root(maker)
     assert (done.returncode, done.stdout) == (1, "")
     assert f"{whose} belongs to mallory, whose programs would be run" in done.stderr
+
+
+@needs_subuid
+def test_a_root_that_everybody_can_write_to_is_not_used(maker):
+    Path(root(maker).stdout.strip()).chmod(0o777)
+    done = root(maker)
+    assert (done.returncode, done.stdout) == (1, "") and "can be written to by everybody" in done.stderr

@@ -1,9 +1,12 @@
 """The error study of the default scene, on made-up runs whose limits are known."""
 
+from types import SimpleNamespace
+
 import pytest
 
 from benchmarks import errors, limits
 from benchmarks.errors import QUANTITIES
+from fingerpad.scene import Scene
 from variational.solvers.continuation import StepFailed
 
 
@@ -72,3 +75,34 @@ def path(monkeypatch):
     Path.tried = []
     monkeypatch.setattr(limits, "Simulation", Path)
     monkeypatch.setattr(limits, "StateRecorder", StateRecorder)
+
+
+def test_path_that_is_lost_is_followed_on_a_finer_mesh(path, monkeypatch):
+    """The uncharged contact is that of the mesh that was found; lost on all of them it is a failure."""
+    assert limits._path(Scene()) == 10e-6
+    assert Path.tried == [20e-6, 10e-6] and StateRecorder.kept == {"uncharged": 10e-6}
+    monkeypatch.setattr(limits, "_STARTS", (40e-6, 20e-6))
+    with pytest.raises(StepFailed, match="lost at 2e-05"):
+        limits._path(Scene())
+
+
+@pytest.mark.parametrize(("lost", "levels"), [(4, 4), (3, 3), (2, None)])
+def test_limit_is_of_the_meshes_before_one_on_which_a_state_is_lost(monkeypatch, lost, levels):
+    """The meshes are numbered from zero, each of half the sizes; of fewer than three no limit is made."""
+    meshes = limits.meshes(Scene().mesh, 4)
+    for name in limits._HALVED:
+        assert [getattr(mesh, name) for mesh in meshes[:3]] == [getattr(meshes[0], name) / k for k in (1, 2, 4)]
+
+    def solved(model, states, comm):
+        if meshes[lost:] and model.mesh.contact == meshes[lost].contact:
+            raise StepFailed("lost")
+        cost = {"unknowns": 1, "factorisations": 1, "processor_seconds": 0.0}
+        return SimpleNamespace(states={}, mesh=model.mesh, values=dict, **cost)
+
+    monkeypatch.setattr(limits, "solve_again", solved)
+    monkeypatch.setattr(limits, "_path", lambda scene: solved(Scene(), {}, None))
+    if levels is None:
+        with pytest.raises(StepFailed, match="lost"):
+            limits._solve(Scene(), 4)
+    else:
+        assert len(limits._solve(Scene(), 4)["levels"]) == levels

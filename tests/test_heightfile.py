@@ -8,7 +8,7 @@ import scipy.io
 
 from tests.test_topography import grid, wave
 from variational.roughness.heightfile import _matrix, _text, scan
-from variational.roughness.missing import filled
+from variational.roughness.missing import filled, mark
 from variational.roughness.selfaffine import SelfAffine
 
 
@@ -267,3 +267,41 @@ def test_matrix_with_a_header_that_cannot_be(tmp_path, header):
     (tmp_path / "map.npy").write_bytes(b"\x93NUMPY\x01\x00" + len(header).to_bytes(2, "little") + header.encode())
     with pytest.raises(ValueError, match="map.npy is no matrix of numbers: "):
         scan(tmp_path / "map.npy", "um", (1e-3, 1e-3))
+
+
+def test_heights_and_lengths_over_any_skin_are_refused(tmp_path):
+    np.save(tmp_path / "high.npy", np.eye(9) * 1e200)
+    with pytest.raises(ValueError, match=r"heights over 1e\+200 m, at most 1 m is allowed"):
+        scan(tmp_path / "high.npy", "m", (1e-3, 1e-3))
+    with pytest.raises(ValueError, match=r"high.npy is 160 m x 160 m large, at most 0.1 m is allowed"):
+        scan(tmp_path / "high.npy", "m", (160.0, 160.0))
+
+
+@pytest.mark.parametrize("width", [1, 3, 20])
+def test_deep_grooves_are_no_marks(width):
+    """Walls are steep and 1000 interquartile ranges deep, but the floor has heights of its own."""
+    h = 0.1 * np.random.default_rng(1).normal(size=(64, 64))
+    h[30 : 30 + width] -= 135.0
+    assert mark(h) is None
+
+
+def test_marks_among_extremes_and_coarse_steps():
+    """Of two extreme values neither hides the other; heights in whole steps, most of them equal, are none."""
+    h = np.random.default_rng(1).normal(size=(20, 20))
+    h[0, :3], h[1, 1] = -9999, 32767
+    assert mark(h) == 32767
+    h[1, 1] = np.nan
+    assert mark(h) == -9999
+    h = np.zeros((20, 20))
+    h[3, 3:8] = [1, 2, 3, 4, 5]
+    assert mark(h) is None and mark(np.zeros((4, 4))) is None
+    h[4, 4] = -9999
+    assert mark(h) == -9999
+
+
+def test_hole_at_the_edge_is_filled():
+    """Without a slope across the edge, a map that varies along the edge alone goes on unchanged."""
+    _, y = grid((12, 9), (1.0, 1.0))
+    holed = 0 * y + 1.0
+    holed[:3, :2] = np.nan
+    np.testing.assert_allclose(filled(holed), 1.0, rtol=1e-12)

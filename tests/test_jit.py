@@ -1,5 +1,6 @@
 """The cache of compiled forms: several processes, killed and stopped ones, and compilers that fail."""
 
+import errno
 import os
 import shutil
 import signal
@@ -9,7 +10,10 @@ import sysconfig
 import time
 from pathlib import Path
 
+import numpy as np
 import pytest
+import ufl
+from dolfinx import fem, mesh
 from mpi4py import MPI
 
 from fingerpad.cli import main
@@ -121,6 +125,8 @@ def test_two_processes_compile_a_form_once(others):
     [
         ("source", True),
         ("source finished empty", True),
+        ("source finished", True),
+        ("finished", True),
         ("library finished", False),
     ],
 )
@@ -140,6 +146,32 @@ def test_what_is_not_whole_is_compiled_again(cache, tmp_path, monkeypatch, capfd
     assert integral() == 2.5
     assert (UNFINISHED in capfd.readouterr().err) is compiled
     assert (cache / f"{name}.c").exists() is compiled or "source" in left
+
+
+def test_without_locks(cache, monkeypatch):
+    """Some file systems have none: processes then compile a form several times."""
+
+    def refuse(file, how):
+        raise OSError(errno.ENOLCK, "no locks")
+
+    monkeypatch.setattr(jit.fcntl, "flock", refuse)
+    assert integral() == 2.5
+
+
+def test_compiled_forms_keep_what_is_no_number():
+    """The logarithm of a negative Jacobian determinant is NaN, in each cell that is inside out and in no other."""
+    square = mesh.create_unit_square(MPI.COMM_SELF, 2, 2)
+    cells = fem.functionspace(square, ("Discontinuous Lagrange", 0))
+    J, v = fem.Function(cells), ufl.TestFunction(cells)
+    J.x.array[:] = np.linspace(-1.0, 2.0, len(J.x.array))
+    form = fem.form((ufl.ln(J) - ufl.ln(J) + J / J) * v * ufl.dx, jit_options=jit.OPTIONS)
+    assert np.array_equal(np.isnan(fem.assemble_vector(form).array), J.x.array < 0)
+
+
+def test_cache_that_cannot_be_written_is_one_sentence(cache):
+    cache.touch()
+    with pytest.raises(jit.CompileError, match="^a form cannot be compiled .* exists: .*cache"):
+        integral()
 
 
 def test_compiler_that_fails_is_one_sentence(cache, monkeypatch):

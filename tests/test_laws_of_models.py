@@ -46,3 +46,9 @@ def test_rule_of_thumb_takes_a_law():
     """More friction rolls the finger further, by the coefficient at a ridge's pressure."""
     plain, rough = (feasibility.by_rule(Scene(friction=law)) for law in (Coulomb(0.25), Derjaguin(0.25, 2e4)))
     assert rough.mesh.touching_half_arc > plain.mesh.touching_half_arc
+
+
+def test_cylinders_take_no_mesh(tmp_path):
+    (tmp_path / "mine.msh").touch()
+    with pytest.raises(SceneError, match="geometry.file"):
+        cylinders.solve(Scene(geometry={"file": tmp_path / "mine.msh"}))

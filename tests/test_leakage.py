@@ -39,6 +39,8 @@ def test_constant_voltage_has_the_note_alone():
     ("voltage", "mean"),
     [
         (sine(offset=200.0), 200.0),
+        (sine(offset=-30.0), -30.0),
+        (table(-50.0, 50.0), 0.0),
         (table(0.0, 100.0), 50.0),
         (table(100.0, 100.0, 0.0), 60.0),
         (sine(), 0.0),

@@ -104,3 +104,11 @@ def test_sweep_leaves_a_table_of_the_user(out):
     with pytest.raises(SceneError, match=r"holds table\.csv of no sweep; choose another folder"):
         fp.sweep(out=out, model="cylinders", voltage=[100])
     assert (out / "table.csv").read_text() == "mine"
+
+
+def test_folder_may_be_reached_by_a_link(out, tmp_path):
+    """Of the user; and its other links are no concern of a run."""
+    (tmp_path / "link").symlink_to(out)
+    (out / "latest").symlink_to(tmp_path)
+    fp.run(model="cylinders", out=tmp_path / "link")
+    assert (out / "summary.json").exists()

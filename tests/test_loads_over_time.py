@@ -94,8 +94,9 @@ def test_waveform_is_the_loads_by_hand():
 
 
 def test_sign_of_the_voltage_changes_nothing():
-    """Bit for bit: of a table, and where a sign changes between two loads."""
+    """Bit for bit: of a constant voltage, of a table, and where a sign changes between two loads."""
     for up, down in (
+        ([{"name": "charge", "voltage": 90.0}], [{"name": "charge", "voltage": -90.0}]),
         (
             [{"name": "a", "voltage": 50.0}, {"name": "b", "voltage": 90.0}],
             [{"name": "a", "voltage": 50.0}, {"name": "b", "voltage": -90.0}],
@@ -285,3 +286,35 @@ def test_mean_from_steps_that_are_too_long_is_told(tmp_path):
     assert abs(means[0] - means[1]) < long.loads[2].over_time.mean_change["f_t"]
     assert long.loads[2].extremes["f_t"].max == pytest.approx(long.loads[1].end.f_t, rel=1e-9), "where it began"
     assert long.to_dict()["loads"][2]["over_time"]["mean_change"]["f_t"] > 0
+
+
+@pytest.mark.mpi
+def test_square_of_a_file_is_the_square():
+    """Given by its corners alone: mean and amplitudes up to the time that its jumps take."""
+    jump = 1e-6 / 60
+    table = {"waveform": "file", "times": [0.0, 0.5 / 60, 0.5 / 60 + jump, 1 / 60], "voltages": [80.0, 80.0, 0.0, 0.0]}
+    square = {"waveform": "square", "amplitude": 40.0, "offset": 40.0, "frequency": 60.0}
+    given, same_one = (
+        result(PRESS, SLIDE, BY | {"voltage": voltage}).loads[2].over_time for voltage in (table, square)
+    )
+    assert given.mean["f_t"] == pytest.approx(same_one.mean["f_t"], rel=1e-4)
+    largest = max(same_one.f_t_amplitude)
+    assert given.f_t_amplitude[:6] == pytest.approx(same_one.f_t_amplitude[:6], abs=1e-3 * largest)
+
+
+def test_first_load_over_time_begins_unloaded():
+    """As its mean does; a later one begins with the state before."""
+    press = {"name": "press", "bone_height": -20e-6, "duration": 1.0}
+    first, second = result(press, {"name": "more", "bone_height": -30e-6, "duration": 1.0}).loads
+    assert first.extremes["contact_length"].min == 0.0
+    assert second.extremes["contact_length"].min == first.end.contact_length
+
+
+def test_first_touch_has_no_estimated_errors():
+    """A finger that slides as it is pressed has no normal contact, of which errors could be estimated."""
+    found = result(
+        PRESS | {"bone_x": 1e-4}, {"name": "charge", "voltage": 50.0}, output=FINGER["output"] | {"errors": True}
+    )
+    assert found.charged is None and found.full_slip is not None
+    estimated = found.record["accuracy"]["quantities"]
+    assert estimated and not any(key.startswith("charged_") for key in estimated)

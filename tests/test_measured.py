@@ -5,9 +5,9 @@ import pytest
 
 from benchmarks.harness import DOCS, kept
 from benchmarks.measured import __main__ as command
-from benchmarks.measured import forms, page, rows
+from benchmarks.measured import finger, forms, page, rows, scenes
 from benchmarks.measured.verdict import HIT, MISS, PART, by_factor, by_form, by_share
-from benchmarks.runs import VOLTAGES
+from benchmarks.runs import FORCES, VOLTAGES
 
 
 @pytest.fixture(scope="module")
@@ -78,3 +78,25 @@ def test_kept_rows_are_those_of_the_other_pages(judged):
         assert row["numbers"] == pytest.approx(own["rows"][key]["numbers"], rel=1e-6, abs=1e-9), key
     for name, values in again["curves"].items():
         assert values == pytest.approx(own["curves"][name], rel=1e-9)
+
+
+def test_kept_friction_follows_the_attraction():
+    """At full slip f_T = µ_0 (f_ext + attraction), so that both rise by the same power of the voltage."""
+    found = rows.grid(kept("paper").numbers, kept("models").numbers)
+    coarse, forces = found.coarse, np.array(FORCES)[:, None]
+    # The slide ends where f_T is steady to 1e-6 of itself.
+    expected = 0.25 * (forces + coarse["full_slip_f_electrostatic"])
+    np.testing.assert_allclose(coarse["full_slip_f_t"], expected, rtol=1e-6)
+    known = [row for row in kept("newtons").numbers["friction"] if row["radius"] == 28e-3 and row["voltage"] == 200]
+    for name in ("gross_area", "contact_area"):  # of the page of newtons
+        sums = dict(zip(finger.NEWTONS, found.full_finger[f"full_slip_200_{name}"], strict=True))
+        for row in known:
+            assert sums[round(row["f_ext"], 6)] == pytest.approx(row[name], rel=1e-9)
+
+
+def test_runs_of_the_page_balance_their_force():
+    wanted, runs = scenes.scenes(), kept("measured").numbers["runs"]
+    assert set(runs) == set(wanted)
+    for run in runs.values():
+        total = sum(run["pressure"]) * wanted["dry 20"].geometry.ridge_wavelength
+        assert total == pytest.approx(scenes.FORCE, rel=1e-6) and len(run["place"]) == run["ridges"]

@@ -209,6 +209,14 @@ def test_file_is_refused(place, case):
     assert "\n" not in str(error.value)
 
 
+def test_name_in_another_encoding_is_refused(place):
+    """An ö of Latin-1; gmsh takes bytes as they are."""
+    write(place, version=2.2)
+    place.write_bytes(place.read_bytes().replace(b'"ridge 0"', b'"r\xf6cken"'))
+    with pytest.raises(GeometryError, match=r"mine.msh: group \d+ has a name that is no text in UTF-8"):
+        load(MPI.COMM_SELF, geometry.file(place))
+
+
 # -- by hand: what gmsh does not make itself ---------------------------------------------------------------
 def block(upper: int = 4) -> tuple[list[tuple[float, float]], list[list[int]]]:
     """Return places (mm) and triangles of two layers of four squares, the upper one cut into ``upper``, on one line.

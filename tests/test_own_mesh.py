@@ -18,6 +18,7 @@ from fingerpad.report.parameters import again
 from fingerpad.scene import as_kept, from_data, load, override
 from geometry import fingertip
 from geometry.parameters import Fingertip, MeshSize
+from tests.measures import rows_of
 from tests.test_meshfile import write
 
 FINGER = Fingertip(ridge_count=13)
@@ -45,6 +46,17 @@ def finger(half_arc: float):
 def place(tmp_path) -> Path:
     """A path of a file, the same on every rank."""
     return Path(MPI.COMM_WORLD.bcast(str(tmp_path / "mine.msh")))
+
+
+def test_study_with_a_mesh_runs_its_points(place, tmp_path):
+    """Each in a process of its own, from what is kept of the scene; the path starts at the file of the study."""
+    write(place)
+    file = place.with_name("study.toml")
+    text = 'friction = 0.0\n[geometry]\nfile = "mine.msh"\n[[history]]\nname = "press"\nf_ext = 2.0\n'
+    file.write_text(f'{text}[output]\nerrors = false\n[sweep]\n"history[0].f_ext" = [1.0, 2.0]\n', encoding="utf-8")
+    assert main(["sweep", str(file), "--out", str(tmp_path / "out"), "--jobs", "1", "--quiet"]) == 0
+    forces = [float(row["history[0].f_ext"]) for row in rows_of(tmp_path / "out", "table") if not row["failure"]]
+    assert forces == [1.0, 2.0]
 
 
 @pytest.mark.mpi

@@ -56,3 +56,9 @@ def test_sweep_as_an_array_of_jobs(tmp_path):
         rows = list(csv.DictReader(file))
     assert [float(row["voltage"]) for row in rows] == [50.0, 100.0]
     assert float(rows[1]["full_slip_mu_app"]) > float(rows[0]["full_slip_mu_app"]) > 0.25
+
+
+def test_lumped_mass_is_that_of_the_body():
+    mass = explicit.Ridge(40e-6).mass(scaled=False)
+    assert mass.sum() == pytest.approx(483e-6 * 600e-6 - 483e-6 * 50e-6, rel=0.02)  # the skin is a polygon
+    assert mass.min() > 0

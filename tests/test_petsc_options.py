@@ -30,6 +30,8 @@ def given():
     [
         ("-fingerpad_snes_max_it abc", "-fingerpad_snes_max_it abc"),
         ("-fingerpad_snes_type nonsense", "-fingerpad_snes_type nonsense"),
+        ("-fingerpad_pc_type cholesky", "-fingerpad_pc_type cholesky"),
+        ("-fingerpad_snes_lag_jacobian -5", "-fingerpad_snes_lag_jacobian -5"),
         ("-fingerpad_pc_factor_mat_solver_type superlu_dist", "-fingerpad_pc_factor_mat_solver_type superlu_dist"),
         ("-fingerpad_mat_mumps_icntl_14 x", "-fingerpad_mat_mumps_icntl_14 x"),
     ],

@@ -183,3 +183,18 @@ def test_history_shows_estimated_errors(tmp_path):
     assert bar == pytest.approx(np.array([[1.4, 1.38], [1.4, 1.42]]))
     bare = {name: replace(state, error=Errors()) for name, state in states.items()}
     assert not history(None, rows, TITLE, named=bare).axes[1].containers
+
+
+def test_names_are_shown_as_they_are(tmp_path):
+    """A load's name may have dollar signs, between which Matplotlib would set its own mathematics or fail."""
+    figure = surface(tmp_path / "surface.png", [profile(r"After $5 _{ $", 0.0, 1.0)], TITLE)
+    assert figure.axes[0].get_title(loc="left").startswith(r"A  After \$5 _{ \$: ")
+
+
+def test_surface_without_contact(tmp_path):
+    """No pressure anywhere is a state too."""
+    touching = profile("above the screen", 0.0, 0.0)
+    nothing = 0 * touching.p
+    state = replace(touching, y=touching.y + 1e-6, p=nothing, t=nothing, p_el=nothing, f_ext=0.0, contact_length=0.0)
+    surface(tmp_path / "surface.png", [state], TITLE)
+    assert (tmp_path / "surface.png").stat().st_size > 10_000

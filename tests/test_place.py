@@ -148,3 +148,10 @@ def test_a_run_takes_the_folder(scene, folder, finished):
     assert json.loads((folder / "scene.json").read_text()) == json.loads(json.dumps(scene.parameters()))
     assert [name for name, data in kept(folder).items() if data == b"old"] == ["notes of mine.txt"]
     assert summary["provenance"]["petsc_options"]["-fingerpad_pc_type"] == "lu"
+
+
+@pytest.mark.mpi
+def test_model_without_a_path_takes_a_communicator(tmp_path):
+    """Of one rank: each has a folder of its own."""
+    found = fp.run(model="cylinders", out=tmp_path / "own", comm=MPI.COMM_SELF)
+    assert found.folder == tmp_path / "own" and (tmp_path / "own" / "summary.json").exists()

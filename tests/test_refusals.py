@@ -30,6 +30,19 @@ def refusal(path: Path | None = None, **overrides) -> str:
         ("f_ext", float("nan"), "f_ext is nan; it must be a finite number"),
         ("f_ext", True, "f_ext is true; it must be a number"),
         ("f_ext", [1], "f_ext is [1]; it must be a number"),
+        ("f_ext", float("inf"), "f_ext is inf; it must be a finite number"),
+        ("materials.dermis.poisson", 0.5, "materials.dermis.poisson is 0.5; it must be from -0.9 to 0.4999"),
+        ("electric.eps_i", 0.5, "electric.eps_i is 0.5; it must be from 1 to 1e+07"),
+        (
+            "roughness.p_floor", 1e6,
+            "roughness.p_floor is 1000000; it must be below the pressure at zero separation, 2.597e+05 Pa",
+        ),
+        (
+            "geometry.ridge_count", 54,
+            "geometry.ridge_count is 54; it must be odd, so that one ridge is at x = 0",
+        ),
+        ("geometry.ridge_count", 5.0, "geometry.ridge_count is 5.0; it must be a whole number"),
+        ("numerics.quadrature_points", 9, "numerics.quadrature_points is 9; it must be at most 8"),
         ("friction", "0.25", "friction is '0.25'; it must be a number"),
         ("voltage", -1e9, "voltage is -1000000000 V; it must be 0 or from 0.001 to 5000 V, with either sign"),
         ("friction", 2.1, "friction is 2.1; it must be 0 or from 1e-06 to 2"),
@@ -176,6 +189,8 @@ def test_dots_that_are_no_key(write):
         (f'voltage = "{"v" * 100_000}"', f"voltage is '{'v' * 55}...'; it must be a number"),
         (f"{'k' * 100_000}", "is not TOML: Expected '=' after a key"),
         ("geometry.ridge_profile = [1, inf]", "geometry.ridge_profile[1] is inf; it must be a finite number"),
+        ("geometry.ridge_profile = []", "geometry.ridge_profile is empty; it must have at least one entry"),
+        (f"geometry.ridge_profile = {[1] * 500}", "ridge_profile has too many entries; it must have at most 16"),
         ("ridge_count = 9", "ridge_count is not a key of a scene; did you mean geometry.ridge_count?"),
         ("dermis.alpha = 9", "dermis is not a key of a scene; did you mean materials.dermis?"),
         ("until_full_slip = true", "until_full_slip is not a key of a scene; did you mean history[0].until_full_slip?"),
@@ -238,6 +253,21 @@ def test_wrong_arguments_are_refused(call, words):
     [
         ("history = []", "history is empty; it must have at least one entry"),
         ("history = 3", "history is 3; it must be a list"),
+        ("history = [3]", "history[0] is 3; it must be a table of keys"),
+        (
+            '[[history]]\nname = "a"\nf_ext = 0\nvoltage = 9\n[[history]]\nname = "b"\nvoltage = 0',
+            "history[1].name is 'b', which ends at f_ext 0 and voltage 0, where nothing holds the skin on the screen; "
+            "one of the two must be greater than 0, or a bone_height be given",
+        ),
+        (
+            '[[history]]\nname = "a\\u0007"\nf_ext = 1',
+            "history[0].name is 'a\\x07'; it must be without '\\x07', since files are named by it",
+        ),
+        (
+            '[[history]]\nname = "on off"\nf_ext = 1\n[[history]]\nname = "On_off"\nf_ext = 2',
+            "history[1].name is 'On_off' and history[0].name is 'on off'; each load must have a name of its own, also "
+            "where spaces become _ and letters have no case, since files are named by it",
+        ),
         ("[[history]]\nf_ext = 3", "history[0].name is missing; it must be given"),
         ('[[history]]\nname = "a"\nf_ext = -1', "history[0].f_ext is -1 N/m; it must be 0 or from 0.001 to 5000 N/m"),
         (

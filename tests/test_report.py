@@ -156,6 +156,27 @@ def test_half_written_run_is_reported_as_such(copy):
     assert f"has not ended, or was killed, after step {len(rows) - 2}" in write(copy).read_text(encoding="utf-8")
 
 
+def test_contact_lengths_of_the_ridges_add_up(page):
+    """In every saved state; each length is rounded to 0.05 µm."""
+    found = re.search(r'<script type="application/json" id="data">(.*?)</script>', page, re.DOTALL)[1]
+    frames = json.loads(found)["finger"]["frames"]
+    assert len(frames) >= 3
+    for frame in frames:
+        whole = float(re.search(r"L_R = ([0-9.]+) mm", frame["about"])[1])
+        assert sum(ridge["length"] for ridge in frame["skin"]) == pytest.approx(whole, abs=1.5e-3)
+
+
+def test_run_without_an_accepted_step_is_read_back(copy):
+    """Its first step failed: there is a failure and no table."""
+    summary = json.loads((copy / "summary.json").read_text(encoding="utf-8"))
+    known = {key: value for key, value in summary.items() if not key.startswith(("uncharged_", "charged_", "full_sl"))}
+    failed = known | {"steps": 0, "loads": [], "states": {}, "failure": "no equilibrium"}
+    (copy / "summary.json").write_text(json.dumps(failed), encoding="utf-8")
+    for file in copy.glob("*.csv"):
+        file.unlink()
+    assert Result.load(copy).failure == "no equilibrium"
+
+
 @pytest.mark.parametrize(
     ("files", "words"),
     [
@@ -164,6 +185,10 @@ def test_half_written_run_is_reported_as_such(copy):
         ({"summary.json": '{"failure": "f_ext is too large"}'}, "was refused and has no results: f_ext is too large"),
         ({"table.csv": "voltage,full_slip_mu_app,failure\n100,0.3,\n200"}, "is cut short"),
         ({"scene.json": "{}"}, "has no accepted step yet"),
+        ({"notes.txt": "hello"}, "holds no results of fingerpad"),
+        ({"summary.json": "[1, 2]"}, "its files are not whole, or not of a run"),
+        ({"table.csv": "a,b\n1,2\n"}, "is not the table of a sweep"),
+        ({"scene.json": "[" * 100_000, "steps.csv": "step\n"}, "cannot be read"),
         ({"summary.json": "[" * 100_000}, "its files are not whole, or not of a run"),
         ({"full/0123/asked.json": "{}"}, "has not ended (0 runs are there)"),
     ],

@@ -78,6 +78,32 @@ def test_charged_while_it_slides(tmp_path, titles):
     assert "$f_{ext}$ = 1 N/m, $U$ = 0 to 100 V" in titles["history"] and "$U$ = 0 to 100 V" in titles["surface"]
 
 
+HEIGHT, BACK = {"name": "press", "bone_height": -20e-6}, {"name": "back", "bone_x": 0.0}
+CHARGED = {"name": "charge", "voltage": 80.0}
+AWAY, FURTHER = {"name": "away", "bone_height": 20e-6, "bone_x": 0.5e-3}, SLIDE | {"bone_x": 1.5e-3}
+
+
+@pytest.mark.parametrize(
+    ("history", "load", "f_ext", "normal"),
+    [
+        ([PRESS, SLIDE, {"name": "lift", "f_ext": 0.5}], "lift", 0.5, ("press", 0.0)),
+        ([HEIGHT, SLIDE, CHARGED], "slide", None, ("press", 0.0)),
+        ([HEIGHT, SLIDE, CHARGED, SLIDE | {"name": "slide on"}], "slide on", None, ("press", 0.0)),
+        ([PRESS, SLIDE | {"bone_x": 0.3e-3}, BACK], "back", 1.0, ("press", 0.0)),
+        ([AWAY, PRESS, CHARGED, FURTHER], "slide", 1.0, ("charge", 0.5e-3)),
+    ],
+    ids=["lift", "height", "two slips", "there and back", "through the air"],
+)
+def test_headline_is_the_last_full_slip(tmp_path, history, load, f_ext, normal):
+    """Whatever came after the full slip, and whichever of height and force was given; a way in the air is none."""
+    summary = run(from_data(LEAN | {"history": history}), tmp_path, MPI.COMM_WORLD)
+    assert summary["full_slip_load"] == load
+    assert f_ext is None or summary["full_slip_f_ext"] == pytest.approx(f_ext, rel=1e-9)
+    assert (summary["charged_load"], summary["charged_bone_x"]) == (normal[0], pytest.approx(normal[1], rel=1e-12))
+    assert abs(summary["charged_mu_app"]) < 0.01
+    assert float(rows_of(tmp_path)[-1]["f_ext"]) == summary["f_ext"]
+
+
 CHARGE, SLIDE_ON = {"name": "charge", "voltage": 60.0}, {"name": "slide on", "bone_x": 0.6e-3}
 
 

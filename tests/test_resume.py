@@ -18,6 +18,7 @@ from fingerpad.cli import run as command
 from fingerpad.io.checkpoint import Checkpoint, CheckpointError
 from fingerpad.io.drawing import Drawing
 from fingerpad.io.writing import Writer
+from fingerpad.model.simulation import Simulation
 from fingerpad.runs.batch import key, sweep
 from fingerpad.scene import SceneError
 from tests.test_history import Own
@@ -218,6 +219,25 @@ def cut_short(tmp_path, killed_at):
         fp.run(scene(), out=tmp_path)
     killed_at(None)
     return tmp_path
+
+
+@pytest.mark.parametrize("folder", [False, True])
+def test_run_that_stops_before_its_first_checkpoint(tmp_path, monkeypatch, folder):
+    """The failure promises no more than there is, and to go on is refused for what it is."""
+    accepted = Simulation._accepted
+
+    def stop(self, *given):
+        signal.raise_signal(signal.SIGTERM)
+        return accepted(self, *given)
+
+    monkeypatch.setattr(Simulation, "_accepted", stop)
+    monkeypatch.setattr(Checkpoint, "write", lambda *args: None)
+    with pytest.raises(SystemExit) as ended:
+        fp.run(scene(), out=tmp_path if folder else None)
+    kept = "; every accepted step is in the folder of results, and the same command starts again" if folder else ""
+    assert ended.value.result.failure == "stopped by SIGTERM after step 1" + kept
+    if folder:
+        refused("has no checkpoint to go on from: its run has not come to one", tmp_path)
 
 
 def refused(match: str, folder: Path, **more) -> None:

@@ -127,3 +127,10 @@ def test_scene_of_a_run_s_folder_is_a_scene(tmp_path):
         Scene.load(file)
     with pytest.raises(SceneError, match="cannot be read: No such file"):
         Scene.load(tmp_path / "other.json")
+
+
+def test_friendly_names(write):
+    """Spaces and letters of any alphabet."""
+    names = ["charge while sliding", "Größe – 200 V", "压", "a.b", "3"]
+    path = write("\n".join(f'[[history]]\nname = "{name}"\nf_ext = 5' for name in names))
+    assert [load.name for load in scenes.load(path).loads()] == names

@@ -162,6 +162,55 @@ def test_there_and_back(pressed):
     assert states.named(pressed.rows)["full_slip"].f_t < 0
 
 
+PRESSED = {"uncharged": ("press", 0.0, 0.0), "charged": ("press", 0.0, 0.0)}
+ALTERNATING = (80.0, 0.0, 80.0, 0.0)
+
+
+@pytest.mark.parametrize(
+    ("way", "named"),
+    [
+        ([("slide", 0.4e-3), ("charge", {"voltage": 80.0}), ("on", 0.55e-3)], {"full_slip": ("slide", 0.0, 0.1)}),
+        ([("there", 0.1e-3), ("back", -0.3e-3)], {"full_slip": ("back", 0.0, 0.0)}),
+        ([("slide", 0.4e-3), ("lift", {"f_ext": 0.5})], {"full_slip": ("slide", 0.0, 0.1)}),
+        ([(f"part {k}", 0.3e-3 * k, u) for k, u in enumerate(ALTERNATING, start=1)], {}),
+        ([(f"to {u:g}", {"voltage": u}) for u in (80.0, 0.0, 80.0)], {"charged": ("to 80", 80.0, 0.0)}),
+    ],
+    ids=["ends in the middle of a slip", "at x = 0 on the way back", "lift", "charged by turns in sliding", "at rest"],
+)
+def test_named_states_of_a_way(pressed, way, named):
+    """A full slip that was not held leaves the one before; it keeps its load where unloading sticks.
+
+    The bone has moved, wherever it is now; uncharged is what was before the first voltage.
+    """
+    for name, end, *voltage in way:
+        if isinstance(end, dict):
+            pressed.still(name, **end)
+        else:
+            pressed.slide(name, end, *voltage)
+    assert pressed.names() == PRESSED | named
+    slip = states.named(pressed.rows).get("full_slip")
+    assert slip is None or slip.f_ext == 2.0
+
+
+@pytest.mark.parametrize("touches", [False, True], ids=["presses there", "touches as it moves"])
+def test_bone_that_goes_aside_in_the_air(touches):
+    """Normal contact is at the place where it is pressed at rest; one that moves as it touches makes none."""
+    history = History()
+    history.f_ext = 0.0
+    history.still("wait", f_ext=0.0)
+    if touches:
+        history.x, history.f_ext = 50e-6, 1.0
+    else:
+        history.slide("away", 1e-3)
+        history.still("press", f_ext=1.0)
+        history.still("charge", voltage=100.0)
+    history.slide("slide", history.x + 0.5e-3)
+    names = history.names()
+    assert names["full_slip"][0] == "slide" and (touches or names["full_slip"][2] > 1.0)
+    assert names.get("charged") == (None if touches else ("charge", 100.0, 1.0))
+    assert touches or names["uncharged"] == ("press", 0.0, 1.0)
+
+
 def test_charging_while_it_slides(pressed):
     """Each voltage is a full slip of its own, which none of these was held; where it stays, the slip is held."""
     pressed.slide("slide", 0.4e-3)
@@ -263,6 +312,7 @@ def test_first_touch_is_no_named_state(slides):
         history.still("press", f_ext=0.05, voltage=100.0)
     found = states.named(history.rows)
     assert "uncharged" not in found and ("charged" in found) == (not slides)
+    assert not states.named(history.rows[:2], ["press"]), "a run that was cut short in the touch"
     press = next(states.load_results(history.rows, [Load(name="press", f_ext=0.05)], lambda k, end: None))
     own = [state.contact_length for state in history.rows if state.load == "press"]
     assert press.extremes["contact_length"].max == max(own)

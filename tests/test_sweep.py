@@ -11,13 +11,17 @@ from pathlib import Path
 
 import pytest
 
+from fingerpad.installed import source
 from fingerpad.io.files import replace
+from fingerpad.io.result import Result
 from fingerpad.runs import batch as module
 from fingerpad.runs import processes
 from fingerpad.runs.batch import key, result, sweep
 from fingerpad.runs.processes import End, Pool
 from fingerpad.runs.processes import run as run_module
-from fingerpad.scene import from_data
+from fingerpad.runs.sweep import _older
+from fingerpad.runs.sweep_results import Sweep
+from fingerpad.scene import Scene, from_data
 from tests.small_finger import small
 
 
@@ -195,3 +199,20 @@ def test_two_processes_may_write_a_file_at_once(tmp_path):
         list(pool.map(lambda k: replace(tmp_path / "table.csv", f"{k}\n" * 1000), range(400)))
     lines = (tmp_path / "table.csv").read_text().splitlines()
     assert len(lines) == 1000 and len(set(lines)) == 1 and [file.name for file in tmp_path.iterdir()] == ["table.csv"]
+
+
+def test_jobs_are_no_ranks_of_a_launcher(monkeypatch):
+    """Else MPI would take each for the rank of the sweep itself, as in a batch system's job."""
+    monkeypatch.setenv("OMPI_COMM_WORLD_RANK", "1")
+    monkeypatch.setenv("PMIX_RANK", "1")
+    code = "import os; print([name for name in os.environ if name.startswith(('OMPI_COMM', 'PMIX'))])"
+    assert run_module("timeit", ["-n1", "-r1", code], 10.0).stdout.startswith("[]\n")
+
+
+def test_points_of_another_state_of_the_program_are_told(tmp_path):
+    """Kept points are taken over whatever computed them, and the sweep says how many that were."""
+    versions = ({"source": source()}, {"source": "0123456789ab"}, {})
+    found = [Result(Scene(), "full", None, None, None, record={"provenance": {"versions": v}}) for v in versions]
+    study = Sweep({"voltage": (0.0, 1.0, 2.0)}, tuple(found), tmp_path)
+    assert _older(study, tmp_path / "full").startswith("1 of 3 points are of another state of the program; delete")
+    assert _older(Sweep({"voltage": (0.0,)}, tuple(found[:1]), tmp_path), tmp_path) == ""

@@ -9,6 +9,7 @@ from pathlib import Path
 
 import pytest
 
+from fingerpad.cli import main
 from fingerpad.cli import sweep as cli_sweep
 from fingerpad.report import parameters
 from fingerpad.report.write import NAME, write
@@ -81,6 +82,17 @@ def test_sweep_is_reproduced_by_what_its_report_says(tmp_path, axes):
     data, along = cli_sweep.study(tmp_path / "study.toml" if study else None, given["--set"], given["--over"])
     assert from_data(data).parameters() == scene.parameters()
     assert {key: tuple(values) for key, values in along.items()} == found.axes
+
+
+def test_files_of_an_earlier_sweep_do_not_stay_beside_a_new_table(tmp_path, monkeypatch, capsys):
+    """Where the new dataset and report are not written; the command names the files that are there."""
+    words = ["sweep", "--model", "cylinders", "--over", "voltage=0,100", "--out", str(tmp_path)]
+    assert main(words) == 0 and "sweep.nc, report.html, sweep.json" in capsys.readouterr().out
+    monkeypatch.setattr("fingerpad.runs.sweep.attempt", lambda folder: None)
+    monkeypatch.setattr("fingerpad.runs.sweep_results.Sweep.save", lambda sweep: "sweep.nc is missing: no room")
+    assert main(words) == 0
+    assert not (tmp_path / "sweep.nc").exists() and not (tmp_path / "report.html").exists()
+    assert capsys.readouterr().out.strip().endswith("table.csv, sweep.json")
 
 
 def test_sweep_without_its_scene_is_refused(tmp_path):

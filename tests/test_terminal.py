@@ -60,3 +60,22 @@ def test_closed_output_costs_nothing(tmp_path, closed):
         preexec_fn=lambda: [os.close(number) for number in closed],
     )
     assert (done.returncode, (tmp_path / "found").read_text()) == (0, "0 /dev/null")
+
+
+@pytest.mark.parametrize("error", [BrokenPipeError(), SystemExit(1)])
+def test_run_goes_on_where_nobody_reads(monkeypatch, error):
+    """After ``| head``: the steps are in the folder of results; rich raises SystemExit, or nothing of its own."""
+    from mpi4py import MPI
+
+    from fingerpad.io.console import Console
+
+    console, printed = Console(MPI.COMM_SELF, bar=False), []
+
+    def broken(text, **options):
+        printed.append(text)
+        raise error
+
+    monkeypatch.setattr(console._progress.console, "print", broken)
+    for text in ("first", "second"):
+        console.show(text)
+    assert printed == ["first"]

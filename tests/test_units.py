@@ -30,6 +30,9 @@ def value(scene: scenes.Scene, key: str) -> float:
         ("mesh.contact", "5 μm", 5e-6),
         ("voltage", "0 V", 0.0),
         ("contact.eps_n", "1500 MPa/mm", 1.5e12),
+        ("mesh.contact", "5e-3mm", 5e-6),
+        ("voltage", "0.2 kV", 200.0),
+        ("numerics.memory", "16 GB", 16e9),
         ("numerics.memory", "2 GiB", 2.0 * 2**30),
     ],
 )
@@ -55,6 +58,9 @@ def test_text_is_the_number(key, text, number):
         ),
         ("voltage", "9**9**9 V", "its unit is not known; it must be a number in V or a text such as '9 V'"),
         ("f_ext", "0,5 N/m", "decimals have points: write '0.5 N/m'"),
+        ("f_ext", "1,250 N/m", "decimals have points: write '1.250 N/m', or '1250 N/m' if the comma parts thousands"),
+        ("voltage", "3 dB", "its unit is not a unit of voltage; it must be a number in V or a text such as '3 V'"),
+        ("mesh.contact", "5 m(", "its unit is not known; it must be a number in m or a text such as '5 m'"),
         ("friction", "0.25 V", "it must be a number"),
     ],
 )

@@ -54,6 +54,17 @@ def test_square_jumps_both_ways():
     assert all(a[1] == b[1] for a, b in zip(samples, samples[1:], strict=False) if a[0] < b[0])
 
 
+def test_flat_parts_of_a_file_have_samples_behind_a_jump():
+    """As many as half a square's period, also where the load begins; where nothing jumped a piece is one step."""
+    burst = {"waveform": "file", "times": (0, 0.01, 0.010001, 0.02, 0.03), "voltages": (0, 0, 100, 100, 100)}
+    times = [time for time, _ in wave(0.03, **burst).samples(0.03, 1.0)]
+    counts = [sum(a < time <= b for time in times) for a, b in ((0, 0.01), (0.010001, 0.02), (0.02, 0.03))]
+    assert counts == [SAMPLES // 2, SAMPLES // 2, 1]
+    dense = [k / SAMPLES for k in range(SAMPLES + 1)]  # of a sine: no jump in it
+    sine = {"waveform": "file", "times": dense, "voltages": [100 * math.sin(2 * math.pi * t) for t in dense]}
+    assert len(wave(**sine).samples(1.0, 1.0)) <= SAMPLES + 1 + SAMPLES // 2
+
+
 @pytest.mark.parametrize("kind", ["sine", "triangle"])
 @pytest.mark.parametrize("scale", [1.0, 0.5])
 def test_square_of_the_voltage_is_nearly_straight(kind, scale):
@@ -122,6 +133,10 @@ def refusal(*loads: dict) -> str:
         ({"bone_x": 1e-3, "bone_x_by": 1e-3}, "history[1].bone_x is 0.001 and history[1].bone_x_by is 0.001"),
         ({"bone_x": 1e-3, "speed": 0.1, "duration": 1.0}, "history[1].speed is 0.1 and history[1].duration is 1"),
         ({"voltage": SINE, "duration": 1.0, "f_ext": 2.0}, "history[1].f_ext is 2 and history[1].voltage is a wave"),
+        ({"voltage": SINE, "speed": 0.1}, "history[1].speed is 0.1 and the bone does not move"),
+        ({"voltage": SINE, "duration": 1.0, "bone_height": 0.0}, "history[1].bone_height is 0 and"),
+        ({"voltage": {"waveform": "file"}}, "history[1].voltage.file is missing"),
+        ({"voltage": SINE | {"amplitude": 4e3, "offset": -2e3}, "duration": 1.0}, "history[1].voltage.offset is -2000"),
         (
             {"voltage": SINE, "bone_x_by": 1e-3, "speed": 0.1, "until_full_slip": True},
             "history[1].voltage is a waveform and history[1].until_full_slip is true",
@@ -195,6 +210,9 @@ def test_nothing_but_the_voltage_holds_the_skin(offset, allowed):
         (TABLE + "0,1\n", "times are 1; there must be from 2"),
         (TABLE + "0,1\n1,2,3\n", "whose line 3 has 3 cells"),
         (TABLE + "0,1\n1,inf\n", "whose line 3 has 'inf'; it must be a finite number"),
+        (TABLE + "0,1\n1,6000\n", "whose line 3 has a number that is 6000 V; it must be 0 or from 0.001 to 5000 V"),
+        (TABLE + "1,1\n2,2\n", "times start at 1 s; the first must be 0"),
+        (TABLE + f"0,{'1' * 200_000}\n", "which is no table in CSV: 'field larger than field limit (131072)'"),
         (TABLE + "0,1\n2,2\n2,3\n", "times are 2 and then 2 s; each must be later"),
         (TABLE + "".join(f"{k},1\n" for k in range(2500)), "with 2500 points; there must be from 2 to 2000 of them"),
         (TABLE + "\0,1\n", "whose line 2 has '\\x00'; it must be a finite number"),
