@@ -66,7 +66,7 @@ def small(line: str) -> list[str]:
     for shown, less in SMALLER.items():
         line = line.replace(shown, less)
     words = shlex.split(line)[1:]
-    if "--force" in words and "cylinders" not in words:  # which know the default finger alone
+    if words[0] == "run" and "--force" in words and "cylinders" not in words:  # which know the default finger alone
         words.insert(1, "scene.toml")
         words[words.index("--force") + 1] = "0.01 N"
     return words
