@@ -21,8 +21,8 @@ from benchmarks import errors, harness
 from benchmarks.errors import STATES, parted
 from benchmarks.limits import Limit
 from benchmarks.runs import finished
-from fingerpad.io import style
 from fingerpad.model.feasibility import by_rule
+from fingerpad.results import style
 from fingerpad.scene import Scene, load
 
 _LIMIT = 10800.0  # s of processor time for one run

@@ -20,9 +20,9 @@ from benchmarks.limits import Limit, limit
 from benchmarks.runs import SITES as AT_SITES
 from benchmarks.runs import Array, Run, finished
 from fingerpad.accuracy.rigid_screen import ORDER
-from fingerpad.io import style
-from fingerpad.io.states import WORDS
 from fingerpad.model.feasibility import by_rule
+from fingerpad.results import style
+from fingerpad.results.states import WORDS
 from fingerpad.richardson import plus_minus
 from fingerpad.scene import Scene, load
 

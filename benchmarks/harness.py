@@ -23,8 +23,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from fingerpad.cli.arguments import positive
-from fingerpad.io import style
-from fingerpad.io.files import replace
+from fingerpad.results import style
+from fingerpad.results.files import replace
 from fingerpad.runs.batch import Summary, sweep
 from fingerpad.scene import Scene
 
@@ -84,7 +84,7 @@ class Made:
 
 def made(summaries: Iterable[Summary] = ()) -> Made:
     """Return the present program, or several commits if some of the runs were made by another state of it."""
-    from fingerpad.io.provenance import provenance  # needs dolfinx, which drawing does not
+    from fingerpad.results.provenance import provenance  # needs dolfinx, which drawing does not
 
     now = provenance()["versions"]
     sources = {s["provenance"]["versions"]["source"] for s in summaries if "provenance" in s} | {now["source"]}

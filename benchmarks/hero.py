@@ -16,8 +16,8 @@ from matplotlib.patches import ConnectionPatch, Polygon
 from numpy.typing import NDArray
 
 from benchmarks.harness import DOCS, keep, kept, made, picture
-from fingerpad.io import style
-from fingerpad.io.finger_picture import LAYER_COLOURS, interfaces
+from fingerpad.results import style
+from fingerpad.results.finger_picture import LAYER_COLOURS, interfaces
 from geometry import tags
 
 Array = NDArray[np.float64]

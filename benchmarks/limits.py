@@ -30,10 +30,10 @@ import numpy as np
 from mpi4py import MPI
 
 from fingerpad.accuracy.solves import Solve, StateRecorder, solve_again
-from fingerpad.io.files import replace
 from fingerpad.model.finger import Step
 from fingerpad.model.options import FingerModel, plan
 from fingerpad.model.simulation import Simulation
+from fingerpad.results.files import replace
 from fingerpad.runs.batch import key
 from fingerpad.runs.processes import End, Pool, limit_processor_time, run
 from fingerpad.scene import Scene, from_data, start

@@ -17,8 +17,8 @@ import numpy as np
 
 from benchmarks import harness
 from benchmarks.runs import FORCES, VOLTAGES, trace
-from fingerpad.io.states import WORDS
 from fingerpad.reduced import cylinders
+from fingerpad.results.states import WORDS
 from fingerpad.runs.batch import Summary
 from fingerpad.scene import Scene, load
 from fingerpad.scene.reading import override

@@ -20,9 +20,9 @@ from matplotlib.figure import Figure
 from benchmarks import harness, three_dimensions
 from benchmarks.models import SIZE, name
 from benchmarks.runs import FORCES, VOLTAGES, Run, trace
-from fingerpad.io import style
-from fingerpad.io.states import WORDS
 from fingerpad.reduced import cylinders
+from fingerpad.results import style
+from fingerpad.results.states import WORDS
 from fingerpad.scene import Scene
 from fingerpad.scene.slices import Slices
 from fingerpad.slices import estimate, traces

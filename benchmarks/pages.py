@@ -46,9 +46,8 @@ PAGES = {
 }
 _PACKAGES = ("geometry", "variational", "fingerpad")
 _WITHOUT_NUMBERS = (  # these start, read, refuse, order runs, write and print
-    *(f"fingerpad/{wing}/" for wing in ("cli", "io", "report", "calculator", "runs")),
-    *("fingerpad/startup.py", "fingerpad/installed.py", "geometry/meshfile.py"),
-    *("fingerpad/model/cost.py", "fingerpad/model/memory.py"),
+    *(f"fingerpad/{wing}/" for wing in ("cli", "results", "report", "calculator", "runs")),
+    *("fingerpad/startup.py", "fingerpad/installed.py", "geometry/meshfile.py", "fingerpad/model/cost.py"),
     *("fingerpad/scene/contradictions.py", "fingerpad/scene/messages.py"),
 )
 _REDUCED = "fingerpad/reduced"  # no full run uses it: part of the programs that import it
@@ -74,7 +73,7 @@ def files(commit: str, paths: tuple[str, ...]) -> dict[str, bytes]:
 
 
 def source(commit: str) -> str:
-    """Return the hash of the packages' files in a commit, as ``fingerpad.io.provenance`` has it of those on disk."""
+    """Return the hash of the packages' files in a commit, as ``fingerpad.results.provenance`` of those on disk."""
     found = hashlib.sha256()
     for path, text in files(commit, _PACKAGES).items():
         found.update(path.encode() + text)

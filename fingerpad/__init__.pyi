@@ -1,10 +1,10 @@
 """The names of fingerpad: read by type checkers and editors, and by the package, which imports each when it is used."""
 
 import geometry as geometry
-from fingerpad.io.quantities import Output as Output
-from fingerpad.io.result import Result as Result
 from fingerpad.measurements.compare import compare as compare
 from fingerpad.model.body import Body as Body
+from fingerpad.results.quantities import Output as Output
+from fingerpad.results.result import Result as Result
 from fingerpad.runs.solve import run as run
 from fingerpad.runs.sweep import sweep as sweep
 from fingerpad.runs.sweep_results import Sweep as Sweep

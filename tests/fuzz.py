@@ -30,10 +30,10 @@ from pydantic import BaseModel
 
 from fingerpad.cli import refuse
 from fingerpad.cli.arguments import Parser, scene_of
-from fingerpad.io.files import check_folder
 from fingerpad.model import options
 from fingerpad.model.feasibility import by_rule, refuse_sizes
 from fingerpad.reduced.cylinders import tip_radius
+from fingerpad.results.files import check_folder
 from fingerpad.scene import Scene, SceneError
 from tests import fuzz_files
 from variational.attraction.cylinder import Cylinder, NoEquilibriumError

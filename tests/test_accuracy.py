@@ -12,9 +12,9 @@ from fingerpad.accuracy import solves
 from fingerpad.accuracy.refinement import Refinement, with_errors
 from fingerpad.accuracy.rigid_screen import ORDER
 from fingerpad.accuracy.solves import Solve, State
-from fingerpad.io.interrupt import Interrupted
 from fingerpad.model.feasibility import by_rule
 from fingerpad.model.options import FingerModel, plan
+from fingerpad.results.interrupt import Interrupted
 from fingerpad.richardson import MORE, ONCE, plus_minus
 from fingerpad.runs import restarts
 from fingerpad.scene import SceneError, from_data

@@ -9,8 +9,8 @@ import pytest
 
 import fingerpad as fp
 from fingerpad import runs
-from fingerpad.io.answer import Cost
-from fingerpad.io.states import STATES
+from fingerpad.results.answer import Cost
+from fingerpad.results.states import STATES
 from fingerpad.runs import attempt, full
 from fingerpad.runs.processes import End
 from fingerpad.runs.restarts import finer_mesh_may_help

@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import pytest
 
-from fingerpad.io.result import Result
+from fingerpad.results.result import Result
 from fingerpad.scene import SceneError, as_kept
 from fingerpad.slices.estimate import with_newtons
 from fingerpad.slices.traces import history

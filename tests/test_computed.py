@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 import fingerpad as fp
-from fingerpad.io.result import Result
 from fingerpad.measurements.compare import beside
 from fingerpad.measurements.computed import computed, refuse_mixed
 from fingerpad.measurements.table import read
+from fingerpad.results.result import Result
 from fingerpad.runs.solve import run
 from fingerpad.scene import Scene, SceneError
 from fingerpad.slices.errors import MESH

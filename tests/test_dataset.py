@@ -14,10 +14,10 @@ import xarray
 from mpi4py import MPI
 
 import fingerpad as fp
-from fingerpad.io import dataset, files, quantities
-from fingerpad.io.over_time import OverTime
-from fingerpad.io.result import Result
 from fingerpad.report import run_page
+from fingerpad.results import dataset, files, quantities
+from fingerpad.results.over_time import OverTime
+from fingerpad.results.result import Result
 from fingerpad.runs.sweep_results import Sweep
 from fingerpad.scene import from_data
 from tests.runs import run

@@ -12,8 +12,8 @@ from pathlib import Path
 import pytest
 from mpi4py import MPI
 
-from fingerpad.io.files import Table, replace_json
-from fingerpad.io.interrupt import Interrupt, Interrupted
+from fingerpad.results.files import Table, replace_json
+from fingerpad.results.interrupt import Interrupt, Interrupted
 from tests.measures import accepted
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -85,8 +85,8 @@ def test_signals_that_mpirun_passes_on(tmp_path):
 
 def test_a_second_signal_acts_at_once(monkeypatch):
     clock, killed = [0.0], []
-    monkeypatch.setattr("fingerpad.io.interrupt.time.monotonic", lambda: clock[0])
-    monkeypatch.setattr("fingerpad.io.interrupt.os.kill", lambda *what: killed.append(what))
+    monkeypatch.setattr("fingerpad.results.interrupt.time.monotonic", lambda: clock[0])
+    monkeypatch.setattr("fingerpad.results.interrupt.os.kill", lambda *what: killed.append(what))
     with Interrupt(MPI.COMM_SELF) as interrupt:
         for clock[0], number in ((0.0, signal.SIGTERM), (0.1, signal.SIGHUP), (0.9, signal.SIGTERM)):
             signal.raise_signal(number)  # terminals, launchers and batch systems send more than one
@@ -115,8 +115,8 @@ RAISES = """
 import sys
 from pathlib import Path
 from fingerpad.startup import MPI
-from fingerpad.io.files import Table, replace_json
-from fingerpad.io.interrupt import Interrupt, Interrupted
+from fingerpad.results.files import Table, replace_json
+from fingerpad.results.interrupt import Interrupt, Interrupted
 from tests.runs import run
 from fingerpad.scene import load
 from variational.solvers.continuation import Continuation

@@ -12,13 +12,13 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from fingerpad.io.files import read_object
-from fingerpad.io.kept_drawing import finger_of
-from fingerpad.io.place import Place, PlaceError, Serial, full_scene
 from fingerpad.reduced import cylinders
 from fingerpad.reduced.models import find
 from fingerpad.report.page import picture
 from fingerpad.report.write import write
+from fingerpad.results.files import read_object
+from fingerpad.results.folder import Folder, FolderError, Serial, full_scene
+from fingerpad.results.kept_drawing import finger_of
 from fingerpad.runs.context import RunContext
 from fingerpad.runs.solve import solved
 from fingerpad.scene import Scene, SceneError
@@ -30,9 +30,9 @@ NO_SCENES = ("5", "[]", DEEP)
 @pytest.mark.parametrize("text", NO_SCENES)
 def test_scene_of_no_run_is_neither_continued_nor_replaced(tmp_path, text):
     (tmp_path / "scene.json").write_text(text)
-    with pytest.raises(PlaceError, match=r"has no scene\.json of a run"):
+    with pytest.raises(FolderError, match=r"has no scene\.json of a run"):
         full_scene(tmp_path)
-    with pytest.raises(PlaceError, match=r"holds scene\.json of an unknown scene"), Place(tmp_path, {}, Serial()):
+    with pytest.raises(FolderError, match=r"holds scene\.json of an unknown scene"), Folder(tmp_path, {}, Serial()):
         pass
     assert (tmp_path / "scene.json").read_text() == text
 
@@ -40,7 +40,7 @@ def test_scene_of_no_run_is_neither_continued_nor_replaced(tmp_path, text):
 def test_files_of_no_run_are_not_deleted(tmp_path):
     """Of a user, under a name that a run uses."""
     (tmp_path / "history.png").write_bytes(b"mine")
-    with pytest.raises(PlaceError, match=r"holds history\.png of an unknown scene"), Place(tmp_path, {}, Serial()):
+    with pytest.raises(FolderError, match=r"holds history\.png of an unknown scene"), Folder(tmp_path, {}, Serial()):
         pass
     assert (tmp_path / "history.png").read_bytes() == b"mine"
 

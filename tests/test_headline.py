@@ -6,11 +6,11 @@ import re
 import pytest
 
 import fingerpad as fp
-from fingerpad.io.quantities import PLUS_MINUS
-from fingerpad.io.result import Result
-from fingerpad.io.states import load_result
 from fingerpad.report import trust
 from fingerpad.report.headline import head
+from fingerpad.results.quantities import PLUS_MINUS
+from fingerpad.results.result import Result
+from fingerpad.results.states import load_result
 from fingerpad.scene import from_data
 from variational.state import ContactState, Errors
 

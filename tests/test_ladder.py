@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from fingerpad.cli import compare
-from fingerpad.io.quantities import PLUS_MINUS
-from fingerpad.io.result import Result
 from fingerpad.reduced import cylinders
 from fingerpad.reduced.model import STATES
+from fingerpad.results.quantities import PLUS_MINUS
+from fingerpad.results.result import Result
 from fingerpad.scene import SceneError, from_data
 from tests.test_laws import Held
 from variational.contact.friction import Derjaguin

@@ -9,10 +9,10 @@ import pytest
 
 import fingerpad as fp
 from fingerpad.cli import main
-from fingerpad.io import style
-from fingerpad.io.checkpoint import Checkpoint
-from fingerpad.io.files import Table, lock_file, replace
-from fingerpad.io.place import Place, PlaceError, Serial
+from fingerpad.results import style
+from fingerpad.results.checkpoint import Checkpoint
+from fingerpad.results.files import Table, lock_file, replace
+from fingerpad.results.folder import Folder, FolderError, Serial
 from fingerpad.scene import SceneError
 
 
@@ -35,8 +35,8 @@ def out(tmp_path) -> Path:
 def test_lock_keeps_what_it_opens(out, victim):
     """Neither a link, nor a link to nothing, nor a pipe is opened; an ordinary file keeps its content."""
     (out / ".lock").symlink_to(victim / "victim")
-    with pytest.raises(PlaceError, match=r"out: \.lock in it is no ordinary file; choose another"):
-        Place(out, {}, Serial()).__enter__()
+    with pytest.raises(FolderError, match=r"out: \.lock in it is no ordinary file; choose another"):
+        Folder(out, {}, Serial()).__enter__()
     (out / "lock").symlink_to(victim / "none")
     os.mkfifo(out / "pipe")
     for name in ("lock", "pipe"):
@@ -51,8 +51,8 @@ def test_lock_keeps_what_it_opens(out, victim):
 @pytest.mark.parametrize("target", ["victim", "none", "."])
 def test_link_under_the_name_of_a_result_is_refused(out, victim, name, target):
     (out / name).symlink_to(victim / target)
-    with pytest.raises(PlaceError, match=f"{name} in .*out is a symbolic link, through which"):
-        Place(out, {}, Serial()).__enter__()
+    with pytest.raises(FolderError, match=f"{name} in .*out is a symbolic link, through which"):
+        Folder(out, {}, Serial()).__enter__()
 
 
 @pytest.mark.parametrize(

@@ -9,15 +9,15 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 
-from fingerpad.io.drawing import Drawing
-from fingerpad.io.over_time import NOTE, without_parts_of_jumps
-from fingerpad.io.result import Result
-from fingerpad.io.states import load_result
 from fingerpad.model.feasibility import by_rule
 from fingerpad.model.options import FingerModel, plan
 from fingerpad.model.schedule import targets
 from fingerpad.model.simulation import Simulation
 from fingerpad.report.run_page import page
+from fingerpad.results.drawing import Drawing
+from fingerpad.results.over_time import NOTE, without_parts_of_jumps
+from fingerpad.results.result import Result
+from fingerpad.results.states import load_result
 from fingerpad.runs import full
 from fingerpad.runs.context import RunContext
 from fingerpad.scene import Load, Scene, from_data

@@ -7,8 +7,8 @@ from functools import cache
 import numpy as np
 import pytest
 
-from fingerpad.io.over_time import HARMONICS, over_time, spectrum
 from fingerpad.reduced.cylinders import tip_radius
+from fingerpad.results.over_time import HARMONICS, over_time, spectrum
 from fingerpad.scene import Scene, from_data
 from fingerpad.scene.waveform import Waveform
 from variational.attraction.cylinder import Cylinder

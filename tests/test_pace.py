@@ -6,8 +6,8 @@ import pytest
 from mpi4py import MPI
 
 from fingerpad.cli import main
-from fingerpad.io.console import Console
-from fingerpad.io.pace import Pace, between
+from fingerpad.results.console import Console
+from fingerpad.results.pace import Pace, between
 from fingerpad.runs.batch import times_left
 from variational.state import ContactState, StepRecord
 

@@ -25,8 +25,8 @@ def test_pages_in_git_are_those_of_the_kept_numbers(tmp_path, capsys):
 
 
 # -- pages older than the code -----------------------------------------------------------------------
-OLD = {"variational/x.py": b"x = 1  # once", "fingerpad/io/x.py": b"", "benchmarks/chart.py": b"x = 1"}
-NEW = {"variational/x.py": b'"""X."""\nx = 1', "fingerpad/io/x.py": b"y", "benchmarks/chart.py": b"x = 1"}
+OLD = {"variational/x.py": b"x = 1  # once", "fingerpad/results/x.py": b"", "benchmarks/chart.py": b"x = 1"}
+NEW = {"variational/x.py": b'"""X."""\nx = 1', "fingerpad/results/x.py": b"y", "benchmarks/chart.py": b"x = 1"}
 CHANGED = {"variational/x.py": b"x = 2", "benchmarks/chart.py": b"x = 2", "benchmarks/paper/page.py": b"y"}
 
 

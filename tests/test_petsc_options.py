@@ -4,8 +4,8 @@ import pytest
 from mpi4py import MPI
 from petsc4py import PETSc
 
-from fingerpad.io import petsc_options
-from fingerpad.io.petsc_options import OptionError
+from fingerpad.results import petsc_options
+from fingerpad.results.petsc_options import OptionError
 
 
 @pytest.fixture

@@ -9,10 +9,10 @@ from matplotlib.colors import LogNorm
 from matplotlib.image import imread
 from matplotlib.tri import Triangulation
 
-from fingerpad.io import style
-from fingerpad.io.finger_picture import finger
-from fingerpad.io.history_picture import history
-from fingerpad.io.skin_picture import SurfaceProfile, saw_teeth, surface
+from fingerpad.results import style
+from fingerpad.results.finger_picture import finger
+from fingerpad.results.history_picture import history
+from fingerpad.results.skin_picture import SurfaceProfile, saw_teeth, surface
 from geometry import tags
 from variational.state import ContactState, Errors
 

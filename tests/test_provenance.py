@@ -6,7 +6,7 @@ import re
 
 from petsc4py import PETSc
 
-from fingerpad.io.provenance import provenance
+from fingerpad.results.provenance import provenance
 
 PETSC_ALONE = importlib.util.find_spec("dolfinx_solver") is not None
 

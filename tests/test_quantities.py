@@ -10,8 +10,8 @@ import xarray
 from mpi4py import MPI
 
 import fingerpad as fp
-from fingerpad.io import quantities
 from fingerpad.report.write import write
+from fingerpad.results import quantities
 from fingerpad.scene import from_data
 from geometry.units import in_si
 from tests.test_dataset import SCENE

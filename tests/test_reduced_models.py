@@ -7,9 +7,9 @@ import pytest
 
 import fingerpad as fp
 from fingerpad.cli import main
-from fingerpad.io.result import Result
 from fingerpad.reduced import models
 from fingerpad.reduced.model import Model, at_rest, at_slip
+from fingerpad.results.result import Result
 from fingerpad.scene import Scene, SceneError
 
 LENGTH = 1e-3  # m, of every contact of the toy

@@ -10,11 +10,11 @@ from pathlib import Path
 import pytest
 
 from fingerpad.cli import main
-from fingerpad.io.quantities import cell
-from fingerpad.io.result import Result
 from fingerpad.reduced.models import find
 from fingerpad.report import run_page, trust
 from fingerpad.report.write import NAME, write
+from fingerpad.results.quantities import cell
+from fingerpad.results.result import Result
 from fingerpad.runs.context import RunContext
 from fingerpad.runs.solve import solved
 from fingerpad.scene import Scene

@@ -10,12 +10,12 @@ from mpi4py import MPI
 from petsc4py import PETSc
 
 from fingerpad.accuracy.solves import StateRecorder
-from fingerpad.io import drawing, writing
-from fingerpad.io.drawing import Profile
-from fingerpad.io.states import RESULTS, named
 from fingerpad.model import report
 from fingerpad.model.stability import FullSlip
 from fingerpad.model.state import force_error
+from fingerpad.results import drawing, writing
+from fingerpad.results.drawing import Profile
+from fingerpad.results.states import RESULTS, named
 from fingerpad.scene import from_data
 from tests.measures import rows_of
 from tests.runs import followed, path_of, run

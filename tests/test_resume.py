@@ -15,10 +15,10 @@ from mpi4py import MPI
 
 import fingerpad as fp
 from fingerpad.cli import run as command
-from fingerpad.io.checkpoint import Checkpoint, CheckpointError
-from fingerpad.io.drawing import Drawing
-from fingerpad.io.writing import Writer
 from fingerpad.model.simulation import Simulation
+from fingerpad.results.checkpoint import Checkpoint, CheckpointError
+from fingerpad.results.drawing import Drawing
+from fingerpad.results.writing import Writer
 from fingerpad.runs.batch import key, sweep
 from fingerpad.scene import SceneError
 from tests.test_history import Own
@@ -123,7 +123,7 @@ kind, number = sys.argv.pop(1), int(sys.argv.pop(1))
 from tests.test_history import Own
 from variational.problem import Problem
 from variational.solvers.coupling import Coupling
-from fingerpad.io import checkpoint, files
+from fingerpad.results import checkpoint, files
 def kill_at(owner, name, do=lambda *args: None):
     plain, count = getattr(owner, name), [0]
     def call(*args, **more):
@@ -139,7 +139,7 @@ elif kind == "part":
     kill_at(checkpoint.np, "savez", lambda stream, *rest: stream.write(b"PK half of it"))
 elif kind == "row":
     kill_at(files.Table, "write")
-from fingerpad.io.drawing import Drawing
+from fingerpad.results.drawing import Drawing
 Drawing.write = lambda *args: None
 from fingerpad.cli import main
 sys.exit(main(sys.argv[1:]))

@@ -8,7 +8,7 @@ import pint
 import pytest
 from numpy.testing import assert_allclose
 
-from fingerpad.io.finger_picture import footprint
+from fingerpad.results.finger_picture import footprint
 from fingerpad.scene import Scene, SceneError, override
 from fingerpad.scene.slices import Slices
 from fingerpad.slices.errors import MESH

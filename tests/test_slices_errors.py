@@ -9,9 +9,9 @@ import pytest
 
 import fingerpad as fp
 from benchmarks import newtons
-from fingerpad.io.dataset import _finger as finger
-from fingerpad.io.states import STATES
 from fingerpad.report.run_page import page
+from fingerpad.results.dataset import _finger as finger
+from fingerpad.results.states import STATES
 from fingerpad.runs.sweep_columns import row
 from fingerpad.scene.slices import Slices
 from fingerpad.slices import errors, solid

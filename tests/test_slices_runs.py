@@ -10,10 +10,10 @@ import numpy as np
 import pytest
 
 import fingerpad as fp
-from fingerpad.io.place import full_scene
 from fingerpad.model.simulation import Simulation
 from fingerpad.reduced.models import find
 from fingerpad.report import run_page
+from fingerpad.results.folder import full_scene
 from fingerpad.runs import solve
 from fingerpad.runs.context import RunContext
 from fingerpad.scene import SceneError, load

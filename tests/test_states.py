@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import pytest
 
-from fingerpad.io import states
+from fingerpad.results import states
 from fingerpad.scene import Load
 from variational.state import ContactState
 

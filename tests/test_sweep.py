@@ -12,8 +12,8 @@ from pathlib import Path
 import pytest
 
 from fingerpad.installed import source
-from fingerpad.io.files import replace
-from fingerpad.io.result import Result
+from fingerpad.results.files import replace
+from fingerpad.results.result import Result
 from fingerpad.runs import batch as module
 from fingerpad.runs import processes
 from fingerpad.runs.batch import key, result, sweep

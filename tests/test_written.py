@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 import fingerpad as fp
-from fingerpad.io.result import Result
+from fingerpad.results.result import Result
 from fingerpad.scene import Scene, SceneError, load
 from fingerpad.scene.law_code import digest
 from fingerpad.scene.laws import used

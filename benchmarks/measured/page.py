@@ -14,7 +14,7 @@ from benchmarks.harness import kept, page, picture, prose, table
 from benchmarks.measured import forms, rows, scenes
 from benchmarks.measured.verdict import BUILT, HIT, MISS, PART
 from benchmarks.runs import VOLTAGES
-from fingerpad.io import style
+from fingerpad.results import style
 
 _HERE = Path(__file__).parent
 _KINDS = {"shape": "Shapes, exponents and trends", "ratio": "Ratios", "value": "Absolute values"}

@@ -11,7 +11,7 @@ from benchmarks.limits import Limit
 from benchmarks.paper.scenes import MAP, SECTION, TRANSITION
 from benchmarks.paper.statement import HALF, Statement, statement
 from benchmarks.runs import Run
-from fingerpad.io import style
+from fingerpad.results import style
 
 Array = NDArray[np.float64]
 Grid = Mapping[str, Array]

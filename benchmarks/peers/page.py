@@ -11,7 +11,7 @@ from benchmarks.harness import kept, page, picture, table
 from benchmarks.peers import speed
 from benchmarks.peers.exchange import TASKS, Answer, Array, Ridge, answer_path, cases
 from benchmarks.peers.quantities import differences, values
-from fingerpad.io.style import BLUE, GREEN, ORANGE, VERMILION
+from fingerpad.results.style import BLUE, GREEN, ORANGE, VERMILION
 
 FORCE, SHAPE = 5e-4, 1e-2  # bars: relative differences of forces, and of half-width and peak pressure
 _BARS = (FORCE, FORCE, SHAPE, SHAPE)

@@ -14,7 +14,7 @@ from matplotlib.patches import Patch, Rectangle
 from benchmarks.harness import kept, page, picture, prose, table
 from benchmarks.stability import plan, scenes
 from benchmarks.stability.plan import DEFAULT, Axis, Case, Named, Panel
-from fingerpad.io.style import MAGNITUDE, ORANGE, SKY, VERMILION
+from fingerpad.results.style import MAGNITUDE, ORANGE, SKY, VERMILION
 
 Row = Mapping[str, Any]
 Rows = Mapping[Case, Row]

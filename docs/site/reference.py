@@ -10,7 +10,7 @@ PACKAGES = ("geometry", "variational", "fingerpad")
 TABLES = {
     "geometry.tags": ("LAYERS", "Numbers of the layers, by the names of the physical groups."),
     "variational.element": ("ELEMENTS", "Elements by their names in a scene."),
-    "fingerpad.io.states": ("STATES", "Names of the states of a run, in the order of a history."),
+    "fingerpad.results.states": ("STATES", "Names of the states of a run, in the order of a history."),
 }
 SKIPPED = {"fingerpad/__main__.py"}  # runs the command
 

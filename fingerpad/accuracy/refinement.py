@@ -32,10 +32,10 @@ from mpi4py import MPI
 
 from fingerpad.accuracy.rigid_screen import rigid
 from fingerpad.accuracy.solves import Solve, Solves, quantities, words
-from fingerpad.io.interrupt import Interrupted
-from fingerpad.io.quantities import QUANTITIES
-from fingerpad.io.states import WORDS
 from fingerpad.model.options import FingerModel
+from fingerpad.results.interrupt import Interrupted
+from fingerpad.results.quantities import QUANTITIES
+from fingerpad.results.states import WORDS
 from fingerpad.richardson import MeshParameter, errors, plus_minus, to_refine
 from geometry.profiles import GeometryError
 from variational.element import ELEMENTS

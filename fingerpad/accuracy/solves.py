@@ -11,11 +11,11 @@ from mpi4py import MPI
 from numpy.typing import ArrayLike, NDArray
 
 from fingerpad.accuracy.rigid_screen import over_stiffer
-from fingerpad.io.drawing import View
-from fingerpad.io.states import WORDS, before_sliding
 from fingerpad.model.options import FingerModel
 from fingerpad.model.record import Viewer
 from fingerpad.model.simulation import RestartRequired, Simulation
+from fingerpad.results.drawing import View
+from fingerpad.results.states import WORDS, before_sliding
 from fingerpad.scene import Load
 from geometry.parameters import MeshSize
 from variational.contact.formulation import Formulation

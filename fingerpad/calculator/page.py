@@ -16,10 +16,10 @@ from numpy.polynomial.legendre import leggauss
 from pydantic import BaseModel, WrapValidator
 
 from fingerpad.installed import version
-from fingerpad.io.quantities import PER_LENGTH
-from fingerpad.io.states import WORDS
 from fingerpad.reduced import cylinder_errors, cylinders
 from fingerpad.reduced.model import STATES
+from fingerpad.results.quantities import PER_LENGTH
+from fingerpad.results.states import WORDS
 from fingerpad.scene import Scene
 from fingerpad.scene.contradictions import LARGEST_GAP
 from fingerpad.scene.law_keys import keys_of

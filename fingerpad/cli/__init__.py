@@ -13,7 +13,7 @@ from collections.abc import Sequence
 from difflib import get_close_matches
 
 from fingerpad.installed import OPTIONAL, needed_by, version
-from fingerpad.io import terminal
+from fingerpad.results import terminal
 from fingerpad.scene.messages import SceneError, clip
 
 COMMANDS = {

@@ -12,8 +12,8 @@ from pathlib import Path
 from typing import Any, NamedTuple, NoReturn
 
 from fingerpad.cli import COMMANDS, ranges
-from fingerpad.io import terminal
 from fingerpad.model.feasibility import check
+from fingerpad.results import terminal
 from fingerpad.scene import Scene, from_data, load, override
 from fingerpad.scene.keys import every
 from fingerpad.scene.messages import SceneError, clip, ends

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from importlib.resources import files
 
 from fingerpad.cli.arguments import Kind, Parser, echo
-from fingerpad.io.files import replace
+from fingerpad.results.files import replace
 
 _EXAMPLES = """
     fingerpad calculator

@@ -6,14 +6,14 @@ from pathlib import Path
 
 from fingerpad.cli.arguments import Parser, echo, path, positive, quantity, scene_of
 from fingerpad.ctrl_c import raises
-from fingerpad.io.files import below, check_folder
-from fingerpad.io.quantities import PLUS_MINUS, QUANTITIES, cell
-from fingerpad.io.result import Result
-from fingerpad.io.states import called
 from fingerpad.reduced import cylinders
 from fingerpad.reduced.cylinders import Cylinders
 from fingerpad.reduced.model import STATES, Model
 from fingerpad.reduced.models import MODELS
+from fingerpad.results.files import below, check_folder
+from fingerpad.results.quantities import PLUS_MINUS, QUANTITIES, cell
+from fingerpad.results.result import Result
+from fingerpad.results.states import called
 from fingerpad.runs.context import RunContext
 from fingerpad.runs.solve import solved
 from fingerpad.scene import Scene

@@ -10,9 +10,9 @@ import numpy as np
 
 from fingerpad.cli import tables
 from fingerpad.cli.arguments import Parser, echo, path
-from fingerpad.io.quantities import Output
-from fingerpad.io.states import WORDS
-from fingerpad.io.style import plain
+from fingerpad.results.quantities import Output
+from fingerpad.results.states import WORDS
+from fingerpad.results.style import plain
 from fingerpad.scene.messages import SceneError, clip
 
 if TYPE_CHECKING:
@@ -129,8 +129,8 @@ def _draw(file: Path, compared: Sequence["pd.DataFrame"], known: Sequence["Compu
 
 def _panel(ax: "Axes", rows: "pd.DataFrame", known: "Computed") -> None:
     from fingerpad.cli import plot
-    from fingerpad.io import style
     from fingerpad.measurements.computed import CLOSE
+    from fingerpad.results import style
 
     about, points = rows.attrs, known.points
     unit = _UNITS.get(about["unit"], about["unit"])

@@ -7,10 +7,10 @@ from typing import Any
 
 from fingerpad.cli import tables
 from fingerpad.cli.arguments import Parser, echo, scene_of, several
-from fingerpad.io.quantities import FINGER, PER_LENGTH, QUANTITIES
-from fingerpad.io.result import Result
 from fingerpad.model.cautions import on_states
 from fingerpad.reduced import cylinder_errors, cylinders
+from fingerpad.results.quantities import FINGER, PER_LENGTH, QUANTITIES
+from fingerpad.results.result import Result
 from fingerpad.runs.context import RunContext
 from fingerpad.runs.solve import solved
 from fingerpad.scene import Scene
@@ -130,7 +130,7 @@ def _known(scene: Scene, rows: Sequence[Mapping[str, Any]]) -> list[str]:
 def draw(file: Path, rows: Sequence[Mapping[str, Any]]) -> None:
     """Draw friction over voltage, one curve a force; over force where there is one voltage."""
     from fingerpad.cli import plot
-    from fingerpad.io import style
+    from fingerpad.results import style
 
     key = "force" if "force" in rows[0] else "f_ext"
     forces, voltages = (list(dict.fromkeys(row[each] for row in rows)) for each in (key, "voltage"))

@@ -9,8 +9,8 @@ import numpy as np
 
 from fingerpad.cli import ranges, tables
 from fingerpad.cli.arguments import Parser, echo, quantity, scene_of, several
-from fingerpad.io.quantities import QUANTITIES, Output
 from fingerpad.model.cautions import on_closure
+from fingerpad.results.quantities import QUANTITIES, Output
 from fingerpad.scene import Scene
 from fingerpad.scene.messages import SceneError
 from fingerpad.scene.remarks import remarks
@@ -112,7 +112,7 @@ def table(scene: Scene, voltages: Sequence[float], pressures: Sequence[float]) -
 def draw(file: Path, rows: Sequence[dict[str, Any]]) -> None:
     """Draw lengths, attraction and real area over pressure."""
     from fingerpad.cli import plot
-    from fingerpad.io import style
+    from fingerpad.results import style
 
     voltages = list(dict.fromkeys(row["voltage"] for row in rows))
     first = [row for row in rows if row["voltage"] == voltages[0]]

@@ -14,7 +14,7 @@ from matplotlib.patches import Patch
 from numpy import size
 from numpy.typing import ArrayLike
 
-from fingerpad.io import style
+from fingerpad.results import style
 
 _DASHES = ("-", "--", "-.", ":", (0, (6, 1, 1, 1, 1, 1)), (0, (8, 3)), (0, (1, 3)))
 _MAX_MARKERS = 15  # points up to which each has a marker

@@ -6,10 +6,10 @@ from pathlib import Path
 
 from fingerpad.cli.arguments import Parser, echo, path, refuse_twice, scene_of
 from fingerpad.ctrl_c import raises
-from fingerpad.io.files import check_folder
-from fingerpad.io.place import full_scene
 from fingerpad.reduced.models import MODELS, find
 from fingerpad.report.write import NAME
+from fingerpad.results.files import check_folder
+from fingerpad.results.folder import full_scene
 from fingerpad.runs.context import RunContext
 from fingerpad.runs.solve import solved
 from fingerpad.scene import Scene

@@ -134,7 +134,7 @@ def _read(gmsh: Any, unit: float = 1e-3) -> Section:
 def draw(file: Path, found: Section, scene: Scene) -> None:
     """Draw the mesh: the whole finger, some ridges, and one ridge's tip; layers in colour, axes in mm."""
     from fingerpad.cli import plot
-    from fingerpad.io.finger_picture import LAYER_COLOURS
+    from fingerpad.results.finger_picture import LAYER_COLOURS
 
     shape = scene.geometry
     period, deep = shape.ridge_wavelength, shape.sc_thickness + shape.ve_thickness
@@ -183,7 +183,7 @@ def _fill(
         triangles, layer = triangles[inside], layer[inside]
     from matplotlib.colors import ListedColormap
 
-    from fingerpad.io.finger_picture import LAYER_COLOURS
+    from fingerpad.results.finger_picture import LAYER_COLOURS
 
     tagged = list(tags.LAYERS.values())
     colours = [LAYER_COLOURS[tag] for tag in tagged]

@@ -8,8 +8,8 @@ from pathlib import Path
 from typing import Any
 
 from fingerpad.cli.arguments import PICTURE, Kind, Parser, echo
-from fingerpad.io.files import replace
-from fingerpad.io.quantities import Output
+from fingerpad.results.files import replace
+from fingerpad.results.quantities import Output
 
 
 def text(columns: Sequence[Output], rows: Sequence[Mapping[str, Any]]) -> str:

@@ -10,7 +10,7 @@ from typing import Any
 from pydantic import ValidationError
 
 from fingerpad.cli.arguments import PICTURE, Parser, echo, path
-from fingerpad.io.style import plain
+from fingerpad.results.style import plain
 from fingerpad.scene import Scene, from_data, override
 from fingerpad.scene.materials import Topography
 from fingerpad.scene.messages import SceneError, clip

@@ -12,11 +12,11 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from fingerpad.io.result import Result
-from fingerpad.io.states import WORDS, before_sliding
 from fingerpad.measurements.table import Measured
 from fingerpad.report.source import Table
 from fingerpad.report.source import read as content
+from fingerpad.results.result import Result
+from fingerpad.results.states import WORDS, before_sliding
 from fingerpad.runs.sweep_results import Sweep
 from fingerpad.scene import as_kept
 from fingerpad.scene.messages import SceneError, clip, show

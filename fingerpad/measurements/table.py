@@ -65,7 +65,7 @@ class Measured:
     about: dict[str, str]
     """Its comments by name: source, doi, url, people, state."""
     state: str
-    """A name of :data:`fingerpad.io.states.STATES`."""
+    """A name of :data:`fingerpad.results.states.STATES`."""
     quantity: str
     whole: bool
     """Whether it is of a whole finger, in N and m², and not of a cross-section."""

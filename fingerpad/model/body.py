@@ -23,10 +23,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 import fingerpad.startup  # noqa: F401
-from fingerpad.io.states import full_slip
 from fingerpad.model import cautions
 from fingerpad.model.gather import Nodes, Points
 from fingerpad.model.state import contact_state, force_error, refuse_strained, steady, step_record
+from fingerpad.results.states import full_slip
 from fingerpad.scene.contradictions import refuse_thickness
 from fingerpad.startup import MPI
 from geometry.mesh import TaggedMesh, load

@@ -17,8 +17,8 @@ import math
 import re
 from typing import TYPE_CHECKING
 
-from fingerpad.io.pace import about
 from fingerpad.model.options import FingerModel, ModelOptions, plan
+from fingerpad.results.pace import about
 from fingerpad.scene.messages import SceneError, qualify
 from geometry import sizing
 from geometry.parameters import Fingertip, MeshSize

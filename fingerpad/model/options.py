@@ -1,6 +1,6 @@
 """What a scene needs of the model, decided from the scene alone, and the model as plain values.
 
-A :class:`FingerModel` reads the scene once. What meshes, solves, records and refines takes the model and no scene.
+A :class:`FingerModel` reads the scene once. Meshing, solving, recording and refinement receive it, never a scene.
 
 What cannot change any number asked for is left out, and each omission comes with its reason. Nothing here is an
 approximation but what the finite elements make of it: the numbers stay those of the whole model. Ridges that are not

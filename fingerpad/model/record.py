@@ -11,9 +11,9 @@ import numpy as np
 from mpi4py import MPI
 from numpy.typing import NDArray
 
-from fingerpad.io import states
-from fingerpad.io.drawing import Drawing, End, Profile, View
 from fingerpad.model import symmetry
+from fingerpad.results import states
+from fingerpad.results.drawing import Drawing, End, Profile, View
 from fingerpad.scene import Load
 from variational.output import Snapshot, gather_mesh
 from variational.receptors import Receptors

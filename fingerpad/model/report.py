@@ -6,14 +6,14 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
-from fingerpad.io import states
-from fingerpad.io.console import Console
-from fingerpad.io.drawing import End, View
-from fingerpad.io.quantities import Output, valued
-from fingerpad.io.writing import Writer, ridge_rows, site_rows
 from fingerpad.model.cost import Clock
 from fingerpad.model.options import Omission
 from fingerpad.model.record import PathRecord, Viewer
+from fingerpad.results import states
+from fingerpad.results.console import Console
+from fingerpad.results.drawing import End, View
+from fingerpad.results.quantities import Output, valued
+from fingerpad.results.writing import Writer, ridge_rows, site_rows
 from variational.solvers import checkpoint
 from variational.state import ContactState
 

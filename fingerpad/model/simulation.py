@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from mpi4py import MPI
 
-from fingerpad.io.states import FIRST_TOUCH, SLIDE_ON
 from fingerpad.model.contact_zone import ContactZone, FingerExceeded
 from fingerpad.model.finger import Finger, HalfFinger, Step
 from fingerpad.model.schedule import targets
 from fingerpad.model.stability import Checked, FullSlip, StabilityChecks
 from fingerpad.model.state import refuse_strained, step_record
+from fingerpad.results.states import FIRST_TOUCH, SLIDE_ON
 from fingerpad.scene import Load
 from variational.quantities import RidgeLoads
 from variational.solvers import checkpoint

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from fingerpad.io.states import SLIDE_ON, full_slip
 from fingerpad.model.state import steady
+from fingerpad.results.states import SLIDE_ON, full_slip
 from variational.solvers.continuation import StepFailed
 from variational.solvers.failure import NotConverged
 from variational.solvers.stability import Stability, StabilityCheck

@@ -6,8 +6,8 @@ some of which are at forces that the model has no contact length of.
 
 from collections.abc import Mapping
 
-from fingerpad.io.quantities import QUANTITIES
-from fingerpad.io.states import WORDS
+from fingerpad.results.quantities import QUANTITIES
+from fingerpad.results.states import WORDS
 from fingerpad.scene.scene import Scene
 
 Bands = Mapping[str, Mapping[str, float]]

@@ -26,14 +26,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from fingerpad.io.answer import Cost
-from fingerpad.io.files import read_object
-from fingerpad.io.place import difference
-from fingerpad.io.result import Result
-from fingerpad.io.states import WORDS
 from fingerpad.model.cautions import on_states
 from fingerpad.reduced import cylinder_errors
 from fingerpad.reduced.model import STATES, Model, Stopwatch, at_rest, at_slip, refuse_others
+from fingerpad.results.answer import Cost
+from fingerpad.results.files import read_object
+from fingerpad.results.folder import difference
+from fingerpad.results.result import Result
+from fingerpad.results.states import WORDS
 from fingerpad.scene import Scene, SceneError
 from fingerpad.scene.laws import skin_modulus, used
 from fingerpad.scene.messages import show

@@ -13,12 +13,12 @@ from fingerpad.scene.messages import SceneError, show
 from variational.state import ContactState, Errors
 
 if TYPE_CHECKING:
-    from fingerpad.io.result import Result
+    from fingerpad.results.result import Result
     from fingerpad.runs.context import RunContext
     from fingerpad.scene import Scene
 
 STATES = ("charged", "full_slip")
-"""For which reduced models answer, by their names in :mod:`fingerpad.io.states`."""
+"""For which reduced models answer, by their names in :mod:`fingerpad.results.states`."""
 
 
 class Model(ABC):

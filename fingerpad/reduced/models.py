@@ -10,7 +10,7 @@ from fingerpad.scene.messages import SceneError, show
 from fingerpad.scene.reading import DEFAULT_MODEL
 
 if TYPE_CHECKING:
-    from fingerpad.io.result import Result
+    from fingerpad.results.result import Result
     from fingerpad.runs.context import RunContext
 
 

@@ -14,11 +14,11 @@ import numpy as np
 from matplotlib.tri import Triangulation
 from numpy.typing import NDArray
 
-from fingerpad.io.finger_picture import interfaces
-from fingerpad.io.kept_drawing import finger_of, skin_of
-from fingerpad.io.result import Result
-from fingerpad.io.states import WORDS, called, partial_slip
 from fingerpad.report import page as html
+from fingerpad.results.finger_picture import interfaces
+from fingerpad.results.kept_drawing import finger_of, skin_of
+from fingerpad.results.result import Result
+from fingerpad.results.states import WORDS, called, partial_slip
 from variational.state import ContactState
 
 Array = NDArray[np.float64]

@@ -2,11 +2,11 @@
 
 import math
 
-from fingerpad.io.quantities import cell
-from fingerpad.io.result import Result
-from fingerpad.io.states import LoadResult, called
 from fingerpad.report import page as html
 from fingerpad.report import trust
+from fingerpad.results.quantities import cell
+from fingerpad.results.result import Result
+from fingerpad.results.states import LoadResult, called
 from fingerpad.scene.laws import coefficient
 
 MARKS = {trust.GOOD: "✓ holds", trust.CARE: "! care", trust.BAD: "✗ fails"}

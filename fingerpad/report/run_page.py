@@ -7,16 +7,16 @@ from typing import Any
 
 import numpy as np
 
-from fingerpad.io.kept_drawing import arrays_of
-from fingerpad.io.over_time import HARMONICS, NOTE
-from fingerpad.io.quantities import PER_LENGTH, PLUS_MINUS, QUANTITIES, Output
-from fingerpad.io.result import Result
-from fingerpad.io.states import before_sliding, called
 from fingerpad.reduced.models import MODELS
 from fingerpad.report import page as html
 from fingerpad.report import parameters, trust
 from fingerpad.report.frames import frames, section
 from fingerpad.report.headline import MARKS, conditions, head
+from fingerpad.results.kept_drawing import arrays_of
+from fingerpad.results.over_time import HARMONICS, NOTE
+from fingerpad.results.quantities import PER_LENGTH, PLUS_MINUS, QUANTITIES, Output
+from fingerpad.results.result import Result
+from fingerpad.results.states import before_sliding, called
 
 _MM = 1e3
 _LINKS = {

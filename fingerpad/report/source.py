@@ -5,12 +5,12 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from fingerpad.io.files import read_object
-from fingerpad.io.quantities import Output
-from fingerpad.io.quantities import read as read_outputs
-from fingerpad.io.result import Result, steps_of
-from fingerpad.io.states import load_results, named
 from fingerpad.reduced.models import MODELS
+from fingerpad.results.files import read_object
+from fingerpad.results.quantities import Output
+from fingerpad.results.quantities import read as read_outputs
+from fingerpad.results.result import Result, steps_of
+from fingerpad.results.states import load_results, named
 from fingerpad.scene import SceneError, as_kept
 from fingerpad.scene.messages import clip
 from fingerpad.scene.reading import DEFAULT_MODEL

@@ -5,10 +5,10 @@ import math
 from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Any
 
-from fingerpad.io.quantities import PER_LENGTH, QUANTITIES, Output
-from fingerpad.io.states import WORDS
 from fingerpad.report import page as html
 from fingerpad.report import parameters
+from fingerpad.results.quantities import PER_LENGTH, QUANTITIES, Output
+from fingerpad.results.states import WORDS
 from fingerpad.runs.sweep_columns import LOAD, described, in_time, loads, shown, text
 from fingerpad.scene.reading import DEFAULT_MODEL
 from fingerpad.slices import solid

@@ -4,13 +4,13 @@ import math
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, NamedTuple
 
-from fingerpad.io.states import called
 from fingerpad.reduced.cylinder_errors import in_words
 from fingerpad.reduced.models import follows_path
+from fingerpad.results.states import called
 from variational.state import ContactState
 
 if TYPE_CHECKING:
-    from fingerpad.io.result import Result
+    from fingerpad.results.result import Result
 
 GOOD, CARE, BAD = "holds", "care", "fails"
 _SMALL, _LARGE = 0.02, 0.1

@@ -3,8 +3,8 @@
 import sys
 from pathlib import Path
 
-from fingerpad.io.files import replace
-from fingerpad.io.result import Result
+from fingerpad.results.files import replace
+from fingerpad.results.result import Result
 from fingerpad.scene import SceneError
 from fingerpad.scene.messages import clip
 
@@ -54,7 +54,7 @@ def draw_footprint(result: Result) -> None:
     """Write ``footprint.png`` at the end of a run with a whole finger; a line on the console where it fails; serial."""
     if result.finger is None or result.folder is None:
         return
-    from fingerpad.io.finger_picture import footprint  # Matplotlib
+    from fingerpad.results.finger_picture import footprint  # Matplotlib
 
     try:
         footprint(result.finger, result.folder / "footprint.png")

@@ -7,17 +7,6 @@ from typing import Any
 
 from fingerpad.accuracy.refinement import Refinement, with_errors
 from fingerpad.accuracy.solves import StateRecorder
-from fingerpad.io import petsc_options
-from fingerpad.io.checkpoint import Checkpoint, CheckpointError
-from fingerpad.io.console import Console
-from fingerpad.io.interrupt import Interrupt, Interrupted
-from fingerpad.io.over_time import NOTE
-from fingerpad.io.pace import in_words
-from fingerpad.io.provenance import provenance
-from fingerpad.io.quantities import Output, valued
-from fingerpad.io.result import Result
-from fingerpad.io.states import long_steps
-from fingerpad.io.writing import Writer
 from fingerpad.model import cautions
 from fingerpad.model.cost import Clock
 from fingerpad.model.finger import Step, meshed
@@ -25,6 +14,17 @@ from fingerpad.model.options import FingerModel
 from fingerpad.model.report import Report
 from fingerpad.model.simulation import RestartRequired, Simulation
 from fingerpad.model.state import broken, force_error
+from fingerpad.results import petsc_options
+from fingerpad.results.checkpoint import Checkpoint, CheckpointError
+from fingerpad.results.console import Console
+from fingerpad.results.interrupt import Interrupt, Interrupted
+from fingerpad.results.over_time import NOTE
+from fingerpad.results.pace import in_words
+from fingerpad.results.provenance import provenance
+from fingerpad.results.quantities import Output, valued
+from fingerpad.results.result import Result
+from fingerpad.results.states import long_steps
+from fingerpad.results.writing import Writer
 from fingerpad.runs.restarts import Restarts, finer, hint
 from fingerpad.scene import Scene
 from fingerpad.scene.laws import coefficient, used

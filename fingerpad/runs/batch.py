@@ -16,10 +16,10 @@ from typing import Any
 
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
 
-from fingerpad.io.files import below, lock_file, read_object, replace_json
-from fingerpad.io.pace import between
-from fingerpad.io.place import identity
-from fingerpad.io.terminal import watched
+from fingerpad.results.files import below, lock_file, read_object, replace_json
+from fingerpad.results.folder import identity
+from fingerpad.results.pace import between
+from fingerpad.results.terminal import watched
 from fingerpad.runs.processes import End, Pool, run
 from fingerpad.scene import Scene
 from fingerpad.scene.reading import DEFAULT_MODEL

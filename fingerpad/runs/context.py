@@ -6,13 +6,13 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from fingerpad.io import terminal
-from fingerpad.io.place import Place, Serial
-from fingerpad.io.quantities import Output
+from fingerpad.results import terminal
+from fingerpad.results.folder import Folder, Serial
+from fingerpad.results.quantities import Output
 from fingerpad.scene import Scene
 
 if TYPE_CHECKING:
-    from fingerpad.io.console import Console
+    from fingerpad.results.console import Console
     from fingerpad.startup import MPI
 
 
@@ -51,7 +51,7 @@ class RunContext:
     @contextmanager
     def console(self) -> Iterator["Console"]:
         """Open the console of the run, for a model with MPI; collective."""
-        from fingerpad.io.console import Console
+        from fingerpad.results.console import Console
 
         console = Console(self.ranks, self.lines, self.bar)  # type: ignore[arg-type]
         try:
@@ -59,12 +59,12 @@ class RunContext:
         finally:
             console.close()
 
-    def place(self, scene: Scene, model: str) -> AbstractContextManager[Place | None]:
+    def place(self, scene: Scene, model: str) -> AbstractContextManager[Folder | None]:
         """Lock the folder for the results of a scene by a model; nothing without a folder; collective.
 
         Raises:
-            PlaceError: on entering, the folder is in use, holds other results, or cannot be written to.
+            FolderError: on entering, the folder is in use, holds other results, or cannot be written to.
         """
         if self.folder is None:
             return nullcontext()
-        return Place(self.folder, scene.parameters(), self.ranks, model)
+        return Folder(self.folder, scene.parameters(), self.ranks, model)

@@ -8,18 +8,18 @@ from typing import Any
 
 import fingerpad.startup  # noqa: F401
 from fingerpad.accuracy.solves import State
-from fingerpad.io import petsc_options
-from fingerpad.io.checkpoint import Checkpoint, CheckpointError
-from fingerpad.io.console import Console
-from fingerpad.io.drawing import Profile
-from fingerpad.io.interrupt import Interrupt, all_together, no_room
-from fingerpad.io.provenance import provenance
-from fingerpad.io.quantities import Output, checked
-from fingerpad.io.result import Result
-from fingerpad.io.writing import Writer
 from fingerpad.model.cost import Clock
 from fingerpad.model.feasibility import by_rule
 from fingerpad.model.options import FingerModel, plan
+from fingerpad.results import petsc_options
+from fingerpad.results.checkpoint import Checkpoint, CheckpointError
+from fingerpad.results.console import Console
+from fingerpad.results.drawing import Profile
+from fingerpad.results.interrupt import Interrupt, all_together, no_room
+from fingerpad.results.provenance import provenance
+from fingerpad.results.quantities import Output, checked
+from fingerpad.results.result import Result
+from fingerpad.results.writing import Writer
 from fingerpad.runs.attempt import Attempt, Session
 from fingerpad.runs.context import RunContext
 from fingerpad.runs.restarts import Restarts
@@ -53,7 +53,7 @@ def run(scene: Scene, context: RunContext) -> Result:
         was asked to stop.
 
     Raises:
-        PlaceError: the folder is in use, holds another scene's results, or cannot be written to.
+        FolderError: the folder is in use, holds another scene's results, or cannot be written to.
         CheckpointError: the run cannot go on from what is in the folder.
         OptionError: PETSc refuses an option.
         SceneError: the finger cannot be meshed; on every rank.

@@ -10,10 +10,10 @@ from dataclasses import replace
 from pathlib import Path
 
 import fingerpad.startup  # noqa: F401
-from fingerpad.io.checkpoint import CheckpointError
-from fingerpad.io.files import replace_json
-from fingerpad.io.place import PlaceError
 from fingerpad.reduced.models import find
+from fingerpad.results.checkpoint import CheckpointError
+from fingerpad.results.files import replace_json
+from fingerpad.results.folder import FolderError
 from fingerpad.runs.context import RunContext
 from fingerpad.runs.processes import limit_processor_time
 from fingerpad.runs.solve import solved
@@ -35,7 +35,7 @@ def main(scene: Path, folder: Path, model: str) -> None:
             solved(asked, way, replace(context, resume=way.resumes))
         except CheckpointError:  # nothing to go on from
             solved(asked, way, context)
-    except PlaceError as error:  # another run is at it, or the disk is full: it may be gone the next time
+    except FolderError as error:  # another run is at it, or the disk is full: it may be gone the next time
         print(error, file=sys.stderr)
         sys.exit(os.EX_TEMPFAIL)
     except SceneError as error:  # it would be the same the next time

@@ -4,17 +4,17 @@ import logging
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
-from fingerpad.io.interrupt import Interrupted
 from fingerpad.model.finger import meshed
 from fingerpad.model.simulation import RestartRequired
+from fingerpad.results.interrupt import Interrupted
 from geometry.profiles import GeometryError
 from variational.solvers.failure import NotConverged
 
 if TYPE_CHECKING:
-    from fingerpad.io.console import Console
     from fingerpad.model.cost import Clock
     from fingerpad.model.finger import Finger
     from fingerpad.model.options import FingerModel
+    from fingerpad.results.console import Console
     from fingerpad.startup import MPI
     from variational.solvers.continuation import StepFailed
     from variational.state import ContactState

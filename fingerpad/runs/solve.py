@@ -9,13 +9,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from fingerpad.installed import needed_by, source, version
-from fingerpad.io import dataset, terminal
-from fingerpad.io.files import below, replace_json
-from fingerpad.io.place import Serial, on_rank_0
-from fingerpad.io.quantities import Output
-from fingerpad.io.quantities import checked as checked_outputs
-from fingerpad.io.result import Result
 from fingerpad.reduced.models import find
+from fingerpad.results import dataset, terminal
+from fingerpad.results.files import below, replace_json
+from fingerpad.results.folder import Serial, on_rank_0
+from fingerpad.results.quantities import Output
+from fingerpad.results.quantities import checked as checked_outputs
+from fingerpad.results.result import Result
 from fingerpad.runs.context import RunContext
 from fingerpad.scene import Scene
 from fingerpad.scene.messages import SceneError, show
@@ -45,7 +45,7 @@ def run(
             (minutes); ``"cylinders"``, a closed form (at once).
         comm: communicator; by default of all ranks.
         resume: go on from where a run of the same scene in ``out`` was cut short; only of the full model.
-        outputs: further quantities, each computed from every state: see :class:`fingerpad.io.quantities.Output`.
+        outputs: further quantities, each computed from every state: see :class:`fingerpad.results.quantities.Output`.
 
     Returns:
         The result. A load that could not be reached is its ``failure``, with a warning; the states before are in it.
@@ -178,7 +178,7 @@ def _whole(scene: Scene, model: "Model", context: RunContext) -> Result:
 
 def _gone_on(scene: Scene, model: "Model", context: RunContext) -> Result:
     """Return the result of a scene that its folder may have, whole or in part; collective."""
-    from fingerpad.io.checkpoint import CheckpointError
+    from fingerpad.results.checkpoint import CheckpointError
     from fingerpad.runs.batch import finished
 
     folder = context.folder
@@ -196,7 +196,7 @@ def kept(result: Result, context: RunContext) -> Result:
     """Return the result of a model without a path, its summary written into the folder if there is one; collective.
 
     Raises:
-        PlaceError: the folder is in use, holds results of another scene or model, or cannot be written to.
+        FolderError: the folder is in use, holds results of another scene or model, or cannot be written to.
     """
     with context.place(result.scene, result.model) as place:
         if place is None:

@@ -12,13 +12,13 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from fingerpad.installed import source, version
-from fingerpad.io import terminal
-from fingerpad.io.files import below, check_folder, replace_json
-from fingerpad.io.quantities import Output
-from fingerpad.io.quantities import checked as checked_outputs
-from fingerpad.io.result import Result
 from fingerpad.reduced.models import MODELS, find
 from fingerpad.report.write import attempt
+from fingerpad.results import terminal
+from fingerpad.results.files import below, check_folder, replace_json
+from fingerpad.results.quantities import Output
+from fingerpad.results.quantities import checked as checked_outputs
+from fingerpad.results.result import Result
 from fingerpad.runs.context import RunContext
 from fingerpad.runs.solve import checked, solved
 from fingerpad.runs.sweep_results import FILE, Sweep

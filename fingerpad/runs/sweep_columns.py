@@ -10,14 +10,14 @@ import re
 from collections.abc import Iterable, Iterator, Mapping
 from typing import TYPE_CHECKING, Any
 
-from fingerpad.io.quantities import FINGER, FRICTION, QUANTITIES, SWEPT, Output, cell
-from fingerpad.io.states import STATES, LoadResult
+from fingerpad.results.quantities import FINGER, FRICTION, QUANTITIES, SWEPT, Output, cell
+from fingerpad.results.states import STATES, LoadResult
 from fingerpad.scene import Scene
 from fingerpad.scene.keys import Key, every
 from fingerpad.slices.finger import WholeFinger
 
 if TYPE_CHECKING:
-    from fingerpad.io.result import Result
+    from fingerpad.results.result import Result
 
 LOAD = "load"
 """Beginning of the columns of a load over time."""

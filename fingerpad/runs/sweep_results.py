@@ -13,10 +13,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from fingerpad.io import dataset
-from fingerpad.io.files import replace
-from fingerpad.io.quantities import FINGER, PER_LENGTH, QUANTITIES, Output
-from fingerpad.io.states import STATES, WORDS
+from fingerpad.results import dataset
+from fingerpad.results.files import replace
+from fingerpad.results.quantities import FINGER, PER_LENGTH, QUANTITIES, Output
+from fingerpad.results.states import STATES, WORDS
 from fingerpad.runs.sweep_columns import described, newtons_of, printed, row, shown, tables
 from fingerpad.slices import solid
 from variational.state import CONDITIONS, RESULTS
@@ -24,7 +24,7 @@ from variational.state import CONDITIONS, RESULTS
 if TYPE_CHECKING:
     import xarray
 
-    from fingerpad.io.result import Result
+    from fingerpad.results.result import Result
 
 FILE = "sweep.nc"
 _OF_POINT = {"state", "load", "harmonic", "ridge", "side"}  # dimensions of a point; steps and skin are in its folder
@@ -78,8 +78,8 @@ class Sweep:
 
         Args:
             quantity: a name of :class:`variational.state.ContactState`, such as ``"mu_app"``; of a sweep over the force
-                in newtons a name of :data:`fingerpad.io.quantities.FINGER`, such as ``"f_t"`` in N.
-            state: a name of :data:`fingerpad.io.states.STATES`.
+                in newtons a name of :data:`fingerpad.results.quantities.FINGER`, such as ``"f_t"`` in N.
+            state: a name of :data:`fingerpad.results.states.STATES`.
 
         Returns:
             Shape (values of the first axis, values of the second, …), SI units.

@@ -25,7 +25,7 @@ from fingerpad.slices.trace import LEAST, Trace, TraceError, columns, trace
 from variational.state import ContactState
 
 if TYPE_CHECKING:
-    from fingerpad.io.result import Result
+    from fingerpad.results.result import Result
 
 SOURCE = "estimated from the run's press and its centre by charged cylinders; a force in newtons computes traces"
 _MAX_POINTS = 12  # of the trace

@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from fingerpad.io.quantities import FINGER, FRICTION
-from fingerpad.io.states import STATES, WORDS, called
+from fingerpad.results.quantities import FINGER, FRICTION
+from fingerpad.results.states import STATES, WORDS, called
 from fingerpad.scene import Scene, SceneError
 from fingerpad.scene.slices import Slices
 from fingerpad.slices import errors, solid
@@ -24,7 +24,7 @@ class WholeFinger:
     """A whole finger under one force in its named states; SI units."""
 
     states: dict[str, Total]
-    """By the names of :data:`fingerpad.io.states.STATES`; those that are known."""
+    """By the names of :data:`fingerpad.results.states.STATES`; those that are known."""
     source: str
     """Where the traces of the cross-section come from, for a reader."""
     carried: dict[str, dict[str, dict[str, float]]] = field(default_factory=dict)
@@ -160,5 +160,5 @@ class WholeFinger:
 
 
 def in_order(states: Mapping[str, Total]) -> dict[str, Total]:
-    """Return states in the order of :data:`fingerpad.io.states.STATES`."""
+    """Return states in the order of :data:`fingerpad.results.states.STATES`."""
     return {name: states[name] for name in STATES if name in states}

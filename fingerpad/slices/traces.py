@@ -12,9 +12,9 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from fingerpad.io.answer import Cost
-from fingerpad.io.result import Result
-from fingerpad.io.states import WORDS
+from fingerpad.results.answer import Cost
+from fingerpad.results.result import Result
+from fingerpad.results.states import WORDS
 from fingerpad.scene import Scene
 from fingerpad.scene.messages import SceneError
 from fingerpad.scene.slices import LINE, POINT, POWER

@@ -8,16 +8,16 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from mpi4py import MPI
 
-from fingerpad.io import dataset
-from fingerpad.io.files import Table, replace_json
-from fingerpad.io.place import Place
-from fingerpad.io.quantities import FIELDS
+from fingerpad.results import dataset
+from fingerpad.results.files import Table, replace_json
+from fingerpad.results.folder import Folder
+from fingerpad.results.quantities import FIELDS
 from variational.output import Fields
 from variational.problem import Problem
 from variational.state import ContactState
 
 if TYPE_CHECKING:
-    from fingerpad.io.result import Result
+    from fingerpad.results.result import Result
 
 _LOG = "run.log"
 
@@ -30,7 +30,7 @@ class Writer:
         folder: where files go; None where nothing is written.
     """
 
-    def __init__(self, place: Place | None, comm: MPI.Comm) -> None:
+    def __init__(self, place: Folder | None, comm: MPI.Comm) -> None:
         """Write nothing before :meth:`take`.
 
         Args:

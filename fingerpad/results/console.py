@@ -6,9 +6,9 @@ from collections.abc import Collection
 from mpi4py import MPI
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 
-from fingerpad.io.pace import Pace
-from fingerpad.io.quantities import PER_LENGTH, cell
-from fingerpad.io.terminal import watched
+from fingerpad.results.pace import Pace
+from fingerpad.results.quantities import PER_LENGTH, cell
+from fingerpad.results.terminal import watched
 from variational.state import ContactState
 
 _LEGEND = (
@@ -63,7 +63,7 @@ class Console:
             loads: number of its loads.
             slipping: names of the loads that end with full slip.
             mu_0: friction coefficient.
-            first: number of the load from which on its pace counts, see :class:`fingerpad.io.pace.Pace`.
+            first: number of the load from which on its pace counts, see :class:`fingerpad.results.pace.Pace`.
         """
         self._pace, self._slipping, self._mu_0 = Pace(loads, first), slipping, mu_0
 

@@ -19,7 +19,7 @@ import ufl
 from petsc4py import PETSc
 
 from fingerpad.installed import source, version
-from fingerpad.io.petsc_options import in_use
+from fingerpad.results.petsc_options import in_use
 from variational import jit
 
 # Threads and kernels of the linear algebra, MPI's and PETSc's settings, compilers of the forms, what is loaded.

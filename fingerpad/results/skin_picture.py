@@ -14,7 +14,7 @@ from matplotlib.figure import Figure
 from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import NDArray
 
-from fingerpad.io import style
+from fingerpad.results import style
 
 Array = NDArray[np.float64]
 _MM, _UM, _KPA = 1e3, 1e6, 1e-3
@@ -63,7 +63,7 @@ def surface(path: Path | str | None, states: Sequence[SurfaceProfile], title: st
     Args:
         path: of the PNG file; None for the figure alone.
         states: one pair of panels each, such as normal contact, partial slip and full slip.
-        title: what they have in common, see :mod:`fingerpad.io.style`.
+        title: what they have in common, see :mod:`fingerpad.results.style`.
         largest_gap: end of the gaps' axis (m).
     """
     with style.look():

@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
-from fingerpad.io import style
+from fingerpad.results import style
 from geometry import tags
 
 if TYPE_CHECKING:
@@ -62,7 +62,7 @@ def finger(
         path: of the PNG file; None for the figure alone.
         snapshot: state of the body, see :func:`variational.output.gather_mesh`.
         sites: current positions of Merkel sites (m), shape (n, 2), or None.
-        title: what state it is, see :mod:`fingerpad.io.style`.
+        title: what state it is, see :mod:`fingerpad.results.style`.
         ridges: current abscissa (m) of numbered ridges, number 0 at the centre.
         highest: upper end of the colours (Pa), for one scale over several pictures; :func:`highest_density` by default.
     """

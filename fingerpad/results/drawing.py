@@ -10,11 +10,11 @@ import numpy as np
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from fingerpad.io import finger_picture, history_picture, skin_picture, style
-from fingerpad.io.files import replace
-from fingerpad.io.over_time import without_parts_of_jumps
-from fingerpad.io.skin_picture import SurfaceProfile
-from fingerpad.io.states import WORDS, before_sliding, called, named, partial_slip
+from fingerpad.results import finger_picture, history_picture, skin_picture, style
+from fingerpad.results.files import replace
+from fingerpad.results.over_time import without_parts_of_jumps
+from fingerpad.results.skin_picture import SurfaceProfile
+from fingerpad.results.states import WORDS, before_sliding, called, named, partial_slip
 from geometry.parameters import MeshSize
 from variational.state import ContactState, Skin
 
@@ -82,11 +82,11 @@ class Drawing:
     ends: Mapping[str, End]
     """By load."""
     finer: Mapping[str, View]
-    """Normal contact and full slip on another mesh than the path's, by their names in :mod:`fingerpad.io.states`."""
+    """Normal contact and full slip on another mesh than the path's, by names of :mod:`fingerpad.results.states`."""
     starting_size: float | None
     """Contact size (m) of the mesh of the path, where an accuracy was asked for."""
     named: Mapping[str, ContactState]
-    """Named states with their estimated errors, by their names in :mod:`fingerpad.io.states`."""
+    """Named states with their estimated errors, by their names in :mod:`fingerpad.results.states`."""
 
     def write(self, folder: Path, each_load: bool = True) -> None:
         """Write every picture and its arrays into a folder.

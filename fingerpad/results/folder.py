@@ -4,7 +4,7 @@ The scene is kept in the folder (``scene.json``) and another one is refused ther
 beside a summary of another, and no run is overwritten because ``--out`` was forgotten. The same scene may be run
 again: what its earlier run left stays until the new one has reached its first step, and goes then as a whole.
 Results are not written beside and put in place at the end, since every accepted step is to be seen at once and has
-to outlive the run. A run that goes on with an earlier one writes its files anew, from :mod:`fingerpad.io.checkpoint`.
+to outlive the run. A resumed run writes its files anew, from :mod:`fingerpad.results.checkpoint`.
 """
 
 import contextlib
@@ -16,7 +16,7 @@ from fnmatch import fnmatch
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, BinaryIO, TypeVar
 
-from fingerpad.io.files import lock_file, read_object, remove, replace_json
+from fingerpad.results.files import lock_file, read_object, remove, replace_json
 from fingerpad.scene.messages import SceneError, ends
 from fingerpad.scene.reading import DEFAULT_MODEL
 from fingerpad.scene.scene import Scene, from_data
@@ -77,11 +77,11 @@ def on_rank_0(comm: "MPI.Comm | Serial", work: Callable[[], T]) -> T:
     return found  # type: ignore[return-value]
 
 
-class PlaceError(SceneError):
+class FolderError(SceneError):
     """A folder that results cannot be written to; one sentence."""
 
 
-class Place:
+class Folder:
     """A folder that is locked for one run.
 
     Attributes:
@@ -109,24 +109,24 @@ class Place:
             self._parameters["model"] = model
         self._lock: BinaryIO | None = None
 
-    def __enter__(self) -> "Place":
+    def __enter__(self) -> "Folder":
         """Lock the folder; collective.
 
         Raises:
-            PlaceError: another run is at it, it holds another scene's results, or cannot be written to.
+            FolderError: another run is at it, it holds another scene's results, or cannot be written to.
         """
         refusal = ""
         if self._comm.rank == 0:
             try:
                 self._open()
-            except PlaceError as error:
+            except FolderError as error:
                 refusal = str(error)
             except OSError as error:
                 refusal = f"results cannot be written to {ends(self.folder)}: {error.strerror}; choose another folder"
         refusal = self._comm.bcast(refusal)
         if refusal:
             self.__exit__()
-            raise PlaceError(refusal)
+            raise FolderError(refusal)
         return self
 
     def __exit__(self, *error: object) -> None:
@@ -140,22 +140,22 @@ class Place:
         try:
             fcntl.flock(self._lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except BlockingIOError:
-            raise PlaceError(f"another run is writing to {ends(self.folder)}; choose another folder") from None
+            raise FolderError(f"another run is writing to {ends(self.folder)}; choose another folder") from None
         except OSError as error:
             if error.errno not in _NO_LOCKS:
                 raise
         if (self.folder / "sweep.json").exists():
-            raise PlaceError(f"{ends(self.folder)} holds the results of a sweep; choose another folder")
+            raise FolderError(f"{ends(self.folder)} holds the results of a sweep; choose another folder")
         for file in (*self._left(), *(self.folder / name for name in ("scene.json", "checkpoint"))):
             if file.is_symlink():
-                raise PlaceError(
+                raise FolderError(
                     f"{file.name} in {ends(self.folder)} is a symbolic link, through which no results are written; "
                     "delete it, or choose another folder"
                 )
         kept = self._kept()
         if kept is not None and identity(kept) != identity(self._parameters):
             what = difference(identity(kept), identity(self._parameters))
-            raise PlaceError(
+            raise FolderError(
                 f"{ends(self.folder)} holds the results of another scene ({what}); "
                 "choose another folder, or delete the folder"
             )
@@ -168,7 +168,7 @@ class Place:
             return _whole(read_object(self.folder / "summary.json").get("parameters", {}))
         for file in (self.folder / "scene.json", *self._left()):
             if file.exists():
-                raise PlaceError(f"{ends(self.folder)} holds {file.name} of an unknown scene; choose another folder")
+                raise FolderError(f"{ends(self.folder)} holds {file.name} of an unknown scene; choose another folder")
         return None
 
     def _left(self) -> list[Path]:
@@ -189,15 +189,15 @@ def full_scene(folder: Path) -> Scene:
     """Return the scene whose full run is in a folder.
 
     Raises:
-        PlaceError: there is none, or it is of another model.
+        FolderError: there is none, or it is of another model.
         SceneError: its mesh, or the file of a law of one's own, is gone or was changed.
     """
     try:
         kept = _whole(read_object(folder / "scene.json"))
     except (OSError, ValueError):
-        raise PlaceError(f"{ends(folder)} has no scene.json of a run, and so no run to go on with") from None
+        raise FolderError(f"{ends(folder)} has no scene.json of a run, and so no run to go on with") from None
     if "model" in kept:
-        raise PlaceError(f"{ends(folder)} has a run of the model {kept['model']!r}; only a full one can go on")
+        raise FolderError(f"{ends(folder)} has a run of the model {kept['model']!r}; only a full one can go on")
     return from_data(kept)
 
 

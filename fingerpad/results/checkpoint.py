@@ -18,7 +18,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from fingerpad.io.files import read_object, remove, replace_json
+from fingerpad.results.files import read_object, remove, replace_json
 from fingerpad.scene import SceneError
 
 Arrays = dict[str, NDArray[Any]]

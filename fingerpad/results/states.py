@@ -16,8 +16,8 @@ from itertools import groupby
 from operator import attrgetter
 from typing import TYPE_CHECKING, Any
 
-from fingerpad.io.over_time import OverTime, over_time, without_parts_of_jumps
-from fingerpad.io.quantities import EXTREMES
+from fingerpad.results.over_time import OverTime, over_time, without_parts_of_jumps
+from fingerpad.results.quantities import EXTREMES
 from fingerpad.scene.waveform import Waveform
 from variational.state import CONDITIONS, RESULTS, ContactState
 

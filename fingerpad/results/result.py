@@ -7,10 +7,10 @@ from dataclasses import asdict, dataclass, fields, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from fingerpad.io import dataset, terminal
-from fingerpad.io.answer import Answer, Cost
-from fingerpad.io.files import read_object
-from fingerpad.io.quantities import (
+from fingerpad.results import dataset, terminal
+from fingerpad.results.answer import Answer, Cost
+from fingerpad.results.files import read_object
+from fingerpad.results.quantities import (
     CHANGES,
     PER_LENGTH,
     PLUS_MINUS,
@@ -21,8 +21,8 @@ from fingerpad.io.quantities import (
     checked,
     valued,
 )
-from fingerpad.io.quantities import read as read_outputs
-from fingerpad.io.states import STATES, LoadResult, called, load_results
+from fingerpad.results.quantities import read as read_outputs
+from fingerpad.results.states import STATES, LoadResult, called, load_results
 from fingerpad.scene.laws import coefficient
 from fingerpad.scene.messages import SceneError, clip
 from fingerpad.scene.reading import DEFAULT_MODEL
@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     import xarray
     from matplotlib.figure import Figure
 
-    from fingerpad.io.drawing import Drawing
+    from fingerpad.results.drawing import Drawing
 
 KINDS = ("surface", "finger", "history", "footprint", "time")
 """Pictures of a result."""
@@ -64,7 +64,7 @@ class Result(Answer):
         if kind == "footprint":
             if self.finger is None:
                 raise ValueError("the result has no whole finger to draw: a history has none, else a note says why")
-            from fingerpad.io.finger_picture import footprint  # Matplotlib
+            from fingerpad.results.finger_picture import footprint  # Matplotlib
 
             return footprint(self.finger, None if path is None else Path(path)) if terminal.rank() == 0 else None
         if self.drawing is not None:
@@ -218,7 +218,7 @@ def steps_of(folder: Path) -> tuple[ContactState, ...]:
 
 def _drawing(result: Result, folder: Path) -> "Drawing":
     """Return what the pictures of a result that was read are drawn from."""
-    from fingerpad.io.kept_drawing import KeptDrawing  # Matplotlib, which reading numbers does not need
+    from fingerpad.results.kept_drawing import KeptDrawing  # Matplotlib, which reading numbers does not need
 
     mu_0 = None if "laws" in result.record.get("parameters", {}) else coefficient(result.scene)
     meshes = (result.record.get("path_mesh"), result.record.get("accuracy", {}).get("mesh"))

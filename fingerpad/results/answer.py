@@ -5,12 +5,12 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from fingerpad.io.quantities import FRICTION, QUANTITIES, Output
-from fingerpad.io.states import STATES, LoadResult
+from fingerpad.results.quantities import FRICTION, QUANTITIES, Output
+from fingerpad.results.states import STATES, LoadResult
 from variational.state import ContactState
 
 if TYPE_CHECKING:
-    from fingerpad.io.drawing import Drawing
+    from fingerpad.results.drawing import Drawing
     from fingerpad.scene import Scene
     from fingerpad.slices.finger import WholeFinger
 
@@ -41,7 +41,7 @@ class Answer:
     """``full`` or ``cylinders``."""
     uncharged: ContactState | None
     """Uncharged normal contact; None where a history or a model does not have this state, as for the next two. All
-    three are defined in :mod:`fingerpad.io.states`."""
+    three are defined in :mod:`fingerpad.results.states`."""
     charged: ContactState | None
     """Charged normal contact, the last state in contact before the bone moves sideways; of a run at 0 V uncharged."""
     full_slip: ContactState | None
@@ -77,7 +77,7 @@ class Answer:
 
     @property
     def named(self) -> dict[str, ContactState]:
-        """Named states that are not None, by their names in :data:`fingerpad.io.states.STATES`."""
+        """Named states that are not None, by their names in :data:`fingerpad.results.states.STATES`."""
         return {name: state for name in STATES if (state := getattr(self, name)) is not None}
 
     @property

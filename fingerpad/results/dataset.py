@@ -1,7 +1,7 @@
 """A result as one xarray dataset, as ``result.nc`` beside the tables, and read back from there.
 
 The dataset holds what the tables hold, with the same names, values and SI units. Its variables are those of
-:mod:`fingerpad.io.quantities`, each with ``units`` and ``long_name``. The file is NetCDF 3 with 64-bit offsets, by
+:mod:`fingerpad.results.quantities`, each with ``units`` and ``long_name``. The file is NetCDF 3 with 64-bit offsets, by
 SciPy: every program for NetCDF reads it, and it loads no HDF5 beside that of dolfinx.
 """
 
@@ -15,16 +15,27 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from fingerpad.io import files
-from fingerpad.io.quantities import CHANGES, FINGER, RIDGES, SITES, SKIN, SLICES, SPECTRUM, STABILITY, STEPS, Output
-from fingerpad.io.states import STATES, UNLOADED
+from fingerpad.results import files
+from fingerpad.results.quantities import (
+    CHANGES,
+    FINGER,
+    RIDGES,
+    SITES,
+    SKIN,
+    SLICES,
+    SPECTRUM,
+    STABILITY,
+    STEPS,
+    Output,
+)
+from fingerpad.results.states import STATES, UNLOADED
 from fingerpad.scene.reading import flat
 from variational.state import ContactState, Errors, RidgeStates, Sites, Skin
 
 if TYPE_CHECKING:
     import xarray
 
-    from fingerpad.io.answer import Answer
+    from fingerpad.results.answer import Answer
     from fingerpad.slices.finger import WholeFinger
 
 FILE = "result.nc"

@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 
-from fingerpad.io.drawing import Drawing, End, View
-from fingerpad.io.states import WORDS, by_load
+from fingerpad.results.drawing import Drawing, End, View
+from fingerpad.results.states import WORDS, by_load
 
 _PICTURES = ("surface", "finger")
 
@@ -21,12 +21,12 @@ class KeptDrawing(Drawing):
     """What a result that was read has for its pictures: the states, and arrays on disk that are read when drawn."""
 
     folder: Path
-    """With ``finger_*.npz`` and ``surface*.npz``, see :meth:`fingerpad.io.drawing.Drawing.write`."""
+    """With ``finger_*.npz`` and ``surface*.npz``, see :meth:`fingerpad.results.drawing.Drawing.write`."""
     final_size: float | None
     """Contact size (m) of the final mesh, where an accuracy was asked for."""
 
     def figure(self, kind: str, path: Path | None = None) -> Figure:
-        """Draw a picture as the run did, see :meth:`fingerpad.io.drawing.Drawing.figure`."""
+        """Draw a picture as the run did, see :meth:`fingerpad.results.drawing.Drawing.figure`."""
         return self._read().figure(kind, path) if kind in _PICTURES else super().figure(kind, path)
 
     def _read(self) -> Drawing:
@@ -66,7 +66,7 @@ def finger_of(file: Path) -> dict[str, Any]:
 
 
 def skin_of(file: Path, prefix: str) -> dict[str, Any]:
-    """Return the skin of a state, by the names of :class:`fingerpad.io.skin_picture.SurfaceProfile`, or nothing.
+    """Return the skin of a state, by the names of :class:`fingerpad.results.skin_picture.SurfaceProfile`, or nothing.
 
     Args:
         file: of one state or several.

@@ -9,8 +9,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from fingerpad.io import style
-from fingerpad.io.states import called
+from fingerpad.results import style
+from fingerpad.results.states import called
 from variational.state import ContactState
 
 Array = NDArray[np.float64]
@@ -33,7 +33,7 @@ def history(
         rows: accepted steps in order, with ``bone_x`` (m), ``f_t`` and ``f_ext`` (N/m), ``mu_app``,
             ``contact_length`` (m), ``ridges_in_contact`` and, true where ridges jumped, ``jump``. What precedes
             sliding is left out but for its last row.
-        title: what run it is, see :mod:`fingerpad.io.style`.
+        title: what run it is, see :mod:`fingerpad.results.style`.
         mu_0: friction coefficient, drawn as the limit without attraction.
         named: states by name; those with an estimated discretisation error are drawn with error bars.
     """
@@ -112,7 +112,7 @@ def over_time(path: Path | str | None, states: Sequence[ContactState], title: st
     Args:
         path: of the PNG file; None for the figure alone.
         states: accepted states in order, with their times.
-        title: what run it is, see :mod:`fingerpad.io.style`.
+        title: what run it is, see :mod:`fingerpad.results.style`.
     """
     time = np.array([state.time for state in states])
     short = time[-1] - time[0] < _SHORT

@@ -9,7 +9,7 @@ import pytest
 from mpi4py import MPI
 
 import fingerpad as fp
-from fingerpad.io.place import LEFT, Place, PlaceError, on_rank_0
+from fingerpad.results.folder import LEFT, Folder, FolderError, on_rank_0
 from fingerpad.scene import Scene, from_data
 from tests.runs import run
 
@@ -32,7 +32,7 @@ def folder(tmp_path) -> Path:
 @pytest.fixture
 def finished(scene, folder) -> dict[str, bytes]:
     """A folder with what an earlier run of the scene may have left."""
-    with Place(folder, scene.parameters(), MPI.COMM_WORLD) as place:
+    with Folder(folder, scene.parameters(), MPI.COMM_WORLD) as place:
         place.take()
     for name in ("summary.json", "steps.csv", "finger_press.png", "time.png", "footprint.png", "notes of mine.txt"):
         (folder / name).write_text("old")
@@ -46,7 +46,7 @@ def kept(folder: Path) -> dict[str, bytes]:
 
 def test_the_same_scene_may_run_again(scene, folder, finished):
     """What it left goes as a whole when there is something new, and what is no result stays."""
-    with Place(folder, scene.parameters(), MPI.COMM_WORLD) as place:
+    with Folder(folder, scene.parameters(), MPI.COMM_WORLD) as place:
         assert kept(folder) == finished
         place.take()
     assert set(kept(folder)) == {".lock", "scene.json", "notes of mine.txt"}
@@ -61,7 +61,7 @@ def test_the_same_scene_may_run_again(scene, folder, finished):
     ],
 )
 def test_another_scene_is_refused(folder, finished, change, words):
-    with pytest.raises(PlaceError, match="holds the results of another scene") as refusal:
+    with pytest.raises(FolderError, match="holds the results of another scene") as refusal:
         run(from_data(PRESS | change), folder, MPI.COMM_WORLD)
     assert words in str(refusal.value) and "choose another folder" in str(refusal.value)
     assert kept(folder) == finished
@@ -70,12 +70,12 @@ def test_another_scene_is_refused(folder, finished, change, words):
 def test_one_run_at_a_time(scene, folder, finished):
     with (folder / ".lock").open() as lock:
         fcntl.flock(lock, fcntl.LOCK_EX)
-        with pytest.raises(PlaceError, match="another run is writing to"):
+        with pytest.raises(FolderError, match="another run is writing to"):
             run(scene, folder, MPI.COMM_WORLD)
         assert kept(folder) == finished
-    with Place(folder, scene.parameters(), MPI.COMM_WORLD), pytest.raises(PlaceError, match="another run"):
-        Place(folder, scene.parameters(), MPI.COMM_WORLD).__enter__()
-    with Place(folder, scene.parameters(), MPI.COMM_WORLD):  # it is free again
+    with Folder(folder, scene.parameters(), MPI.COMM_WORLD), pytest.raises(FolderError, match="another run"):
+        Folder(folder, scene.parameters(), MPI.COMM_WORLD).__enter__()
+    with Folder(folder, scene.parameters(), MPI.COMM_WORLD):  # it is free again
         pass
 
 
@@ -85,7 +85,7 @@ def test_refused_on_all_ranks(scene, folder):
     if MPI.COMM_WORLD.rank == 0:
         folder.touch()
     MPI.COMM_WORLD.barrier()
-    with pytest.raises(PlaceError, match="results cannot be written to .*results: File exists; choose another folder"):
+    with pytest.raises(FolderError, match="results cannot be written to .*results: File exists; choose another folder"):
         run(scene, folder, MPI.COMM_WORLD)
 
 
@@ -106,12 +106,12 @@ def test_full_disk_is_told_on_all_ranks():
 def test_mesh_file_is_known_by_its_content(folder):
     """A project may be moved; other content is another scene."""
     kept = [{"geometry": {"file": file, "file_sha256": sum_}} for file, sum_ in (("a", "1"), ("b", "1"), ("b", "2"))]
-    with Place(folder, kept[0], MPI.COMM_WORLD) as place:
+    with Folder(folder, kept[0], MPI.COMM_WORLD) as place:
         place.take()
-    with Place(folder, kept[1], MPI.COMM_WORLD):
+    with Folder(folder, kept[1], MPI.COMM_WORLD):
         pass
-    with pytest.raises(PlaceError, match=r"its geometry\.file_sha256 was 1, and is 2 now"):
-        Place(folder, kept[2], MPI.COMM_WORLD).__enter__()
+    with pytest.raises(FolderError, match=r"its geometry\.file_sha256 was 1, and is 2 now"):
+        Folder(folder, kept[2], MPI.COMM_WORLD).__enter__()
 
 
 @pytest.mark.mpi
@@ -124,7 +124,7 @@ def test_model_without_a_path_is_of_all_ranks(folder, monkeypatch):
         folders = MPI.COMM_WORLD.allgather(found.folder)
         assert folders == [out.absolute()] * MPI.COMM_WORLD.size
         assert (out / "summary.json").exists()
-        with pytest.raises(PlaceError, match="another scene"):
+        with pytest.raises(FolderError, match="another scene"):
             fp.run(Scene(friction=0.1, **given), model="cylinders", out=out)
 
 

@@ -22,7 +22,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from fingerpad.io.quantities import EXTREMES
+from fingerpad.results.quantities import EXTREMES
 from fingerpad.scene.waveform import Waveform
 from variational.state import ContactState
 
