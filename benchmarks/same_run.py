@@ -65,7 +65,7 @@ def scene(case: dict[str, Any], folder: Path) -> dict[str, Any]:
         given = given.replace(force=case["force"])
     elif "force" in case:
         more["force"] = case["force"]
-    out = folder / "out" if case.get("folder") else None
+    out = None if case.get("without_folder") else folder / "out"
     result = fp.run(given, out=out, **more, **laws)
     found: dict[str, Any] = {"failure": result.failure}
     if "force" not in case:  # with one a program has steps and states of its own choice beside the finger's slices
