@@ -15,19 +15,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from fingerpad.results import files
-from fingerpad.results.quantities import (
-    CHANGES,
-    FINGER,
-    RIDGES,
-    SITES,
-    SKIN,
-    SLICES,
-    SPECTRUM,
-    STABILITY,
-    STEPS,
-    Output,
-)
+from fingerpad.results import files, quantities
+from fingerpad.results.quantities import FINGER, RIDGES, SITES, SKIN, SLICES, STEPS, Output
 from fingerpad.results.states import STATES, UNLOADED
 from fingerpad.scene.reading import flat
 from variational.state import ContactState, Errors, RidgeStates, Sites, Skin
@@ -198,13 +187,13 @@ def _of_states(
 def _verdicts(named: Sequence[ContactState | None]) -> Variables:
     """Return stability, and estimated errors and changes, of the named states."""
     found: Variables = {}
-    for name, output in STABILITY.items():
+    for name, output in quantities.STABILITY.items():
         kind, missing = (np.int32, -1) if name == "stable" else (np.float64, np.nan)
         given = [None if state is None else getattr(state, name) for state in named]
         found[f"state_{name}"] = (
             ("state",), np.array([missing if value is None else value for value in given], kind), output.about(),
         )  # fmt: skip
-    for kind_, words in CHANGES.items():
+    for kind_, words in quantities.CHANGES.items():
         for field in fields(Errors):
             changes = [math.nan if state is None else getattr(getattr(state, kind_), field.name) for state in named]
             about = STEPS[field.name].about(f"{words} of the ")
@@ -244,8 +233,8 @@ def _loads(result: "Answer", known: Mapping[str, Output]) -> Variables:
     for name in ("full_slip_reached", "full_slip_held"):
         words = f"whether full slip was {name.rpartition('_')[2]} in the load"
         add(f"load_{name}", [getattr(load, name) for load in loads], _about(words))
-    quantities = dict.fromkeys(name for load in loads for name in load.extremes)
-    for name in quantities:
+    extreme = dict.fromkeys(name for load in loads for name in load.extremes)
+    for name in extreme:
         for end, words in (("min", "least"), ("max", "largest")):
             values = [getattr(load.extremes.get(name), end, math.nan) for load in loads]
             add(f"load_{name}_{end}", values, known[name].about(f"{words} value in the load: "))
@@ -261,7 +250,7 @@ def _loads(result: "Answer", known: Mapping[str, Output]) -> Variables:
     if harmonics:
         numbers = np.arange(1, harmonics + 1, dtype=np.int32)
         found["harmonic"] = ("harmonic",), numbers, _about("multiple of the frequency of the waveform")
-        for name, output in SPECTRUM.items():
+        for name, output in quantities.SPECTRUM.items():
             table = np.full((len(loads), harmonics), np.nan)
             for k, each in enumerate(passed):
                 if each is not None and each.frequency:
@@ -341,10 +330,10 @@ def _state(arrays: Mapping[str, NDArray[Any]], prefix: str, k: int, own: Sequenc
 
 def _named_state(arrays: Mapping[str, NDArray[Any]], k: int, own: Sequence[str]) -> ContactState:
     """Return a named state by its place, with its stability, errors and skin."""
-    stable, least, gain = (arrays[f"state_{name}"][k] for name in STABILITY)
+    stable, least, gain = (arrays[f"state_{name}"][k] for name in quantities.STABILITY)
     more: dict[str, Any] = {"stable": None if stable < 0 else bool(stable)}
     more |= {name: None if np.isnan(value) else float(value) for name, value in (("lambda_min", least), ("gain", gain))}
-    for kind in CHANGES:
+    for kind in quantities.CHANGES:
         more[kind] = Errors(**{f.name: float(arrays[f"state_{f.name}_{kind}"][k]) for f in fields(Errors)})
     if "skin_ridge" in arrays and (facets := np.isfinite(arrays["skin_ridge"][k])).any():
         points = np.isfinite(arrays["skin_x"][k]).any(axis=0)
