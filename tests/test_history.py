@@ -61,16 +61,17 @@ def largest(values: np.ndarray) -> float:
 
 
 def test_accepted(body):
-    """The slip is the way of the anchors, summed by hand; the strain follows backward Euler to its last step."""
+    """The slip is the way of the anchors, summed; steps add up to the duration; the strain follows backward Euler."""
     path, own = prepare(body)
     summed, anchors = 0.0, path.problem.history.accepted["anchor"]
-    strains = [own.strain.x.array.copy()]
+    strains, steps = [own.strain.x.array.copy()], list[float]()
 
     def accepted(target, part, attempt):
         nonlocal summed, anchors
         now = path.problem.history.accepted["anchor"]
         summed, anchors = summed + np.abs(now - anchors), now
         strains.append(own.strain.x.array.copy())
+        steps.append(float(path.problem.dt.value))
 
     path.on_accept = accepted
     path.run(Target("press", f_ext=4.4))
@@ -79,6 +80,7 @@ def test_accepted(body):
     np.testing.assert_allclose(path.problem.history.accepted["slip"], summed, atol=1e-15)
     assert largest(path.problem.history.accepted["slip"]) > 0.1e-3
     assert path.time == pytest.approx(DT, rel=1e-12)
+    assert sum(steps) == pytest.approx(DT, rel=1e-12)
     before, last = strains[-2:]
     strain = fem.Function(own.strain.function_space)
     points = compat.interpolation_points(own.strain.function_space.element)
