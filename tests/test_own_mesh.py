@@ -13,7 +13,7 @@ from mpi4py import MPI
 import fingerpad as fp
 from fingerpad.cli import main
 from fingerpad.model.options import plan
-from fingerpad.report.parameters import again
+from fingerpad.report.page import again
 from fingerpad.results.folder import full_scene
 from fingerpad.scene import as_kept, from_data, load, override
 from geometry import fingertip

@@ -27,7 +27,7 @@ def test_each_module_is_imported_by_a_quick_test():
         *(
             "fingerpad.report.run_page",
             "fingerpad.report.sweep_page",
-            "fingerpad.results.kept_drawing",
+            "fingerpad.results.drawing",
             "fingerpad.runs.one",
         ),
     ]
