@@ -24,6 +24,7 @@ from variational.contact.friction import CONE_ROUNDOFF
 from variational.solvers.iteration import PREFIX
 from variational.solvers.newton import Solver
 
+pytestmark = pytest.mark.slow
 MU_0 = 0.25
 LEAN = NINE | {"output": {"errors": False, "receptors": False}}
 PRESS, SLIDE = {"name": "press", "f_ext": 1.0}, {"name": "slide", "bone_x": 1e-3, "until_full_slip": True}
