@@ -21,6 +21,7 @@ from geometry.parameters import Fingertip, MeshSize
 from tests.measures import rows_of
 from tests.test_meshfile import write
 
+pytestmark = pytest.mark.slow
 FINGER = Fingertip(ridge_count=13)
 SIZE = {"contact": 100e-6, "receptor": 200e-6, "interface": 200e-6, "growth": 0.5, "coarsest": 1e-3}
 OUTPUT = {"errors": False, "receptors": False}

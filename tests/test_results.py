@@ -24,6 +24,7 @@ from variational.solvers.iteration import PREFIX
 from variational.solvers.newton import Solver
 from variational.state import Skin
 
+pytestmark = pytest.mark.slow
 MU_0 = 0.25
 LEAN = NINE | {"output": {"errors": False, "receptors": False}}
 PRESS, SLIDE = {"name": "press", "f_ext": 1.0}, {"name": "slide", "bone_x": 1e-3, "until_full_slip": True}

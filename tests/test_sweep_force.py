@@ -15,6 +15,7 @@ from fingerpad.report.sweep_page import _curves
 from fingerpad.report.write import read, write
 from tests.small_finger import small
 
+pytestmark = pytest.mark.slow
 FORCES, VOLTAGES = (0.1, "200 mN", 0.5), (0.0, 200.0)
 SMALL = {"output": {"receptors": False, "errors": False}, "slices": {"radius": 6e-3, "length": 8e-3}}
 
