@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Iterator
+from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 from fingerpad.reduced.cylinder_errors import in_words
@@ -259,11 +260,24 @@ def head(result: "Result") -> str:
         number, said = "No contact state was kept", conditions(result)
     kind, words = verdict(findings(result), number.partition(" ± ")[2])
     more = ' <a href="#trust">What is not in it</a>' if kind == GOOD else ""
-    where = "" if result.folder is None else f" · {html.text(result.folder.resolve().name)}"
+    return banner("report of a run", result.folder, number, said, kind, html.text(words) + more)
+
+
+def banner(what: str, folder: Path | None, number: str, said: str, kind: str, words: str) -> str:
+    """Return the head of a page.
+
+    Args:
+        what: the page is.
+        folder: of the results.
+        number: the finding, HTML.
+        said: of what the number is.
+        kind: the verdict.
+        words: of the verdict, HTML.
+    """
+    where = "" if folder is None else f" · {html.text(folder.resolve().name)}"
     return (
-        f'<header><p class="kind">fingerpad · report of a run{where}</p><h1>{number}</h1>'
-        f'<p class="said">{html.text(said)}</p>'
-        f'<p class="verdict {kind}"><b>{MARKS[kind]}</b> {html.text(words)}{more}</p></header>'
+        f'<header><p class="kind">fingerpad · {what}{where}</p><h1>{number}</h1><p class="said">{html.text(said)}</p>'
+        f'<p class="verdict {kind}"><b>{MARKS[kind]}</b> {words}</p></header>'
     )
 
 
