@@ -9,7 +9,7 @@ import pytest
 
 import fingerpad as fp
 from fingerpad import runs
-from fingerpad.results.result import Cost
+from fingerpad.results.answer import Cost
 from fingerpad.results.states import STATES
 from fingerpad.runs import attempt, full
 from fingerpad.runs.processes import End

@@ -13,7 +13,7 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from fingerpad.measurements.table import Measured
-from fingerpad.report.write import Table
+from fingerpad.report.sweep_page import Table
 from fingerpad.report.write import read as content
 from fingerpad.results.result import Result
 from fingerpad.results.states import WORDS, before_sliding

@@ -6,7 +6,7 @@ from contextlib import contextmanager
 
 from mpi4py import MPI
 
-from fingerpad.results.result import Cost
+from fingerpad.results.answer import Cost
 from variational.solvers.timing import Counts, memory_mb
 
 

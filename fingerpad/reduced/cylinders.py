@@ -29,9 +29,10 @@ from numpy.typing import ArrayLike, NDArray
 from fingerpad.model.cautions import on_states
 from fingerpad.reduced import cylinder_errors
 from fingerpad.reduced.model import STATES, Model, Stopwatch, at_rest, at_slip, refuse_others
+from fingerpad.results.answer import Cost
 from fingerpad.results.files import read_object
 from fingerpad.results.folder import difference
-from fingerpad.results.result import Cost, Result
+from fingerpad.results.result import Result
 from fingerpad.results.states import WORDS
 from fingerpad.scene import Scene, SceneError
 from fingerpad.scene.laws import skin_modulus, used

@@ -1,18 +1,26 @@
-"""The report of a sweep: friction and contact length over what was varied, every point, and what failed and why."""
+"""The table of a sweep and its report: friction and contact over what was varied, every point, and what failed."""
 
+import csv
 import itertools
+import math
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
+from contextlib import suppress
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import Any
 
 from fingerpad.report import page as html
-from fingerpad.report.trust import BAD, CARE, GOOD, banner
+from fingerpad.report.page import BAD, CARE, GOOD
+from fingerpad.results.files import read_object
 from fingerpad.results.quantities import PER_LENGTH, Output
-from fingerpad.runs.sweep_columns import LOAD, head_of, loads, printed, tables
+from fingerpad.results.quantities import read as read_outputs
+from fingerpad.results.states import WORDS
+from fingerpad.runs.sweep_columns import LOAD, head_of, loads, printed, shown, tables
+from fingerpad.scene import SceneError
+from fingerpad.scene.messages import clip
 from fingerpad.scene.reading import DEFAULT_MODEL
 from fingerpad.slices import solid
-
-if TYPE_CHECKING:
-    from fingerpad.report.write import Table
 
 _CHARTS = ("mu_app", "f_t", "contact_length", "contact_area")
 _MAX_CAUTIONS = 3  # in the headline
@@ -24,8 +32,99 @@ _IN_TIME = {  # column of a load over time, behind its name
     "f_t_amplitude": "amplitude of f_T (N/m)",
 }
 
+_RESULTS = ("uncharged_", "charged_", "full_slip_", "load_")
 
-def page(table: "Table") -> str:
+
+@dataclass(frozen=True)
+class Table:
+    """The table of a sweep."""
+
+    folder: Path
+    axes: tuple[str, ...]
+    """Keys that are varied."""
+    rows: tuple[dict[str, Any], ...]
+    """By column: numbers, switches and texts; None where a cell is empty."""
+    parameters: dict[str, Any]
+    """Every parameter of the scene that it varies."""
+    model: str = DEFAULT_MODEL
+    version: str = ""
+    """Of the program that made the table; empty where it is not known."""
+    cautions: tuple[str, ...] = ()
+    """Limits of validity that points reach."""
+    notes: tuple[str, ...] = ()
+    """Remarks on the points."""
+    outputs: tuple[Output, ...] = ()
+    """Of the points, computed from a state."""
+
+    @property
+    def whole(self) -> bool:
+        """Whether forces are those on the whole finger."""
+        return "force" in self.axes or "force" in self.parameters
+
+    def forces(self) -> list[float]:
+        """Return the forces on the whole finger (N)."""
+        if "force" in self.axes:
+            return [float(row["force"]) for row in self.rows]
+        return [float(self.parameters["force"])] if self.whole else []
+
+    @property
+    def heads(self) -> dict[str, str]:
+        """Words and units of the keys that are varied."""
+        return {key: head_of(key, "title") for key in self.axes}
+
+    @cached_property
+    def shown(self) -> tuple[str, dict[str, Output]]:
+        """The named state in words and the columns of it that the report shows."""
+        state, columns = shown(self.rows[0], self.whole, self.outputs)
+        return WORDS[state], columns
+
+    def reached(self, row: Mapping[str, Any]) -> bool:
+        """Return whether a point reached that state; not all that did have a coefficient of friction."""
+        return any(row.get(column) is not None for column in self.shown[1])
+
+    def values(self) -> dict[str, list[Any]]:
+        """Return the values of each key that is varied, once each."""
+        return {key: list(dict.fromkeys(row[key] for row in self.rows)) for key in self.axes}
+
+
+def table_of(folder: Path) -> Table:
+    """Return the table of the sweep in a folder.
+
+    Raises:
+        SceneError: it cannot be read.
+    """
+    name = clip(str(folder), 80)
+    try:
+        with (folder / "table.csv").open(encoding="utf-8", newline="") as file:
+            reader = csv.DictReader(file)
+            texts, columns = list(reader), list(reader.fieldnames or ())
+    except (OSError, UnicodeDecodeError, csv.Error) as error:
+        raise SceneError(f"the table of {name} cannot be read: {error}") from None
+    axes = tuple(key for key in columns if not key.startswith(_RESULTS) and key != "failure")
+    if "failure" not in columns or not axes or not texts:
+        raise SceneError(f"table.csv in {name} is not the table of a sweep of fingerpad, or is cut short")
+    if any(None in row or None in row.values() for row in texts):
+        raise SceneError(f"table.csv in {name} is cut short; give the command of the sweep again to write it anew")
+    rows = tuple({key: text if key == "failure" else _value(text) for key, text in row.items()} for row in texts)
+    try:
+        asked = read_object(folder / "sweep.json")
+        more = str(asked["model"]), str(asked.get("version", ""))
+        cautions, notes = (tuple(map(str, asked.get(name, ()))) for name in ("cautions", "notes"))
+        outputs = read_outputs(asked.get("outputs", ()))
+        return Table(folder, axes, rows, dict(asked["parameters"]), *more, cautions, notes, outputs)
+    except (OSError, ValueError, KeyError, TypeError) as error:
+        raise SceneError(f"sweep.json in {name} cannot be read: {error}") from None
+
+
+def _value(text: str) -> Any:
+    """Return what a cell of a table holds: a number, a switch or a text; None where it is empty or not finite."""
+    for kind in (int, float):
+        with suppress(ValueError):
+            return number if math.isfinite(number := kind(text)) else None
+    return {"": None, "True": True, "False": False}.get(text, text)
+
+
+def page(table: Table) -> str:
     """Return the page of a sweep."""
     title = f"fingerpad: sweep over {', '.join(table.axes)}"
     made = (_head, _over_time, _study, _points, _failed, _parameters, _cite)
@@ -33,7 +132,7 @@ def page(table: "Table") -> str:
     return html.page(title, "\n".join(filter(None, parts)), {"sweep": _curves(table)})
 
 
-def _head(table: "Table") -> str:
+def _head(table: Table) -> str:
     state, columns = table.shown
     slid = [row for row in table.rows if table.reached(row)]
     number = f"No point reached {state}"
@@ -60,10 +159,10 @@ def _head(table: "Table") -> str:
         limits = [*table.cautions[:_MAX_CAUTIONS], *([f"and {more} more"] if more > 0 else [])]
         limit = f"Limits of validity are reached: {'; '.join(limits)}." if limits else ""
         kind, words = CARE, " ".join(filter(None, (slips, limit)))
-    return banner("report of a sweep", table.folder, number, said, kind, html.text(words))
+    return html.banner("report of a sweep", table.folder, number, said, kind, html.text(words))
 
 
-def _wave(table: "Table") -> tuple[str, float, float] | None:
+def _wave(table: Table) -> tuple[str, float, float] | None:
     """Return the last load with a spectrum in which the finger rubs, and the least and the largest µ_app there."""
     for name in reversed(loads(table.rows[0])):
         spectrum, least, most = (
@@ -86,7 +185,7 @@ def _symbol(quantity: Output) -> str:
     return html.text(name) + (f"<sub>{html.text(index)}</sub>" if index else "")
 
 
-def _varied(table: "Table") -> str:
+def _varied(table: Table) -> str:
     words = []
     for key, values in table.values().items():
         shown = ", ".join(map(printed, values[:_MAX_VALUES]))
@@ -94,7 +193,7 @@ def _varied(table: "Table") -> str:
     return "; ".join(words)
 
 
-def _over_time(table: "Table") -> str:
+def _over_time(table: Table) -> str:
     """Return friction and contact in loads over time, which no state at full slip has; nothing without such a load."""
     parts = list[str]()
     for name, (heads, *lines) in tables(table.rows, table.heads):
@@ -104,7 +203,7 @@ def _over_time(table: "Table") -> str:
     return html.section("time", "Loads over time", *parts)
 
 
-def _charts(table: "Table") -> dict[str, tuple[str, str]]:
+def _charts(table: Table) -> dict[str, tuple[str, str]]:
     """Return the column and the title of each chart by the name of its place on the page."""
     found = {f"sweep_{key}": (column, each.title) for key, (column, each) in _drawn(table.shown[1]).items()}
     for k, name in enumerate(loads(table.rows[0])):
@@ -115,7 +214,7 @@ def _charts(table: "Table") -> dict[str, tuple[str, str]]:
     return found
 
 
-def _study(table: "Table") -> str:
+def _study(table: Table) -> str:
     state, columns = table.shown
     drawn = [(place, words) for place, (column, words) in _charts(table).items() if column in columns]
     note = "Bars are estimated discretisation errors, where a run has them."
@@ -126,7 +225,7 @@ def _study(table: "Table") -> str:
     return html.section("study", f"Friction and contact at {state}", without, *charts, html.paragraph(note, "note"))
 
 
-def _points(table: "Table") -> str:
+def _points(table: Table) -> str:
     state, columns = table.shown
     rows = []
     for row in table.rows:
@@ -144,7 +243,7 @@ def _points(table: "Table") -> str:
     )
 
 
-def _failed(table: "Table") -> str:
+def _failed(table: Table) -> str:
     rows = [
         (", ".join(f"{key} = {printed(row[key])}" for key in table.axes), row["failure"])
         for row in table.rows
@@ -158,11 +257,11 @@ def _failed(table: "Table") -> str:
     )
 
 
-def _parameters(table: "Table") -> str:
+def _parameters(table: Table) -> str:
     return html.section("parameters", "Parameters", html.all_parameters(table.parameters, table.axes))
 
 
-def _cite(table: "Table") -> str:
+def _cite(table: Table) -> str:
     given = html.changed(table.parameters)
     kept = {key: value for key, value in given.items() if not (key in table.axes or "[" in key or value is None)}
     options = [html.option_of(key, value) for key, value in kept.items()]
@@ -183,7 +282,7 @@ def _cite(table: "Table") -> str:
     )  # fmt: skip
 
 
-def _curves(table: "Table") -> dict[str, Any]:
+def _curves(table: Table) -> dict[str, Any]:
     """Return one curve for each value of all axes but the one along x, which is that with most numbers."""
     charts, scales = _charts(table), {column: quantity.scale for column, quantity in table.shown[1].items()}
     numbers = {key: [each for each in values if type(each) in (int, float)] for key, values in table.values().items()}

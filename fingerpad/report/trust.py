@@ -2,12 +2,12 @@
 
 import math
 from collections.abc import Iterator
-from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 from fingerpad.reduced.cylinder_errors import in_words
 from fingerpad.reduced.models import follows_path
 from fingerpad.report import page as html
+from fingerpad.report.page import BAD, CARE, GOOD
 from fingerpad.results.quantities import cell
 from fingerpad.results.states import LoadResult, called
 from fingerpad.scene.laws import coefficient
@@ -16,9 +16,6 @@ from variational.state import ContactState
 if TYPE_CHECKING:
     from fingerpad.results.result import Result
 
-GOOD, CARE, BAD = "holds", "care", "fails"
-MARKS = {GOOD: "✓ holds", CARE: "! care", BAD: "✗ fails"}
-"""Verdicts as they are shown."""
 _SMALL, _LARGE = 0.02, 0.1
 """Relative errors below which an error is small, and above which the mesh is too coarse for more than a trend."""
 
@@ -260,25 +257,7 @@ def head(result: "Result") -> str:
         number, said = "No contact state was kept", conditions(result)
     kind, words = verdict(findings(result), number.partition(" ± ")[2])
     more = ' <a href="#trust">What is not in it</a>' if kind == GOOD else ""
-    return banner("report of a run", result.folder, number, said, kind, html.text(words) + more)
-
-
-def banner(what: str, folder: Path | None, number: str, said: str, kind: str, words: str) -> str:
-    """Return the head of a page.
-
-    Args:
-        what: the page is.
-        folder: of the results.
-        number: the finding, HTML.
-        said: of what the number is.
-        kind: the verdict.
-        words: of the verdict, HTML.
-    """
-    where = "" if folder is None else f" · {html.text(folder.resolve().name)}"
-    return (
-        f'<header><p class="kind">fingerpad · {what}{where}</p><h1>{number}</h1><p class="said">{html.text(said)}</p>'
-        f'<p class="verdict {kind}"><b>{MARKS[kind]}</b> {words}</p></header>'
-    )
+    return html.banner("report of a run", result.folder, number, said, kind, html.text(words) + more)
 
 
 def _timed(result: "Result") -> LoadResult | None:

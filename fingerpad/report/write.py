@@ -1,28 +1,22 @@
 """The report of a folder: what the folder holds, and its page; what cannot be made costs a line, not the results."""
 
 import csv
-import math
 import sys
-from collections.abc import Mapping
-from contextlib import suppress
-from dataclasses import dataclass
-from functools import cached_property
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING
 
 from fingerpad.reduced.models import MODELS
 from fingerpad.results.files import read_object, replace
-from fingerpad.results.quantities import Output
-from fingerpad.results.quantities import read as read_outputs
 from fingerpad.results.result import Result, steps_of
-from fingerpad.results.states import WORDS, load_results, named
-from fingerpad.runs.sweep_columns import head_of, shown
+from fingerpad.results.states import load_results, named
 from fingerpad.scene import SceneError, as_kept
 from fingerpad.scene.messages import clip
 from fingerpad.scene.reading import DEFAULT_MODEL
 
+if TYPE_CHECKING:
+    from fingerpad.report.sweep_page import Table
+
 NAME = "report.html"
-_RESULTS = ("uncharged_", "charged_", "full_slip_", "load_")
 
 
 def write(folder: Path) -> Path:
@@ -76,59 +70,7 @@ def draw_footprint(result: Result) -> None:
         print(f"fingerpad: footprint.png was not written: {error.strerror or error}", file=sys.stderr)
 
 
-@dataclass(frozen=True)
-class Table:
-    """The table of a sweep."""
-
-    folder: Path
-    axes: tuple[str, ...]
-    """Keys that are varied."""
-    rows: tuple[dict[str, Any], ...]
-    """By column: numbers, switches and texts; None where a cell is empty."""
-    parameters: dict[str, Any]
-    """Every parameter of the scene that it varies."""
-    model: str = DEFAULT_MODEL
-    version: str = ""
-    """Of the program that made the table; empty where it is not known."""
-    cautions: tuple[str, ...] = ()
-    """Limits of validity that points reach."""
-    notes: tuple[str, ...] = ()
-    """Remarks on the points."""
-    outputs: tuple[Output, ...] = ()
-    """Of the points, computed from a state."""
-
-    @property
-    def whole(self) -> bool:
-        """Whether forces are those on the whole finger."""
-        return "force" in self.axes or "force" in self.parameters
-
-    def forces(self) -> list[float]:
-        """Return the forces on the whole finger (N)."""
-        if "force" in self.axes:
-            return [float(row["force"]) for row in self.rows]
-        return [float(self.parameters["force"])] if self.whole else []
-
-    @property
-    def heads(self) -> dict[str, str]:
-        """Words and units of the keys that are varied."""
-        return {key: head_of(key, "title") for key in self.axes}
-
-    @cached_property
-    def shown(self) -> tuple[str, dict[str, Output]]:
-        """The named state in words and the columns of it that the report shows."""
-        state, columns = shown(self.rows[0], self.whole, self.outputs)
-        return WORDS[state], columns
-
-    def reached(self, row: Mapping[str, Any]) -> bool:
-        """Return whether a point reached that state; not all that did have a coefficient of friction."""
-        return any(row.get(column) is not None for column in self.shown[1])
-
-    def values(self) -> dict[str, list[Any]]:
-        """Return the values of each key that is varied, once each."""
-        return {key: list(dict.fromkeys(row[key] for row in self.rows)) for key in self.axes}
-
-
-def read(folder: Path) -> Result | Table:
+def read(folder: Path) -> "Result | Table":
     """Return what is in a folder.
 
     Raises:
@@ -140,7 +82,9 @@ def read(folder: Path) -> Result | Table:
     if (folder / "summary.json").exists():
         return Result.load(folder)
     if (folder / "table.csv").exists():
-        return _sweep(folder)
+        from fingerpad.report.sweep_page import table_of
+
+        return table_of(folder)
     if (folder / "steps.csv").exists():
         return _unfinished(folder)
     points = [folder / name for name, model in MODELS.items() if model.meshes and (folder / name).is_dir()]
@@ -176,35 +120,3 @@ def _unfinished(folder: Path) -> Result:
         failure=f"the run has not ended, or was killed, after step {steps[-1].step}: these are its steps so far",
         folder=folder,
     )
-
-
-def _sweep(folder: Path) -> Table:
-    name = clip(str(folder), 80)
-    try:
-        with (folder / "table.csv").open(encoding="utf-8", newline="") as file:
-            reader = csv.DictReader(file)
-            texts, columns = list(reader), list(reader.fieldnames or ())
-    except (OSError, UnicodeDecodeError, csv.Error) as error:
-        raise SceneError(f"the table of {name} cannot be read: {error}") from None
-    axes = tuple(key for key in columns if not key.startswith(_RESULTS) and key != "failure")
-    if "failure" not in columns or not axes or not texts:
-        raise SceneError(f"table.csv in {name} is not the table of a sweep of fingerpad, or is cut short")
-    if any(None in row or None in row.values() for row in texts):
-        raise SceneError(f"table.csv in {name} is cut short; give the command of the sweep again to write it anew")
-    rows = tuple({key: text if key == "failure" else _value(text) for key, text in row.items()} for row in texts)
-    try:
-        asked = read_object(folder / "sweep.json")
-        more = str(asked["model"]), str(asked.get("version", ""))
-        cautions, notes = (tuple(map(str, asked.get(name, ()))) for name in ("cautions", "notes"))
-        outputs = read_outputs(asked.get("outputs", ()))
-        return Table(folder, axes, rows, dict(asked["parameters"]), *more, cautions, notes, outputs)
-    except (OSError, ValueError, KeyError, TypeError) as error:
-        raise SceneError(f"sweep.json in {name} cannot be read: {error}") from None
-
-
-def _value(text: str) -> Any:
-    """Return what a cell of a table holds: a number, a switch or a text; None where it is empty or not finite."""
-    for kind in (int, float):
-        with suppress(ValueError):
-            return number if math.isfinite(number := kind(text)) else None
-    return {"": None, "True": True, "False": False}.get(text, text)

@@ -24,7 +24,7 @@ from variational.state import ContactState, Errors, RidgeStates, Sites, Skin
 if TYPE_CHECKING:
     import xarray
 
-    from fingerpad.results.result import Result
+    from fingerpad.results.answer import Answer
     from fingerpad.slices.finger import WholeFinger
 
 FILE = "result.nc"
@@ -36,7 +36,7 @@ OF_SITES = {"merkel_sed": "merkel", "meissner_left": "left", "meissner_right": "
 """Attribute of :class:`RidgeStates`, and of :class:`Sites`, by quantity."""
 
 
-def dataset(result: "Result") -> "xarray.Dataset":
+def dataset(result: "Answer") -> "xarray.Dataset":
     """Return a result of any model as a dataset; ``docs/results.md`` lists its dimensions.
 
     Returns:
@@ -53,7 +53,7 @@ def dataset(result: "Result") -> "xarray.Dataset":
     return xarray.Dataset(data, coords, attributes(result))
 
 
-def variables(result: "Result") -> Variables:
+def variables(result: "Answer") -> Variables:
     """Return the variables and coordinates of a result."""
     named = [result.named.get(name) for name in STATES]
     every = [*result.steps, *filter(None, named)]
@@ -71,7 +71,7 @@ def variables(result: "Result") -> Variables:
     return found | _skin(result.named) | _finger(result.finger)
 
 
-def save(result: "Result") -> str:
+def save(result: "Answer") -> str:
     """Write ``result.nc`` into the folder of a result; on one rank.
 
     Returns:
@@ -119,7 +119,7 @@ def read(folder: Path, own: Sequence[str]) -> tuple[tuple[ContactState, ...], di
         return None
 
 
-def attributes(result: "Result") -> dict[str, Any]:
+def attributes(result: "Answer") -> dict[str, Any]:
     """Return the attributes of a dataset: model, versions, and every parameter by its dotted key and as JSON."""
     parameters = result.record.get("parameters") or result.scene.parameters()  # the former with laws that are not read
     found: dict[str, Any] = {"title": "fingerpad: a fingertip on a touchscreen", "model": result.model}
@@ -218,7 +218,7 @@ def _coupling(steps: Sequence[ContactState]) -> Variables:
     }  # fmt: skip
 
 
-def _loads(result: "Result", known: Mapping[str, Output]) -> Variables:
+def _loads(result: "Answer", known: Mapping[str, Output]) -> Variables:
     """Return the results of the loads along ``load``; lengths, means and spectra are NaN where a load takes no time."""
     loads = result.loads
     found: Variables = {}

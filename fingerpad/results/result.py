@@ -3,26 +3,32 @@
 import csv
 import math
 from collections.abc import Iterable, Mapping
-from dataclasses import asdict, dataclass, field, fields, replace
+from dataclasses import asdict, dataclass, fields, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from fingerpad.results import dataset, terminal
+from fingerpad.results.answer import Answer, Cost
 from fingerpad.results.files import read_object
 from fingerpad.results.quantities import (
     CHANGES,
-    FRICTION,
+    PER_LENGTH,
+    PLUS_MINUS,
     QUANTITIES,
     STABILITY,
     Output,
+    cell,
     checked,
+    head_rows,
+    side_by_side,
     valued,
 )
 from fingerpad.results.quantities import read as read_outputs
-from fingerpad.results.states import STATES, LoadResult, load_results
+from fingerpad.results.states import STATES, LoadResult, called, load_results
+from fingerpad.scene.laws import coefficient
 from fingerpad.scene.messages import SceneError, clip
 from fingerpad.scene.reading import DEFAULT_MODEL
-from fingerpad.scene.scene import Scene, as_kept
+from fingerpad.scene.scene import as_kept
 from variational.state import CONDITIONS, RESULTS, ContactState, Errors
 
 if TYPE_CHECKING:
@@ -30,101 +36,16 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from fingerpad.results.drawing import Drawing
-    from fingerpad.slices.finger import WholeFinger
 
 KINDS = ("surface", "finger", "history", "footprint", "time")
 """Pictures of a result."""
-
-
-@dataclass(frozen=True)
-class Cost:
-    """Time, memory and work of a result."""
-
-    processor_seconds: float = 0.0
-    """Processor time of all ranks (s), meshes, microscale and compiled forms included."""
-    wall_seconds: float = 0.0
-    """Elapsed time (s)."""
-    newton_iterations: int = 0
-    factorisations: int = 0
-    unknowns: int = 0
-    """Unknowns of the largest linear system; with an accuracy, of the final mesh."""
-    memory_mb: float = 0.0
-    """Memory of all ranks (MB)."""
-    ranks: int = 1
+_SECTION = "Section at the centre of the finger"
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Result:
-    """Result of a model for a scene, with pictures, text and files; the same on every rank but for the drawing."""
+class Result(Answer):
+    """Result of a model for a scene: its answer with pictures, text and files."""
 
-    scene: Scene
-    model: str
-    """``full`` or ``cylinders``."""
-    uncharged: ContactState | None
-    """Uncharged normal contact; None where a history or a model does not have this state, as for the next two. All
-    three are defined in :mod:`fingerpad.results.states`."""
-    charged: ContactState | None
-    """Charged normal contact, the last state in contact before the bone moves sideways; of a run at 0 V uncharged."""
-    full_slip: ContactState | None
-    """Full slip, held over a further 0.2 mm."""
-    steps: tuple[ContactState, ...] = ()
-    """Accepted states in order; empty for a model without a loading path."""
-    loads: tuple[LoadResult, ...] = ()
-    """Each load in order, with the state at its end."""
-    cost: Cost = Cost()
-    failure: str = ""
-    """Reason why a load or an accuracy could not be reached, else empty."""
-    interrupted: str = ""
-    """Name of the signal that ended the run, else empty."""
-    notes: tuple[str, ...] = ()
-    """Remarks on the result: sources and omissions."""
-    cautions: tuple[str, ...] = ()
-    """Why the numbers may be further off than their errors say: limits of validity that the scene reaches."""
-    record: dict[str, Any] = field(default_factory=dict)
-    """Further content of ``summary.json``: omissions, restarts, refinement, laws, provenance."""
-    folder: Path | None = None
-    """Folder of tables, plots and fields, an absolute path; None where nothing was written."""
-    drawing: "Drawing | None" = None
-    """Data of the pictures; None for a model without them."""
-    outputs: tuple[Output, ...] = ()
-    """Outputs that are computed from a state; of a result that was read their values alone are known."""
-    finger: "WholeFinger | None" = None
-    """The whole finger in N and mm²; None where a history or a model does not give it."""
-
-    def __post_init__(self) -> None:
-        """Keep the folder where the program may go to another one, in which the same name is another run's."""
-        if self.folder is not None:
-            object.__setattr__(self, "folder", self.folder.absolute())
-
-    @property
-    def named(self) -> dict[str, ContactState]:
-        """Named states that are not None, by their names in :data:`fingerpad.results.states.STATES`."""
-        return {name: state for name in STATES if (state := getattr(self, name)) is not None}
-
-    @property
-    def whole(self) -> bool:
-        """Whether the scene has a force on the whole finger; the named states are then those of its centre."""
-        return self.scene.force is not None
-
-    @property
-    def last(self) -> ContactState | None:
-        """The last accepted state; without a loading path the last named state."""
-        return self.steps[-1] if self.steps else (self.full_slip or self.charged or self.uncharged)
-
-    @property
-    def printed(self) -> dict[str, Output]:
-        """Quantities of a state that are printed, with outputs of one's own, by name."""
-        return QUANTITIES | {each.name: each for each in self.outputs}
-
-    def cells(self, key: str) -> list[str]:
-        """Return a printed quantity in each named state, with its error; a dash where it is not shown."""
-        of, shown = self.printed[key], []
-        for name, state in self.named.items():
-            error = getattr(state.error, key, math.nan)
-            shown.append("–" if key in FRICTION and name != "full_slip" else of.shown(getattr(state, key), error))
-        return shown
-
-    # -- pictures and datasets ---------------------------------------------------------------------------
     def plot(self, kind: str = "surface", path: str | Path | None = None) -> "Figure | None":
         """Draw the skin, the deformed finger, the history of sliding, or the footprint of the whole finger.
 
@@ -149,9 +70,7 @@ class Result:
 
             return footprint(self.finger, None if path is None else Path(path)) if terminal.rank() == 0 else None
         if (drawing := self.drawing) is None and self.steps and self.folder is not None and terminal.rank() == 0:
-            from fingerpad.results.drawing import read  # Matplotlib
-
-            drawing = read(self)
+            drawing = _drawing(self, self.folder)
         if drawing is not None:
             return drawing.figure(kind, None if path is None else Path(path))
         if not self.steps:
@@ -280,7 +199,7 @@ class Result:
 
     def __str__(self) -> str:
         """Return the text *Result* at the end of a run: the named states side by side, with units and errors."""
-        return terminal.text_of(self)
+        return _text(self)
 
     __repr__ = __str__
     """In a notebook, too: the values of all steps are hundreds of pages."""
@@ -297,6 +216,16 @@ def steps_of(folder: Path) -> tuple[ContactState, ...]:
         return tuple(ContactState.from_row(row) for row in csv.DictReader(file) if None not in row.values())
 
 
+def _drawing(result: Result, folder: Path) -> "Drawing":
+    """Return what the pictures of a result that was read are drawn from."""
+    from fingerpad.results.drawing import read  # Matplotlib
+
+    meshes = (result.record.get("path_mesh"), result.record.get("accuracy", {}).get("mesh"))
+    path, final = (mesh["contact"] if mesh and result.scene.accuracy is not None else None for mesh in meshes)
+    mu_0 = None if "laws" in result.record.get("parameters", {}) else coefficient(result.scene)
+    return read(folder, result.steps, result.named, mu_0, path, final)
+
+
 def _state(name: str, kept: Mapping[str, Any]) -> ContactState:
     """Return a named state of ``summary.json``.
 
@@ -311,3 +240,67 @@ def _state(name: str, kept: Mapping[str, Any]) -> ContactState:
     more |= {key: values.pop(key) for key in STABILITY if key in values}
     slip = {"all_slip": True, "slip_held": True} if name == "full_slip" else {}
     return replace(ContactState.from_row({"mu_app": math.nan} | values | slip), **more)
+
+
+# -- text ------------------------------------------------------------------------------------------------
+def _text(result: Result) -> str:
+    """Return the text *Result* at the end of a run: the named states side by side, with units and errors.
+
+    The whole finger follows; it comes first where the scene has a force on it.
+    """
+    whole, shown = result.whole and result.finger is not None, result.named
+    lines = ["Result" if result.finger is None else _SECTION]
+    lines[0] += f" (model '{result.model}')" if result.model != DEFAULT_MODEL else ""
+    if shown:
+        rows = head_rows([called(name, state.voltage) for name, state in shown.items()])
+        values = ((quantity.title, result.cells(key)) for key, quantity in result.printed.items())
+        rows += [[title, *each] for title, each in values if set(each) - {"–"}]
+        if any(state.stable is not None for state in shown.values()):
+            verdicts = {True: "yes", False: "no", None: "–"}
+            rows.append(["stable", *(verdicts[state.stable] for state in shown.values())])
+        lines += side_by_side(rows)
+    least = result.record.get("force_error") or 0.0
+    lines += [f"  {_in_time(load, least)}" for load in result.loads if load.over_time is not None]
+    lines += [f"  {note}" for note in _remarks(result)]
+    finger = [f"{result.finger}"] if result.finger is not None else []
+    return "\n".join([*finger, *lines] if whole else [*lines, *finger])
+
+
+def _remarks(result: Result) -> list[str]:
+    """Return the lines after the table: failure, missing full slip, meaning of ± and N/m, effect of the penalty."""
+    found = [f"Not finished: {result.failure}"] if result.failure else []
+    asked = any(load.until_full_slip or load.moves for load in result.scene.loads())
+    if asked and result.full_slip is None and not result.failure:
+        reached = any(load.full_slip_reached for load in result.loads)
+        found.append(f"Full slip was {'not held over a further 0.2 mm' if reached else 'not reached'}.")
+    if any(state.error.known() for state in result.named.values()):
+        found.append(PLUS_MINUS)
+    sizes = {name: state.mesh_contact for name, state in result.named.items() if not math.isnan(state.mesh_contact)}
+    if len(set(sizes.values())) > 1:  # with an accuracy
+        each = (f"{1e6 * size:.3g} µm ({called(name, result.named[name].voltage)})" for name, size in sizes.items())
+        found.append(f"Facets of {', '.join(each)}: differences between these states have the errors of both meshes.")
+    share = math.nan if result.full_slip is None else result.full_slip.penalty.contact_length
+    if not math.isnan(share):
+        found.append(f"Penalty: a rigid screen would change the contact length at full slip by {1e3 * share:+.2g} mm.")
+    cautions = [f"! {caution}" for caution in result.cautions]
+    return [*found, *([PER_LENGTH] if result.named else []), *result.notes, *cautions]
+
+
+def _in_time(load: LoadResult, least: float) -> str:
+    """Return range and mean of friction in a load over time, and its largest amplitude; of L_R without friction.
+
+    Args:
+        load: over time.
+        least: friction force (N/m) up to which there is none.
+    """
+    passed, rubs = load.over_time, load.rubs(least)
+    assert passed is not None
+    key = "contact_length" if not rubs else "mu_app" if "mu_app" in load.extremes else "f_t"
+    quantity, ends, mean = QUANTITIES[key], load.extremes[key], passed.mean[key]
+    unit = f" {quantity.unit}" if quantity.unit else ""
+    words = f"{load.name}: {quantity.words.split()[-1]} {cell(key, ends.min)} to {cell(key, ends.max)}{unit}"
+    words += "" if math.isnan(mean) else f", mean {cell(key, mean)}{unit}"
+    if rubs and passed.periods:
+        most, frequency = max(zip(passed.f_t_amplitude, passed.frequency, strict=True))
+        words += f"; amplitude of f_T at {frequency:.4g} Hz {cell('f_t', most)} N/m"
+    return f"{words}; {load.sticking}" if rubs and load.sticking else words

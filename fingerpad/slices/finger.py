@@ -7,9 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from fingerpad.results.quantities import FINGER, FRICTION
+from fingerpad.results.quantities import FINGER, FRICTION, head_rows, side_by_side
 from fingerpad.results.states import STATES, WORDS, called
-from fingerpad.results.terminal import head_rows, side_by_side
 from fingerpad.scene import Scene, SceneError
 from fingerpad.scene.slices import Slices
 from fingerpad.slices import errors, solid

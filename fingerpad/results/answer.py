@@ -1,0 +1,104 @@
+"""What a model answers to a scene, as values: the states by name and in order, loads, costs and remarks."""
+
+import math
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from fingerpad.results.quantities import FRICTION, QUANTITIES, Output
+from fingerpad.results.states import STATES, LoadResult
+from variational.state import ContactState
+
+if TYPE_CHECKING:
+    from fingerpad.results.drawing import Drawing
+    from fingerpad.scene import Scene
+    from fingerpad.slices.finger import WholeFinger
+
+
+@dataclass(frozen=True)
+class Cost:
+    """Time, memory and work of a result."""
+
+    processor_seconds: float = 0.0
+    """Processor time of all ranks (s), meshes, microscale and compiled forms included."""
+    wall_seconds: float = 0.0
+    """Elapsed time (s)."""
+    newton_iterations: int = 0
+    factorisations: int = 0
+    unknowns: int = 0
+    """Unknowns of the largest linear system; with an accuracy, of the final mesh."""
+    memory_mb: float = 0.0
+    """Memory of all ranks (MB)."""
+    ranks: int = 1
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Answer:
+    """What a model answers to a scene; the same on every rank, except for the drawing, which rank 0 has."""
+
+    scene: "Scene"
+    model: str
+    """``full`` or ``cylinders``."""
+    uncharged: ContactState | None
+    """Uncharged normal contact; None where a history or a model does not have this state, as for the next two. All
+    three are defined in :mod:`fingerpad.results.states`."""
+    charged: ContactState | None
+    """Charged normal contact, the last state in contact before the bone moves sideways; of a run at 0 V uncharged."""
+    full_slip: ContactState | None
+    """Full slip, held over a further 0.2 mm."""
+    steps: tuple[ContactState, ...] = ()
+    """Accepted states in order; empty for a model without a loading path."""
+    loads: tuple[LoadResult, ...] = ()
+    """Each load in order, with the state at its end."""
+    cost: Cost = Cost()
+    failure: str = ""
+    """Reason why a load or an accuracy could not be reached, else empty."""
+    interrupted: str = ""
+    """Name of the signal that ended the run, else empty."""
+    notes: tuple[str, ...] = ()
+    """Remarks on the result: sources and omissions."""
+    cautions: tuple[str, ...] = ()
+    """Why the numbers may be further off than their errors say: limits of validity that the scene reaches."""
+    record: dict[str, Any] = field(default_factory=dict)
+    """Further content of ``summary.json``: omissions, restarts, refinement, laws, provenance."""
+    folder: Path | None = None
+    """Folder of tables, plots and fields, an absolute path; None where nothing was written."""
+    drawing: "Drawing | None" = None
+    """Data of the pictures; None for a model without them."""
+    outputs: tuple[Output, ...] = ()
+    """Outputs that are computed from a state; of a result that was read their values alone are known."""
+    finger: "WholeFinger | None" = None
+    """The whole finger in N and mm²; None where a history or a model does not give it."""
+
+    def __post_init__(self) -> None:
+        """Keep the folder where the program may go to another one, in which the same name is another run's."""
+        if self.folder is not None:
+            object.__setattr__(self, "folder", self.folder.absolute())
+
+    @property
+    def named(self) -> dict[str, ContactState]:
+        """Named states that are not None, by their names in :data:`fingerpad.results.states.STATES`."""
+        return {name: state for name in STATES if (state := getattr(self, name)) is not None}
+
+    @property
+    def whole(self) -> bool:
+        """Whether the scene has a force on the whole finger; the named states are then those of its centre."""
+        return self.scene.force is not None
+
+    @property
+    def last(self) -> ContactState | None:
+        """The last accepted state; without a loading path the last named state."""
+        return self.steps[-1] if self.steps else (self.full_slip or self.charged or self.uncharged)
+
+    @property
+    def printed(self) -> dict[str, Output]:
+        """Quantities of a state that are printed, with outputs of one's own, by name."""
+        return QUANTITIES | {each.name: each for each in self.outputs}
+
+    def cells(self, key: str) -> list[str]:
+        """Return a printed quantity in each named state, with its error; a dash where it is not shown."""
+        of, shown = self.printed[key], []
+        for name, state in self.named.items():
+            error = getattr(state.error, key, math.nan)
+            shown.append("–" if key in FRICTION and name != "full_slip" else of.shown(getattr(state, key), error))
+        return shown
