@@ -100,6 +100,12 @@ def _git(*words: str) -> str:
         return ""
 
 
+class Record(dict[str, Any]):
+    """A record of kept numbers, whose values are its attributes too."""
+
+    __getattr__ = dict.__getitem__
+
+
 @dataclass(frozen=True)
 class Kept:
     """Numbers of a page, as JSON holds them, and who made them."""
@@ -125,23 +131,48 @@ def _text(data: Any, indent: str = "") -> str:
 
 def kept(name: str, docs: Path = DOCS) -> Kept:
     """Return the numbers of ``docs/NAME.json``."""
-    data = json.loads((docs / f"{name}.json").read_text(encoding="utf-8"))
+    data = json.loads((docs / f"{name}.json").read_text(encoding="utf-8"), object_hook=Record)
     return Kept(data["numbers"], Made(**data["made"]))
 
 
 # -- pages ---------------------------------------------------------------------------------------------------
-def page(
-    path: Path, title: str, finding: str, how: str, body: Iterable[str], command: str, by: Made, names: Iterable[str]
-) -> Path:
-    """Write a page: finding, how it was found, sections of which empty ones are left out, and origin; return its path.
+def draw_page(docs: Path, name: str, command: str, names: Mapping[str, Any], *others: str) -> Path:
+    """Write docs/NAME.md from its template, benchmarks/prose/NAME.md; return its path.
 
-    ``command`` computes the numbers anew, ``by`` made them, and they are in the files ``docs/NAME.json`` of ``names``.
+    A template is the page with expressions of Python in braces, as in an f-string. A line ``for TARGET in VALUES: | …``
+    is a row for each of the values. Lines from ``if CONDITION:`` to ``end`` are there where it holds. An image alone on
+    a line gets its words as a caption too.
+
+    Args:
+        docs: folder of the page, its pictures and its numbers.
+        name: of page, template and numbers.
+        command: which computes the numbers anew.
+        names: what the expressions may use beside ``numbers``, the kept ones, and ``cell``.
+        others: names of further numbers that the page shows.
     """
-    files = ", ".join(f"[{name}.json]({name}.json)" for name in names)
-    origin = f"{by} Computed by `{command}` into {files}; drawn from there by `make pages`: do not edit this page."
-    parts = [f"# {title}", finding, "## How the numbers were found", how, *body, f"---\n\n{origin}"]
-    replace(path, "\n\n".join(part.strip() for part in parts if part.strip()) + "\n")
-    return path
+    found = kept(name, docs)
+    template = (ROOT / "benchmarks" / "prose" / f"{name}.md").read_text(encoding="utf-8")
+    text = _filled(template, {"numbers": found.numbers, "cell": cell, **names})
+    text = re.sub(r"^!\[(.+)\]\((.+)\)$", r"![\1](\2)\n\n*\1*", text, flags=re.MULTILINE)
+    files = ", ".join(f"[{each}.json]({each}.json)" for each in (name, *others))
+    origin = f"{found.made} Computed by `{command}` into {files}; drawn from there by `make pages`: do not edit this page."
+    replace(docs / f"{name}.md", re.sub(r"\n{3,}", "\n\n", f"{text.strip()}\n\n---\n\n{origin}\n"))
+    return docs / f"{name}.md"
+
+
+def _filled(template: str, names: dict[str, Any]) -> str:
+    tables: list[str] = []
+
+    def chosen(part: re.Match[str]) -> str:
+        return part[2] if eval(part[1], names) else ""
+
+    def repeated(row: re.Match[str]) -> str:
+        tables.append("\n".join(eval(f"[rf'''{row[2]}''' for {row[1]}]", names)))
+        return f"{{_tables[{len(tables) - 1}]}}"
+
+    text = re.sub(r"^if (.+):\n((?s:.*?))^end\n", chosen, template, flags=re.MULTILINE)
+    text = re.sub(r"^for (.+?): (\|.*)$", repeated, text, flags=re.MULTILINE)
+    return str(eval(f"rf'''{text}'''", names | {"_tables": tables}))
 
 
 @cache
@@ -155,13 +186,14 @@ def prose(name: str) -> dict[str, str]:
 def table(head: Sequence[str], rows: Iterable[Sequence[Any]]) -> str:
     """Return a Markdown table; numbers have four digits, None is a dash."""
     lines = ["| " + " | ".join(head) + " |", "|---" * len(head) + "|"]
-    return "\n".join([*lines, *("| " + " | ".join(map(_cell, row)) + " |" for row in rows)])
+    return "\n".join([*lines, *("| " + " | ".join(map(cell, row)) + " |" for row in rows)])
 
 
-def _cell(value: Any) -> str:
+def cell(value: Any, spec: str = ".4g") -> str:
+    """Return a value as a table has it: a number as specified, None as a dash."""
     if value is None:
         return "–"
-    return f"{value:.4g}" if isinstance(value, float) else str(value).replace("|", "\\|").replace("\n", " ")
+    return format(value, spec) if isinstance(value, float) else str(value).replace("|", "\\|").replace("\n", " ")
 
 
 def folded(summary: str, body: str) -> str:
@@ -170,7 +202,7 @@ def folded(summary: str, body: str) -> str:
 
 
 # -- pictures ------------------------------------------------------------------------------------------------
-def picture(path: Path, size: tuple[float, float], paint: Callable[[Figure], None], caption: str) -> str:
+def picture(path: Path, size: tuple[float, float], paint: Callable[[Figure], None], caption: str = "") -> str:
     """Have a figure of width and height (inches) painted into a PNG; return the Markdown that shows it on a page."""
     path.parent.mkdir(parents=True, exist_ok=True)
     with style.look():

@@ -38,7 +38,7 @@ PAGES = {
     "measured": "benchmarks.measured.page",
     "models": "benchmarks.models",
     "newtons": "benchmarks.newtons",
-    "paper": "benchmarks.paper.page",
+    "paper": "benchmarks.paper.__main__",
     "peers": "benchmarks.peers.page",
     "performance": "benchmarks.performance",
     "stability": "benchmarks.stability.page",
