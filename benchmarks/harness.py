@@ -147,12 +147,12 @@ def draw_page(docs: Path, name: str, command: str, names: Mapping[str, Any], *ot
         docs: folder of the page, its pictures and its numbers.
         name: of page, template and numbers.
         command: which computes the numbers anew.
-        names: what the expressions may use beside ``numbers``, the kept ones, and ``cell``.
+        names: what the expressions may use beside ``numbers``, the kept ones, :func:`cell` and :func:`cells`.
         others: names of further numbers that the page shows.
     """
     found = kept(name, docs)
     template = (ROOT / "benchmarks" / "prose" / f"{name}.md").read_text(encoding="utf-8")
-    text = _filled(template, {"numbers": found.numbers, "cell": cell, **names})
+    text = _filled(template, {"numbers": found.numbers, "cell": cell, "cells": cells, **names})
     text = re.sub(r"^!\[(.+)\]\((.+)\)$", r"![\1](\2)\n\n*\1*", text, flags=re.MULTILINE)
     files = ", ".join(f"[{each}.json]({each}.json)" for each in (name, *others))
     origin = f"{found.made} Computed by `{command}` into {files}; drawn from there by `make pages`: do not edit this page."
@@ -194,6 +194,11 @@ def cell(value: Any, spec: str = ".4g") -> str:
     if value is None:
         return "–"
     return format(value, spec) if isinstance(value, float) else str(value).replace("|", "\\|").replace("\n", " ")
+
+
+def cells(*values: Any, spec: str = ".4g") -> str:
+    """Return values as neighbouring cells of a table."""
+    return " | ".join(cell(value, spec) for value in values)
 
 
 def folded(summary: str, body: str) -> str:
