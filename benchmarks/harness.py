@@ -152,7 +152,7 @@ def draw_page(docs: Path, name: str, command: str, names: Mapping[str, Any], *ot
     """
     found = kept(name, docs)
     template = (ROOT / "benchmarks" / "prose" / f"{name}.md").read_text(encoding="utf-8")
-    text = _filled(template, {"numbers": found.numbers, "cell": cell, "cells": cells, **names})
+    text = _filled(template, {**names, "numbers": found.numbers, "cell": cell, "cells": cells})
     text = re.sub(r"^!\[(.+)\]\((.+)\)$", r"![\1](\2)\n\n*\1*", text, flags=re.MULTILINE)
     files = ", ".join(f"[{each}.json]({each}.json)" for each in (name, *others))
     origin = f"{found.made} Computed by `{command}` into {files}; drawn from there by `make pages`: do not edit this page."

@@ -39,7 +39,7 @@ PAGES = {
     "models": "benchmarks.models",
     "newtons": "benchmarks.newtons",
     "paper": "benchmarks.paper.__main__",
-    "peers": "benchmarks.peers.page",
+    "peers": "benchmarks.peers.__main__",
     "performance": "benchmarks.performance",
     "stability": "benchmarks.stability.page",
     "verification": "benchmarks.verification.case",
