@@ -253,7 +253,7 @@ def draw(docs: Path) -> Path:
         "verdicts": _verdicts(harness.kept("accuracy", docs).numbers["runs"], cases),
         "coverages": [(k, words, *coverage(cases, k, once)) for k in KINDS for once, words in factors.items()],
     }
-    return harness.draw_page(docs, "accuracy", "python3 -m benchmarks.accuracy", globals() | names, "errors")
+    return harness.page(docs, "accuracy", "python3 -m benchmarks.accuracy", globals() | names, "errors")
 
 
 if __name__ == "__main__":

@@ -212,7 +212,7 @@ def draw(docs: Path) -> Path:
     names = {name: getattr(found, name) for name in dir(found) if not name.startswith("_")}
     names |= {"command": _command, "span": _span, "shown": shown, "HALF": next(iter(PARAMETERS))}
     names["option"] = lambda name: _command(Case("", () if name == "reference" else (name,)), mesh=False)
-    return harness.draw_page(docs, "assumptions", "python3 -m benchmarks.assumptions", globals() | names)
+    return harness.page(docs, "assumptions", "python3 -m benchmarks.assumptions", globals() | names)
 
 
 if __name__ == "__main__":

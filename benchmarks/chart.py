@@ -208,7 +208,7 @@ def draw(docs: Path) -> Path:
     harness.picture(docs / "chart.png", (9, 7), lambda figure: _paint(figure, points, reference))
     names = {"points": points, "reference": reference, "default": _default(points), "fronts": fronts(points)}
     names |= {"words": _words, "linear": next((p for p in points if p.label == "P1"), None)}
-    return harness.draw_page(docs, "chart", "make chart", globals() | names, "errors")
+    return harness.page(docs, "chart", "make chart", globals() | names, "errors")
 
 
 if __name__ == "__main__":

@@ -8,7 +8,7 @@ other pages are drawn.
 """
 
 import sys
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -16,7 +16,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from benchmarks import harness, limits
-from benchmarks.limits import Limit, limit
+from benchmarks.limits import Limit
 from benchmarks.runs import SITES as AT_SITES
 from benchmarks.runs import Array, Run, finished
 from fingerpad.accuracy.rigid_screen import ORDER
@@ -168,8 +168,8 @@ def draw(docs: Path) -> Path:
 
     harness.picture(docs / "errors.png", (9, 3.6), lambda figure: _paint(figure, numbers, ends))
     names = {"whole": whole, "ends": ends, "again": numbers["again"], "penalty": stiffer(docs), "end": _end}
-    names |= {"study": study, "rigid": rigid, "worst": worst}
-    return harness.draw_page(docs, "errors", "make chart", globals() | names)
+    names |= {"study": study, "rigid": rigid, "worst": worst, "limit": limits.limit}
+    return harness.page(docs, "errors", "make chart", globals() | names)
 
 
 if __name__ == "__main__":

@@ -4,8 +4,8 @@ A study has three steps:
 
 1. :func:`run` computes those of its scenes that are missing in ``results/traces``, kept by their parameters;
 2. :func:`keep` writes the numbers that its page shows to ``docs/NAME.json``, with the version that made them;
-3. its function ``draw(docs)`` reads them by :func:`kept` and writes page and pictures by :func:`page` and
-   :func:`picture`, its texts by :func:`prose`. No run is needed: ``python3 -m benchmarks.pages`` draws all again.
+3. its function ``draw(docs)`` reads them by :func:`kept` and draws its pictures by :func:`picture` and its page by
+   :func:`page`, from a template in ``benchmarks/prose``. ``python3 -m benchmarks.pages`` draws all, without a run.
 """
 
 import argparse
@@ -15,7 +15,6 @@ import subprocess
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from datetime import date
-from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -103,7 +102,8 @@ def _git(*words: str) -> str:
 class Record(dict[str, Any]):
     """A record of kept numbers, whose values are its attributes too."""
 
-    __getattr__ = dict.__getitem__
+    def __getattr__(self, name: str) -> Any:
+        return self[name]
 
 
 @dataclass(frozen=True)
@@ -136,7 +136,7 @@ def kept(name: str, docs: Path = DOCS) -> Kept:
 
 
 # -- pages ---------------------------------------------------------------------------------------------------
-def draw_page(docs: Path, name: str, command: str, names: Mapping[str, Any], *others: str) -> Path:
+def page(docs: Path, name: str, command: str, names: Mapping[str, Any], *others: str) -> Path:
     """Write docs/NAME.md from its template, benchmarks/prose/NAME.md; return its path.
 
     A template is the page with expressions of Python in braces, as in an f-string. A line ``for TARGET in VALUES: | …``
@@ -155,7 +155,9 @@ def draw_page(docs: Path, name: str, command: str, names: Mapping[str, Any], *ot
     text = _filled(template, {**names, "numbers": found.numbers, "cell": cell, "cells": cells})
     text = re.sub(r"^!\[(.+)\]\((.+)\)$", r"![\1](\2)\n\n*\1*", text, flags=re.MULTILINE)
     files = ", ".join(f"[{each}.json]({each}.json)" for each in (name, *others))
-    origin = f"{found.made} Computed by `{command}` into {files}; drawn from there by `make pages`: do not edit this page."
+    origin = (
+        f"{found.made} Computed by `{command}` into {files}; drawn from there by `make pages`: do not edit this page."
+    )
     replace(docs / f"{name}.md", re.sub(r"\n{3,}", "\n\n", f"{text.strip()}\n\n---\n\n{origin}\n"))
     return docs / f"{name}.md"
 
@@ -173,14 +175,6 @@ def _filled(template: str, names: dict[str, Any]) -> str:
     text = re.sub(r"^if (.+):\n((?s:.*?))^end\n", chosen, template, flags=re.MULTILINE)
     text = re.sub(r"^for (.+?): (\|.*)$", repeated, text, flags=re.MULTILINE)
     return str(eval(f"rf'''{text}'''", names | {"_tables": tables}))
-
-
-@cache
-def prose(name: str) -> dict[str, str]:
-    """Return the texts of a page by their headings in ``benchmarks/prose/NAME.md``, with places to fill in braces."""
-    text = (ROOT / "benchmarks" / "prose" / f"{name}.md").read_text(encoding="utf-8")
-    parts = re.split(r"^# ([\w-]+)\n", text, flags=re.MULTILINE)
-    return {heading: words.strip() for heading, words in zip(parts[1::2], parts[2::2], strict=True)}
 
 
 def table(head: Sequence[str], rows: Iterable[Sequence[Any]]) -> str:
@@ -201,20 +195,14 @@ def cells(*values: Any, spec: str = ".4g") -> str:
     return " | ".join(cell(value, spec) for value in values)
 
 
-def folded(summary: str, body: str) -> str:
-    """Return a part of a page that opens on a click, for long tables."""
-    return f"<details><summary>{summary}</summary>\n\n{body}\n\n</details>"
-
-
 # -- pictures ------------------------------------------------------------------------------------------------
-def picture(path: Path, size: tuple[float, float], paint: Callable[[Figure], None], caption: str = "") -> str:
-    """Have a figure of width and height (inches) painted into a PNG; return the Markdown that shows it on a page."""
+def picture(path: Path, size: tuple[float, float], paint: Callable[[Figure], None]) -> None:
+    """Have a figure of width and height (inches) painted into a PNG."""
     path.parent.mkdir(parents=True, exist_ok=True)
     with style.look():
         figure = style.figure(size[1], size[0])
         paint(figure)
         figure.savefig(path)
-    return f"![{caption}]({path.name})\n\n*{caption}*"
 
 
 def ticks(ax: Axes, values: Sequence[float]) -> None:

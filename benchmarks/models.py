@@ -126,7 +126,7 @@ def draw(docs: Path) -> Path:
         "errors": lambda key, f: [_error(at(f, u), key) for u in VOLTAGES],
         "slips": sum(bool(each["full"].get("summary", {}).get("full_slip")) for each in every),
     }  # fmt: skip
-    return harness.draw_page(docs, "models", "python3 -m benchmarks.models", globals() | names)
+    return harness.page(docs, "models", "python3 -m benchmarks.models", globals() | names)
 
 
 if __name__ == "__main__":

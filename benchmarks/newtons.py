@@ -233,7 +233,10 @@ def draw(docs: Path) -> Path:
     ]
     above = [errors for s, errors in solids if s["f_ext"] > COARSE]
     friction = [
-        (each, [r["mu_app"] for r in numbers["friction"] if r["voltage"] == u and abs(r["f_ext"] / each.f_ext - 1) < 1e-6])
+        (
+            each,
+            [r["mu_app"] for r in numbers["friction"] if r["voltage"] == u and abs(r["f_ext"] / each.f_ext - 1) < 1e-6],
+        )
         for u in (0.0, HIGH)
         for each in at(numbers, RADII[1], u)
     ]
@@ -248,7 +251,7 @@ def draw(docs: Path) -> Path:
         "presses": [each for each in numbers["estimates"] if each["state"] == "charged"],
         "paths": [(p, p["f_t_raised"] / p["f_t"] - 1) for p in numbers["paths"]],
     }  # fmt: skip
-    return harness.draw_page(docs, "newtons", "python3 -m benchmarks.newtons", globals() | names, "models", "solid")
+    return harness.page(docs, "newtons", "python3 -m benchmarks.newtons", globals() | names, "models", "solid")
 
 
 if __name__ == "__main__":

@@ -7,9 +7,10 @@ A page is older than the code where a file that computes its numbers differs fro
 packages (geometry, variational, fingerpad without what starts, reads, refuses, orders runs, writes and prints), or of
 the page's own program, without what only draws it. Comments and docstrings do not count, nor packages that were found
 to compute the same numbers (docs/same.json, by benchmarks/same.py), or the same but for some that the page's program
-has no word of. Where these agree within a tolerance alone, the page is listed with it. The commit that made numbers is found by the hash of the packages' files that is kept with them; a
-program in benchmarks/ is compared with that of the commit that brought them into git. Numbers of files that are in no
-commit count as made by the commit that brought them, and so do older numbers, which have no hash.
+has no word of. Where these agree within a tolerance alone, the page is listed with it. The commit that made numbers is
+found by the hash of the packages' files that is kept with them; a program in benchmarks/ is compared with that of the
+commit that brought them into git. Numbers of files that are in no commit count as made by the commit that brought them,
+and so do older numbers, which have no hash.
 """
 
 import argparse
@@ -35,7 +36,7 @@ PAGES = {
     "chart": "benchmarks.chart",
     "errors": "benchmarks.errors",
     "hero": "benchmarks.hero",
-    "measured": "benchmarks.measured.page",
+    "measured": "benchmarks.measured.__main__",
     "models": "benchmarks.models",
     "newtons": "benchmarks.newtons",
     "paper": "benchmarks.paper.__main__",

@@ -170,9 +170,9 @@ def draw(docs: Path) -> Path:
         "saved": (own["tangent"] + own["factorisation"]) / (own["solution"] + own["residual"]),
         "clusters": [(s, ranks, cluster(s, ranks)) for s in sizes if s["factor"] in ON_RANKS for ranks in (2, 8, 64)],
         "ways": ways, "costs": costs,
-        "residuals": sum(run["path"].values()) / run["path"]["residual"] * run["calls"]["residual"],  # as long as the path
+        "residuals": sum(run["path"].values()) / run["path"]["residual"] * run["calls"]["residual"],
     }  # fmt: skip
-    return harness.draw_page(docs, "performance", "make performance", globals() | names)
+    return harness.page(docs, "performance", "make performance", globals() | names)
 
 
 def main(given: Sequence[str] | None = None) -> int:

@@ -77,7 +77,7 @@ def test_page_is_older_where_its_code_computes_something_else(since):
 
 
 def test_page_of_code_that_computes_the_same_within_a_tolerance(since):
-    """A pair of commits is accepted with what it was compared to, and the report names it; but no other file's change."""
+    """A pair of commits is accepted and its tolerance is named; changes of other files count all the same."""
     pair, now = {"before": "old", "now": "new", "within": 1e-12}, NEW | {"variational/x.py": b"x = 2"}
     assert since("errors", MADE, pair, old=OLD, new=now) == (
         "the packages compute the same within 1e-12 (same.json)", [],

@@ -18,12 +18,12 @@ import numpy as np
 
 from benchmarks import newtons
 from benchmarks.errors import known
-from benchmarks.harness import draw_page, keep, kept, made, parser, picture, run
+from benchmarks.harness import keep, kept, made, page, parser, picture, run
 from benchmarks.paper import energy, fields, friction, scenes
 from benchmarks.paper.statement import BUILT, HOLDS, IN_PART, NOT, Statement
 from benchmarks.runs import FORCES, VOLTAGES, Run
-from fingerpad.slices import solid
 from fingerpad.runs.batch import result
+from fingerpad.slices import solid
 
 _LIMIT = 3600.0  # s of processor time for one run; the sine takes longest
 
@@ -96,7 +96,7 @@ def draw(docs: Path) -> Path:
         found = kept("newtons", docs).numbers
         newtons.picture(found, docs)
         names |= newtons.compared(found)
-    return draw_page(docs, "paper", "make paper", globals() | names, *["newtons"] * sums)
+    return page(docs, "paper", "make paper", globals() | names, *["newtons"] * sums)
 
 
 def main(given: Sequence[str] | None = None) -> int:

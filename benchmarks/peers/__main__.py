@@ -16,7 +16,7 @@ import numpy as np
 from matplotlib.figure import Figure
 from numpy.polynomial import Polynomial
 
-from benchmarks.harness import DOCS, draw_page, keep, kept, made, picture, table
+from benchmarks.harness import DOCS, keep, kept, made, page, picture, table
 from benchmarks.peers.exchange import TASKS, TIMED, Answer, Array, Ridge, State, answer_path, cases, timed, write
 from fingerpad.results.style import BLUE, GREEN, ORANGE, VERMILION
 
@@ -217,7 +217,9 @@ def draw(docs: Path) -> Path:
     for row in (row for mesh in found["meshes"] for state in mesh["states"] for row in state["rows"]):
         if "differences" in row and "," not in row["program"]:
             sizes = np.array([abs(d or 0.0) for d in row["differences"]])
-            summary[row["program"]] = np.maximum(np.where(sizes > _ROUNDED, sizes, 0.0), summary.get(row["program"], 0.0))
+            summary[row["program"]] = np.maximum(
+                np.where(sizes > _ROUNDED, sizes, 0.0), summary.get(row["program"], 0.0)
+            )
     picture(docs / "peers.png", (13, 5), lambda figure: paint(figure, found["meshes"][-1]["states"]))
     timed = found["speed"]["meshes"]
     names = {
@@ -227,7 +229,7 @@ def draw(docs: Path) -> Path:
         "spread": max(row["spread"] or 0.0 for m in timed for row in m["rows"]),
         "meshes": "\n\n".join(map(_mesh, found["meshes"])),
     }
-    return draw_page(docs, "peers", "benchmarks/peers/run", globals() | names)
+    return page(docs, "peers", "benchmarks/peers/run", globals() | names)
 
 
 def main() -> None:

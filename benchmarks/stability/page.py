@@ -11,7 +11,7 @@ from matplotlib.colors import LogNorm, to_hex, to_rgb
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch, Rectangle
 
-from benchmarks.harness import draw_page, kept, picture, table
+from benchmarks.harness import kept, page, picture, table
 from benchmarks.stability import plan, scenes
 from benchmarks.stability.plan import DEFAULT, Axis, Case, Named, Panel
 from fingerpad.results.style import MAGNITUDE, ORANGE, SKY, VERMILION
@@ -175,4 +175,4 @@ def draw(docs: Path) -> Path:
             for k in range(scenes.COUNT)
         ],
     }
-    return draw_page(docs, "stability", "environment/run python3 -m benchmarks.stability", globals() | names)
+    return page(docs, "stability", "environment/run python3 -m benchmarks.stability", globals() | names)

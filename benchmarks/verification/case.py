@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from benchmarks.harness import cell, cells, draw_page, kept
+from benchmarks.harness import cell, cells, kept, page
 
 
 @dataclass(frozen=True)
@@ -69,6 +69,7 @@ def order_row(quantity: str, observed: float, expected: float, tolerance: float,
 # -- page ----------------------------------------------------------------------------------------------------
 Results = Mapping[str, Sequence[tuple[Case, Sequence[Row]]]]
 
+
 def numbers(results: Results) -> dict[str, Any]:
     """Return the rows of all cases, ready for JSON."""
 
@@ -95,4 +96,4 @@ def draw(docs: Path) -> Path:
             names = [f"{case['name']}; {case['reference']}", *[""] * (len(some) - 1)]
             areas[area] += map(_line, names, some)
             rows += some
-    return draw_page(docs, "verification", "make verify", {"rows": rows, "areas": areas})
+    return page(docs, "verification", "make verify", {"rows": rows, "areas": areas})
