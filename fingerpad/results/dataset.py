@@ -116,7 +116,7 @@ def read(folder: Path, own: Sequence[str]) -> tuple[tuple[ContactState, ...], di
 
 def attributes(result: "Answer") -> dict[str, Any]:
     """Return the attributes of a dataset: model, versions, and every parameter by its dotted key and as JSON."""
-    parameters = result.record.get("parameters") or result.scene.parameters()  # the former with laws that are not read
+    parameters = result.parameters
     found: dict[str, Any] = {"title": "fingerpad: a fingertip on a touchscreen", "model": result.model}
     found |= {name: text for name in ("failure", "interrupted") if (text := getattr(result, name))}
     for name in ("notes", "cautions"):
