@@ -3,122 +3,80 @@
 environment/run python3 -m benchmarks.stability [--part map | random] [--jobs 2] [--hours 6] [--draw]
 environment/run python3 -m benchmarks.stability --row "ε_n × 10"      one row of a table, with its reference
 
-Cases are run in processes of their own. Outcomes of the map are kept in results/stability/runs.jsonl after each run,
-random scenes (benchmarks/stability/scenes.py) in folders beside it; started again, only what is missing is run. After a
+Cases are run in processes of their own. Outcomes of the map are kept in results/stability/map after each run, random
+scenes (benchmarks/stability/scenes.py) in folders beside it; started again, only what is missing is run. After a
 change of the solver delete that folder. Writes docs/stability.json, and from it docs/stability.md and its picture.
 """
 
+import argparse
 import json
 import sys
-from collections.abc import Iterable, Sequence
-from dataclasses import asdict
-from pathlib import Path
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
-from benchmarks.harness import keep, kept, made, parser
+from benchmarks.harness import keep, kept, made, parser, solve
 from benchmarks.stability import page, plan, scenes
 from benchmarks.stability.plan import Case, Outcome
-from fingerpad.runs import processes
-from fingerpad.runs.processes import Pool
 
 # Of an outcome, what the page shows.
 _SHOWN = "status reason load newton factorisations cutbacks inverted penetration f_t contact_length f_ext".split()
 
 
-class Runs:
-    """Outcomes by case, in a file, one line each."""
-
-    def __init__(self, path: Path) -> None:
-        """Read what is there; a last line that was cut short is left out."""
-        self.path, self.outcomes = path, dict[Case, Outcome]()
-        path.parent.mkdir(parents=True, exist_ok=True)
-        for line in path.read_text(encoding="utf-8").splitlines() if path.exists() else []:
-            try:
-                entry = json.loads(line)
-            except json.JSONDecodeError:
-                continue
-            self.outcomes[Case(**entry["case"])] = Outcome(**entry["outcome"])
-
-    def add(self, case: Case, outcome: Outcome) -> None:
-        """Keep an outcome."""
-        self.outcomes[case] = outcome
-        with self.path.open("a", encoding="utf-8") as file:
-            # First ends a line that was cut short; blank ones are skipped.
-            file.write("\n" + json.dumps({"case": case.changed, "outcome": asdict(outcome)}) + "\n")
-
-    def missing(self, cases: Iterable[Case]) -> list[Case]:
-        """Return the cases that have not been run, each once, in order."""
-        return [case for case in dict.fromkeys(cases) if case not in self.outcomes]
-
-    def error(self, case: Case, name: str) -> float | None:
-        """Return the relative error of a quantity, with its sign; None without a run or a reference that ended well."""
-        here, finest = self.outcomes.get(case), self.outcomes.get(case.reference)
-        if here is None or finest is None or "failed" in (here.status, finest.status):
-            return None
-        exact = getattr(finest, name)
-        return float((getattr(here, name) - exact) / abs(exact)) if exact else None
-
-    def numbers(self, cases: Iterable[Case]) -> dict[str, Any]:
-        """Return what the page shows of cases that have been run, ready for JSON."""
-        rows = []
-        for case in (case for case in cases if case in self.outcomes):
-            compared = {"f_t": case.slide, "contact_length": True, "f_ext": case.indentation}
-            errors = {f"error_{name}": self.error(case, name) for name, told in compared.items() if told}
-            outcome = asdict(self.outcomes[case])
-            rows.append({"case": case.changed} | {name: outcome[name] for name in _SHOWN} | errors)
-        seconds = sum(outcome.seconds for outcome in self.outcomes.values())
-        return {"solves": len(self.outcomes), "seconds": seconds, "runs": rows}
+def outcomes(cases: Iterable[Case], args: argparse.Namespace) -> dict[Case, Outcome]:
+    """Run the cases whose outcomes are not kept yet; return those there are within the hours given."""
+    named = {json.dumps(case.changed, ensure_ascii=False): case for case in cases}
+    data = {name: case.changed for name, case in named.items()}
+    found = solve("benchmarks.stability.solve", data, args.out / "map", args.jobs, args.limit, args.hours)
+    return {case: _outcome(found[name], args.limit) for name, case in named.items() if name in found}
 
 
-def solve(case: Case, limit: float) -> Outcome:
-    """Run a case in a process of its own, for at most so many seconds of processor time; however it ends, return."""
-    end = processes.run("benchmarks.stability.solve", [json.dumps(case.changed), str(limit)], limit)
-    if end.reason:
-        return Outcome("failed", end.reason, end.message, seconds=0.0 if end.reason.startswith("CRASH") else limit)
-    try:
-        return Outcome(**json.loads(end.stdout.splitlines()[-1]))
-    except (IndexError, TypeError, json.JSONDecodeError):
-        return Outcome("failed", "CRASH", "no outcome printed")
+def _outcome(found: dict[str, Any], limit: float) -> Outcome:
+    if "failure" not in found:
+        return Outcome(**found)
+    seconds = 0.0 if found["failure"].startswith("CRASH") else limit
+    return Outcome("failed", found["failure"], found["message"], seconds=seconds)
 
 
-def run_all(cases: Iterable[Case], runs: Runs, jobs: int, limit: float, hours: float) -> int:
-    """Run what is missing, each for at most ``limit`` (s); return how many are left when ``hours`` are up."""
+def numbers(found: Mapping[Case, Outcome]) -> dict[str, Any]:
+    """Return what the page shows of the cases that have been run, ready for JSON."""
+    rows = []
+    for case, outcome in found.items():
+        compared = {"f_t": case.slide, "contact_length": True, "f_ext": case.indentation}
+        errors = {f"error_{name}": _error(found, case, name) for name, told in compared.items() if told}
+        rows.append({"case": case.changed} | {name: getattr(outcome, name) for name in _SHOWN} | errors)
+    return {"solves": len(found), "seconds": sum(outcome.seconds for outcome in found.values()), "runs": rows}
 
-    def done(case: Case, outcome: Outcome, left: int) -> None:
-        runs.add(case, outcome)
-        print(f"{left:4d} left  {outcome.seconds:6.1f} s  {outcome.status} {outcome.reason}  {case}", flush=True)
 
-    return Pool[Case, Outcome](lambda case: solve(case, limit), jobs, hours).run(runs.missing(cases), done)
-
-
-def row(name: str, runs: Runs, jobs: int, limit: float, hours: float) -> int:
-    """Run a row of a table and its reference where they are missing, print the row; return how many runs are left."""
-    group = next(group for group in (plan.neighbours(), *plan.named().values()) if name in group.cases)
-    case = group.cases[name]
-    cases = [case, case.reference] if group.referenced else [case]
-    left = run_all(cases, runs, jobs, limit, hours)
-    found = {Case(**each["case"]): each for each in runs.numbers(cases)["runs"]}
-    print(page.named_table(plan.Named({name: case}, group.referenced), found))
-    return left
+def _error(found: Mapping[Case, Outcome], case: Case, name: str) -> float | None:
+    """Return the relative error of a quantity, with its sign; None without a reference or where one of both failed."""
+    here, finest = found[case], found.get(case.reference)
+    if finest is None or "failed" in (here.status, finest.status):
+        return None
+    exact = getattr(finest, name)
+    return float((getattr(here, name) - exact) / abs(exact)) if exact else None
 
 
 def main(given: Sequence[str] | None = None) -> int:
     """Run what is missing, keep its numbers and draw the page; or make one row."""
-    rows = [name for group in (plan.neighbours(), *plan.named().values()) for name in group.cases]
+    names = [name for group in (plan.neighbours(), *plan.named().values()) for name in group.cases]
     asked = parser(__doc__, "stability")
     asked.add_argument("--limit", type=float, default=120.0, help="seconds of processor time for one run")
     asked.add_argument("--hours", type=float, default=6.0, help="after which no run of the map is started")
     asked.add_argument("--part", choices=("map", "random"), help="run this part alone, and keep the other's numbers")
-    asked.add_argument("--row", choices=rows, metavar="NAME", help=f"this row alone, printed: {', '.join(rows)}")
+    asked.add_argument("--row", choices=names, metavar="NAME", help=f"this row alone, printed: {', '.join(names)}")
     args = asked.parse_args(given)
-    left = 0
     if args.row:
-        return row(args.row, Runs(args.out / "runs.jsonl"), args.jobs, args.limit, args.hours)
+        group = next(group for group in (plan.neighbours(), *plan.named().values()) if args.row in group.cases)
+        case = group.cases[args.row]
+        runs = numbers(outcomes([case, case.reference] if group.referenced else [case], args))["runs"]
+        rows = {Case(**each["case"]): each for each in runs}
+        print(page.named_table(plan.Named({args.row: case}, group.referenced), rows))
+        return 0 if case in rows else 1
+    left = 0
     if not args.draw and args.part != "random":
-        runs, cases = Runs(args.out / "runs.jsonl"), plan.cases()
-        print(f"stability map: {len(cases)} solves, {len(runs.missing(cases))} to be run")
-        left = run_all(cases, runs, args.jobs, args.limit, args.hours)
-        keep("stability", kept("stability", args.docs).numbers | runs.numbers(cases), made(), args.docs)
+        found = outcomes(cases := plan.cases(), args)
+        left = len(cases) - len(found)
+        keep("stability", kept("stability", args.docs).numbers | numbers(found), made(), args.docs)
     if not args.draw and args.part != "map":
         old = kept("stability", args.docs)
         keep("stability", old.numbers | {"random": scenes.numbers(args)}, old.made, args.docs)
