@@ -8,7 +8,6 @@ docs/paper.json, and from it docs/paper.md and its picture. Ends with 1 if a run
 """
 
 import sys
-import time
 from collections.abc import Callable, Sequence
 from dataclasses import asdict
 from pathlib import Path
@@ -22,7 +21,6 @@ from benchmarks.harness import keep, kept, made, page, parser, picture, run
 from benchmarks.paper import energy, fields, friction, scenes
 from benchmarks.paper.statement import BUILT, HOLDS, IN_PART, NOT, Statement
 from benchmarks.runs import FORCES, VOLTAGES, Run
-from fingerpad.runs.batch import result
 from fingerpad.slices import solid
 
 _LIMIT = 3600.0  # s of processor time for one run; the sine takes longest
@@ -104,10 +102,7 @@ def main(given: Sequence[str] | None = None) -> int:
     args, missing = parser(__doc__).parse_args(given), list[str]()
     if not args.draw:
         named = {f"{f:g} N/m, {u:g} V": scene for (f, u), scene in scenes.grid().items()}
-        anew = all(result(scene, args.out) is None for scene in named.values())
-        clock = [time.monotonic()]
         summaries = run(named, args, _LIMIT)
-        clock.append(time.monotonic())
         summaries |= run({"sine": scenes.sine(), "stiffer": scenes.stiffer()}, args, _LIMIT)
         try:
             high = Run(scenes.grid()[scenes.MAP, 200.0], args.out)
@@ -116,12 +111,6 @@ def main(given: Sequence[str] | None = None) -> int:
             print(f"the run without voltage but with more friction cannot be made: {lost}")
         numbers = collect(args.out)
         missing = numbers["missing"]
-        clock.append(time.monotonic())
-        minutes = {"grid": (clock[1] - clock[0]) / 60, "all": (clock[2] - clock[0]) / 60, "at a time": args.jobs}
-        if anew:  # else those of the last time when all runs were made
-            numbers["minutes"] = minutes
-        elif (args.docs / "paper.json").exists():
-            numbers["minutes"] = kept("paper", args.docs).numbers.get("minutes")
         keep("paper", numbers, made(summaries.values()), args.docs)
     print(draw(args.docs))
     return 1 if missing else 0
