@@ -4,9 +4,10 @@ environment/run python3 -m benchmarks.paper [--jobs 2] [--draw]
 
 The limit of µ_app is that of docs/errors.json (make chart). Runs are kept in results/traces by a hash of their
 parameters and shared with the other studies: started again, only what is missing or changed is run. Writes
-docs/paper.json, and from it docs/paper.md and its picture. Ends with 1 if a run is missing.
+docs/paper.json, and from it docs/paper.md and its picture; the page begins with what is missing.
 """
 
+import argparse
 import sys
 from collections.abc import Callable, Sequence
 from dataclasses import asdict
@@ -17,7 +18,7 @@ import numpy as np
 
 from benchmarks import newtons
 from benchmarks.errors import known
-from benchmarks.harness import keep, kept, made, page, parser, picture, run
+from benchmarks.harness import keep, kept, made, main, page, picture, run
 from benchmarks.paper import energy, fields, friction, scenes
 from benchmarks.paper.statement import BUILT, HOLDS, IN_PART, NOT, Statement
 from benchmarks.runs import FORCES, VOLTAGES, Run
@@ -97,24 +98,17 @@ def draw(docs: Path) -> Path:
     return page(docs, "paper", "make paper", globals() | names, *["newtons"] * sums)
 
 
-def main(given: Sequence[str] | None = None) -> int:
-    """Run what is missing, keep its numbers and draw the page."""
-    args, missing = parser(__doc__).parse_args(given), list[str]()
-    if not args.draw:
-        named = {f"{f:g} N/m, {u:g} V": scene for (f, u), scene in scenes.grid().items()}
-        summaries = run(named, args, _LIMIT)
-        summaries |= run({"sine": scenes.sine(), "stiffer": scenes.stiffer()}, args, _LIMIT)
-        try:
-            high = Run(scenes.grid()[scenes.MAP, 200.0], args.out)
-            summaries |= run({"friction": scenes.rougher(high)}, args, _LIMIT)
-        except FileNotFoundError as lost:
-            print(f"the run without voltage but with more friction cannot be made: {lost}")
-        numbers = collect(args.out)
-        missing = numbers["missing"]
-        keep("paper", numbers, made(summaries.values()), args.docs)
-    print(draw(args.docs))
-    return 1 if missing else 0
+def compute(args: argparse.Namespace) -> None:
+    """Run what is missing and keep its numbers."""
+    named = {f"{f:g} N/m, {u:g} V": scene for (f, u), scene in scenes.grid().items()}
+    summaries = run(named | {"sine": scenes.sine(), "stiffer": scenes.stiffer()}, args, _LIMIT)
+    try:
+        high = Run(scenes.grid()[scenes.MAP, 200.0], args.out)
+        summaries |= run({"friction": scenes.rougher(high)}, args, _LIMIT)
+    except FileNotFoundError as lost:
+        print(f"the run without voltage but with more friction cannot be made: {lost}")
+    keep("paper", collect(args.out), made(summaries.values()), args.docs)
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(main(__doc__, compute, draw))
