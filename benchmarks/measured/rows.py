@@ -18,8 +18,6 @@ from benchmarks.measured import fingers, rules
 from benchmarks.measured.rules import (
     CHANGED,
     EXPONENT,
-    HIT,
-    MISS,
     RATIO,
     SIMILAR,
     STRIKING,
