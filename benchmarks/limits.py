@@ -90,7 +90,7 @@ def solve_all(scenes: Mapping[str, Scene], levels: int, args: argparse.Namespace
     """
     cases = {f"limit of {name}": {"scene": scene.parameters(), "levels": levels} for name, scene in scenes.items()}
     found = harness.solve("benchmarks.limits", cases, args.out.parent / "limits", args.jobs, _LIMIT)
-    return dict(zip(scenes, map(found.get, cases), strict=True))
+    return {name: found[f"limit of {name}"] for name in scenes}
 
 
 def limits(found: Mapping[str, Any]) -> dict[str, Limit]:

@@ -28,7 +28,7 @@ def test_pages_in_git_are_those_of_the_kept_numbers(tmp_path, capsys):
 # -- pages older than the code -----------------------------------------------------------------------
 OLD = {"variational/x.py": b"x = 1  # once", "fingerpad/results/x.py": b"", "benchmarks/chart.py": b"x = 1"}
 NEW = {"variational/x.py": b'"""X."""\nx = 1', "fingerpad/results/x.py": b"y", "benchmarks/chart.py": b"x = 1"}
-CHANGED = {"variational/x.py": b"x = 2", "benchmarks/chart.py": b"x = 2", "benchmarks/paper/page.py": b"y"}
+CHANGED = {"variational/x.py": b"x = 2", "benchmarks/chart.py": b"x = 2"}
 
 
 class History:
@@ -70,8 +70,8 @@ def test_page_is_older_where_its_code_computes_something_else(since):
     assert since("chart", MADE, old=OLD, new=NEW) == []
     assert since("chart", MADE, old=OLD, new=NEW | CHANGED) == ["benchmarks/chart.py", "variational/x.py"]
     assert since("errors", MADE, old=OLD, new=NEW | CHANGED) == ["variational/x.py"]
-    drawing = {"benchmarks/paper/page.py": b"x"}, {"benchmarks/paper/page.py": b"y"}
-    assert since("paper", MADE, old=OLD | drawing[0], new=OLD | drawing[1]) == []
+    drawing = {"benchmarks/chart.py": b"x = 1\n\n\n# -- page ---\ny = 2"}
+    assert since("chart", MADE, old=OLD, new=NEW | drawing) == []
     assert since("chart", MADE, old=OLD, new=NEW | {"variational/new.py": b"x"}) == []  # imported by none of the others
     assert since("chart", MADE, old=OLD, new={}) == ["benchmarks/chart.py", "variational/x.py"]
 

@@ -44,7 +44,7 @@ def numbers(runs: dict[str, Any], docs: Path) -> dict[str, Any]:
     """Return the numbers of the page from runs of :func:`pressed` and the kept numbers of the other pages."""
     grid = rows.grid(kept("paper", docs).numbers, kept("models", docs).numbers)
     # Of what the scenes do not have at all, time for example, the verdict is in the table of texts.
-    known = {text["key"]: ({}, text["verdict"]) for text in _read("rows") if text["verdict"]}
+    known: dict[str, rows.Row] = {text["key"]: ({}, text["verdict"]) for text in _read("rows") if text["verdict"]}
     judged = {
         key: {"numbers": {name: float(value) for name, value in found.items()}, "verdict": verdict}
         for key, (found, verdict) in (rows.numbers(grid, runs) | known).items()

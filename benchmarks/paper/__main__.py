@@ -62,6 +62,19 @@ def collect(out: Path) -> dict[str, Any]:
     return numbers
 
 
+def compute(args: argparse.Namespace) -> None:
+    """Run what is missing and keep its numbers."""
+    named = {f"{f:g} N/m, {u:g} V": scene for (f, u), scene in scenes.grid().items()}
+    summaries = run(named | {"sine": scenes.sine(), "stiffer": scenes.stiffer()}, args, _LIMIT)
+    try:
+        high = Run(scenes.grid()[scenes.MAP, 200.0], args.out)
+        summaries |= run({"friction": scenes.rougher(high)}, args, _LIMIT)
+    except FileNotFoundError as lost:
+        print(f"the run without voltage but with more friction cannot be made: {lost}")
+    keep("paper", collect(args.out), made(summaries.values()), args.docs)
+
+
+# -- page ----------------------------------------------------------------------------------------------------
 def _sites(statements: Sequence[Statement]) -> list[tuple[str, int, float, float, float]]:
     """Return the sites of Fig. 9B: their words, the paper's number, and place, ridge and ratio of SED here."""
     named = [(*name.rpartition(" ")[::2], ratio) for s in statements for name, ratio in s.numbers.items()]
@@ -96,18 +109,6 @@ def draw(docs: Path) -> Path:
         newtons.picture(found, docs)
         names |= newtons.compared(found)
     return page(docs, "paper", "make paper", globals() | names, *["newtons"] * sums)
-
-
-def compute(args: argparse.Namespace) -> None:
-    """Run what is missing and keep its numbers."""
-    named = {f"{f:g} N/m, {u:g} V": scene for (f, u), scene in scenes.grid().items()}
-    summaries = run(named | {"sine": scenes.sine(), "stiffer": scenes.stiffer()}, args, _LIMIT)
-    try:
-        high = Run(scenes.grid()[scenes.MAP, 200.0], args.out)
-        summaries |= run({"friction": scenes.rougher(high)}, args, _LIMIT)
-    except FileNotFoundError as lost:
-        print(f"the run without voltage but with more friction cannot be made: {lost}")
-    keep("paper", collect(args.out), made(summaries.values()), args.docs)
 
 
 if __name__ == "__main__":
