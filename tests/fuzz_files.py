@@ -61,10 +61,7 @@ def whole() -> tuple[tuple[str, bytes], ...]:
     voltages = "time (s),voltage (V)\n" + "".join(f"{k / 10},{20 * k % 150}\n" for k in range(8))
     table = "# source: Surname 2020\n# people: 5\nforce (N/m), voltage (V), friction (1), spread (1)\n"
     table += "".join(f"{10 * k}, 100, 0.{k}, 0.0{k}\n" for k in range(1, 8))
-    tables = [
-        (".volts", voltages.encode()),
-        (".measured", table.encode()),
-    ]
+    tables = [(".volts", voltages.encode()), (".measured", table.encode())]
     return (*plain, *_instruments(heights), *_meshes() * 2, *tables * 4)
 
 

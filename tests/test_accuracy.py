@@ -115,9 +115,7 @@ def test_steps_are_halved_where_normal_contact_feels_them(monkeypatch):
 
     monkeypatch.setattr(solves.Solves, "with_steps", with_steps)
     monkeypatch.setattr(
-        solves,
-        "solve_again",
-        lambda model, states, comm, views: Solve(dict(states), model.mesh, 1000, 10, 1.0),
+        solves, "solve_again", lambda model, states, comm, views: Solve(dict(states), model.mesh, 1000, 10, 1.0)
     )
     model = model_of({"accuracy": {"contact_length": 0.04}, "numerics": {"step_scale": 2.0}})
     path = stepped(1.0, model.mesh)
@@ -312,10 +310,7 @@ def test_plus_minus(value, error, text):
 
 
 # -- from which mesh ---------------------------------------------------------------------------------------
-@pytest.mark.parametrize(
-    ("start", "helps", "finer"),
-    [(20e-6, True, 10e-6), (20e-6, False, None), (8e-6, True, None)],
-)
+@pytest.mark.parametrize(("start", "helps", "finer"), [(20e-6, True, 10e-6), (20e-6, False, None), (8e-6, True, None)])
 @pytest.mark.parametrize("asked", [{"mu_app": 0.01}, {}])
 def test_starts_again_finer_where_the_path_is_lost(asked, start, helps, finer):
     """With half the contact size; not where that cannot help, nor below the limit."""

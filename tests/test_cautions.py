@@ -102,13 +102,7 @@ def test_run(values, words):
     assert sum(words in text for text in fp.run(scene).cautions) == 1
 
 
-@pytest.mark.parametrize(
-    "young",
-    [
-        1e5,
-        1e4,
-    ],
-)
+@pytest.mark.parametrize("young", [1e5, 1e4])
 def test_cylinders_and_tables(young, capsys):
     """Of clamped closures, whose friction is one number."""
     found = cylinders.solve(fp.Scene(roughness={"young": young}))

@@ -62,10 +62,7 @@ def test_options_of_petsc_are_told_from_the_others(words, own, petsc):
     ("argv", "message"),
     [
         (["--set", "voltage=high"], "voltage is 'high'; it must be a number"),
-        (
-            ["--set", "f_ext=0.5 N"],
-            "f_ext is '0.5 N'; it must be in N/m; a force on the whole finger is the key force",
-        ),
+        (["--set", "f_ext=0.5 N"], "f_ext is '0.5 N'; it must be in N/m; a force on the whole finger is the key force"),
         (["--force", "nan"], "force is nan; "),
         (["--set", "voltage=50", "--set", " voltage = 100"], "--set voltage is given twice; give one value"),
         (["--set", "f_ext=-3"], "f_ext is -3 N/m; it must be from 0.001 to 5000 N/m"),

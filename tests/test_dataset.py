@@ -141,13 +141,7 @@ def test_skin_that_was_read_back_is_that_of_the_run(folder, data):
         np.testing.assert_array_equal(state.skin.p_n, data["skin_p_n"].sel(state=name).values[known])
 
 
-@pytest.mark.parametrize(
-    "content",
-    [
-        None,
-        "half",
-    ],
-)
+@pytest.mark.parametrize("content", [None, "half"])
 def test_skin_is_left_out_where_the_dataset_is_not_whole(folder, tmp_path, content):
     """All other numbers are those of the tables."""
     copy = Path(shutil.copytree(folder, tmp_path / "run", ignore=shutil.ignore_patterns("*.bp", "*.png", "*.npz")))

@@ -141,10 +141,7 @@ def test_ranks_agree_with_one(size):
 
 @pytest.mark.parametrize(
     ("options", "sentence"),
-    [
-        (("--set", "f_ext=-3"), "f_ext is -3"),
-        (("--nonsense", "1"), "--nonsense is not an option"),
-    ],
+    [(("--set", "f_ext=-3"), "f_ext is -3"), (("--nonsense", "1"), "--nonsense is not an option")],
 )
 def test_bad_input_is_one_sentence(tmp_path, options, sentence):
     done = run(tmp_path, *options)

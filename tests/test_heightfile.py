@@ -242,13 +242,7 @@ def test_instrument_that_is_none(tmp_path, capfd, name, content, sentence):
     assert "\n" not in str(refused.value) and capfd.readouterr() == ("", "")
 
 
-@pytest.mark.parametrize(
-    "kind",
-    [
-        complex,
-        object,
-    ],
-)
+@pytest.mark.parametrize("kind", [complex, object])
 def test_matrix_without_real_numbers(tmp_path, kind):
     """Without its imaginary part a height would be another one."""
     np.save(tmp_path / "map.npy", np.zeros((8, 8)).astype(kind), allow_pickle=True)
@@ -256,12 +250,7 @@ def test_matrix_without_real_numbers(tmp_path, kind):
         scan(tmp_path / "map.npy", "um", (1e-3, 1e-3))
 
 
-@pytest.mark.parametrize(
-    "header",
-    [
-        "{'descr': '<f8', 'fortran_order': False, 'shape': (10000000, 10000000), }",
-    ],
-)
+@pytest.mark.parametrize("header", ["{'descr': '<f8', 'fortran_order': False, 'shape': (10000000, 10000000), }"])
 def test_matrix_with_a_header_that_cannot_be(tmp_path, header):
     """Of 800 TB in a file of some bytes, and one that is no Python."""
     (tmp_path / "map.npy").write_bytes(b"\x93NUMPY\x01\x00" + len(header).to_bytes(2, "little") + header.encode())

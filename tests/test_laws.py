@@ -317,12 +317,7 @@ def test_names_of_the_laws():
 
 
 # -- all at once -----------------------------------------------------------------------------------------------
-SMALL = NINE | {
-    "f_ext": 1.0,
-    "voltage": 100.0,
-    "slide_length": 1e-3,
-    "output": {"errors": False, "receptors": False},
-}
+SMALL = NINE | {"f_ext": 1.0, "voltage": 100.0, "slide_length": 1e-3, "output": {"errors": False, "receptors": False}}
 
 
 @pytest.fixture(scope="module")

@@ -102,10 +102,7 @@ def test_what_is_compared(grid):
 @pytest.mark.parametrize(
     ("columns", "words"),
     [
-        (
-            {},
-            "no quantity; it has the columns Fn .N., U, CoF, and must have one of .* as in {'CoF': 'friction .1.'}",
-        ),
+        ({}, "no quantity; it has the columns Fn .N., U, CoF, and must have one of .* as in {'CoF': 'friction .1.'}"),
         ({"CoF": "friction"}, "column 3: 'CoF' has no unit; write 'friction .1.' in the head or by columns"),
         ({"CoF": "friction (1)", "Fn (N)": "force"}, "has no voltage, and its column 'U' may be one; name it"),
         ({"CoF": "friction (1)", "U": ""}, "has no force, and its column .* it out by {'Fn .N.': ''}"),

@@ -55,11 +55,7 @@ def test_what_cannot_matter_is_left_out_with_its_reason(data, part, reason):
 
 @pytest.mark.parametrize(
     "data",
-    [
-        {"history": [PRESS, {"name": "on", "voltage": 10.0}, {"name": "off", "voltage": 0.0}]},
-        {"friction": 1e-6},
-        {},
-    ],
+    [{"history": [PRESS, {"name": "on", "voltage": 10.0}, {"name": "off", "voltage": 0.0}]}, {"friction": 1e-6}, {}],
 )
 def test_what_matters_for_a_while_stays(data):
     """A voltage that is switched off again, a little friction."""

@@ -115,12 +115,7 @@ def test_limits_that_are_named_can_be_followed():
     sizing.check_shape(Profiles(Fingertip(nail_thickness=least)))
 
 
-@pytest.mark.parametrize(
-    "wavelength",
-    [
-        483e-6,
-    ],
-)
+@pytest.mark.parametrize("wavelength", [483e-6])
 def test_most_ridges_that_are_named_fit(wavelength):
     """The message gives a number that is accepted, and the next odd one is not."""
     with pytest.raises(GeometryError) as refusal:

@@ -107,10 +107,7 @@ def test_charts_have_the_units_of_their_titles(found):
 @pytest.mark.parametrize(
     ("axes", "words"),
     [
-        (
-            {"force": [0.1], "f_ext": [75.0]},
-            "force is 0.1 N and f_ext is 75 N/m; give one of the two",
-        ),
+        ({"force": [0.1], "f_ext": [75.0]}, "force is 0.1 N and f_ext is 75 N/m; give one of the two"),
         ({"force": [0.1, "100 mN"]}, "each value must be there once"),
         ({"force": ["75 N/m"]}, "force is '75 N/m'"),
         ({"force": [500.0]}, "force is 500"),

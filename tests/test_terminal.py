@@ -44,12 +44,7 @@ def test_the_launchers_output_counts(bare, output, watches):
     assert terminal.watched(Screen(True)) == watches
 
 
-@pytest.mark.parametrize(
-    "closed",
-    [
-        (0, 1, 2),
-    ],
-)
+@pytest.mark.parametrize("closed", [(0, 1, 2)])
 def test_closed_output_costs_nothing(tmp_path, closed):
     """After ``>&-``: the command does its work, and no file that it opens takes the number of the output."""
     code = "import os, sys; from fingerpad.__main__ import main; sys.argv[1:] = ['params', 'f_ext']; code = main()\n"
