@@ -108,7 +108,6 @@ def _meshes() -> tuple[tuple[str, bytes], ...]:
 
 # -- mutants -------------------------------------------------------------------------------------------
 def mutant(seed: int, number: int) -> Mutant:
-    """Return one mutant."""
     chance = random.Random(f"file-{seed}-{number}")
     ending, content = chance.choice(whole())
     for _ in range(chance.choice((0, 1, 1, 1, 2, 3))):

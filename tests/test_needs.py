@@ -67,7 +67,6 @@ def test_what_matters_for_a_while_stays(data):
 # -- forms -------------------------------------------------------------------------------------------------
 @pytest.fixture(scope="module")
 def body():
-    """One papillary ridge."""
     return load(MPI.COMM_WORLD, ridge(20e-6))
 
 
@@ -150,7 +149,6 @@ RESULTS = ["bone_height", "f_contact", "contact_length", "ridges_in_contact"]
 
 @pytest.fixture(scope="module")
 def pressed(tmp_path_factory):
-    """A finger pressed by displacement without voltage."""
     folder = tmp_path_factory.mktemp("pressed")
     return folder, summary_of({"history": [{"name": "press", "bone_height": -60e-6}]}, folder)
 

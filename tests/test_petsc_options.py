@@ -1,11 +1,16 @@
 """Options of PETSc that it refuses or does not know end a run before it starts, with one sentence."""
 
+import importlib.util
+import json
+import re
+
 import pytest
 from mpi4py import MPI
 from petsc4py import PETSc
 
 from fingerpad.results import petsc_options
 from fingerpad.results.petsc_options import OptionError
+from fingerpad.results.provenance import provenance
 
 
 @pytest.fixture
@@ -80,3 +85,31 @@ def test_options_of_others_are_none_of_ours(given):
     given("-other_snes_type nonsense")
     petsc_options.check()
     assert petsc_options.in_use()["-other_snes_type"] == "nonsense"
+
+
+# -- what else of the environment a summary holds --------------------------------------------------------------------
+PETSC_ALONE = importlib.util.find_spec("dolfinx_solver") is not None
+
+
+def test_versions():
+    versions = provenance()["versions"]
+    names = "fingerpad source dolfinx basix ffcx ufl petsc mumps gmsh numpy scipy python"
+    assert set(versions) == set(names.split())
+    linked = PETSC_ALONE and versions.pop("mumps") is None  # into PETSc's own file, which names no version of it
+    assert linked == PETSC_ALONE
+    assert all(re.match(r"\d+\.\d+", version) for name, version in versions.items() if name != "source")
+
+
+def test_nothing_else_of_the_environment(monkeypatch):
+    monkeypatch.setenv("MY_TOKEN", "secret")
+    assert "secret" not in json.dumps(provenance())
+
+
+def test_options():
+    """The solver's, and those that PETSc does not read."""
+    PETSC, name = PETSc.Options(), "fingerpad_ksp_rtol"
+    PETSC.setValue(name, "1e-3")
+    try:
+        assert provenance()["petsc_options"][f"-{name}"] == "1e-3"
+    finally:
+        PETSC.delValue(name)

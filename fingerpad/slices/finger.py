@@ -117,10 +117,7 @@ class WholeFinger:
             if "trace" in state:
                 points = {key: np.array(values) for key, values in state["trace"].items()}
                 traces[name] = Trace(points.pop("indentation"), points)
-        carried = {}
-        for name, state in data["states"].items():  # files of earlier versions have absolute errors alone
-            old = {key: value / states[name].values[key] for key, value in state["error"].items() if value}
-            carried[name] = state.get("carried", {errors.MESH: old})
+        carried = {name: state["carried"] for name, state in data["states"].items()}
         return cls(states, data["source"], carried, traces, shape)
 
     def rows(self) -> Iterator[list[str]]:
