@@ -28,6 +28,7 @@ from variational.solvers.equations import Control
 from variational.solvers.failure import NotConverged
 from variational.solvers.transfer import StateSnapshot
 
+pytestmark = pytest.mark.slow
 NOTHING = StateSnapshot(*(np.zeros(0) for _ in range(2)), {}, {}, {}, {}, np.zeros(2), Control(), 0.0)
 EXACT = 0.5
 

@@ -22,6 +22,7 @@ from variational.solvers.continuation import StepFailed
 from variational.solvers.failure import NotConverged
 from variational.state import CONDITIONS, RESULTS
 
+pytestmark = pytest.mark.slow
 SMALL = NINE | {"f_ext": 1.0, "voltage": 60.0, "output": {"receptors": False}}
 
 

@@ -23,6 +23,7 @@ from tests.measures import rows_of
 from tests.runs import run
 from tests.small_finger import NINE
 
+pytestmark = pytest.mark.slow
 SCENE = NINE | {
     "output": {"errors": False},
     "history": [

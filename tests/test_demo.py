@@ -16,6 +16,7 @@ from fingerpad.scene import from_data, load
 from tests import runs
 from tests.measures import rows_of
 
+pytestmark = pytest.mark.slow
 ROOT = Path(__file__).resolve().parents[1]
 COARSE, SMALL = (ROOT / "demos" / "scenes" / f"{name}.toml" for name in ("coarse", "small_finger"))
 MU_0 = 0.25

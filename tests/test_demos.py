@@ -14,6 +14,7 @@ from benchmarks import explicit, performance
 from tests.measures import rows_of
 from tests.pages import alike
 
+pytestmark = pytest.mark.slow
 ROOT = Path(__file__).resolve().parents[1]
 DEMOS = sorted((ROOT / "demos").glob("*.py"))
 OUTPUT = ROOT / "demos" / "output"  # by python3 -m benchmarks.demos

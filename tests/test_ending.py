@@ -18,6 +18,7 @@ from fingerpad.results.files import Table, replace_json
 from fingerpad.results.interrupt import Interrupt, Interrupted
 from tests.measures import accepted, rows_of
 
+pytestmark = pytest.mark.slow
 ROOT = Path(__file__).resolve().parents[1]
 GOOD = 2  # steps accepted before a run is disturbed
 LONG = """# a light finger on a long way: its start is short, and there are a hundred steps to disturb it in
@@ -241,7 +242,6 @@ def test_ctrl_c_ends_the_program_quietly(door, moment):
     assert (done.returncode, done.stderr) == (130, "")
 
 
-@pytest.mark.slow
 def test_ctrl_c_while_finite_elements_are_imported(tmp_path):
     """The run has not begun then."""
     done = python(DOORS["module"], "run", "--out", str(tmp_path / "new"), moment="dolfinx")
@@ -249,7 +249,6 @@ def test_ctrl_c_while_finite_elements_are_imported(tmp_path):
     assert not (tmp_path / "new").exists()
 
 
-@pytest.mark.slow
 def test_ctrl_c_that_is_ignored_stays_ignored():
     done = python(DOORS["module"], "params", "f_ext", moment="numpy", handler="SIG_IGN")
     assert (done.returncode, done.stderr) == (0, "") and "f_ext" in done.stdout
@@ -325,7 +324,6 @@ def undisturbed(tmp_path_factory):
     return file, tables(folder / "run"), (folder / "run" / "summary.json").read_text(encoding="utf-8")
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(
     ("kind", "number"), [MOMENTS[0], *(pytest.param(*m, marks=pytest.mark.long) for m in MOMENTS[1:])]
 )

@@ -20,9 +20,9 @@ from fingerpad.report.page import picture
 from fingerpad.report.write import write
 from fingerpad.results import style
 from fingerpad.results.checkpoint import Checkpoint
+from fingerpad.results.drawing import finger_of
 from fingerpad.results.files import Table, lock_file, read_object, replace
 from fingerpad.results.folder import Folder, FolderError, Serial, full_scene
-from fingerpad.results.kept_drawing import finger_of
 from fingerpad.runs.context import RunContext
 from fingerpad.runs.solve import solved
 from fingerpad.scene import Scene, SceneError

@@ -21,6 +21,7 @@ from variational.roughness.bam import BearingArea
 from variational.solvers.continuation import Target
 from variational.solvers.onset import return_to_onset
 
+pytestmark = pytest.mark.slow
 SCENE = NINE | {"f_ext": 1.0, "voltage": 100.0}
 
 
@@ -128,13 +129,11 @@ def charged(contact, step_scale=1.0) -> Body:
     return Body(RIDGE, SKIN, **skin, step_scale=step_scale).press(FORCE).charge(VOLTAGE)
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(
     ("contact", "way"),
     [(SPRINGS, 1), (Nitsche(10.0), -1), (AugmentedLagrangian(1.5e12, 5e10, 5e-9), 1)],
     ids=["penalty", "nitsche", "augmented"],
 )
-@pytest.mark.slow
 def test_place_of_full_slip_does_not_depend_on_the_step(contact, way):
     """Steps of 60 and of 15 um end 67 um from the start, and not up to a step further.
 
@@ -147,7 +146,6 @@ def test_place_of_full_slip_does_not_depend_on_the_step(contact, way):
     assert way * long.state.f_t == pytest.approx(MU_F * long.state.f_contact, rel=1e-8)
 
 
-@pytest.mark.slow
 def test_work_of_friction_does_not_depend_on_the_step():
     """There and back to full slip, under steps of 60 and of 15 um.
 

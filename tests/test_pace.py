@@ -11,8 +11,7 @@ from mpi4py import MPI
 
 from fingerpad.cli import main
 from fingerpad.results import terminal
-from fingerpad.results.console import Console
-from fingerpad.results.pace import Pace, between
+from fingerpad.results.terminal import Console, Pace, between
 from fingerpad.runs.batch import times_left
 from tests.measures import contact_state
 from variational.state import StepRecord
@@ -169,9 +168,6 @@ def test_closed_output_costs_nothing(tmp_path):
 @pytest.mark.parametrize("error", [BrokenPipeError(), SystemExit(1)])
 def test_run_goes_on_where_nobody_reads(monkeypatch, error):
     """After ``| head``: the steps are in the folder of results; rich raises SystemExit, or nothing of its own."""
-    from mpi4py import MPI
-
-    from fingerpad.results.console import Console
 
     console, printed = Console(MPI.COMM_SELF, bar=False), []
 

@@ -21,6 +21,7 @@ from tests.test_history import Own
 from variational.problem import Problem
 from variational.solvers.coupling import Coupling
 
+pytestmark = pytest.mark.slow
 ROOT = Path(__file__).resolve().parents[1]
 PRESS, CHARGE = {"name": "press", "f_ext": 2.0}, {"name": "charge", "voltage": 100.0}
 SLIDE = {"name": "slide", "bone_x": 0.5e-3, "until_full_slip": True}
@@ -77,7 +78,6 @@ def killed_at(monkeypatch):
 LONG = [pytest.param(name, marks=pytest.mark.long) for name in list(HISTORIES)[2:]]
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("history", [*list(HISTORIES)[:2], *LONG])
 def test_goes_on_to_the_last_bit(history, tmp_path, killed_at):
     """Killed twice on the way; the solves of earlier runs are not done again."""
@@ -102,7 +102,6 @@ def test_goes_on_to_the_last_bit(history, tmp_path, killed_at):
     assert not (cut / "checkpoint").exists()
 
 
-@pytest.mark.slow
 @pytest.mark.mpi
 def test_on_another_number_of_ranks(tmp_path, killed_at):
     """Begun on one rank and finished on all; to 1e-8 the numbers of one rank."""
@@ -157,7 +156,6 @@ def refused(match: str, folder: Path, **more) -> None:
         fp.run(scene(**more), out=folder, resume=True)
 
 
-@pytest.mark.slow
 def test_refusals(cut_short, tmp_path_factory, capsys):
     """Of nothing to go on from, another scene, a damaged or foreign checkpoint; each in one sentence."""
     refused("has no checkpoint to go on from: its run has not come to one", tmp_path_factory.mktemp("empty"))
@@ -184,7 +182,6 @@ def test_refusals(cut_short, tmp_path_factory, capsys):
     refused("its run has reached its end", cut_short)
 
 
-@pytest.mark.slow
 def test_numbers_do_not_depend_on_the_folder(tmp_path, monkeypatch):
     """To the last bit on one rank: the solver forgets at the same places. Without a folder nothing is kept."""
     inside = fp.run(scene(), out=tmp_path)
@@ -198,7 +195,6 @@ def test_numbers_do_not_depend_on_the_folder(tmp_path, monkeypatch):
     assert str(rows[0]) == str(rows[1])
 
 
-@pytest.mark.slow
 def test_checkpoint_of_another_mesh(cut_short, monkeypatch):
     """As by another version of gmsh: the places are compared, not trusted."""
     read = Checkpoint.read
@@ -214,7 +210,6 @@ def test_checkpoint_of_another_mesh(cut_short, monkeypatch):
         fp.run(scene(), out=cut_short, resume=True)
 
 
-@pytest.mark.slow
 def test_full_disk_under_the_checkpoint(tmp_path, monkeypatch):
     """What is there stays whole, and the run goes on from it when there is room."""
     write = Checkpoint.write

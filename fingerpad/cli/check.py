@@ -10,7 +10,7 @@ from fingerpad.model.feasibility import by_rule, memory, refuse_mesh, unknowns
 from fingerpad.model.options import FingerModel, ModelOptions, plan
 from fingerpad.reduced.cylinder_errors import outside, where
 from fingerpad.results.files import check_folder
-from fingerpad.results.pace import about
+from fingerpad.results.terminal import about
 from fingerpad.scene import Load, Scene, SceneError
 from fingerpad.scene.laws import used
 from fingerpad.scene.remarks import leakage, remarks

@@ -18,7 +18,7 @@ import re
 from typing import TYPE_CHECKING
 
 from fingerpad.model.options import FingerModel, ModelOptions, plan
-from fingerpad.results.pace import about
+from fingerpad.results.terminal import about
 from fingerpad.scene.messages import SceneError, qualify
 from geometry import sizing
 from geometry.parameters import Fingertip, MeshSize

@@ -18,8 +18,7 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, T
 
 from fingerpad.results.files import below, lock_file, read_object, replace_json
 from fingerpad.results.folder import identity
-from fingerpad.results.pace import between
-from fingerpad.results.terminal import watched
+from fingerpad.results.terminal import between, watched
 from fingerpad.runs.processes import End, Pool, run
 from fingerpad.scene import Scene
 from fingerpad.scene.reading import DEFAULT_MODEL

@@ -12,7 +12,7 @@ from fingerpad.results.quantities import Output
 from fingerpad.scene import Scene
 
 if TYPE_CHECKING:
-    from fingerpad.results.console import Console
+    from fingerpad.results.terminal import Console
     from fingerpad.startup import MPI
 
 
@@ -51,7 +51,7 @@ class RunContext:
     @contextmanager
     def console(self) -> Iterator["Console"]:
         """Open the console of the run, for a model with MPI; collective."""
-        from fingerpad.results.console import Console
+        from fingerpad.results.terminal import Console
 
         console = Console(self.ranks, self.lines, self.bar)  # type: ignore[arg-type]
         try:
