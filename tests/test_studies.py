@@ -10,18 +10,18 @@ from benchmarks import assumptions
 from benchmarks.assumptions import LEAST_GAP, NEAR, PAPER
 from benchmarks.harness import DOCS, ROOT, kept
 from benchmarks.measured import __main__ as command
-from benchmarks.measured import finger, forms, page, rows, scenes
-from benchmarks.measured.verdict import HIT, MISS, PART, by_factor, by_form, by_share
+from benchmarks.measured import fingers, rows, rules
+from benchmarks.measured.rules import HIT, MISS, PART, by_factor, by_form, by_share
 from benchmarks.peers import calculix_ridge, ours, plain
+from benchmarks.peers.__main__ import half_width
 from benchmarks.peers.exchange import Answer, Case, Load, Ridge, State, cases
-from benchmarks.peers.quantities import half_width
 from benchmarks.runs import FORCES, VOLTAGES
 from fingerpad.cli.arguments import scene_of
 
 
 @pytest.fixture(scope="module")
 def judged():
-    return {row.key: row for row in page.judged(DOCS)}
+    return {row.key: row for row in command.judged(DOCS)}
 
 
 def test_rules():
@@ -56,8 +56,8 @@ def test_form_has_to_fit_and_another_not_to(misfits, others, verdict):
     assert by_form(misfits, others) == verdict
 
 
-@pytest.mark.parametrize("fit", [forms.of_each, forms.of_largest])
-@pytest.mark.parametrize(("form", "parameter"), [(forms.exponential, 4.0), (forms.power, 2.2), (forms.line, 0.3)])
+@pytest.mark.parametrize("fit", [rules.of_each, rules.of_largest])
+@pytest.mark.parametrize(("form", "parameter"), [(rules.exponential, 4.0), (rules.power, 2.2), (rules.line, 0.3)])
 def test_forms_find_their_own_curves(form, parameter, fit):
     """The parameter comes back at any scale, and nothing is left."""
     x = np.linspace(0.1e-3, 1e-3, 8)
@@ -65,15 +65,15 @@ def test_forms_find_their_own_curves(form, parameter, fit):
     assert found.parameter == pytest.approx(parameter, rel=1e-4) and found.misfit < 1e-4
 
 
-@pytest.mark.parametrize("form", [forms.paraboloid, forms.ellipse])
+@pytest.mark.parametrize("form", [rules.paraboloid, rules.ellipse])
 def test_pressures_find_their_own_curves(form):
     """The half width comes back, in units of the outermost ridge; the other form leaves some per cent."""
     x = np.linspace(-3e-3, 3e-3, 13)
     pressure = 2e4 * form(x, 1.2)
-    found = forms.of_largest(form, x, pressure)
+    found = rules.of_largest(form, x, pressure)
     assert found.parameter == pytest.approx(1.2, rel=1e-4) and found.misfit < 1e-4
-    other = forms.ellipse if form is forms.paraboloid else forms.paraboloid
-    assert 0.005 < forms.of_largest(other, x, pressure).misfit < 0.1
+    other = rules.ellipse if form is rules.paraboloid else rules.paraboloid
+    assert 0.005 < rules.of_largest(other, x, pressure).misfit < 0.1
 
 
 def test_kept_rows_are_those_of_the_other_pages(judged):
@@ -98,17 +98,17 @@ def test_kept_friction_follows_the_attraction():
     np.testing.assert_allclose(coarse["full_slip_f_t"], expected, rtol=1e-6)
     known = [row for row in kept("newtons").numbers["friction"] if row["radius"] == 28e-3 and row["voltage"] == 200]
     for name in ("gross_area", "contact_area"):  # of the page of newtons
-        sums = dict(zip(finger.NEWTONS, found.full_finger[f"full_slip_200_{name}"], strict=True))
+        sums = dict(zip(fingers.NEWTONS, found.full_finger[f"full_slip_200_{name}"], strict=True))
         for row in known:
             assert sums[round(row["f_ext"], 6)] == pytest.approx(row[name], rel=1e-9)
 
 
 def test_runs_of_the_page_balance_their_force():
-    wanted, runs = scenes.scenes(), kept("measured").numbers["runs"]
+    wanted, runs = fingers.scenes(), kept("measured").numbers["runs"]
     assert set(runs) == set(wanted)
     for run in runs.values():
         total = sum(run["pressure"]) * wanted["dry 20"].geometry.ridge_wavelength
-        assert total == pytest.approx(scenes.FORCE, rel=1e-6) and len(run["place"]) == run["ridges"]
+        assert total == pytest.approx(fingers.FORCE, rel=1e-6) and len(run["place"]) == run["ridges"]
 
 
 # -- the page of assumptions -----------------------------------------------------------------------------------------
@@ -132,13 +132,13 @@ def test_printed_options_give_the_scene(monkeypatch):
 
 def test_sentences_hold_of_the_numbers(found):
     """What the prose says without a number of its own."""
-    full, shaped, words = found["full"], found["profiles"], assumptions.values(found)
+    full, shaped, words = found["full"], found["profiles"], assumptions.Comparison(found)
     mechanical = [name for name in full if "voltage" not in name and "friction" not in name and name != "flat 0"]
     changes = {name: abs(full[name]["mu_app"] / full["reference"]["mu_app"] - 1) for name in mechanical}
     profiles = {name for name in assumptions.PARAMETERS if "ridge_profile" in name}
     assert changes["flat 200"] > max(changes[name] for name in mechanical if name != "flat 200")
     assert max(changes[name] for name in assumptions.LITTLE) < min(changes[name] for name in profiles)
-    flat, inside = full["flat"], words["flat"]
+    flat, inside = full["flat"], words.counts("flat")
     assert inside[0] == inside[2] and abs(flat["mu_app"] / PAPER - 1) <= NEAR  # both statements at 170 V
     assert max(flat["gaps"]["full_slip"]) in (flat["gaps"]["full_slip"][0], flat["gaps"]["full_slip"][-1])
     at_200 = [row for name, row in shaped.items() if name.endswith("] at 200 V")]
@@ -147,8 +147,8 @@ def test_sentences_hold_of_the_numbers(found):
     )
     low = shaped["[1, -0.25] at 150 V"]
     assert low["d_eq"] > LEAST_GAP and low["mu_app"] < PAPER * (1 - NEAR)
-    assert words["met_low"] < 170 < words["met_high"]
-    assert min(words[key] for key in ("light_normal", "heavy_normal")) > 0
+    assert min(words.met) < 170 < max(words.met)
+    assert min(words.change(*pair, "charged") for pair in (assumptions.LIGHT, ("flat 200", "flat 0"))) > 0
 
 
 def test_default_is_that_of_other_pages(found):
