@@ -40,8 +40,8 @@ from fingerpad.scene import load
 from variational.quantities import Observer
 from variational.solvers.equations import Equations
 from variational.solvers.iteration import PREFIX, Iteration
+from variational.solvers.outcome import memory_mb
 from variational.solvers.skin_layer import SkinLayer
-from variational.solvers.timing import memory_mb
 
 Numbers = dict[str, Any]
 _Key = tuple[str, str]

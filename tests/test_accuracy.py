@@ -23,7 +23,7 @@ from tests.small_finger import NINE
 from variational.contact.penalty import Penalty
 from variational.solvers.continuation import StepFailed
 from variational.solvers.equations import Control
-from variational.solvers.failure import NotConverged
+from variational.solvers.outcome import NotConverged
 from variational.solvers.transfer import StateSnapshot
 from variational.state import ContactState
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 
-from variational.solvers.anderson import Anderson
+from variational.solvers.tangent import Anderson
 
 pytestmark = pytest.mark.mpi
 

@@ -17,7 +17,7 @@ from fingerpad.runs.restarts import finer_mesh_may_help
 from fingerpad.scene import from_data
 from tests.runs import no_pictures
 from variational.solvers.continuation import StepFailed
-from variational.solvers.failure import NotConverged
+from variational.solvers.outcome import NotConverged
 from variational.state import CONDITIONS, RESULTS, ContactState
 
 SMALL = {

@@ -17,7 +17,7 @@ from fingerpad.cli.arguments import Parser, scene_of, separate
 from fingerpad.scene import Scene
 from fingerpad.scene.messages import SceneError
 from tests.commands import ROOT, refused
-from variational.roughness.selfaffine import SelfAffine
+from variational.roughness.spectrum import SelfAffine
 
 SCENES = ROOT / "demos/scenes"
 

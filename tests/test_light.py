@@ -29,7 +29,7 @@ LIGHT = (
     "variational.state",
     "variational.roughness.bam",
     "variational.roughness.heightfile",
-    "variational.roughness.selfaffine",
+    "variational.roughness.spectrum",
     "variational.roughness.spectrum",
     "geometry.profiles",
     "geometry.sizing",

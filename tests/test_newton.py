@@ -9,7 +9,7 @@ from tests.test_contact import HEIGHT, MU_F, WIDTH, make
 from variational.problem import SLIPS, STICKS
 from variational.solvers import iteration as module
 from variational.solvers.equations import Control
-from variational.solvers.failure import NotConverged
+from variational.solvers.outcome import NotConverged
 
 pytestmark = pytest.mark.mpi
 

@@ -11,8 +11,8 @@ from tests.test_contact import HEIGHT, WIDTH, over
 from variational.contact.augmented import AugmentedLagrangian
 from variational.contact.nitsche import Nitsche
 from variational.roughness.bam import BearingArea
+from variational.solvers.accepted import return_to_onset
 from variational.solvers.continuation import Target
-from variational.solvers.onset import return_to_onset
 
 
 def charged(contact, step_scale=1.0) -> Body:

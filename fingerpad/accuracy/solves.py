@@ -19,7 +19,7 @@ from fingerpad.results.states import WORDS, before_sliding
 from fingerpad.scene import Load
 from geometry.parameters import MeshSize
 from variational.contact.formulation import Formulation
-from variational.receptors import Receptors
+from variational.output import Receptors
 from variational.solvers.continuation import StepFailed
 from variational.solvers.transfer import StateSnapshot, take_snapshot
 from variational.state import ContactState

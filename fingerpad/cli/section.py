@@ -58,7 +58,7 @@ def meshed(scene: Scene, receptors: bool, half: bool) -> Iterator[Any]:
     import gmsh
 
     from geometry import fingertip
-    from geometry.session import session
+    from geometry.shape import session
 
     scene = by_rule(scene)
     with session("finger"):
@@ -89,7 +89,7 @@ def _of_file(file: Path) -> Section:
     import gmsh
 
     from geometry import meshfile
-    from geometry.session import session
+    from geometry.shape import session
 
     try:
         with session("file"):

@@ -7,7 +7,7 @@ from contextlib import contextmanager
 from mpi4py import MPI
 
 from fingerpad.results.answer import Cost
-from variational.solvers.timing import Counts, memory_mb
+from variational.solvers.outcome import Counts, memory_mb
 
 
 class Clock:

@@ -15,8 +15,7 @@ from fingerpad.model import symmetry
 from fingerpad.results import states
 from fingerpad.results.drawing import Drawing, End, Profile, View
 from fingerpad.scene import Load
-from variational.output import Snapshot, gather_mesh
-from variational.receptors import Receptors
+from variational.output import Receptors, Snapshot, gather_mesh
 from variational.state import ContactState, Sites
 
 if TYPE_CHECKING:

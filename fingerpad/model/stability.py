@@ -13,7 +13,7 @@ import numpy as np
 from fingerpad.model.state import steady
 from fingerpad.results.states import SLIDE_ON, full_slip
 from variational.solvers.continuation import StepFailed
-from variational.solvers.failure import NotConverged
+from variational.solvers.outcome import NotConverged
 from variational.solvers.stability import Stability, StabilityCheck
 from variational.solvers.target import Target
 from variational.state import ContactState

@@ -29,8 +29,8 @@ from fingerpad.scene.reading import DEFAULT_MODEL
 from fingerpad.startup import MPI
 from geometry.parameters import MeshSize
 from geometry.profiles import GeometryError
+from variational.solvers.outcome import Counts
 from variational.solvers.target import Control, Progress
-from variational.solvers.timing import Counts
 from variational.solvers.transfer import SkinState, StateSnapshot
 from variational.state import ContactState, Errors, RidgeStates, StepRecord
 

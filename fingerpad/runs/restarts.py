@@ -8,7 +8,7 @@ from fingerpad.model.finger import meshed
 from fingerpad.model.simulation import RestartRequired
 from fingerpad.results.interrupt import Interrupted
 from geometry.profiles import GeometryError
-from variational.solvers.failure import NotConverged
+from variational.solvers.outcome import NotConverged
 
 if TYPE_CHECKING:
     from fingerpad.model.cost import Clock

@@ -33,7 +33,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from variational.attraction.insulator import VACUUM_PERMITTIVITY
+from variational.attraction.electroadhesion import VACUUM_PERMITTIVITY
 from variational.roughness.closure import Closure
 
 Array = NDArray[np.floating[Any]]
