@@ -26,12 +26,12 @@ from petsc4py import PETSc
 
 from benchmarks import explicit
 from fingerpad.accuracy.refinement import Refinement
+from fingerpad.model.checks import StabilityChecks
 from fingerpad.model.feasibility import by_rule
 from fingerpad.model.finger import Finger
 from fingerpad.model.options import FingerModel, plan
 from fingerpad.model.report import Report
 from fingerpad.model.simulation import Simulation
-from fingerpad.model.stability import StabilityChecks
 from fingerpad.results.drawing import Drawing
 from fingerpad.results.writing import Writer
 from fingerpad.runs import full

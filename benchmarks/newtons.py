@@ -26,8 +26,7 @@ from fingerpad.results.states import WORDS
 from fingerpad.scene import Scene
 from fingerpad.scene.slices import Slices
 from fingerpad.slices import estimate, traces
-from fingerpad.slices.profile import Profile, profile
-from fingerpad.slices.total import Total, at_force, at_indentation
+from fingerpad.slices.total import Profile, Total, at_force, at_indentation, profile
 from fingerpad.slices.trace import Trace
 from fingerpad.slices.trace import trace as trace_of
 from variational.state import RESULTS, ContactState

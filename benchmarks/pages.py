@@ -47,7 +47,7 @@ PAGES = {
 _PACKAGES = ("geometry", "variational", "fingerpad")
 _WITHOUT_NUMBERS = (  # these start, read, refuse, order runs, write and print
     *(f"fingerpad/{wing}/" for wing in ("cli", "results", "report", "calculator", "runs")),
-    *("fingerpad/startup.py", "fingerpad/installed.py", "geometry/meshfile.py", "fingerpad/model/cost.py"),
+    *("fingerpad/startup.py", "fingerpad/installed.py", "geometry/meshfile.py", "fingerpad/model/report.py"),
     *("fingerpad/scene/contradictions.py", "fingerpad/scene/messages.py"),
 )
 _REDUCED = "fingerpad/reduced"  # no full run uses it: part of the programs that import it

@@ -3,16 +3,16 @@
 from pathlib import Path
 
 from benchmarks import harness
-from fingerpad.slices import solid
+from fingerpad.slices import errors
 
-COMPARISONS = {"ridged, 200 V": solid.ONCE, "smooth, earlier": solid.EARLIER, "smooth, below": solid.SMOOTH}
+COMPARISONS = {"ridged, 200 V": errors.ONCE, "smooth, earlier": errors.EARLIER, "smooth, below": errors.SMOOTH}
 _LEAST = 0.3  # N: below it a few elements are in contact, and areas are coarse
 
 
 def comparisons() -> str:
-    """Return what :mod:`fingerpad.slices.solid` has, by quantity and range of force."""
+    """Return what :mod:`fingerpad.slices.errors` has, by quantity and range of force."""
     rows = []
-    for key, words in solid.WORDS.items():
+    for key, words in errors.COMPARED.items():
         for of, comparison in COMPARISONS.items():
             points = comparison.get(key, ())
             if points:

@@ -10,12 +10,11 @@ from mpi4py import MPI
 
 from fingerpad.accuracy import solves
 from fingerpad.accuracy.refinement import Refinement, with_errors
-from fingerpad.accuracy.rigid_screen import ORDER
 from fingerpad.accuracy.solves import Solve, State
 from fingerpad.model.feasibility import by_rule
 from fingerpad.model.options import FingerModel, plan
 from fingerpad.results.interrupt import Interrupted
-from fingerpad.richardson import MORE, ONCE, plus_minus
+from fingerpad.richardson import MORE, ONCE, ORDER, plus_minus
 from fingerpad.runs import restarts
 from fingerpad.scene import SceneError, from_data
 from tests.runs import run

@@ -7,7 +7,7 @@ import pytest
 from mpi4py import MPI
 
 from fingerpad.model import options
-from fingerpad.model.contact_zone import FingerExceeded, Wider, more
+from fingerpad.model.checks import FingerExceeded, Wider, more
 from fingerpad.model.simulation import Simulation
 from fingerpad.runs import full as run_module
 from fingerpad.scene import from_data

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from fingerpad.accuracy.solves import StateRecorder
-from fingerpad.model.stability import FullSlip
+from fingerpad.model.checks import FullSlip
 from fingerpad.scene import from_data
 from tests.runs import followed, path_of
 from tests.small_finger import NINE, small

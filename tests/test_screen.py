@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from benchmarks.errors import stiffer
-from fingerpad.accuracy.rigid_screen import ORDER, over_stiffer, rigid
+from fingerpad.accuracy.solves import over_stiffer
+from fingerpad.richardson import ORDER, rigid
 from variational.contact.penalty import Penalty
 from variational.solvers.equations import Control
 from variational.solvers.transfer import SkinState, StateSnapshot

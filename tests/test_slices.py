@@ -13,8 +13,7 @@ from fingerpad.scene import Scene, SceneError, override
 from fingerpad.scene.slices import Slices
 from fingerpad.slices.errors import MESH
 from fingerpad.slices.finger import WholeFinger
-from fingerpad.slices.profile import cylinder, profile
-from fingerpad.slices.total import BeyondTrace, at_force, at_indentation
+from fingerpad.slices.total import BeyondTrace, at_force, at_indentation, cylinder, profile
 from fingerpad.slices.trace import Trace, TraceError, gross_width, trace
 from variational.state import ContactState, RidgeStates
 

@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from variational.problem import Problem
 
 Array = NDArray[np.float64]
+_ON_LINE = 1e-9  # m from x = 0, within which a vertex is its own image
 _ROUNDOFF = 1e-8  # of a barycentric coordinate: a site on a facet belongs to both cells
 
 
@@ -195,28 +196,64 @@ class Snapshot:
     tag: NDArray[np.int32]
     """Tag of each cell, zero where it has none, shape (cells,)."""
 
+    def whole(self) -> "Snapshot":
+        """Return the body whose half at x >= 0 this is, one body along the line of symmetry."""
+        on_line = np.abs(self.x[:, 0]) < _ON_LINE
+        image = np.where(on_line, np.arange(len(on_line)), len(on_line) + np.cumsum(~on_line) - 1)
+        flip = np.array([-1.0, 1.0])
+        return Snapshot(
+            np.concatenate([self.x, flip * self.x[~on_line]]),
+            np.concatenate([self.u, flip * self.u[~on_line]]),
+            np.concatenate([self.triangles, image[self.triangles][:, ::-1]]),
+            np.concatenate([self.sed, self.sed]),
+            np.concatenate([self.tag, self.tag]),
+        )
+
+
+class Nodes:
+    """Brings values to every rank, numbered as the mesh was before it was distributed.
+
+    Attributes:
+        coordinates: nodes of the unloaded mesh (m), shape (nodes, 2).
+        triangles: nodes of each cell, shape (cells, 3).
+    """
+
+    def __init__(self, problem: "Problem") -> None:
+        mesh = problem.mesh
+        self._comm, cells = mesh.comm, np.arange(mesh.topology.index_map(2).size_local)
+        # The first three degrees of freedom of a Lagrange triangle are its vertices, in the geometry's order.
+        self._dofs = problem.V.dofmap.list[cells][:, :3]
+        nodes = compat.cell_geometry(mesh)[cells]
+        names = self._together(np.asarray(mesh.geometry.input_global_indices)[nodes])
+        self._sort = np.argsort(self._together(np.asarray(mesh.topology.original_cell_index)[cells]))
+        _, self._first, corners = np.unique(names[self._sort].ravel(), return_index=True, return_inverse=True)
+        self.triangles = corners.reshape(-1, 3)
+        self.coordinates = self._pick(mesh.geometry.x[nodes][:, :, :2])
+
+    def _together(self, mine: NDArray[Any]) -> NDArray[Any]:
+        return np.concatenate(self._comm.allgather(mine))
+
+    def by_cell(self, mine: NDArray[Any]) -> NDArray[Any]:
+        """Return one value a cell of those of own cells, on every rank; collective."""
+        return np.asarray(self._together(mine)[self._sort])
+
+    def _pick(self, mine: Array) -> Array:
+        """Return one value a node of values by cell and corner, shape (cells, 3, 2)."""
+        return np.asarray(self.by_cell(mine).reshape(-1, 2)[self._first])
+
+    def gather(self, problem: "Problem") -> Array:
+        """Return the displacement of all nodes (m), shape (nodes, 2); collective."""
+        return self._pick(problem.displacement()[self._dofs])
+
 
 def gather_mesh(problem: "Problem") -> Snapshot | None:
     """Bring the current state to rank 0, None on the others; numbered as the mesh was before it was distributed."""
-    mesh = problem.mesh
-    cells, sed = sed_per_cell(problem)
-    nodes = compat.cell_geometry(mesh)[cells]
-    # The first three degrees of freedom of a Lagrange triangle are its vertices, in the geometry's order.
-    u = problem.displacement()[problem.V.dofmap.list[cells][:, :3]]
+    nodes, (cells, sed) = Nodes(problem), sed_per_cell(problem)
     tag = np.zeros(len(cells), dtype=np.int32)
     own = problem.cell_tags.indices < len(cells)
     tag[problem.cell_tags.indices[own]] = problem.cell_tags.values[own]
-    names = np.asarray(mesh.geometry.input_global_indices)[nodes]
-    order = np.asarray(mesh.topology.original_cell_index)[cells]
-    parts = mesh.comm.gather((mesh.geometry.x[nodes][:, :, :2], u, names, sed, tag, order))
-    if parts is None:
-        return None
-    x, u, names, sed, tag, order = (np.concatenate(arrays) for arrays in zip(*parts, strict=True))
-    sort = np.argsort(order)
-    _, first, vertices = np.unique(names[sort].ravel(), return_index=True, return_inverse=True)
-    return Snapshot(
-        x[sort].reshape(-1, 2)[first], u[sort].reshape(-1, 2)[first], vertices.reshape(-1, 3), sed[sort], tag[sort]
-    )
+    found = Snapshot(nodes.coordinates, nodes.gather(problem), nodes.triangles, nodes.by_cell(sed), nodes.by_cell(tag))
+    return found if problem.mesh.comm.rank == 0 else None
 
 
 class Receptors:

@@ -11,7 +11,7 @@ from benchmarks.harness import kept, page, picture, prose, table
 from benchmarks.paper import friction, scenes
 from benchmarks.paper.statement import BUILT, HOLDS, IN_PART, NOT, Statement
 from benchmarks.runs import FORCES, VOLTAGES
-from fingerpad.slices import solid
+from fingerpad.slices import errors
 
 _PUBLISHED = Path(__file__).parent / "published.csv"
 
@@ -53,7 +53,7 @@ def in_newtons(docs: Path) -> str:
     values = {"narrow": 1e3 * widths[0], "wide": 1e3 * widths[1], "low": 100 * lower[0], "high": 100 * lower[1]}
     values |= {"mu_app": middle["mu_app"], "by_20_mm": middle["by_20_mm"], "factor": newtons.PAPER / widths[1]}
     values |= {"most": newtons.PAPER / widths[0]}
-    slices = solid.percent(solid.known(newtons.COMPARED)["f_t"])
+    slices = errors.percent(errors.known_at(newtons.COMPARED)["f_t"])
     text = prose("paper")["newtons"].format(slices=slices, **values)
     return f"## Fig. 6 in newtons\n\n{text}\n\n{newtons.picture(numbers, docs)}"
 

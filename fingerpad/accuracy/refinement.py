@@ -18,7 +18,7 @@ another number of ridges touches is noted; it appears as a large share.
 
 The result is the *estimated discretisation error*: the estimate with its factors of safety, which in whole runs
 covers the known errors of nine of ten numbers (``docs/accuracy.md``). It is of the mesh, over the screen as it is. The
-effect of a penalty is reported beside it (:mod:`fingerpad.accuracy.rigid_screen`).
+effect of a penalty is reported beside it (:mod:`fingerpad.richardson`).
 
 Not estimated: the effect on normal contact of a friction history that is the first mesh's.
 """
@@ -30,13 +30,12 @@ from typing import TYPE_CHECKING, Any
 
 from mpi4py import MPI
 
-from fingerpad.accuracy.rigid_screen import rigid
 from fingerpad.accuracy.solves import Solve, Solves, quantities, words
 from fingerpad.model.options import FingerModel
 from fingerpad.results.interrupt import Interrupted
 from fingerpad.results.quantities import QUANTITIES
 from fingerpad.results.states import WORDS
-from fingerpad.richardson import MeshParameter, errors, plus_minus, to_refine
+from fingerpad.richardson import MeshParameter, errors, plus_minus, rigid, to_refine
 from geometry.profiles import GeometryError
 from variational.element import ELEMENTS
 from variational.solvers.continuation import StepFailed

@@ -10,7 +10,6 @@ import numpy as np
 from mpi4py import MPI
 from numpy.typing import ArrayLike, NDArray
 
-from fingerpad.accuracy.rigid_screen import over_stiffer
 from fingerpad.model.options import FingerModel
 from fingerpad.model.record import Viewer
 from fingerpad.model.simulation import RestartRequired, Simulation
@@ -139,6 +138,13 @@ class StateRecorder:
         """Return what was kept."""
         f, seconds = self._simulation.finger, time.process_time() - self._start
         return Solve(self.states, f.size, f.unknowns, f.solver.counts.factorisations, seconds, self.views)
+
+
+def over_stiffer(snapshot: StateSnapshot) -> StateSnapshot:
+    """Return a state whose springs, of twice the stiffness, bear the same friction."""
+    halved = {j: {**ridge.history, "anchor": ridge.history["anchor"] / 2} for j, ridge in snapshot.skin.items()}
+    skin = {j: replace(ridge, history=halved[j]) for j, ridge in snapshot.skin.items()}
+    return replace(snapshot, skin=skin)
 
 
 def solve_again(model: FingerModel, states: Mapping[str, State], comm: MPI.Comm, views: bool = False) -> Solve:

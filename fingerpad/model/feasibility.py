@@ -6,7 +6,7 @@ force to the power 0.27 in full runs of the default finger, and friction rolls t
 contact zone is a length, and so a finger of narrower ridges has more of them in it. A bone that is lowered by a depth d
 brings down the skin within sqrt(2 R d) of the lowest ridge, R the radius of the outline. The rule has at least one
 ridge to spare in every full run of ``tests/reach.json``. What it misses on other fingers costs a restart:
-:mod:`fingerpad.model.contact_zone` checks each accepted step.
+:mod:`fingerpad.model.checks` checks each accepted step.
 
 A run takes :data:`PROGRAM` bytes and :data:`PER_UNKNOWN` for each unknown of its path's mesh, error estimate included.
 Before meshing, a lower bound of the unknowns is known. More ranks take some 0.2 GB each, and refining to an accuracy,

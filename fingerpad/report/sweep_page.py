@@ -11,7 +11,7 @@ from fingerpad.results.quantities import PER_LENGTH, QUANTITIES, Output
 from fingerpad.results.states import WORDS
 from fingerpad.runs.sweep_columns import LOAD, described, in_time, loads, shown, text
 from fingerpad.scene.reading import DEFAULT_MODEL
-from fingerpad.slices import solid
+from fingerpad.slices import errors
 
 if TYPE_CHECKING:
     from fingerpad.report.source import Table
@@ -164,7 +164,7 @@ def _points(table: "Table") -> str:
         first, *rest = (_plain(row[key]) for key in table.axes)
         rows.append((first, *rest, *cells, said))
     forces = dict.fromkeys(table.forces())
-    notes = solid.remarks(forces) or [PER_LENGTH]
+    notes = errors.remarks(forces) or [PER_LENGTH]
     heads = [*(_head_of(key) for key in table.axes), *(quantity.title for quantity in columns.values())]
     return html.section(
         "points",

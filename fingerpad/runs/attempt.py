@@ -8,10 +8,9 @@ from typing import Any
 from fingerpad.accuracy.refinement import Refinement, with_errors
 from fingerpad.accuracy.solves import StateRecorder
 from fingerpad.model import cautions
-from fingerpad.model.cost import Clock
 from fingerpad.model.finger import Step, meshed
 from fingerpad.model.options import FingerModel
-from fingerpad.model.report import Report
+from fingerpad.model.report import Clock, Report
 from fingerpad.model.simulation import RestartRequired, Simulation
 from fingerpad.model.state import broken, force_error
 from fingerpad.results import petsc_options

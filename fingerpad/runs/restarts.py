@@ -11,9 +11,9 @@ from geometry.profiles import GeometryError
 from variational.solvers.outcome import NotConverged
 
 if TYPE_CHECKING:
-    from fingerpad.model.cost import Clock
     from fingerpad.model.finger import Finger
     from fingerpad.model.options import FingerModel
+    from fingerpad.model.report import Clock
     from fingerpad.results.console import Console
     from fingerpad.startup import MPI
     from variational.solvers.continuation import StepFailed

@@ -11,9 +11,8 @@ from fingerpad.results.quantities import FINGER, FRICTION
 from fingerpad.results.states import STATES, WORDS, called
 from fingerpad.scene import Scene, SceneError
 from fingerpad.scene.slices import Slices
-from fingerpad.slices import errors, solid
-from fingerpad.slices.profile import profile
-from fingerpad.slices.total import Total, at_force
+from fingerpad.slices import errors
+from fingerpad.slices.total import Total, at_force, profile
 from fingerpad.slices.trace import NAMES, Trace
 
 _ROUNDOFF = 1e-9
@@ -87,7 +86,7 @@ class WholeFinger:
 
     def to_dict(self) -> dict[str, Any]:
         """Return all values, ready for JSON; SI units."""
-        about = {"source": self.source, "model_error": " ".join(solid.remarks([self.f_ext]))}
+        about = {"source": self.source, "model_error": " ".join(errors.remarks([self.f_ext]))}
         found: dict[str, Any] = {"f_ext": self.f_ext, **about, "states": {}}
         for name, total in self.states.items():
             arrays = {key: values.tolist() for key, values in total.slices().items()}
@@ -144,7 +143,7 @@ class WholeFinger:
         parts = dict.fromkeys(part for each in self.carried.values() for part, known in each.items() if known)
         known = [f"±: estimated error, by {', '.join([*parts, *[errors.POINTS] * bool(self.traces)])}."]
         known *= any(map(any, (each.values() for each in self.error.values())))
-        return [*known, *solid.remarks([self.f_ext]), f"Slices: {self.source}."]
+        return [*known, *errors.remarks([self.f_ext]), f"Slices: {self.source}."]
 
     def __str__(self) -> str:
         """Return the text *Whole finger* at the end of a run: the states side by side."""

@@ -215,7 +215,7 @@ class Formulation(ABC):
         """Return the contact over a screen of twice the stiffness; None where the screen is rigid already.
 
         With one, the effect of a rigid screen is estimated beside the error of the mesh
-        (:mod:`fingerpad.accuracy.rigid_screen`).
+        (:mod:`fingerpad.richardson`).
         """
         return None
 
