@@ -191,8 +191,6 @@ def test_finger_under_another_force_is_read_from_its_traces():
         finger.under(-1.0)
     with pytest.raises(SceneError, match="the force is 0.0001 N, under which the centre of the finger bears"):
         finger.under(1e-4)
-    with pytest.raises(SceneError, match="read from a file without traces; run the scene again"):
-        WholeFinger(finger.states, "kept runs").under(0.2)
 
 
 def test_footprint_has_a_panel_for_each_state(tmp_path):

@@ -1,6 +1,7 @@
 """Results over a grid of values: as a sequence, as arrays, as a table and as text."""
 
 import csv
+import io
 import itertools
 import json
 import re
@@ -146,11 +147,11 @@ class Sweep:
         rows = self.rows()
         columns = list(dict.fromkeys(key for row in rows for key in row))
         columns.sort(key="failure".__eq__)  # last
-        lines = _Lines()
+        lines = io.StringIO(newline="")
         table = csv.DictWriter(lines, columns)
         table.writeheader()
         table.writerows(rows)
-        replace(Path(path), "".join(lines))
+        replace(Path(path), lines.getvalue())
 
     def __str__(self) -> str:
         """Return full slip over the axes, and loads over time, as tables with units; ± estimated discretisation errors.
@@ -189,14 +190,6 @@ def _aligned(table: Sequence[Sequence[str]]) -> list[str]:
 def _alike(caution: str) -> str:
     """Return a caution without its numbers, which differ from point to point."""
     return re.sub(r"[-+]?\d[\d.]*(e[-+]?\d+)?(, (?=\d))?", "", caution)
-
-
-class _Lines(list[str]):
-    """Takes the lines of a table."""
-
-    def write(self, line: str) -> None:
-        """Add a line."""
-        self.append(line)
 
 
 def _head(key: str) -> str:
