@@ -36,15 +36,6 @@ _MORE = 2  # ridges on either side that are added at least, or
 _PART = 0.25  # this part of those that could touch before
 
 
-@dataclass(frozen=True)
-class Wider:
-    """More ridges must be able to touch."""
-
-    last: int
-    """Number of the last one, on either side."""
-    reason: str
-
-
 class FingerExceeded(RuntimeError):
     """Skin touches beyond the last ridge that the finger has."""
 
@@ -74,8 +65,8 @@ class ContactZone:
         V, u = self._problem.V, self._problem.displacement()
         return self._observer.lowest_outside(V.tabulate_dof_coordinates()[self._nodes, 1] + u[self._nodes, 1])
 
-    def check(self, loads: RidgeLoads) -> Wider | None:
-        """Return what must be added for the present state to be one of the whole finger, if anything; collective.
+    def check(self, loads: RidgeLoads) -> tuple[int, str] | None:
+        """Return the last ridge, on either side, that must be able to touch, and why; None where it can; collective.
 
         Args:
             loads: resultants of the ridges that can touch.
@@ -104,7 +95,7 @@ class ContactZone:
                 f"{reason}, and the finger has no more ridges; geometry.ridge_count is {self._count} and must be "
                 "larger, or f_ext smaller"
             )
-        return Wider(wider, reason)
+        return wider, reason
 
 
 def more(last: int, count: int) -> int | None:

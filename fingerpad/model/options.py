@@ -33,10 +33,6 @@ class Omission:
         """Return both in words."""
         return f"{self.what} left out: {self.reason}"
 
-    def to_dict(self) -> dict[str, str]:
-        """Return both, ready for JSON."""
-        return {"what": self.what, "reason": self.reason}
-
 
 @dataclass(frozen=True)
 class ModelOptions:

@@ -259,7 +259,7 @@ class Simulation:
     def _zone_exceeded(self, loads: RidgeLoads) -> RestartRequired | None:
         """Return that more ridges must be able to touch, where they must; collective."""
         wider = self._zone.check(loads)
-        return None if wider is None else RestartRequired(wider.reason, self._model.with_ridges(wider.last))
+        return None if wider is None else RestartRequired(wider[1], self._model.with_ridges(wider[0]))
 
     def _accepted(self, target: Target, part: float, attempt: Attempt) -> bool:
         """Check and report an accepted state; return whether the path must stop here."""

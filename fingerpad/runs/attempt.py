@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 from contextlib import suppress
-from dataclasses import dataclass, replace
+from dataclasses import asdict, dataclass, replace
 from typing import Any
 
 from fingerpad.accuracy.refinement import Refinement, with_errors
@@ -260,6 +260,6 @@ class Attempt:
         return {
             "unknowns_path": finger.unknowns,
             "path_mesh": None if model.mesh_file else model.mesh.model_dump(),
-            "omitted": [omission.to_dict() for omission in model.omitted],
+            "omitted": [asdict(omission) for omission in model.omitted],
             **{f"seconds_{phase}": value for phase, value in seconds.items()},
         }
