@@ -10,7 +10,7 @@ from mpi4py import MPI
 
 from fingerpad.accuracy import solves
 from fingerpad.accuracy.refinement import Refinement, with_errors
-from fingerpad.accuracy.solves import Solve, State
+from fingerpad.accuracy.solves import Solve, Solves, State
 from fingerpad.model.feasibility import by_rule
 from fingerpad.model.options import FingerModel, plan
 from fingerpad.results.interrupt import Interrupted
@@ -64,7 +64,7 @@ def search(monkeypatch, asked, solve=known, pause=lambda: None) -> Refinement:
     memory = {"numerics": {"memory": 1e15}}  # of solves that are none
     model = model_of(({"accuracy": asked} if asked else {}) | memory)
     monkeypatch.setattr(solves, "solve_again", solve)
-    found = Refinement(model, known(model, {}, MPI.COMM_SELF), MPI.COMM_SELF, lambda text: None, pause)
+    found = Refinement(Solves(model, known(model, {}, MPI.COMM_SELF), MPI.COMM_SELF, lambda text: None, pause))
     found.run()
     return found
 
@@ -120,7 +120,7 @@ def test_steps_are_halved_where_normal_contact_feels_them(monkeypatch):
     )
     model = model_of({"accuracy": {"contact_length": 0.04}, "numerics": {"step_scale": 2.0}})
     path = stepped(1.0, model.mesh)
-    found = Refinement(model, path, MPI.COMM_SELF, lambda text: None, lambda: None)
+    found = Refinement(Solves(model, path, MPI.COMM_SELF, lambda text: None, lambda: None))
     found.run()
     assert paths == [4.0, 1.0, 0.5]
     assert found.refinements == {"contact": 1, "bulk": 1, "steps": 2}
@@ -176,7 +176,7 @@ def test_what_the_penalty_changes_is_told_beside_the_error(monkeypatch):
     monkeypatch.setattr(solves, "solve_again", springs)
     model, lines = model_of({}), list[str]()
     path = springs(model, {}, MPI.COMM_SELF)
-    found = Refinement(model, path, MPI.COMM_SELF, lines.append, lambda: None)
+    found = Refinement(Solves(model, path, MPI.COMM_SELF, lines.append, lambda: None))
     found.run()
     state = with_errors(found, {"full_slip": contact()})["full_slip"]
     assert state.penalty.contact_length == pytest.approx(-1e-5, rel=1e-9)
@@ -190,7 +190,7 @@ def test_what_the_penalty_changes_is_told_beside_the_error(monkeypatch):
 def test_formulations_without_a_penalty_tell_none(monkeypatch, formulation):
     monkeypatch.setattr(solves, "solve_again", springs)
     model = model_of({"contact": {"formulation": formulation}})
-    found = Refinement(model, springs(model, {}, None), MPI.COMM_SELF, lambda text: None, lambda: None)
+    found = Refinement(Solves(model, springs(model, {}, None), MPI.COMM_SELF, lambda text: None, lambda: None))
     found.run()
     assert found.penalty == {}
     assert with_errors(found, {"full_slip": contact()})["full_slip"].penalty.known() == {}
@@ -246,7 +246,7 @@ def test_friction_without_full_slip_is_refused():
     model = model_of({"accuracy": {"mu_app": 0.01}})
     path = Solve({"charged": known(model, {}, None).states["full_slip"]}, model.mesh, 1000, 10, 1.0)
     with pytest.raises(StepFailed, match="accuracy.mu_app is 0.01, which full slip decides"):
-        Refinement(model, path, MPI.COMM_SELF, lambda text: None, lambda: None)
+        Refinement(Solves(model, path, MPI.COMM_SELF, lambda text: None, lambda: None))
 
 
 @pytest.mark.parametrize(("step", "final"), [(7, True), (3, False)])
@@ -259,7 +259,7 @@ def test_uncharged_state_that_is_the_charged_one_is_of_the_final_mesh(monkeypatc
 
     monkeypatch.setattr(solves, "solve_again", solve)
     model = model_of({"contact": {"formulation": "nitsche"}})
-    found = Refinement(model, solve(model, {}, None), MPI.COMM_SELF, lambda text: None, lambda: None)
+    found = Refinement(Solves(model, solve(model, {}, None), MPI.COMM_SELF, lambda text: None, lambda: None))
     found.run()
     path = {name: contact(contact_length=2e-3, step=at) for name, at in (("uncharged", step), ("charged", 7))}
     states = with_errors(found, path)
@@ -338,7 +338,7 @@ def test_interrupted_search_reached_nothing(monkeypatch):
             if next(to_come, None) is None:
                 raise Interrupted(signal.SIGINT, 3)
 
-        found = Refinement(model, known(model, {}, MPI.COMM_SELF), MPI.COMM_SELF, lines.append, pause)
+        found = Refinement(Solves(model, known(model, {}, MPI.COMM_SELF), MPI.COMM_SELF, lines.append, pause))
         with pytest.raises(Interrupted):
             found.run()
         assert not found.failure and not found.summary()["reached"]
@@ -356,7 +356,7 @@ def test_errors_without_a_force_are_those_of_the_friction_force(monkeypatch):
 
     model, shown = model_of({"numerics": {"memory": 1e15}}), []
     monkeypatch.setattr(solves, "solve_again", unpressed)
-    found = Refinement(model, unpressed(model, {}, MPI.COMM_SELF), MPI.COMM_SELF, shown.append, lambda: None)
+    found = Refinement(Solves(model, unpressed(model, {}, MPI.COMM_SELF), MPI.COMM_SELF, shown.append, lambda: None))
     found.run()
     assert "full_slip_f_t" in found.estimates() and "full_slip_mu_app" not in found.estimates()
     assert any("friction force" in line for line in shown) and not any("nan" in line for line in shown)
@@ -368,7 +368,7 @@ def test_coefficient_without_a_force_is_refused():
     path = known(model, {}, None)
     change(path, mu_app=np.nan)
     with pytest.raises(StepFailed, match="at full slip no force presses the finger.* ask for accuracy.f_t"):
-        Refinement(model, path, MPI.COMM_SELF, lambda text: None, lambda: None)
+        Refinement(Solves(model, path, MPI.COMM_SELF, lambda text: None, lambda: None))
 
 
 # -- a small finger ----------------------------------------------------------------------------------------

@@ -24,14 +24,11 @@ Not estimated: the effect on normal contact of a friction history that is the fi
 """
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import fields, replace
 from typing import TYPE_CHECKING, Any
 
-from mpi4py import MPI
-
 from fingerpad.accuracy.solves import Solve, Solves, quantities, words
-from fingerpad.model.options import FingerModel
 from fingerpad.results.interrupt import Interrupted
 from fingerpad.results.quantities import QUANTITIES
 from fingerpad.results.states import WORDS
@@ -63,27 +60,18 @@ class Refinement:
         to_come: solves that are still to come, the one that starts now among them; more where they are not enough.
     """
 
-    def __init__(
-        self,
-        model: FingerModel,
-        path: Solve,
-        comm: MPI.Comm,
-        show: Callable[[str], None],
-        pause: Callable[[], None],
-    ) -> None:
+    def __init__(self, solves: Solves) -> None:
         """Choose the mesh parameters.
 
         Args:
-            model: of the path.
-            path: its states.
-            comm: communicator of the meshes.
-            show: prints a line.
-            pause: called between solves; may raise to stop.
+            solves: the path's alone.
 
         Raises:
             StepFailed: the path has no state in which a quantity asked for is known.
         """
-        self.model, self.asked, self._show = model, model.asked, show
+        self.solves, self._show, (path,) = solves, solves.show, solves.found
+        self.model = model = solves.model
+        self.asked = model.asked
         for name in {"mu_app", "f_t"} & set(self.asked) if "full_slip" not in path.states else ():
             raise StepFailed(
                 f"accuracy.{name} is {self.asked[name]:g}, which full slip decides, and that was not reached"
@@ -95,7 +83,6 @@ class Refinement:
             )
         if self.asked and not path.states:
             raise StepFailed("accuracy is given and the history has neither normal contact nor full slip")
-        self.solves = Solves(model, path, comm, show, pause)
         self.base = self._stepped = path
         self.failure, self.notes = "", list[str]()
         self._met = not self.asked

@@ -174,6 +174,8 @@ class Solves:
     """All solves of a path's states, the path's first.
 
     Attributes:
+        model: of the path.
+        show: prints a line.
         found: the solves, in order.
         restart: what a path with other steps turned out to need, if anything.
     """
@@ -195,8 +197,8 @@ class Solves:
             show: prints a line.
             pause: called before each solve; may raise to stop.
         """
-        self._model = model
-        self._comm, self._show, self._pause = comm, show, pause
+        self.model, self.show = model, show
+        self._comm, self._pause = comm, pause
         self.found = [path]
         self.restart: RestartRequired | None = None
 
@@ -211,7 +213,7 @@ class Solves:
             GeometryError: the mesh needs too much memory.
             StepFailed: a state was not found.
         """
-        return self._again(self._model.changed(mesh=mesh), states)
+        return self._again(self.model.changed(mesh=mesh), states)
 
     def over_stiffer_screen(self, base: Solve, contact: Formulation) -> Solve:
         """Return states over a screen of twice the stiffness; collective.
@@ -223,7 +225,7 @@ class Solves:
         Raises:
             StepFailed: a state was not found.
         """
-        model = self._model.changed(mesh=base.mesh, contact=contact)
+        model = self.model.changed(mesh=base.mesh, contact=contact)
         states = {name: replace(s, snapshot=over_stiffer(s.snapshot)) for name, s in base.states.items()}
         return self._again(model, states)
 
@@ -240,9 +242,9 @@ class Solves:
         Raises:
             StepFailed: the path was lost, or needs more of the model (:attr:`restart`).
         """
-        numerics = self._model.numerics.model_copy(update={"step_scale": step_scale})
-        loads = loads_to_normal_contact(self._model.loads)
-        model = self._model.changed(mesh=self.found[0].mesh, loads=loads, numerics=numerics)
+        numerics = self.model.numerics.model_copy(update={"step_scale": step_scale})
+        loads = loads_to_normal_contact(self.model.loads)
+        model = self.model.changed(mesh=self.found[0].mesh, loads=loads, numerics=numerics)
         self._pause()
         recorder: StateRecorder | None = None
 
@@ -254,7 +256,7 @@ class Solves:
         recorder = StateRecorder(simulation)
         restart = simulation.run()
         if restart is not None:
-            more = self._model.changed(mesh=restart.model.mesh, options=restart.model.options)
+            more = self.model.changed(mesh=restart.model.mesh, options=restart.model.options)
             self.restart = replace(restart, model=more)
             raise StepFailed(restart.reason)
         return self._keep(recorder.solve())
@@ -262,7 +264,7 @@ class Solves:
     def _keep(self, solve: Solve) -> Solve:
         self.found.append(solve)
         m = solve.mesh
-        self._show(
+        self.show(
             f"states on another mesh: facets {m.contact * 1e6:.4g} µm, growth {m.growth:.3g}, "
             f"junctions {m.interface * 1e6:.4g} µm, receptors {m.receptor * 1e6:.4g} µm: "
             f"{solve.unknowns} unknowns, {solve.factorisations} factorisations"

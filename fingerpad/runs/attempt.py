@@ -6,7 +6,7 @@ from dataclasses import asdict, dataclass, replace
 from typing import Any
 
 from fingerpad.accuracy.refinement import Refinement, with_errors
-from fingerpad.accuracy.solves import StateRecorder
+from fingerpad.accuracy.solves import Solves, StateRecorder
 from fingerpad.model import cautions
 from fingerpad.model.finger import Step, meshed
 from fingerpad.model.options import FingerModel
@@ -166,7 +166,7 @@ class Attempt:
             if restart is not None or self._recorder is None:
                 return self._affordable(restart)
             path, show = self._recorder.solve(), self._console.show
-            self._refinement = Refinement(self._model, path, self._comm, show, self._before_solve)
+            self._refinement = Refinement(Solves(self._model, path, self._comm, show, self._before_solve))
             return self._affordable(self._refinement.run())
         except StepFailed as error:
             tip = hint(error) if self._model.mesh_file is None else ""
