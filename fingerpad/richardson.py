@@ -46,6 +46,8 @@ lengths, and in the default scene in all. Of energy densities it does not: 35 of
 scatter with one size changed alone. ``docs/accuracy.json`` has the cases, ``benchmarks/accuracy.py`` counts them for
 ``docs/accuracy.md``, and ``tests/test_calibration.py`` holds the factors to it.
 """
+ORDER = 0.75
+"""In one over the stiffness, of what the penalty changes."""
 
 
 @dataclass
@@ -122,10 +124,6 @@ def plus_minus(value: float, error: float) -> str:
     """Return a value with its error, which is given to two digits: ``0.4750 ± 0.0041``."""
     digits = int(max(0, 1 - np.floor(np.log10(error)))) if error > 0 else 6
     return f"{value:z.{digits}f} ± {error:.{digits}f}"
-
-
-ORDER = 0.75
-"""In one over the stiffness, of what the penalty changes."""
 
 
 def rigid(values: Mapping[str, float], stiffer: Mapping[str, float]) -> dict[str, float]:

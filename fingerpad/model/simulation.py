@@ -28,6 +28,8 @@ if TYPE_CHECKING:
     from fingerpad.model.options import FingerModel
     from fingerpad.scene import Load
 
+_BEGIN = 60e-6  # m, with which a slide begins
+
 
 @dataclass(frozen=True)
 class RestartRequired:
@@ -289,9 +291,6 @@ class Simulation:
         except FingerExceeded as error:
             raise StepFailed(f"step {finger.continuation.steps} ({self._load}): {error}") from error
         return self._restart is not None
-
-
-_BEGIN = 60e-6  # m, with which a slide begins
 
 
 def targets(load: "Load", x: float, step_scale: float) -> list[Target]:

@@ -34,6 +34,12 @@ from scipy.optimize import minimize_scalar
 from variational.roughness.topography import HeightMap
 
 Array = NDArray[np.float64]
+Window = Literal["none", "hann"]
+HURST = (0.01, 2.0)
+"""Range in which the Hurst exponent is searched; above 1 a surface is not self-affine, which the fitted value shows."""
+_END = 1e-3  # distance of an exponent from an end of that range at which it is the end's
+_FLAT = 1e-12  # rms height over the largest height, at which what is left of a map is roundoff
+_SIGNIFICANT = 2.0  # gain in log-likelihood, two standard deviations, that tells a roll-off from none
 
 
 def prefactor(hurst: float, plateau: bool) -> float:
@@ -120,14 +126,6 @@ class SelfAffine:
         # The noise has C = size / shape^2 |FFT|^2 = area / pixels on average.
         gain = np.sqrt(self.modes(shape, size) * shape[0] * shape[1] / (size[0] * size[1]))
         return HeightMap(np.fft.ifft2(noise * gain).real, size)
-
-
-Window = Literal["none", "hann"]
-HURST = (0.01, 2.0)
-"""Range in which the Hurst exponent is searched; above 1 a surface is not self-affine, which the fitted value shows."""
-_END = 1e-3  # distance of an exponent from an end of that range at which it is the end's
-_FLAT = 1e-12  # rms height over the largest height, at which what is left of a map is roundoff
-_SIGNIFICANT = 2.0  # gain in log-likelihood, two standard deviations, that tells a roll-off from none
 
 
 class Radial(NamedTuple):

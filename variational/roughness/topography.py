@@ -35,6 +35,8 @@ from scipy.special import ndtr
 Array = NDArray[np.float64]
 Trend = Literal["mean", "tilt", "curvature"]
 _DEGREE: dict[Trend, int] = {"mean": 0, "tilt": 1, "curvature": 2}
+MOST = 0.25  # of a map that may be missing
+_FAR = 20.0  # interquartile ranges without a height
 
 
 @dataclass(frozen=True, eq=False)
@@ -137,10 +139,6 @@ def distribution(*maps: HeightMap, bins: int = 60) -> Distribution:
     gaussian = ndtr(z)
     distance = max(np.max(below[1:] - gaussian), np.max(gaussian - below[:-1]))
     return Distribution(edges, density, h_rms, float(np.mean(z**3)), float(np.mean(z**4)), float(distance))
-
-
-MOST = 0.25  # of a map that may be missing
-_FAR = 20.0  # interquartile ranges without a height
 
 
 def mark(heights: Array) -> float | None:

@@ -9,6 +9,16 @@ from dataclasses import dataclass
 
 from petsc4py import PETSc
 
+# INFOG(1) in the users' guide of MUMPS 5, section 8. Workspace is estimated before pivoting, which depends on the
+# matrix; memory ran out for any matrix of the size.
+_MUMPS = {
+    "MUMPS_SINGULAR": (-6, -10),
+    "MUMPS_OUT_OF_WORKSPACE": (-8, -9, -11, -14, -15, -17, -18, -20),
+    "MUMPS_OUT_OF_MEMORY": (-5, -7, -13, -19, -22),
+}
+OUTSIDE = 1e30  # N/m: norm of the residual where J <= 0 somewhere
+_REASONS = {value: name for name, value in vars(PETSc.SNES.ConvergedReason).items() if isinstance(value, int)}
+
 
 class Timings:
     """Adds up wall time by phase."""
@@ -50,17 +60,6 @@ class Counts:
 def memory_mb() -> float:
     """Return the peak memory (MB) of this process."""
     return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
-
-
-# INFOG(1) in the users' guide of MUMPS 5, section 8. Workspace is estimated before pivoting, which depends on the
-# matrix; memory ran out for any matrix of the size.
-_MUMPS = {
-    "MUMPS_SINGULAR": (-6, -10),
-    "MUMPS_OUT_OF_WORKSPACE": (-8, -9, -11, -14, -15, -17, -18, -20),
-    "MUMPS_OUT_OF_MEMORY": (-5, -7, -13, -19, -22),
-}
-OUTSIDE = 1e30  # N/m: norm of the residual where J <= 0 somewhere
-_REASONS = {value: name for name, value in vars(PETSc.SNES.ConvergedReason).items() if isinstance(value, int)}
 
 
 class NotConverged(RuntimeError):

@@ -23,6 +23,10 @@ if TYPE_CHECKING:
     from variational.solvers.equations import Equations
     from variational.solvers.layout import RigidRimLayout
 
+Array = NDArray[np.float64]
+_DEPTH = 6  # differences
+_INDEPENDENT = 1e-8  # singular value below which, over the largest, differences count as dependent
+
 
 class _Relative:
     """The derivative of the residual by the relative unknowns: the tangent K after their change to displacements."""
@@ -102,11 +106,6 @@ class Tangent:
         if ksp.getConvergedReason() > 0:
             layout = self.equations.layout
             layout.translate(x, -layout.rigid_part(x))
-
-
-Array = NDArray[np.float64]
-_DEPTH = 6  # differences
-_INDEPENDENT = 1e-8  # singular value below which, over the largest, differences count as dependent
 
 
 class Anderson:
