@@ -19,7 +19,7 @@ from benchmarks import harness, limits
 from benchmarks.limits import Limit, limit
 from benchmarks.runs import SITES as AT_SITES
 from benchmarks.runs import Array, Run, finished
-from fingerpad.model.feasibility import by_rule
+from fingerpad.model.options import by_rule
 from fingerpad.results import style
 from fingerpad.results.states import WORDS
 from fingerpad.richardson import ORDER, plus_minus

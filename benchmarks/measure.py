@@ -27,9 +27,8 @@ from petsc4py import PETSc
 from benchmarks import explicit
 from fingerpad.accuracy.refinement import Refinement
 from fingerpad.model.checks import StabilityChecks
-from fingerpad.model.feasibility import by_rule
 from fingerpad.model.finger import Finger
-from fingerpad.model.options import FingerModel, plan
+from fingerpad.model.options import FingerModel, by_rule, plan
 from fingerpad.model.report import Report
 from fingerpad.model.simulation import Simulation
 from fingerpad.results.drawing import Drawing

@@ -31,7 +31,7 @@ from pydantic import BaseModel
 from fingerpad.cli import refuse
 from fingerpad.cli.arguments import Parser, scene_of
 from fingerpad.model import options
-from fingerpad.model.feasibility import by_rule, refuse_sizes
+from fingerpad.model.options import by_rule, refuse_sizes
 from fingerpad.reduced.cylinders import tip_radius
 from fingerpad.results.files import check_folder
 from fingerpad.scene import Scene, SceneError

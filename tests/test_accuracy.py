@@ -11,8 +11,7 @@ from mpi4py import MPI
 from fingerpad.accuracy import solves
 from fingerpad.accuracy.refinement import Refinement, with_errors
 from fingerpad.accuracy.solves import Solve, Solves, State
-from fingerpad.model.feasibility import by_rule
-from fingerpad.model.options import FingerModel, plan
+from fingerpad.model.options import FingerModel, by_rule, plan
 from fingerpad.results.interrupt import Interrupted
 from fingerpad.richardson import MORE, ONCE, ORDER, plus_minus
 from fingerpad.runs import restarts

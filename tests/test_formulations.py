@@ -10,8 +10,7 @@ from ffcx.naming import compute_signature
 from mpi4py import MPI
 
 from fingerpad.cli.check import _model
-from fingerpad.model.feasibility import by_rule
-from fingerpad.model.options import FingerModel, plan
+from fingerpad.model.options import FingerModel, by_rule, plan
 from fingerpad.scene import SceneError, from_data
 from fingerpad.scene.laws import used
 from fingerpad.scene.parameters import FORMULATIONS

@@ -2,7 +2,7 @@
 
 import pytest
 
-from fingerpad.model import feasibility
+from fingerpad.model.options import by_rule
 from fingerpad.reduced import cylinders
 from fingerpad.scene import Scene, SceneError, laws
 from tests.test_laws import DERJAGUIN, OWN, Held
@@ -44,7 +44,7 @@ def test_modulus_of_the_skin_is_the_given_materials():
 
 def test_rule_of_thumb_takes_a_law():
     """More friction rolls the finger further, by the coefficient at a ridge's pressure."""
-    plain, rough = (feasibility.by_rule(Scene(friction=law)) for law in (Coulomb(0.25), Derjaguin(0.25, 2e4)))
+    plain, rough = (by_rule(Scene(friction=law)) for law in (Coulomb(0.25), Derjaguin(0.25, 2e4)))
     assert rough.mesh.touching_half_arc > plain.mesh.touching_half_arc
 
 

@@ -15,7 +15,7 @@ LIGHT = (
     "fingerpad.runs.context",
     "fingerpad.calculator.page",
     "fingerpad.model.options",
-    "fingerpad.model.feasibility",
+    "fingerpad.model.options",
     "fingerpad.results.folder",
     "fingerpad.cli",
     "fingerpad.cli.arguments",
@@ -36,7 +36,7 @@ LIGHT = (
 )
 WORK = """
 import fingerpad as fp
-from fingerpad.model.feasibility import check
+from fingerpad.model.options import check
 from fingerpad.scene import scene
 found = scene.load(None, {"voltage": 100.0})
 check(found)

@@ -8,9 +8,8 @@ from mpi4py import MPI
 
 from fingerpad.accuracy.refinement import Refinement
 from fingerpad.accuracy.solves import Solves
-from fingerpad.model.feasibility import check, memory, unknowns
 from fingerpad.model.finger import meshed
-from fingerpad.model.options import FingerModel, plan
+from fingerpad.model.options import FingerModel, check, memory, plan, unknowns
 from fingerpad.scene import SceneError, from_data
 from geometry import fingertip
 from geometry.mesh import load

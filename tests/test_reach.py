@@ -6,8 +6,7 @@ from pathlib import Path
 import pytest
 from mpi4py import MPI
 
-from fingerpad.model.feasibility import by_rule
-from fingerpad.model.options import FingerModel, plan
+from fingerpad.model.options import FingerModel, by_rule, plan
 from fingerpad.model.simulation import Simulation
 from fingerpad.scene import Scene, from_data
 from geometry.profiles import GeometryError

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from fingerpad.model.feasibility import check
+from fingerpad.model.options import check
 from fingerpad.scene import Load, Scene, SceneError
 from fingerpad.scene import scene as scenes
 from fingerpad.scene.reading import model_of

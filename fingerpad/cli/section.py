@@ -10,8 +10,7 @@ from uuid import uuid4
 import numpy as np
 from numpy.typing import NDArray
 
-from fingerpad.model.feasibility import by_rule
-from fingerpad.model.options import ModelOptions
+from fingerpad.model.options import ModelOptions, by_rule
 from fingerpad.scene import Scene
 from fingerpad.scene.messages import SceneError
 from geometry import tags

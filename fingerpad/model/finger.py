@@ -10,7 +10,7 @@ from mpi4py import MPI
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
-from fingerpad.model.feasibility import refuse_mesh, refuse_sizes
+from fingerpad.model.options import refuse_mesh, refuse_sizes
 from fingerpad.model.state import contact_state, force_error, refuse_unbalanced
 from geometry import fingertip, mesh, meshfile, tags
 from geometry.profiles import Profiles

@@ -8,8 +8,7 @@ from typing import Any
 
 import fingerpad.startup  # noqa: F401
 from fingerpad.accuracy.solves import State
-from fingerpad.model.feasibility import by_rule
-from fingerpad.model.options import FingerModel, plan
+from fingerpad.model.options import FingerModel, by_rule, plan
 from fingerpad.model.report import Clock
 from fingerpad.results import petsc_options
 from fingerpad.results.checkpoint import Checkpoint, CheckpointError
