@@ -13,7 +13,7 @@ from fingerpad.scene import Scene, SceneError, override
 from fingerpad.scene.slices import Slices
 from fingerpad.slices.errors import MESH
 from fingerpad.slices.finger import WholeFinger
-from fingerpad.slices.total import BeyondTrace, at_force, at_indentation, cylinder, profile
+from fingerpad.slices.total import BeyondTrace, Profile, at_force, at_indentation, profile
 from fingerpad.slices.trace import Trace, TraceError, gross_width, trace
 from variational.state import ContactState, RidgeStates
 
@@ -46,7 +46,8 @@ def kept(voltage: float, model: str = "full") -> Trace:
 
 def test_long_cylinder_is_the_cross_section_times_its_length():
     length, depth = 20e-3, 0.7e-3
-    total, one = at_indentation(cylinder(length), foundation(), depth, 12), foundation().at(np.array([depth]))
+    straight = Profile((0.0, length), np.zeros_like, np.ones_like, straight=True)
+    total, one = at_indentation(straight, foundation(), depth, 12), foundation().at(np.array([depth]))
     assert total.totals["f_ext"] == pytest.approx(length * one["f_ext"][0], rel=EXACT)
     assert total.totals["gross_area"] == pytest.approx(length * one["gross_width"][0], rel=EXACT)
     assert total.totals["f_ext"] / total.centre == pytest.approx(length, rel=EXACT)

@@ -17,7 +17,7 @@ from fingerpad.scene.slices import Slices
 from fingerpad.slices import errors
 from fingerpad.slices.estimate import estimate
 from fingerpad.slices.finger import WholeFinger
-from fingerpad.slices.total import at_force, cylinder, profile
+from fingerpad.slices.total import Profile, at_force, profile
 from fingerpad.slices.trace import NAMES, Trace, TraceError, trace
 from tests.test_slices import foundation, kept, kept_state, whole
 from variational.state import Errors
@@ -131,7 +131,8 @@ def test_coarser_traces_leave_points_out():
     three = Trace(depth[:3], {name: depth[:3] for name in NAMES})
     assert three.halves()[0].depth.tolist() == [1.0, 2.5] and three.later().depth.tolist() == [1.5, 2.5]
     two = Trace(depth[:2], {name: depth[:2] for name in NAMES})
-    assert errors.interpolation(FINGER, two, at_force(cylinder(1.0), two, 1.2, 4), 4) == {}, "not known"
+    straight = Profile((0.0, 1.0), np.zeros_like, np.ones_like, straight=True)
+    assert errors.interpolation(FINGER, two, at_force(straight, two, 1.2, 4), 4) == {}, "not known"
 
 
 def test_friction_is_exact_without_attraction():

@@ -127,11 +127,6 @@ def profile(slices: Slices) -> Profile:
     return Profile(ends, lambda z: z**2 / (2 * slices.radius), width, slices.tilt)
 
 
-def cylinder(length: float) -> Profile:
-    """Return a straight finger of a length (m), for checks: forces are those of the cross-section times it."""
-    return Profile((0.0, length), np.zeros_like, np.ones_like, straight=True)
-
-
 class BeyondTrace(SceneError):  # noqa: N818
     """A force or an indentation that the trace does not reach; one sentence."""
 
