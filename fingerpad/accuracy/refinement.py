@@ -28,9 +28,9 @@ from collections.abc import Mapping
 from dataclasses import fields, replace
 from typing import TYPE_CHECKING, Any
 
-from fingerpad.accuracy.solves import Solve, Solves, quantities, words
+from fingerpad.accuracy.solves import Solve, Solves, quantities
 from fingerpad.results.interrupt import Interrupted
-from fingerpad.results.quantities import QUANTITIES
+from fingerpad.results.quantities import QUANTITIES, Output
 from fingerpad.results.states import WORDS
 from fingerpad.richardson import MeshParameter, errors, plus_minus, rigid, to_refine
 from geometry.profiles import GeometryError
@@ -134,8 +134,11 @@ class Refinement:
             self._note(f"the effect of the penalty could not be estimated: {error}")
             return
         self.penalty = rigid(self.base.values(), found.values())
-        changes = {name: _scaled(name, value) for name, value in self.penalty.items() if "_sed_" not in name}
-        listed = [f"{_in_words(name)} by {value:.2g} {unit}".rstrip() for name, (value, unit) in changes.items()]
+        listed = []
+        for name, value in self.penalty.items():
+            if "_sed_" not in name:
+                quantity, words = _named(name)
+                listed.append(f"{words} by {value * quantity.scale:.2g} {quantity.unit}".rstrip())
         self._show(f"penalty: a rigid screen would change {', '.join(listed)}")
 
     def _note(self, text: str) -> None:
@@ -194,7 +197,7 @@ class Refinement:
         for name in sorted(coarse.states.keys() & finer.states.keys()):
             before, now = (s.states[name].state.ridges_in_contact for s in (coarse, finer))
             if before != now:
-                self.notes.append(f"halving {key}: {now} ridges in contact at {words(name)} instead of {before}")
+                self.notes.append(f"halving {key}: {now} ridges in contact at {WORDS[name]} instead of {before}")
 
     def _on_mesh(self, refinements: Mapping[str, int]) -> Solve:
         """Return the states in use on the scene's mesh with sizes halved so often."""
@@ -210,10 +213,10 @@ class Refinement:
         for name, error in found.items():
             if "_sed_" in name:
                 continue
-            (value, unit), (spread, _) = _scaled(name, values[name]), _scaled(name, error)
-            limit = f", {_scaled(name, allowed[name])[0]:.2g} allowed" if name in allowed else ""
-            number = f"{plus_minus(value, spread)} {unit}".rstrip()
-            self._show(f"{_in_words(name)}: {number} (estimated discretisation error){limit}")
+            quantity, words = _named(name)
+            limit = f", {allowed[name] * quantity.scale:.2g} allowed" if name in allowed else ""
+            number = f"{plus_minus(values[name] * quantity.scale, error * quantity.scale)} {quantity.unit}".rstrip()
+            self._show(f"{words}: {number} (estimated discretisation error){limit}")
 
     def summary(self) -> dict[str, Any]:
         """Return how errors were found, ready for JSON; collective."""
@@ -264,17 +267,8 @@ def errors_of(name: str, changes: Mapping[str, float]) -> Errors:
     return Errors(**{k: v for key, v in changes.items() if (k := key.removeprefix(f"{name}_")) in known and k != key})
 
 
-def _in_words(key: str) -> str:
-    """Return a key such as ``full_slip_mu_app`` in words: quantity and state."""
-    name = next((name for name in WORDS if key.startswith(f"{name}_")), None)
-    if name is None:
-        return key
-    quantity = key.removeprefix(f"{name}_")
-    words = QUANTITIES[quantity].words if quantity in QUANTITIES else quantity
-    return f"{words} at {WORDS[name]}"
-
-
-def _scaled(key: str, value: float) -> tuple[float, str]:
-    """Return the value of a key such as ``full_slip_contact_length`` (in SI) in the unit of tables, and this unit."""
-    known = [q for name, q in QUANTITIES.items() if key == name or key.endswith(f"_{name}")]
-    return (value * known[0].scale, known[0].unit) if known else (value, "")
+def _named(key: str) -> tuple[Output, str]:
+    """Return the quantity of a key such as ``full_slip_mu_app``, and the key in words: quantity and state."""
+    state = next(name for name in WORDS if key.startswith(f"{name}_"))
+    quantity = QUANTITIES[key.removeprefix(f"{state}_")]
+    return quantity, f"{quantity.words} at {WORDS[state]}"

@@ -29,11 +29,6 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 
 
-def words(name: str) -> str:
-    """Return a state's name in words."""
-    return WORDS.get(name, name)
-
-
 @dataclass(frozen=True)
 class State:
     """A state that can be solved again, the same on every rank."""
@@ -162,7 +157,7 @@ def solve_again(model: FingerModel, states: Mapping[str, State], comm: MPI.Comm,
     simulation = Simulation(model, comm)
     recorder, finger = StateRecorder(simulation), simulation.finger
     for name, state in states.items():
-        simulation.re_equilibrate(state.snapshot, words(name), state.direction)
+        simulation.re_equilibrate(state.snapshot, WORDS[name], state.direction)
         recorder.keep(name)
         if views:
             recorder.views[name] = Viewer(finger).view(simulation.present(finger.ridge_loads()))
