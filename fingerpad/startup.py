@@ -23,7 +23,7 @@ from fingerpad.installed import need_compiler
 
 __all__ = ["MPI", "start"]
 
-# What PETSc did not read is found by fingerpad.results.petsc_options, not listed when everything is over; its handlers
+# What PETSc did not read is found by fingerpad.results.provenance, not listed when everything is over; its handlers
 # of signals would end a run that the caller has ignore SIGHUP.
 _QUIET = ("-options_left", "no", "-no_signal_handler", "-skip_petscrc")
 _HOME = "XDG_CONFIG_HOME"  # which libraries look into for the user's configuration

@@ -10,12 +10,12 @@ from mpi4py import MPI
 
 from fingerpad.model.options import FingerModel, by_rule, plan
 from fingerpad.model.simulation import Simulation
-from fingerpad.results import finger_picture, history_picture, skin_picture, style
+from fingerpad.results import curves, finger_picture, style
 from fingerpad.runs import full
 from fingerpad.runs.context import RunContext
 from fingerpad.scene import Scene
 
-PICTURES = ((finger_picture, "finger"), (skin_picture, "surface"), (history_picture, "history"))
+PICTURES = ((finger_picture, "finger"), (curves, "surface"), (curves, "history"))
 
 
 @contextmanager

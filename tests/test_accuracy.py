@@ -25,6 +25,7 @@ from variational.solvers.outcome import NotConverged
 from variational.solvers.transfer import StateSnapshot
 from variational.state import ContactState
 
+pytestmark = pytest.mark.slow
 NOTHING = StateSnapshot(*(np.zeros(0) for _ in range(2)), {}, {}, {}, {}, np.zeros(2), Control(), 0.0)
 EXACT = 0.5
 

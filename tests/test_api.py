@@ -20,6 +20,7 @@ from variational.solvers.continuation import StepFailed
 from variational.solvers.outcome import NotConverged
 from variational.state import CONDITIONS, RESULTS, ContactState
 
+pytestmark = pytest.mark.slow
 SMALL = {
     "f_ext": 1.0,
     "voltage": 60.0,

@@ -15,6 +15,7 @@ from tests.measures import rows_of
 from tests.runs import path_of, run
 from variational.solvers.stability import Stability, StabilityCheck
 
+pytestmark = pytest.mark.slow
 MESH = {"contact": 30e-6, "receptor": 80e-6, "interface": 150e-6, "growth": 0.8}
 WAVELENGTH = 483e-6
 

@@ -13,6 +13,8 @@ from fingerpad.runs.context import RunContext
 from fingerpad.scene import from_data, load
 from tests.test_demo import MESH, NINE, SMALL
 
+pytestmark = pytest.mark.slow
+
 # Factorisations, those of stability checks included; Newton iterations; accepted steps.
 COUNTS = {"thin": (20, 73, 12), "thick": (24, 79, 13)}
 SCENES = {

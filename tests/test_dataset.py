@@ -22,6 +22,7 @@ from fingerpad.runs.sweep_results import Sweep
 from fingerpad.scene import from_data
 from tests.runs import run
 
+pytestmark = pytest.mark.slow
 SCENE = {
     "geometry": {"ridge_count": 9},
     "mesh": {"contact": 40e-6, "receptor": 100e-6, "interface": 200e-6, "growth": 1.0, "touching_half_arc": 1.0e-3},

@@ -16,6 +16,7 @@ from fingerpad.runs.context import RunContext
 from fingerpad.scene import from_data, load
 from tests import runs
 
+pytestmark = pytest.mark.slow
 ROOT = Path(__file__).resolve().parents[1]
 COARSE, SMALL = (ROOT / "demos" / "scenes" / f"{name}.toml" for name in ("coarse", "small_finger"))
 MU_0 = 0.25

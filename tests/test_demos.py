@@ -12,6 +12,7 @@ from mpi4py import MPI
 
 from tests.pages import alike
 
+pytestmark = pytest.mark.slow
 ROOT = Path(__file__).resolve().parents[1]
 DEMOS = sorted((ROOT / "demos").glob("*.py"))
 OUTPUT = ROOT / "demos" / "output"  # by python3 -m benchmarks.demos

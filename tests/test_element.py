@@ -26,6 +26,7 @@ from variational.solvers.equations import Control, Equations
 from variational.solvers.newton import Solver
 from variational.surface import Surface
 
+pytestmark = pytest.mark.slow
 WIDTH, HEIGHT = 1e-3, 0.5e-3
 G_0, ALPHA, EPS_N = 86.76e3, -14.53, 1e12
 SOFT, HARD, NAIL = 1, 2, 3

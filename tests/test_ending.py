@@ -16,6 +16,7 @@ from fingerpad.results.files import Table, replace_json
 from fingerpad.results.interrupt import Interrupt, Interrupted
 from tests.measures import accepted
 
+pytestmark = pytest.mark.slow
 ROOT = Path(__file__).resolve().parents[1]
 GOOD = 2  # steps accepted before a run is disturbed
 LONG = """# a light finger on a long way: its start is short, and there are a hundred steps to disturb it in

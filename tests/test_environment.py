@@ -14,6 +14,7 @@ import pytest
 
 from tests.test_tools import script
 
+pytestmark = pytest.mark.slow
 HERE = Path(__file__).resolve().parents[1] / "environment"
 # Tells its arguments, then runs the command in a process of its own and names it, as bubblewrap does.
 BWRAP = """#!/bin/bash

@@ -16,9 +16,9 @@ from fingerpad.reduced import cylinders
 from fingerpad.reduced.models import find
 from fingerpad.report.page import picture
 from fingerpad.report.write import write
+from fingerpad.results.drawing import finger_of
 from fingerpad.results.files import read_object
 from fingerpad.results.folder import Folder, FolderError, Serial, full_scene
-from fingerpad.results.kept_drawing import finger_of
 from fingerpad.runs.context import RunContext
 from fingerpad.runs.solve import solved
 from fingerpad.scene import Scene, SceneError

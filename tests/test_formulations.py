@@ -24,7 +24,7 @@ from variational.contact.penalty import Penalty
 from variational.solvers.continuation import Continuation, StepFailed, Target
 from variational.solvers.outcome import NotConverged
 
-pytestmark = pytest.mark.mpi
+pytestmark = [pytest.mark.mpi, pytest.mark.slow]
 NITSCHE = [Nitsche(10.0, 0), Nitsche(100.0, 1), Nitsche(10.0, -1)]
 
 

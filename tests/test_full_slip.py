@@ -11,6 +11,7 @@ from fingerpad.scene import from_data
 from tests.runs import followed, path_of
 from tests.small_finger import NINE, small
 
+pytestmark = pytest.mark.slow
 SCENE = NINE | {"f_ext": 1.0, "voltage": 100.0}
 
 

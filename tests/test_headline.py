@@ -7,7 +7,7 @@ import pytest
 
 import fingerpad as fp
 from fingerpad.report import trust
-from fingerpad.report.headline import head
+from fingerpad.report.trust import head
 from fingerpad.results.quantities import PLUS_MINUS
 from fingerpad.results.result import Result
 from fingerpad.results.states import load_result

@@ -10,6 +10,7 @@ import fingerpad as fp
 from tests.runs import no_pictures
 from tests.small_finger import small
 
+pytestmark = pytest.mark.slow
 KINDS = ("history", "surface", "finger")
 
 

@@ -5,14 +5,14 @@ import pytest
 
 from benchmarks.harness import DOCS, kept
 from benchmarks.measured import __main__ as command
-from benchmarks.measured import finger, forms, page, rows, scenes
-from benchmarks.measured.verdict import HIT, MISS, PART, by_factor, by_form, by_share
+from benchmarks.measured import fingers, rows, rules
+from benchmarks.measured.rules import HIT, MISS, PART, by_factor, by_form, by_share
 from benchmarks.runs import FORCES, VOLTAGES
 
 
 @pytest.fixture(scope="module")
 def judged():
-    return {row.key: row for row in page.judged(DOCS)}
+    return {row.key: row for row in command.judged(DOCS)}
 
 
 def test_rules():
@@ -47,8 +47,8 @@ def test_form_has_to_fit_and_another_not_to(misfits, others, verdict):
     assert by_form(misfits, others) == verdict
 
 
-@pytest.mark.parametrize("fit", [forms.of_each, forms.of_largest])
-@pytest.mark.parametrize(("form", "parameter"), [(forms.exponential, 4.0), (forms.power, 2.2), (forms.line, 0.3)])
+@pytest.mark.parametrize("fit", [rules.of_each, rules.of_largest])
+@pytest.mark.parametrize(("form", "parameter"), [(rules.exponential, 4.0), (rules.power, 2.2), (rules.line, 0.3)])
 def test_forms_find_their_own_curves(form, parameter, fit):
     """The parameter comes back at any scale, and nothing is left."""
     x = np.linspace(0.1e-3, 1e-3, 8)
@@ -56,15 +56,15 @@ def test_forms_find_their_own_curves(form, parameter, fit):
     assert found.parameter == pytest.approx(parameter, rel=1e-4) and found.misfit < 1e-4
 
 
-@pytest.mark.parametrize("form", [forms.paraboloid, forms.ellipse])
+@pytest.mark.parametrize("form", [rules.paraboloid, rules.ellipse])
 def test_pressures_find_their_own_curves(form):
     """The half width comes back, in units of the outermost ridge; the other form leaves some per cent."""
     x = np.linspace(-3e-3, 3e-3, 13)
     pressure = 2e4 * form(x, 1.2)
-    found = forms.of_largest(form, x, pressure)
+    found = rules.of_largest(form, x, pressure)
     assert found.parameter == pytest.approx(1.2, rel=1e-4) and found.misfit < 1e-4
-    other = forms.ellipse if form is forms.paraboloid else forms.paraboloid
-    assert 0.005 < forms.of_largest(other, x, pressure).misfit < 0.1
+    other = rules.ellipse if form is rules.paraboloid else rules.paraboloid
+    assert 0.005 < rules.of_largest(other, x, pressure).misfit < 0.1
 
 
 def test_kept_rows_are_those_of_the_other_pages(judged):
@@ -89,14 +89,14 @@ def test_kept_friction_follows_the_attraction():
     np.testing.assert_allclose(coarse["full_slip_f_t"], expected, rtol=1e-6)
     known = [row for row in kept("newtons").numbers["friction"] if row["radius"] == 28e-3 and row["voltage"] == 200]
     for name in ("gross_area", "contact_area"):  # of the page of newtons
-        sums = dict(zip(finger.NEWTONS, found.full_finger[f"full_slip_200_{name}"], strict=True))
+        sums = dict(zip(fingers.NEWTONS, found.full_finger[f"full_slip_200_{name}"], strict=True))
         for row in known:
             assert sums[round(row["f_ext"], 6)] == pytest.approx(row[name], rel=1e-9)
 
 
 def test_runs_of_the_page_balance_their_force():
-    wanted, runs = scenes.scenes(), kept("measured").numbers["runs"]
+    wanted, runs = fingers.scenes(), kept("measured").numbers["runs"]
     assert set(runs) == set(wanted)
     for run in runs.values():
         total = sum(run["pressure"]) * wanted["dry 20"].geometry.ridge_wavelength
-        assert total == pytest.approx(scenes.FORCE, rel=1e-6) and len(run["place"]) == run["ridges"]
+        assert total == pytest.approx(fingers.FORCE, rel=1e-6) and len(run["place"]) == run["ridges"]

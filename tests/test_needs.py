@@ -26,6 +26,7 @@ from variational.quantities import RidgeLoads
 from variational.roughness.bam import BearingArea
 from variational.solvers.continuation import Target
 
+pytestmark = pytest.mark.slow
 H_0, FORCE = 0.514e-6, 5.0
 MESH = {"contact": 30e-6, "receptor": 80e-6, "interface": 150e-6, "growth": 0.8, "touching_half_arc": 1.3e-3}
 PRESS = {"name": "press", "f_ext": 2.0}

@@ -11,6 +11,8 @@ from fingerpad.scene import SceneError
 from tests.small_finger import small
 from variational.contact.friction import Friction
 
+pytestmark = pytest.mark.slow
+
 
 # -- limits ----------------------------------------------------------------------------------------------------
 @dataclass(frozen=True)

@@ -6,8 +6,7 @@ import pytest
 from mpi4py import MPI
 
 from fingerpad.cli import main
-from fingerpad.results.console import Console
-from fingerpad.results.pace import Pace, between
+from fingerpad.results.terminal import Console, Pace, between
 from fingerpad.runs.batch import times_left
 from variational.state import ContactState, StepRecord
 

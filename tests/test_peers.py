@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from benchmarks.peers import calculix_ridge, ours, plain
+from benchmarks.peers.__main__ import half_width
 from benchmarks.peers.exchange import Answer, Case, Load, Ridge, State, cases
-from benchmarks.peers.quantities import half_width
 
 WIDTH = 0.483  # mm
 

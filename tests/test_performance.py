@@ -9,6 +9,7 @@ import pytest
 
 from benchmarks import explicit, performance
 
+pytestmark = pytest.mark.slow
 ROOT = Path(__file__).resolve().parents[1]
 SMALL = ROOT / "demos" / "scenes" / "small_finger.toml"
 

@@ -4,14 +4,14 @@ import pytest
 from mpi4py import MPI
 from petsc4py import PETSc
 
-from fingerpad.results import petsc_options
-from fingerpad.results.petsc_options import OptionError
+from fingerpad.results import provenance
+from fingerpad.results.provenance import OptionError, check_options
 
 
 @pytest.fixture
 def given():
     """Return a function that gives options as a command line does; they are gone afterwards."""
-    petsc_options.check()  # PETSc's help lists each kind of options once a process
+    check_options()  # PETSc's help lists each kind of options once a process
     options, before = PETSc.Options(), PETSc.Options().getAll()
 
     def give(text: str) -> None:
@@ -39,7 +39,7 @@ def given():
 def test_values_that_petsc_refuses(given, text, named):
     given(text)
     with pytest.raises(OptionError) as refusal:
-        petsc_options.check(MPI.COMM_WORLD)
+        check_options(MPI.COMM_WORLD)
     assert str(refusal.value).startswith(f"PETSc refuses {named}: ")
     assert len(str(refusal.value)) < 300 and "\n" not in str(refusal.value)
 
@@ -55,28 +55,28 @@ def test_values_that_petsc_refuses(given, text, named):
 def test_misspelt(given, text, nearest):
     given(text)
     with pytest.raises(OptionError) as refusal:
-        petsc_options.check()
+        check_options()
     assert text in str(refusal.value) and "; the nearest known one is -fingerpad_" in str(refusal.value)
-    if nearest in petsc_options._KNOWN:  # PETSc's help lists it once a process, maybe in another test
+    if nearest in provenance._KNOWN:  # PETSc's help lists it once a process, maybe in another test
         assert str(refusal.value).endswith(nearest)
 
 
 def test_what_petsc_reads_is_allowed(given, capfd):
     """Monitors print nothing of the trial."""
     given("-fingerpad_snes_monitor -fingerpad_snes_converged_reason -fingerpad_mat_mumps_icntl_14 50")
-    petsc_options.check()
+    check_options()
     assert capfd.readouterr() == ("", "")
 
 
 def test_what_two_equations_do_not_have_is_left_to_the_first_solve(given):
     """A multigrid of two equations may have no coarser level; the options' names are judged when all is solved."""
     given("-fingerpad_pc_type gamg -fingerpad_mg_levels_9_ksp_typo cg")
-    petsc_options.check(element="P2-P1")
+    check_options(element="P2-P1")
     with pytest.raises(OptionError, match="mg_levels_9_ksp_typo"):
-        petsc_options.refuse_unread()
+        provenance.refuse_unread()
 
 
 def test_options_of_others_are_none_of_ours(given):
     given("-other_snes_type nonsense")
-    petsc_options.check()
-    assert petsc_options.in_use()["-other_snes_type"] == "nonsense"
+    check_options()
+    assert provenance.in_use()["-other_snes_type"] == "nonsense"

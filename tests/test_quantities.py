@@ -16,6 +16,7 @@ from fingerpad.scene import from_data
 from geometry.units import in_si
 from tests.test_dataset import SCENE
 
+pytestmark = pytest.mark.slow
 P_MEAN = fp.Output(
     "p_mean", "kPa", lambda state: state.f_contact / state.contact_length, words="mean pressure p_m", digits=2
 )

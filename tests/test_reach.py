@@ -13,6 +13,7 @@ from geometry.profiles import GeometryError
 from geometry.sizing import touching_ridges
 from tests.runs import run
 
+pytestmark = pytest.mark.slow
 COMM = MPI.COMM_WORLD
 PRESS = {"name": "press", "bone_height": -50e-6}
 MESH = {"contact": 30e-6, "receptor": 80e-6, "interface": 150e-6, "growth": 0.8}

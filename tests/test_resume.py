@@ -25,6 +25,7 @@ from tests.test_history import Own
 from variational.problem import Problem
 from variational.solvers.coupling import Coupling
 
+pytestmark = pytest.mark.slow
 ROOT = Path(__file__).resolve().parents[1]
 TABLES = ("steps", "ridges", "coupling")
 PRESS, CHARGE = {"name": "press", "f_ext": 2.0}, {"name": "charge", "voltage": 100.0}
@@ -92,7 +93,6 @@ def killed_at(monkeypatch):
 LONG = [pytest.param(name, marks=pytest.mark.long) for name in list(HISTORIES)[2:]]
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("history", [*list(HISTORIES)[:2], *LONG])
 def test_goes_on_to_the_last_bit(history, tmp_path, killed_at):
     """Killed twice on the way; the solves of earlier runs are not done again."""
@@ -170,7 +170,6 @@ def undisturbed(tmp_path_factory):
     return file, tables(folder / "run"), (folder / "run" / "summary.json").read_text(encoding="utf-8")
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(
     ("kind", "number"), [MOMENTS[0], *(pytest.param(*m, marks=pytest.mark.long) for m in MOMENTS[1:])]
 )
@@ -190,7 +189,6 @@ def test_kill_9(undisturbed, tmp_path, kind, number):
     assert lines((out / "summary.json").read_text(encoding="utf-8")) == lines(summary)
 
 
-@pytest.mark.slow
 @pytest.mark.mpi
 def test_on_another_number_of_ranks(tmp_path, killed_at):
     """Begun on one rank and finished on all; to 1e-8 the numbers of one rank."""
@@ -245,7 +243,6 @@ def refused(match: str, folder: Path, **more) -> None:
         fp.run(scene(**more), out=folder, resume=True)
 
 
-@pytest.mark.slow
 def test_refusals(cut_short, tmp_path_factory, capsys):
     """Of nothing to go on from, another scene, a damaged or foreign checkpoint; each in one sentence."""
     refused("has no checkpoint to go on from: its run has not come to one", tmp_path_factory.mktemp("empty"))
@@ -292,7 +289,6 @@ def test_refused_options(tmp_path):
             command.main(["--resume", str(tmp_path)])
 
 
-@pytest.mark.slow
 def test_numbers_do_not_depend_on_the_folder(tmp_path, monkeypatch):
     """To the last bit on one rank: the solver forgets at the same places. Without a folder nothing is kept."""
     inside = fp.run(scene(), out=tmp_path)
@@ -306,7 +302,6 @@ def test_numbers_do_not_depend_on_the_folder(tmp_path, monkeypatch):
     assert str(rows[0]) == str(rows[1])
 
 
-@pytest.mark.slow
 def test_checkpoint_of_another_mesh(cut_short, monkeypatch):
     """As by another version of gmsh: the places are compared, not trusted."""
     read = Checkpoint.read
@@ -322,7 +317,6 @@ def test_checkpoint_of_another_mesh(cut_short, monkeypatch):
         fp.run(scene(), out=cut_short, resume=True)
 
 
-@pytest.mark.slow
 def test_full_disk_under_the_checkpoint(tmp_path, monkeypatch):
     """What is there stays whole, and the run goes on from it when there is room."""
     write = Checkpoint.write

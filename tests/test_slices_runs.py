@@ -24,6 +24,7 @@ from tests.runs import no_pictures
 from tests.small_finger import small
 from variational.state import Errors
 
+pytestmark = pytest.mark.slow
 SMALL = {"output": {"receptors": False, "errors": False}, "slices": {"radius": 6e-3, "length": 8e-3}}
 FORCE = 2e-3  # N
 

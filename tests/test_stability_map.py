@@ -12,6 +12,8 @@ from benchmarks.stability.plan import Case
 from variational.solvers.equations import Control
 from variational.solvers.newton import Solver
 
+pytestmark = pytest.mark.slow
+
 # A press of half an newton a metre on facets of 60 um: two seconds a run.
 TINY = Case(contact_size=60e-6, force=0.5, voltage=50.0, element="P1", slide=0.0)
 IRRECOVERABLE = replace(TINY, parameter=1.5e24)

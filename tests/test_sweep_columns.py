@@ -14,6 +14,7 @@ from fingerpad.runs.sweep_results import Sweep, _stacked
 from fingerpad.slices.finger import WholeFinger
 from tests.test_loads_over_time import BY, PRESS, SLIDE, WAVE, scene
 
+pytestmark = pytest.mark.slow
 KEY, NAME = "history[2].voltage.amplitude", "my drive"
 
 

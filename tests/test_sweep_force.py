@@ -11,11 +11,11 @@ import pytest
 import fingerpad as fp
 from fingerpad.cli import main
 from fingerpad.cli import sweep as cli_sweep
-from fingerpad.report import source
 from fingerpad.report.sweep_page import _curves
-from fingerpad.report.write import write
+from fingerpad.report.write import read, write
 from tests.small_finger import small
 
+pytestmark = pytest.mark.slow
 FORCES, VOLTAGES = (0.1, "200 mN", 0.5), (0.0, 200.0)
 SMALL = {"output": {"receptors": False, "errors": False}, "slices": {"radius": 6e-3, "length": 8e-3}}
 
@@ -98,7 +98,7 @@ def test_force_that_no_trace_reaches_fails_alone(tmp_path):
 
 def test_charts_have_the_units_of_their_titles(found):
     """A chart's numbers are in mm² and N, as the table below."""
-    charts = _curves(source.read(found.folder))
+    charts = _curves(read(found.folder))
     assert charts["charts"]["sweep_contact_area"] == "ridge contact area (mm²)"
     drawn = charts["curves"][1]["sweep_contact_area"]
     assert drawn == pytest.approx(1e6 * found.array("contact_area")[1])

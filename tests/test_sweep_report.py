@@ -11,7 +11,7 @@ import pytest
 
 from fingerpad.cli import main
 from fingerpad.cli import sweep as cli_sweep
-from fingerpad.report import parameters
+from fingerpad.report.page import option_of
 from fingerpad.report.write import NAME, write
 from fingerpad.runs.sweep import sweep
 from fingerpad.scene import Scene, SceneError, from_data, override
@@ -58,7 +58,7 @@ def test_failed_points_are_listed_with_their_reason(table):
     "value", [0.3, 5, True, "penalty", "5", "true", "a b'c.msh", "[x].csv", [True, "a"], [1.0, -0.1]]
 )
 def test_option_is_read_as_its_value(value):
-    flag, option = shlex.split(parameters.option_of("key", value))
+    flag, option = shlex.split(option_of("key", value))
     assert flag == "--set" and override(option) == ("key", value)
 
 

@@ -29,6 +29,7 @@ from variational.roughness.bam import BearingArea
 from variational.solvers.continuation import Target
 from variational.solvers.stability import StabilityCheck
 
+pytestmark = pytest.mark.slow
 H_0, WIDTH, HEIGHT, FORCE = 0.514e-6, 0.5e-3, 0.5e-3, 3.0
 MU_F = 0.02  # so little that some points slip
 SKIN, BOTTOM, TOP, LINE = tags.STRATUM_CORNEUM, tags.ridge(0), tags.BONE_RIM, tags.SYMMETRY

@@ -67,7 +67,7 @@ def test_run_goes_on_where_nobody_reads(monkeypatch, error):
     """After ``| head``: the steps are in the folder of results; rich raises SystemExit, or nothing of its own."""
     from mpi4py import MPI
 
-    from fingerpad.results.console import Console
+    from fingerpad.results.terminal import Console
 
     console, printed = Console(MPI.COMM_SELF, bar=False), []
 

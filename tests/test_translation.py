@@ -13,6 +13,8 @@ from tests.small_finger import NINE
 from variational.solvers import iteration
 from variational.solvers.continuation import StepFailed
 
+pytestmark = pytest.mark.slow
+
 
 def slid(away: float, f_ext: float, voltage: float, tolerance: float) -> Simulation:
     """Carry the bone sideways over the screen (m), press, charge and slide to full slip."""

@@ -9,7 +9,7 @@ from fingerpad.cli.arguments import Parser, echo, scene_of
 from fingerpad.model.options import FingerModel, ModelOptions, by_rule, memory, plan, refuse_mesh, unknowns
 from fingerpad.reduced.cylinder_errors import outside, where
 from fingerpad.results.files import check_folder
-from fingerpad.results.pace import about
+from fingerpad.results.terminal import about
 from fingerpad.scene import Load, Scene, SceneError
 from fingerpad.scene.laws import used
 from fingerpad.scene.remarks import leakage, remarks

@@ -13,8 +13,8 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from fingerpad.measurements.table import Measured
-from fingerpad.report.source import Table
-from fingerpad.report.source import read as content
+from fingerpad.report.write import Table
+from fingerpad.report.write import read as content
 from fingerpad.results.result import Result
 from fingerpad.results.states import WORDS, before_sliding
 from fingerpad.runs.sweep_results import Sweep

@@ -26,7 +26,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from fingerpad.results.pace import about
+from fingerpad.results.terminal import about
 from fingerpad.scene.messages import SceneError, qualify
 from geometry import sizing
 from geometry.parameters import Fingertip, MeshSize

@@ -14,9 +14,9 @@ from fingerpad.model.options import Omission
 from fingerpad.model.record import PathRecord, Viewer
 from fingerpad.results import states
 from fingerpad.results.answer import Cost
-from fingerpad.results.console import Console
-from fingerpad.results.drawing import End, View
+from fingerpad.results.drawing import View
 from fingerpad.results.quantities import Output, valued
+from fingerpad.results.terminal import Console
 from fingerpad.results.writing import Writer, ridge_rows, site_rows
 from variational.solvers import checkpoint
 from variational.solvers.outcome import Counts, memory_mb
@@ -128,9 +128,9 @@ class Report:
             state = replace(step.state, record=record, sites=self._viewer.sites(), changes=tuple(step.attempt.changes))
             state = valued(state, self._outputs)
             self.record.states.append(state)
-            profile = self._viewer.profile(step)
-            if profile is not None:
-                self.record.profiles[state.step] = profile
+            skin = self._viewer.skin(step)
+            if skin is not None:
+                self.record.skins[state.step] = skin
             self._writer.row("steps", state.row())
             self._tables("", {"step": state.step}, state, state.mesh_contact)
             for iteration, change in enumerate(state.changes):
@@ -139,7 +139,7 @@ class Report:
             if self._simulation.finger.problem.mesh.comm.rank == 0:
                 self._log(step, state)
 
-    def _tables(self, end: str, first: Mapping[str, Any], state: ContactState, size: float) -> None:
+    def _tables(self, end: str, first: Mapping[str, Any], state: ContactState, size: float | None) -> None:
         """Write the rows of ridges in contact and of receptor sites of a state."""
         for name, rows in (("ridges", ridge_rows(state)), ("receptors", site_rows(state))):
             for row in rows:
@@ -171,14 +171,14 @@ class Report:
         self._writer.fields(state.step, state.load)
         snapshot, merkel = self._viewer.picture()
         if snapshot is not None:
-            self.record.ends[state.load] = End(state, snapshot, merkel)
+            self.record.ends[state.load] = View(state, None, None, snapshot, merkel)
 
     def kept(self) -> dict[str, Any]:
         """Return what another process needs to go on with all tables and pictures, whole on rank 0."""
         self.record.prune(self._loads)
         return {
             "states": self.record.states,
-            "profiles": self.record.profiles,
+            "skins": self.record.skins,
             "ends": self._ends,
             "logged": self._logged,
             "tables": self._writer.kept(),
@@ -198,7 +198,7 @@ class Report:
         self.record.states, self._logged = kept["states"], kept["logged"]
         self._ends, self._written = kept["ends"], kept["ends"][-1][0] if kept["ends"] else 0
         if finger.problem.mesh.comm.rank == 0:
-            self.record.profiles = kept["profiles"]
+            self.record.skins = kept["skins"]
         by_step = {state.step: state for state in self.record.states}
         now = finger.solver.x.array_r.copy()
         mine = checkpoint.order(finger.continuation, dict(places))
@@ -220,8 +220,8 @@ class Report:
     def final(self, views: Mapping[str, View]) -> None:
         """Write the tables of states on the mesh that the run ended with, by name."""
         if views:
-            words = "; ".join(f"{states.WORDS[name]}: contact size {v.mesh.contact:g} m" for name, v in views.items())
+            words = "; ".join(f"{states.WORDS[name]}: contact size {v.size:g} m" for name, v in views.items())
             path = "steps.csv, history.png and *.bp are of the path on the starting mesh; %s"
             self._writer.log.info(path, words)
         for state, view in views.items():
-            self._tables("_final", {"of": state}, view.state, view.mesh.contact)
+            self._tables("_final", {"of": state}, view.state, view.size)

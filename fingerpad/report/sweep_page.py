@@ -6,7 +6,6 @@ from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Any
 
 from fingerpad.report import page as html
-from fingerpad.report import parameters
 from fingerpad.results.quantities import PER_LENGTH, QUANTITIES, Output
 from fingerpad.results.states import WORDS
 from fingerpad.runs.sweep_columns import LOAD, described, in_time, loads, shown, text
@@ -14,7 +13,7 @@ from fingerpad.scene.reading import DEFAULT_MODEL
 from fingerpad.slices import errors
 
 if TYPE_CHECKING:
-    from fingerpad.report.source import Table
+    from fingerpad.report.write import Table
 
 _CHARTS = ("mu_app", "f_t", "contact_length", "contact_area")
 _TOLD = 3  # cautions in the headline
@@ -190,27 +189,27 @@ def _failed(table: "Table") -> str:
 
 
 def _parameters(table: "Table") -> str:
-    return html.section("parameters", "Parameters", parameters.all_of(table.parameters, table.axes))
+    return html.section("parameters", "Parameters", html.all_parameters(table.parameters, table.axes))
 
 
 def _cite(table: "Table") -> str:
-    given = parameters.changed(table.parameters)
+    given = html.changed(table.parameters)
     kept = {key: value for key, value in given.items() if not (key in table.axes or "[" in key or value is None)}
-    options = [parameters.option_of(key, value) for key, value in kept.items()]
+    options = [html.option_of(key, value) for key, value in kept.items()]
     options += [f"--model {table.model}"] if table.model != DEFAULT_MODEL else []
     values = {key: list(dict.fromkeys(row[key] for row in table.rows)) for key in table.axes}
     if all(_read(value) is not None for each in values.values() for value in each):
-        over = [parameters.option_of(key, ",".join(each), "--over") for key, each in values.items()]
+        over = [html.option_of(key, ",".join(each), "--over") for key, each in values.items()]
         code = " ".join(["fingerpad sweep", *options, *over, "--out results/again"])
     else:  # --over reads numbers alone
-        lines = [f"{parameters.toml(key)} = [{', '.join(map(_toml, each))}]" for key, each in values.items()]
+        lines = [f"{html.toml(key)} = [{', '.join(map(_toml, each))}]" for key, each in values.items()]
         command = " ".join(["fingerpad sweep study.toml", *options, "--out results/again"])
         code = "\n".join(["# study.toml", "[sweep]", *lines, "", "# the command", command])
     lists = any("[" in key and key not in table.axes for key in given)
     note = "Loads of its own, and other lists of the scene, are not in this line." if lists else ""
     return html.section(
         "reproduce", "How to reproduce and cite", f"<pre><code>{html.text(code)}</code></pre>",
-        html.paragraph(note, "note") if note else "", parameters.cite(table.version),
+        html.paragraph(note, "note") if note else "", html.cite(table.version),
     )  # fmt: skip
 
 
@@ -218,7 +217,7 @@ def _toml(cell: str) -> str:
     """Return a value of the table as TOML: a number as it stands, a switch, or a text."""
     if _read(cell) is not None:
         return cell
-    return cell.lower() if cell in ("True", "False") else parameters.toml(cell)
+    return cell.lower() if cell in ("True", "False") else html.toml(cell)
 
 
 def _curves(table: "Table") -> dict[str, Any]:

@@ -23,7 +23,6 @@ from fingerpad.results.quantities import (
 )
 from fingerpad.results.quantities import read as read_outputs
 from fingerpad.results.states import STATES, LoadResult, called, load_results
-from fingerpad.scene.laws import coefficient
 from fingerpad.scene.messages import SceneError, clip
 from fingerpad.scene.reading import DEFAULT_MODEL
 from fingerpad.scene.scene import as_kept
@@ -32,8 +31,6 @@ from variational.state import CONDITIONS, RESULTS, ContactState, Errors
 if TYPE_CHECKING:
     import xarray
     from matplotlib.figure import Figure
-
-    from fingerpad.results.drawing import Drawing
 
 KINDS = ("surface", "finger", "history", "footprint", "time")
 """Pictures of a result."""
@@ -67,8 +64,12 @@ class Result(Answer):
             from fingerpad.results.finger_picture import footprint  # Matplotlib
 
             return footprint(self.finger, None if path is None else Path(path)) if terminal.rank() == 0 else None
-        if self.drawing is not None:
-            return self.drawing.figure(kind, None if path is None else Path(path))
+        if (drawing := self.drawing) is None and self.steps and self.folder is not None and terminal.rank() == 0:
+            from fingerpad.results.drawing import read  # Matplotlib
+
+            drawing = read(self)
+        if drawing is not None:
+            return drawing.figure(kind, None if path is None else Path(path))
         if not self.steps:
             raise ValueError(f"the result of the model {self.model!r} has no steps to draw; those of model='full' have")
         return None  # on the other ranks
@@ -189,7 +190,7 @@ class Result(Answer):
                 return found  # of no path, or of one without an accepted step
             stable = [load.get("stable") for load in summary.get("loads", ())]
             loads = load_results(found.steps, found.scene.loads(), lambda k, end: (*stable, *[None] * (k + 1))[k])
-            return replace(found, loads=tuple(loads), drawing=_drawing(found, folder))
+            return replace(found, loads=tuple(loads))
         except (OSError, ValueError, KeyError, TypeError, AttributeError, csv.Error) as error:  # JSON of other things
             if isinstance(error, SceneError) and name in str(error):
                 raise
@@ -214,16 +215,6 @@ def steps_of(folder: Path) -> tuple[ContactState, ...]:
     """
     with (folder / "steps.csv").open(encoding="utf-8", newline="") as file:
         return tuple(ContactState.from_row(row) for row in csv.DictReader(file) if None not in row.values())
-
-
-def _drawing(result: Result, folder: Path) -> "Drawing":
-    """Return what the pictures of a result that was read are drawn from."""
-    from fingerpad.results.kept_drawing import KeptDrawing  # Matplotlib, which reading numbers does not need
-
-    mu_0 = None if "laws" in result.record.get("parameters", {}) else coefficient(result.scene)
-    meshes = (result.record.get("path_mesh"), result.record.get("accuracy", {}).get("mesh"))
-    path, final = (mesh["contact"] if mesh and result.scene.accuracy is not None else None for mesh in meshes)
-    return KeptDrawing(mu_0, result.steps, {}, {}, {}, path, result.named, folder.absolute(), final)
 
 
 def _state(name: str, kept: Mapping[str, Any]) -> ContactState:

@@ -13,16 +13,14 @@ from fingerpad.model.options import FingerModel
 from fingerpad.model.report import Clock, Report
 from fingerpad.model.simulation import RestartRequired, Simulation
 from fingerpad.model.state import broken, force_error
-from fingerpad.results import petsc_options
 from fingerpad.results.checkpoint import Checkpoint, CheckpointError
-from fingerpad.results.console import Console
 from fingerpad.results.interrupt import Interrupt, Interrupted
 from fingerpad.results.over_time import NOTE
-from fingerpad.results.pace import in_words
-from fingerpad.results.provenance import provenance
+from fingerpad.results.provenance import provenance, refuse_unread
 from fingerpad.results.quantities import Output, valued
 from fingerpad.results.result import Result
 from fingerpad.results.states import long_steps
+from fingerpad.results.terminal import Console, in_words
 from fingerpad.results.writing import Writer
 from fingerpad.runs.restarts import Restarts, finer, hint
 from fingerpad.scene import Scene
@@ -82,7 +80,7 @@ class Attempt:
         self._steps, self._done = 0, 0.0  # accepted since the last checkpoint; part of the history that is done
 
     def _on_step(self, step: Step, done: float) -> None:
-        petsc_options.refuse_unread()
+        refuse_unread()
         self.report.step(step, done)
         if self._recorder is not None:
             self._recorder.record(step)

@@ -19,8 +19,7 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, T
 from fingerpad.reduced.models import find
 from fingerpad.results.files import below, lock_file, replace_json
 from fingerpad.results.folder import FolderError, identity
-from fingerpad.results.pace import between
-from fingerpad.results.terminal import watched
+from fingerpad.results.terminal import between, watched
 from fingerpad.runs.context import RunContext
 from fingerpad.runs.processes import End, Pool, limit_processor_time, run
 from fingerpad.runs.solve import OF_THE_MACHINE, Summary, ended, gone_on, summary

@@ -12,7 +12,7 @@ from fingerpad.results.quantities import Output
 from fingerpad.scene import Scene
 
 if TYPE_CHECKING:
-    from fingerpad.results.console import Console
+    from fingerpad.results.terminal import Console
     from fingerpad.startup import MPI
 
 
@@ -50,7 +50,7 @@ class RunContext:
 
     def console(self) -> AbstractContextManager["Console"]:
         """Return the open console of the run, for a model with MPI; collective."""
-        from fingerpad.results.console import Console
+        from fingerpad.results.terminal import Console
 
         return closing(Console(self.ranks, self.lines, self.bar))  # type: ignore[arg-type]
 

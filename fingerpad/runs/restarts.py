@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from fingerpad.model.finger import Finger
     from fingerpad.model.options import FingerModel
     from fingerpad.model.report import Clock
-    from fingerpad.results.console import Console
+    from fingerpad.results.terminal import Console
     from fingerpad.startup import MPI
     from variational.solvers.continuation import StepFailed
     from variational.state import ContactState
