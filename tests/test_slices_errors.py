@@ -141,15 +141,6 @@ def test_friction_is_exact_without_attraction():
     assert found["f_t"] < 1e-6 < 1e-3 < found["gross_area"] and found["indentation"] > 1e-4
 
 
-def test_file_of_an_earlier_version_has_its_discretisation():
-    """Absolute errors without their parts: those of the mesh alone."""
-    kept_file = json.loads(json.dumps(whole().to_dict()))
-    state = kept_file["states"]["full_slip"]
-    state["error"], more = {"f_t": 0.01 * state["f_t"]}, state.pop("carried")
-    again = WholeFinger.from_dict(kept_file, Slices(count=8))
-    assert more and again.carried == {"full_slip": {errors.MESH: {"f_t": pytest.approx(0.01)}}}
-
-
 def test_estimate_of_a_run_covers_the_traces_of_the_full_model():
     """Each kept estimate, with the largest errors of all."""
     found = json.loads((KEPT / "newtons.json").read_text())["numbers"]["estimates"]
