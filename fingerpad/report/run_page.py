@@ -11,7 +11,7 @@ from fingerpad.reduced.models import MODELS
 from fingerpad.report import page as html
 from fingerpad.report import trust
 from fingerpad.report.frames import frames, section
-from fingerpad.report.trust import MARKS, conditions, head
+from fingerpad.report.trust import conditions, head
 from fingerpad.results.drawing import arrays_of
 from fingerpad.results.over_time import HARMONICS, NOTE
 from fingerpad.results.quantities import PER_LENGTH, PLUS_MINUS, QUANTITIES, Output
@@ -142,7 +142,7 @@ def _newtons(result: Result) -> str:
 def _trust(result: Result) -> str:
     found = trust.findings(result)
     lines = "".join(
-        f'<li class="{each.verdict}"><b>{MARKS[each.verdict]}</b> <span><strong>{html.text(each.what)}.</strong> '
+        f'<li class="{each.verdict}"><b>{html.MARKS[each.verdict]}</b> <span><strong>{html.text(each.what)}.</strong> '
         f"{html.text(each.words)}</span></li>"
         for each in found
     )

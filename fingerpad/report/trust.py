@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 from fingerpad.reduced.cylinder_errors import in_words
 from fingerpad.reduced.models import follows_path
 from fingerpad.report import page as html
+from fingerpad.report.page import BAD, CARE, GOOD
 from fingerpad.results.quantities import cell
 from fingerpad.results.states import LoadResult, called
 from fingerpad.scene.laws import coefficient
@@ -15,9 +16,6 @@ from variational.state import ContactState
 if TYPE_CHECKING:
     from fingerpad.results.result import Result
 
-GOOD, CARE, BAD = "holds", "care", "fails"
-MARKS = {GOOD: "✓ holds", CARE: "! care", BAD: "✗ fails"}
-"""Verdicts as they are shown."""
 _SMALL, _LARGE = 0.02, 0.1
 """Relative errors below which an error is small, and above which the mesh is too coarse for more than a trend."""
 
@@ -259,12 +257,7 @@ def head(result: "Result") -> str:
         number, said = "No contact state was kept", conditions(result)
     kind, words = verdict(findings(result), number.partition(" ± ")[2])
     more = ' <a href="#trust">What is not in it</a>' if kind == GOOD else ""
-    where = "" if result.folder is None else f" · {html.text(result.folder.resolve().name)}"
-    return (
-        f'<header><p class="kind">fingerpad · report of a run{where}</p><h1>{number}</h1>'
-        f'<p class="said">{html.text(said)}</p>'
-        f'<p class="verdict {kind}"><b>{MARKS[kind]}</b> {html.text(words)}{more}</p></header>'
-    )
+    return html.banner("report of a run", result.folder, number, said, kind, html.text(words) + more)
 
 
 def _timed(result: "Result") -> LoadResult | None:

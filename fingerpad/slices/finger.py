@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from fingerpad.results.quantities import FINGER, FRICTION
+from fingerpad.results.quantities import FINGER, FRICTION, head_rows, side_by_side
 from fingerpad.results.states import STATES, WORDS, called
 from fingerpad.scene import Scene, SceneError
 from fingerpad.scene.slices import Slices
@@ -140,15 +140,8 @@ class WholeFinger:
 
     def __str__(self) -> str:
         """Return the text *Whole finger* at the end of a run: the states side by side."""
-        heads = [head.split(" normal") for head in self.heads()]
-        rows = [["", *(head[0] for head in heads)], ["", *("normal" + head[1] if head[1:] else "" for head in heads)]]
-        rows += list(self.rows())
-        widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
-        lines = ["Whole finger, as a sum of slices"]
-        for first, *rest in rows:
-            cells = (cell.rjust(width) for cell, width in zip(rest, widths[1:], strict=True))
-            lines.append("   ".join(["  " + first.ljust(widths[0]), *cells]).rstrip())
-        return "\n".join([*lines, *(f"  {remark}" for remark in self.remarks())])
+        lines = side_by_side([*head_rows(self.heads()), *self.rows()])
+        return "\n".join(["Whole finger, as a sum of slices", *lines, *(f"  {each}" for each in self.remarks())])
 
 
 def in_order(states: Mapping[str, Total]) -> dict[str, Total]:
