@@ -61,20 +61,7 @@ _STRAY = (
     "-fingerpad_ksp_type=\n", "--set=voltage=200 V",
 )  # fmt: skip
 _ODD_FILES = ("/dev/zero", "/dev/null", "/dev/stdout", "/", "none.toml", "n" * 300, "n/" * 3000, "\udcff.toml", "")
-_ODD_FOLDERS = (
-    "out",
-    "a/b/c",
-    "n" * 300,
-    "n/" * 3000,
-    "\udcff",
-    "",
-    "/dev/null",
-    "/proc/1",
-    "file",
-    "file/below",
-    ".",
-    "-o",
-)
+_ODD_FOLDERS = (*"out a/b/c /dev/null /proc/1 file file/below . -o".split(), "n" * 300, "n/" * 3000, "\udcff", "")
 
 
 @dataclass(frozen=True)
@@ -88,7 +75,6 @@ class Mutant:
 
 # -- making them ---------------------------------------------------------------------------------------
 def mutant(seed: int, number: int) -> Mutant:
-    """Return one mutant."""
     chance = random.Random(f"{seed}-{number}")
     file, argv = None, []
     if chance.random() < 0.85:
@@ -288,7 +274,6 @@ def _unready(scene: Scene) -> str:
 
 
 def main(argv: list[str] | None = None) -> int:
-    """Try many mutants; return the exit code."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     for name, default in (("--count", 10000), ("--seed", 1), ("--first", 0)):
         parser.add_argument(name, type=int, default=default)

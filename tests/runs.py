@@ -41,7 +41,6 @@ def followed(scene: Scene, *reports: Any, comm: MPI.Comm = MPI.COMM_WORLD) -> Si
 
 
 def touch(path: Path, *args: Any, **options: Any) -> None:
-    """Leave a picture's file empty."""
     Path(path).touch()
 
 

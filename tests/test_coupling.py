@@ -56,11 +56,9 @@ class Stub:
         self.coupling = Coupling(self, self, closure)
 
     def solve(self, pseudo_transient: bool = False, stop=EXACT, tried: bool = False) -> None:
-        """The formula needs no solve."""
         self.stops.append("pseudo-transient" if tried else stop)
 
     def attempt(self, stop) -> bool:
-        """The formula needs no solve."""
         self.stops.append(stop)
         return not self.lost(float(self.d[0]))
 

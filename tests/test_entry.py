@@ -30,7 +30,6 @@ print(ffcx.options.get_options()["epsilon"], matplotlib.rcParams["lines.linewidt
 
 
 def python(folder: Path, code: str, **environment: str) -> subprocess.CompletedProcess[str]:
-    """Run code in a folder."""
     variables = {**os.environ, "PYTHONPATH": str(ROOT), **environment}
     command = [sys.executable, "-P", "-W", "ignore", "-c", code]
     return subprocess.run(command, cwd=folder, env=variables, capture_output=True, text=True)

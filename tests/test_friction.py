@@ -15,7 +15,7 @@ from tests.cycle import cycle
 from variational.body import Body
 from variational.contact import formulation
 from variational.contact.augmented import AugmentedLagrangian
-from variational.contact.formulation import Formulation, _limit
+from variational.contact.formulation import Formulation
 from variational.contact.friction import CONE_ROUNDOFF, Coulomb, Derjaguin, Friction, law_of
 from variational.contact.nitsche import Nitsche
 from variational.contact.penalty import Penalty
@@ -101,8 +101,6 @@ def test_dissipation_is_the_limit_times_the_way():
 # -- what is no law --------------------------------------------------------------------------------------------
 @dataclass(frozen=True)
 class Formula(Friction):
-    """A law of any formula."""
-
     formula: object
     scale: float = 1.0
 
@@ -156,15 +154,6 @@ def test_what_is_no_coefficient_is_refused(given):
         law_of(given)
 
 
-def test_limit_that_ufl_cannot_hold_is_refused():
-    """NumPy's functions take arrays, so that the law itself is one; the weak form cannot have it."""
-    law = Formula(lambda p: 1e3 * np.tanh(p / 1e3))
-    law.check()
-    with pytest.raises(ValueError, match="the law Formula cannot be put .*; write it with arithmetic, or") as error:
-        _limit(law, ufl.variable(ufl.as_ufl(1.0)))
-    assert "\n" not in str(error.value)
-
-
 def test_interface_takes_a_law_a_coefficient_or_none():
     laws = [Interface(Penalty(1e12, 1e11), given, 1e-6).friction for given in (LAW, 0.25, 1, 0, 0.0, None)]
     assert laws == [LAW, Coulomb(0.25), Coulomb(1.0), None, None, None]
@@ -198,7 +187,6 @@ EPS = Penalty(1e11, 1e10)
 
 
 def slid(law, way: float, formulation: Formulation = EPS) -> Body:
-    """Press a block and slide it to full slip."""
     body = load(MPI.COMM_WORLD, block(WIDTH, WIDTH / 2, WIDTH / 8))
     skin = {tags.STRATUM_CORNEUM: Ogden(86.76e3, -14.53, 0.48)}
     made = Body(body, skin, Interface(formulation, law, 1e-6), force_scale=FORCE, touch_depth=1e-6)

@@ -35,7 +35,6 @@ class Own:
 
     @classmethod
     def of(cls, problem: Problem, mesh_degree: int = 1) -> "Own":
-        """Add both to a problem."""
         slip = fem.Function(problem.surface.history_space)
         strain = fem.Function(fem.functionspace(problem.mesh, ("Discontinuous Lagrange", mesh_degree, (2, 2))))
         step = abs(problem.contact.new_anchor - problem.anchor)

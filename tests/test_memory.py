@@ -86,13 +86,7 @@ def test_mesh_that_needs_too_much_memory_is_refused_when_it_is_made():
         meshed(FingerModel(scene, plan(scene)), MPI.COMM_WORLD)
 
 
-@pytest.mark.parametrize(
-    ("mesh", "key"),
-    [
-        ({"contact": 1e-8}, "contact"),
-        ({"interface": 1e-8}, "interface"),
-    ],
-)
+@pytest.mark.parametrize(("mesh", "key"), [({"contact": 1e-8}, "contact"), ({"interface": 1e-8}, "interface")])
 def test_too_fine_a_mesh(mesh, key):
     """The size that would help most is named, and a larger bound lets the scene pass."""
     with pytest.raises(SceneError, match=f"numerics.memory allows 16 GB: raise it, or make mesh.{key} larger"):

@@ -42,7 +42,6 @@ def block(comm: MPI.Comm = MPI.COMM_WORLD) -> Problem:
 
 
 def deform(problem: Problem, F: np.ndarray) -> None:
-    """Impose x = F X."""
     problem.w.interpolate(lambda x: (F - np.eye(2)) @ x[:2])
 
 

@@ -38,11 +38,9 @@ class History:
         self.commits, self.brought = commits, next(iter(commits))
 
     def git(self, command, *words):
-        """Answer as git does."""
         return "\n".join({"log": [self.brought], "rev-list": self.commits}[command]).encode()
 
     def files(self, commit, paths):
-        """Return the files of a commit in folders or at paths."""
         found = self.commits["new" if commit == "HEAD" else commit]
         return {path: text for path, text in found.items() if path.startswith(tuple(paths))}
 

@@ -51,7 +51,6 @@ def kept_titles(monkeypatch: pytest.MonkeyPatch) -> dict[str, str]:
 
 @pytest.fixture
 def titles(monkeypatch) -> dict[str, str]:
-    """Titles of a run's pictures."""
     return kept_titles(monkeypatch)
 
 

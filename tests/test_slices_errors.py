@@ -19,7 +19,8 @@ from fingerpad.slices.estimate import estimate
 from fingerpad.slices.finger import WholeFinger
 from fingerpad.slices.total import Profile, at_force, profile
 from fingerpad.slices.trace import NAMES, Trace, TraceError, trace
-from tests.test_slices import foundation, kept, kept_state, whole
+from tests.measures import contact_state
+from tests.test_slices import foundation, kept, whole
 from variational.state import Errors
 
 KEPT = Path(__file__).parents[1] / "docs"
@@ -59,7 +60,7 @@ def test_gross_width_is_no_less_than_the_ridges_below_the_first_point():
 def test_repeated_states_are_one_point():
     """Full slip under a constant force repeats itself up to the solvers' tolerances: no slope is made from those."""
     states = [
-        kept_state(f_ext=force, bone_height=-depth, contact_length=depth, ridges_in_contact=1)
+        contact_state(f_ext=force, bone_height=-depth, contact_length=depth, ridges_in_contact=1)
         for force, depth in ((1.0, 1e-4), (1 + 1e-15, 1e-4 + 1e-11), (2.0, 2e-4), (4.0, 4e-4), (4 + 1e-14, 4.00001e-4))
     ]
     of = trace(states, 5e-4)
@@ -71,7 +72,7 @@ def test_repeated_states_are_one_point():
 
 # -- discretisation, interpolation, estimate -------------------------------------------------------------
 def test_discretisation_is_that_of_the_section():
-    state = kept_state(f_t=40.0, error=Errors(f_t=0.4), ridges_in_contact=1, contact_length=1e-3)
+    state = contact_state(f_t=40.0, error=Errors(f_t=0.4), ridges_in_contact=1, contact_length=1e-3)
     assert errors.discretisation(state) == {"f_t": pytest.approx(0.01)}
     assert errors.discretisation(None) == {}
 
