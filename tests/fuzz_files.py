@@ -29,7 +29,7 @@ from fingerpad.measurements import table as measurements
 from fingerpad.scene import SceneError, from_data
 from geometry.mesh import load
 from geometry.profiles import GeometryError
-from geometry.session import session
+from geometry.shape import session
 
 SLOW = 60  # s, of a mutant that hangs; most take some ms
 SIZE = (32, 24)  # pixels of a map, which are squares

@@ -187,7 +187,7 @@ def test_mutants_of_scenes_and_lines(folder):
 
 @pytest.mark.parametrize(
     ("broken", "value"),
-    [("fingerpad.scene.reading._MAX_DEPTH", 10**6), ("fingerpad.model.feasibility.refuse_sizes", lambda *given: None)],
+    [("fingerpad.scene.reading._MAX_DEPTH", 10**6), ("fingerpad.model.options.refuse_sizes", lambda *given: None)],
 )
 @pytest.mark.slow
 def test_what_is_broken_is_found(folder, monkeypatch, broken, value):

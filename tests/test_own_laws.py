@@ -8,7 +8,7 @@ import ufl
 from mpi4py import MPI
 
 import fingerpad as fp
-from fingerpad.model import feasibility
+from fingerpad.model import options
 from fingerpad.model.simulation import Simulation
 from fingerpad.reduced import cylinders
 from fingerpad.runs import full
@@ -98,7 +98,7 @@ def test_modulus_of_the_skin_is_the_given_materials():
 
 def test_rule_of_thumb_takes_a_law():
     """More friction rolls the finger further, by the coefficient at a ridge's pressure."""
-    plain, rough = (feasibility.by_rule(Scene(friction=law)) for law in (Coulomb(0.25), Derjaguin(0.25, 2e4)))
+    plain, rough = (options.by_rule(Scene(friction=law)) for law in (Coulomb(0.25), Derjaguin(0.25, 2e4)))
     assert rough.mesh.touching_half_arc > plain.mesh.touching_half_arc
 
 

@@ -8,7 +8,7 @@ import jsonschema
 import pytest
 
 from fingerpad.cli import main
-from fingerpad.model.feasibility import check
+from fingerpad.model.options import check
 from fingerpad.scene import Load, Scene, SceneError, from_data
 from fingerpad.scene import scene as scenes
 from fingerpad.scene.reading import model_of

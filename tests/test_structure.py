@@ -60,7 +60,7 @@ def test_each_module_is_imported_by_a_quick_test():
             "fingerpad.report.run_page",
             "fingerpad.report.sweep_page",
             "fingerpad.results.drawing",
-            "fingerpad.runs.one",
+            "fingerpad.runs.batch",
         ),
     ]
     code = "\n".join(["import sys", *(f"import {name}" for name in imports), "print(*sys.modules)"])
