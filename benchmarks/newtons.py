@@ -24,7 +24,7 @@ from fingerpad.reduced import cylinders
 from fingerpad.results import style
 from fingerpad.results.states import WORDS
 from fingerpad.scene import Scene
-from fingerpad.scene.slices import Slices
+from fingerpad.scene.parameters import Slices
 from fingerpad.slices import estimate, traces
 from fingerpad.slices.profile import Profile, profile
 from fingerpad.slices.total import Total, at_force, at_indentation

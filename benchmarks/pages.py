@@ -48,7 +48,7 @@ _PACKAGES = ("geometry", "variational", "fingerpad")
 _WITHOUT_NUMBERS = (  # these start, read, refuse, order runs, write and print
     *(f"fingerpad/{wing}/" for wing in ("cli", "results", "report", "calculator", "runs")),
     *("fingerpad/startup.py", "fingerpad/installed.py", "geometry/meshfile.py", "fingerpad/model/cost.py"),
-    *("fingerpad/scene/contradictions.py", "fingerpad/scene/messages.py"),
+    *("fingerpad/scene/remarks.py", "fingerpad/scene/messages.py"),
 )
 _REDUCED = "fingerpad/reduced"  # no full run uses it: part of the programs that import it
 _SHARED = ("runs", "limits", "measure", "explicit")  # modules of benchmarks/ that make numbers of several pages

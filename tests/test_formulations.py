@@ -13,8 +13,8 @@ from fingerpad.cli.check import _model
 from fingerpad.model.feasibility import by_rule
 from fingerpad.model.options import FingerModel, plan
 from fingerpad.scene import SceneError, from_data
-from fingerpad.scene.laws import used
 from fingerpad.scene.parameters import FORMULATIONS
+from fingerpad.scene.remarks import used
 from geometry.bodies import block, ridge
 from geometry.mesh import load
 from tests.test_contact import HEIGHT, MU_F, TOLERANCE, WIDTH, confined_stress, over

@@ -4,7 +4,7 @@ import pytest
 
 from fingerpad.model import feasibility
 from fingerpad.reduced import cylinders
-from fingerpad.scene import Scene, SceneError, laws
+from fingerpad.scene import Scene, SceneError, remarks
 from tests.test_laws import DERJAGUIN, OWN, Held
 from variational.contact.friction import Coulomb, Derjaguin
 from variational.materials.neo_hooke import NeoHooke
@@ -39,7 +39,7 @@ def test_cylinders_know_the_default_fingers_lengths_alone():
 def test_modulus_of_the_skin_is_the_given_materials():
     """The same solid given as a key and as an object has the same modulus. Tolerance: roundoff."""
     own = Scene(materials={"stratum_corneum": Ogden(86.76e3, -14.53, 0.48)})
-    assert laws.skin_modulus(own) == pytest.approx(laws.skin_modulus(Scene()), rel=1e-12)
+    assert remarks.skin_modulus(own) == pytest.approx(remarks.skin_modulus(Scene()), rel=1e-12)
 
 
 def test_rule_of_thumb_takes_a_law():

@@ -4,7 +4,7 @@ import subprocess
 import sys
 from pathlib import Path
 
-from fingerpad.cli import COMMANDS
+from fingerpad.cli import _BESIDE, COMMANDS
 from tests.conftest import LONGER
 
 ROOT = Path(__file__).parents[1]
@@ -23,7 +23,7 @@ def test_each_module_is_imported_by_a_quick_test():
     names = {".".join(file.with_suffix("").parts) for file in files if file.stem != "__main__"}
     imports = [
         *(f"tests.{name}" for name in QUICK),
-        *(f"fingerpad.cli.{name.replace('-', '_')}" for name in [*COMMANDS, "plot", "section"]),
+        *(f"fingerpad.cli.{_BESIDE.get(name, name)}" for name in COMMANDS),
         *(
             "fingerpad.report.run_page",
             "fingerpad.report.sweep_page",

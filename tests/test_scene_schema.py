@@ -8,12 +8,12 @@ import jsonschema
 import pytest
 
 from fingerpad.cli import main
-from fingerpad.scene import SceneError, from_data
-from fingerpad.scene.schema import DIALECT, schema
+from fingerpad.scene import Scene, SceneError, from_data
+from fingerpad.scene.keys import DIALECT, schema
 
 ROOT = Path(__file__).parents[1]
 FILE = ROOT / "docs" / "scene.schema.json"
-CHECK = jsonschema.Draft202012Validator(schema())
+CHECK = jsonschema.Draft202012Validator(schema(Scene))
 SCENES = sorted((ROOT / "demos" / "scenes").glob("*.toml"))
 WRONG = [
     {"f_exts": 50.0},
@@ -40,8 +40,8 @@ def test_file_is_the_generated_one(capsys):
 
 
 def test_schema_is_of_its_dialect():
-    assert schema()["$schema"] == DIALECT
-    jsonschema.Draft202012Validator.check_schema(schema())
+    assert schema(Scene)["$schema"] == DIALECT
+    jsonschema.Draft202012Validator.check_schema(schema(Scene))
 
 
 @pytest.mark.parametrize("scene", SCENES, ids=lambda path: path.stem)
@@ -64,7 +64,7 @@ def test_slip_is_refused_by_both(data):
 
 def test_every_key_has_a_description():
     """Editors show it beside the key; tables have that of their model."""
-    found = schema()
+    found = schema(Scene)
     parts = [found, *found["$defs"].values(), *found["$defs"]["Contact"]["anyOf"]]
     keys = [item for part in parts for item in part.get("properties", {}).items()]
     bare = [key for key, value in keys if not {"description", "$ref"} & {*value}]

@@ -27,7 +27,7 @@ from fingerpad.model import cautions
 from fingerpad.model.gather import Nodes, Points
 from fingerpad.model.state import contact_state, force_error, refuse_strained, steady, step_record
 from fingerpad.results.states import full_slip
-from fingerpad.scene.contradictions import refuse_thickness
+from fingerpad.scene.materials import refuse_thickness
 from fingerpad.startup import MPI
 from geometry.mesh import TaggedMesh, load
 from geometry.meshfile import file

@@ -7,7 +7,7 @@ from fingerpad.report import trust
 from fingerpad.results.quantities import cell
 from fingerpad.results.result import Result
 from fingerpad.results.states import LoadResult, called
-from fingerpad.scene.laws import coefficient
+from fingerpad.scene.remarks import coefficient
 
 MARKS = {trust.GOOD: "✓ holds", trust.CARE: "! care", trust.BAD: "✗ fails"}
 """Verdicts as they are shown."""

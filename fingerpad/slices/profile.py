@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,7 +11,9 @@ from scipy.interpolate import PchipInterpolator
 from scipy.optimize import brentq
 
 from fingerpad.scene.messages import SceneError
-from fingerpad.scene.slices import Slices
+
+if TYPE_CHECKING:
+    from fingerpad.scene.parameters import Slices
 
 Array = NDArray[np.floating[Any]]
 _SEARCHED = 2001  # places along the finger between which ends of contact are looked for
@@ -102,7 +104,7 @@ class Profile:
         return float(brentq(lambda z: delta - float(self.rise(z)), a, b, xtol=1e-15))
 
 
-def profile(slices: Slices) -> Profile:
+def profile(slices: "Slices") -> Profile:
     """Return the finger that a scene's table describes; tables are interpolated monotonically, by cubics."""
     places = None if slices.z is None else np.array(slices.z)
     width = np.ones_like if slices.width is None else PchipInterpolator(places, slices.width)
