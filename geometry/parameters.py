@@ -115,7 +115,7 @@ class MeshSize(Table):
     of the intermediate ridges."""
     touching_half_arc: Annotated[Finite, within(1e-6, 0.2, "m")] | None = None
     """Arc length on either side of the centre within which ridges can touch. By default a rule of thumb gives it
-    (:mod:`fingerpad.model.feasibility`). A run that finds contact at the end of this arc starts again with more
+    (:mod:`fingerpad.model.options`). A run that finds contact at the end of this arc starts again with more
     ridges."""
     touching_fraction: Annotated[Finite, within(1e-3, 1)] = 0.4
     """Part of a ridge's period, around its crest, that can touch. Grooves have coarser facets."""

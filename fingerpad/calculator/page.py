@@ -27,7 +27,7 @@ from fingerpad.scene.remarks import LEAKAGE, skin_modulus
 from fingerpad.slices import traces
 from geometry.parameters import Fingertip, MeshSize
 from geometry.units import Range
-from variational.attraction.insulator import VACUUM_PERMITTIVITY
+from variational.attraction.electroadhesion import VACUUM_PERMITTIVITY
 from variational.contact.friction import Coulomb
 
 _TABLE = (20.0, 50.0, 75.0, 100.0, 150.0), (0.0, 50.0, 100.0, 150.0, 200.0)  # N/m, V

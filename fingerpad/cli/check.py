@@ -6,11 +6,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from fingerpad.cli.arguments import Parser, echo, scene_of
-from fingerpad.model.feasibility import by_rule, memory, refuse_mesh, unknowns
-from fingerpad.model.options import FingerModel, ModelOptions, plan
+from fingerpad.model.options import FingerModel, ModelOptions, by_rule, memory, plan, refuse_mesh, unknowns
 from fingerpad.reduced.cylinder_errors import outside, where
 from fingerpad.results.files import check_folder
-from fingerpad.results.pace import about
+from fingerpad.results.terminal import about
 from fingerpad.scene import Load, Scene, SceneError
 from fingerpad.scene.remarks import leakage, remarks, used
 from geometry.profiles import GeometryError

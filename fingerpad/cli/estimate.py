@@ -16,7 +16,7 @@ from fingerpad.runs.solve import solved
 from fingerpad.scene import Scene
 from fingerpad.scene.messages import SceneError
 from fingerpad.scene.remarks import LEAKAGE, coefficient, remarks, used
-from fingerpad.slices import solid
+from fingerpad.slices import errors
 
 _SECTION = ("f_ext", "voltage", "mu_app", "f_t", "f_electrostatic", "contact_length", "ridges_in_contact")
 _COLUMNS = tuple(QUANTITIES[key] for key in _SECTION)
@@ -63,7 +63,7 @@ def main(argv: Sequence[str]) -> int:
     states = [row["state"] for row in rows if "state" in row]
     limits = (f"{text[0].upper()}{text[1:]}." for text in on_states(states, scene.closure()))
     said = (*([LEAKAGE] if any(voltages) else []), *(f"{text}." for text in remarks(scene)), *limits)
-    notes = [PER_LENGTH] if key == "f_ext" else solid.remarks(forces)
+    notes = [PER_LENGTH] if key == "f_ext" else errors.remarks(forces)
     for note in (*notes, *_known(scene, rows), *said, *lost):
         echo(note)
     output.write_files(args, columns, rows, draw)

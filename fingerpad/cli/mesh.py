@@ -12,8 +12,7 @@ from numpy.typing import NDArray
 
 from fingerpad.cli import output
 from fingerpad.cli.arguments import PICTURE, Kind, Parser, echo, scene_of
-from fingerpad.model.feasibility import by_rule
-from fingerpad.model.options import ModelOptions
+from fingerpad.model.options import ModelOptions, by_rule
 from fingerpad.scene import Scene
 from fingerpad.scene.messages import SceneError
 from geometry import tags
@@ -85,7 +84,7 @@ def meshed(scene: Scene, receptors: bool, half: bool) -> Iterator[Any]:
     import gmsh
 
     from geometry import fingertip
-    from geometry.session import session
+    from geometry.shape import session
 
     scene = by_rule(scene)
     with session("finger"):
@@ -116,7 +115,7 @@ def _of_file(file: Path) -> Section:
     import gmsh
 
     from geometry import meshfile
-    from geometry.session import session
+    from geometry.shape import session
 
     try:
         with session("file"):

@@ -17,7 +17,7 @@ from fingerpad.scene.messages import show
 from geometry import tags
 from geometry.parameters import Fingertip
 from geometry.units import Finite, Table, within
-from variational.attraction.insulator import insulator_thickness
+from variational.attraction.electroadhesion import insulator_thickness
 from variational.contact.friction import Coulomb, Derjaguin, Friction
 from variational.materials.material import Material
 from variational.materials.neo_hooke import NeoHooke

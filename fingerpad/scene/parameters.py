@@ -227,7 +227,7 @@ class Numerics(Table):
     step_scale: Annotated[Finite, within(1e-3, 10.0)] = 1.0
     """Factor on the largest steps of force, voltage and displacement."""
     memory: Annotated[Finite, within(1e8, 1e15, "B")] = 16e9
-    """Most memory (bytes) of all ranks together, by :mod:`fingerpad.model.feasibility`. A larger scene
+    """Most memory (bytes) of all ranks together, by :mod:`fingerpad.model.options`. A larger scene
     is refused before meshing. The default fits a machine of 24 GB."""
 
     @model_validator(mode="after")
