@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     import pandas as pd
     from matplotlib.axes import Axes
 
-    from fingerpad.measurements.computed import Computed
+    from fingerpad.measurements.compare import Computed
 
 _MODELS = """
     fingerpad compare --set voltage=100
@@ -149,10 +149,10 @@ def compare_data(argv: Sequence[str]) -> int:
     parser.add_argument("--run", "--sweep", nargs="+", type=path, required=True, **where)
     output.add_files(parser, _COLUMNS, "picture of measured and computed values", "--out")
     args = parser.read(argv)
-    from fingerpad.measurements import compare, computed, table  # pandas
+    from fingerpad.measurements import compare, table  # pandas
 
     measured = [table.read(file, _mapping(args.column), args.state) for file in args.tables]
-    known = [computed.computed(args.results, each) for each in measured]
+    known = [compare.computed(args.results, each) for each in measured]
     compared = [compare.beside(*pair) for pair in zip(measured, known, strict=True)]
     echo("\n\n".join("\n".join(_lines(each)) for each in compared))
     rows = [row for each in compared for row in _rows(each)]
@@ -224,7 +224,7 @@ def _draw(file: Path, compared: Sequence["pd.DataFrame"], known: Sequence["Compu
 
 
 def _panel(ax: "Axes", rows: "pd.DataFrame", known: "Computed") -> None:
-    from fingerpad.measurements.computed import CLOSE
+    from fingerpad.measurements.compare import CLOSE
     from fingerpad.results import style
 
     about, points = rows.attrs, known.points
