@@ -64,7 +64,7 @@ def main(argv: Sequence[str]) -> int:
     parser.add_argument("--contact-length", type=quantity, metavar="M", help="cylinders: the length in contact, 1.6 mm")
     parser.add_argument("--ridges", type=positive, metavar="N", help="cylinders: on so many ridges")
     parser.add_argument("--run", type=path, metavar="DIR", help="cylinders: contact lengths of this full run")
-    args, petsc = parser.read_with_petsc(argv)
+    args = parser.read(argv, petsc=True)
     given = [name for name in ("contact_length", "ridges", "run") if getattr(args, name) is not None]
     if given and Cylinders.name not in args.model:
         raise SceneError(f"--{given[0].replace('_', '-')} is given without the model cylinders, which reads it; add it")
@@ -73,7 +73,7 @@ def main(argv: Sequence[str]) -> int:
     models = MODELS | {Cylinders.name: Cylinders(_footprint(scene, args.contact_length, args.ridges, args.run))}
     from fingerpad.startup import start
 
-    start(petsc)
+    start(args.petsc)
     import fingerpad.runs.full  # noqa: F401  # before Ctrl-C raises
 
     def answer_or_refusal(model: Model) -> Result:
