@@ -23,7 +23,7 @@ from benchmarks.runs import FORCES, VOLTAGES, Run, trace
 from fingerpad.reduced import cylinders
 from fingerpad.results import style
 from fingerpad.scene import Scene
-from fingerpad.scene.slices import Slices
+from fingerpad.scene.parameters import Slices
 from fingerpad.slices import errors, estimate, traces
 from fingerpad.slices.total import Profile, Total, at_force, at_indentation, profile
 from fingerpad.slices.trace import Trace

@@ -24,7 +24,7 @@ import scipy.io
 from mpi4py import MPI
 
 import geometry
-from fingerpad.cli import refuse, topography
+from fingerpad.cli import refuse, roughness
 from fingerpad.measurements import table as measurements
 from fingerpad.scene import SceneError, from_data
 from geometry.mesh import load
@@ -178,7 +178,7 @@ def _read(path: Path) -> int:
             unit, size = ["--unit", "um"], ["--size", "32 um", "24 um"]
             given = {ending: unit + size for ending in (".npy", ".csv", ".xyz")}
             given |= {ending: unit + size for ending in (".mat", ".npz")}
-            return topography.main([str(path), *given.get(path.suffix, [])])
+            return roughness.topography([str(path), *given.get(path.suffix, [])])
     except (SceneError, GeometryError) as error:
         return refuse(str(error))
     return 0

@@ -8,7 +8,8 @@ import pytest
 
 from fingerpad.scene import Scene, SceneError, override
 from fingerpad.scene import scene as scenes
-from fingerpad.scene.parameters import Contact, Load
+from fingerpad.scene.loads import Load
+from fingerpad.scene.parameters import Contact
 from geometry.parameters import Fingertip, MeshSize
 from tests import fuzz_files
 from tests.fuzz import bad_refusal, fault, mutant, prepare

@@ -12,8 +12,8 @@ from mpi4py import MPI
 from fingerpad.cli.check import _model
 from fingerpad.model.options import FingerModel, by_rule, plan
 from fingerpad.scene import from_data
-from fingerpad.scene.laws import used
 from fingerpad.scene.parameters import FORMULATIONS
+from fingerpad.scene.remarks import used
 from geometry.bodies import block, ridge
 from geometry.mesh import load
 from tests.test_contact import HEIGHT, MU_F, TOLERANCE, WIDTH, confined_stress, over

@@ -13,7 +13,7 @@ from fingerpad.model.simulation import Simulation
 from fingerpad.reduced import cylinders
 from fingerpad.runs import full
 from fingerpad.runs.context import RunContext
-from fingerpad.scene import Scene, SceneError, from_data, laws
+from fingerpad.scene import Scene, SceneError, from_data, remarks
 from geometry import tags
 from tests.measures import rows_of
 from tests.runs import followed
@@ -93,7 +93,7 @@ def test_cylinders_know_the_default_fingers_lengths_alone():
 def test_modulus_of_the_skin_is_the_given_materials():
     """The same solid given as a key and as an object has the same modulus. Tolerance: roundoff."""
     own = Scene(materials={"stratum_corneum": Ogden(86.76e3, -14.53, 0.48)})
-    assert laws.skin_modulus(own) == pytest.approx(laws.skin_modulus(Scene()), rel=1e-12)
+    assert remarks.skin_modulus(own) == pytest.approx(remarks.skin_modulus(Scene()), rel=1e-12)
 
 
 def test_rule_of_thumb_takes_a_law():

@@ -9,8 +9,8 @@ import pytest
 from numpy.testing import assert_allclose
 
 from fingerpad.results.finger_picture import footprint
-from fingerpad.scene import Scene, SceneError, override
-from fingerpad.scene.slices import Slices
+from fingerpad.scene import Scene, SceneError
+from fingerpad.scene.parameters import Slices
 from fingerpad.slices.errors import MESH
 from fingerpad.slices.finger import WholeFinger
 from fingerpad.slices.total import BeyondTrace, Profile, at_force, at_indentation, profile
@@ -264,9 +264,3 @@ def test_forces_are_refused(force, words):
 def test_force_as_text():
     for force in ("500 mN", 0.5, np.float64(0.5), pint.UnitRegistry()("500 mN")):
         assert Scene(force=force).force == 0.5
-
-
-def test_default_table_changes_no_parameters():
-    """Runs kept by their parameters are found again; another table is one of them."""
-    assert "slices" not in Scene().parameters()
-    assert Scene(slices=dict([override("radius=0.02")])).parameters()["slices"]["radius"] == 0.02

@@ -13,7 +13,7 @@ from fingerpad.report.run_page import page
 from fingerpad.results.dataset import _finger as finger
 from fingerpad.results.states import STATES
 from fingerpad.runs.sweep_columns import row
-from fingerpad.scene.slices import Slices
+from fingerpad.scene.parameters import Slices
 from fingerpad.slices import errors
 from fingerpad.slices.estimate import estimate
 from fingerpad.slices.finger import WholeFinger

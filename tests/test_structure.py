@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from benchmarks import structure
-from fingerpad.cli import COMMANDS
+from fingerpad.cli import _BESIDE, COMMANDS
 
 FILES = {name: path for folder in structure.PRODUCT for name, path in structure.modules(folder).items()}
 
@@ -55,7 +55,7 @@ def test_each_module_is_imported_by_a_quick_test():
     names = {".".join(file.with_suffix("").parts) for file in files if file.stem != "__main__"}
     imports = [
         *(f"tests.{name}" for name in QUICK),
-        *(f"fingerpad.cli.{name.replace('-', '_')}" for name in [*COMMANDS, "plot", "section"]),
+        *(f"fingerpad.cli.{_BESIDE.get(name, name)}" for name in COMMANDS),
         *(
             "fingerpad.report.run_page",
             "fingerpad.report.sweep_page",

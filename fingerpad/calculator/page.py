@@ -21,11 +21,9 @@ from fingerpad.reduced.model import STATES
 from fingerpad.results.quantities import PER_LENGTH
 from fingerpad.results.states import WORDS
 from fingerpad.scene import Scene
-from fingerpad.scene.contradictions import LARGEST_GAP
 from fingerpad.scene.law_keys import keys_of
-from fingerpad.scene.laws import skin_modulus
-from fingerpad.scene.materials import BEARING_AREA
-from fingerpad.scene.remarks import LEAKAGE
+from fingerpad.scene.materials import BEARING_AREA, LARGEST_GAP
+from fingerpad.scene.remarks import LEAKAGE, skin_modulus
 from fingerpad.slices import traces
 from geometry.parameters import Fingertip, MeshSize
 from geometry.units import Range

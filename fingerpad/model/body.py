@@ -26,7 +26,7 @@ import fingerpad.startup  # noqa: F401
 from fingerpad.model import cautions
 from fingerpad.model.state import contact_state, force_error, refuse_strained, steady, step_record
 from fingerpad.results.states import full_slip
-from fingerpad.scene.contradictions import refuse_thickness
+from fingerpad.scene.materials import refuse_thickness
 from fingerpad.startup import MPI
 from geometry.mesh import TaggedMesh, load
 from geometry.meshfile import file

@@ -36,10 +36,9 @@ from fingerpad.results.folder import difference
 from fingerpad.results.result import Result
 from fingerpad.results.states import WORDS
 from fingerpad.scene import Scene, SceneError
-from fingerpad.scene.laws import skin_modulus, used
 from fingerpad.scene.messages import show
 from fingerpad.scene.reading import DEFAULT_MODEL
-from fingerpad.scene.remarks import leakage, remarks
+from fingerpad.scene.remarks import leakage, remarks, skin_modulus, used
 from geometry.parameters import Fingertip
 from geometry.profiles import Profiles
 from variational.attraction.cylinder import Cylinder, NoEquilibriumError, RidgeState, hertz_modulus

@@ -24,9 +24,8 @@ from fingerpad.results.terminal import Console, in_words
 from fingerpad.results.writing import Writer
 from fingerpad.runs.restarts import Restarts, finer, hint
 from fingerpad.scene import Scene
-from fingerpad.scene.laws import coefficient, used
 from fingerpad.scene.reading import DEFAULT_MODEL
-from fingerpad.scene.remarks import leakage, remarks
+from fingerpad.scene.remarks import coefficient, leakage, remarks, used
 from fingerpad.slices.estimate import with_newtons
 from fingerpad.startup import MPI
 from geometry.profiles import GeometryError

@@ -21,8 +21,8 @@ from fingerpad.runs.attempt import Attempt, Session
 from fingerpad.runs.context import RunContext
 from fingerpad.runs.restarts import Restarts
 from fingerpad.scene import Scene, SceneError
-from fingerpad.scene.laws import coefficient
 from fingerpad.scene.reading import DEFAULT_MODEL
+from fingerpad.scene.remarks import coefficient
 from fingerpad.startup import MPI
 from geometry.parameters import MeshSize
 from geometry.profiles import GeometryError

@@ -15,8 +15,8 @@ import numpy as np
 
 from fingerpad.reduced import cylinders
 from fingerpad.scene import Scene
-from fingerpad.scene.laws import coefficient
 from fingerpad.scene.messages import SceneError
+from fingerpad.scene.remarks import coefficient
 from fingerpad.slices import errors
 from fingerpad.slices.finger import WholeFinger, in_order
 from fingerpad.slices.total import at_force, at_indentation, deepest, profile

@@ -10,7 +10,7 @@ import numpy as np
 from fingerpad.results.quantities import FINGER, FRICTION, head_rows, side_by_side
 from fingerpad.results.states import STATES, WORDS, called
 from fingerpad.scene import Scene, SceneError
-from fingerpad.scene.slices import Slices
+from fingerpad.scene.parameters import Slices
 from fingerpad.slices import errors
 from fingerpad.slices.total import Total, at_force, profile
 from fingerpad.slices.trace import NAMES, Trace

@@ -11,7 +11,7 @@ from scipy.interpolate import PchipInterpolator
 from scipy.optimize import brentq
 
 from fingerpad.scene.messages import SceneError
-from fingerpad.scene.slices import Slices
+from fingerpad.scene.parameters import Slices
 from fingerpad.slices.trace import NAMES, Trace
 
 Array = NDArray[np.float64]

@@ -17,7 +17,7 @@ from fingerpad.results.result import Result
 from fingerpad.results.states import WORDS
 from fingerpad.scene import Scene
 from fingerpad.scene.messages import SceneError
-from fingerpad.scene.slices import LINE, POINT, POWER
+from fingerpad.scene.parameters import LINE, POINT, POWER
 from fingerpad.slices import errors
 from fingerpad.slices.finger import WholeFinger, in_order
 from fingerpad.slices.total import BeyondTrace, Profile, Total, at_force, profile
