@@ -23,7 +23,7 @@ from benchmarks import harness, limits
 from benchmarks.errors import DEFAULT, LEVELS, STATES, parted
 from benchmarks.limits import Limit
 from benchmarks.verification.normal_contact import E_STAR, HALF_WIDTH, RADIUS, SPAN, press
-from fingerpad.model.feasibility import by_rule, check
+from fingerpad.model.options import by_rule, check
 from fingerpad.richardson import MORE, ONCE, MeshParameter
 from fingerpad.runs.batch import Summary
 from fingerpad.scene import Scene, SceneError, load, start

@@ -21,7 +21,7 @@ from benchmarks import errors, harness
 from benchmarks.errors import STATES, parted
 from benchmarks.limits import Limit
 from benchmarks.runs import finished
-from fingerpad.model.feasibility import by_rule
+from fingerpad.model.options import by_rule
 from fingerpad.results import style
 from fingerpad.scene import Scene, load
 

@@ -24,12 +24,12 @@ import scipy.io
 from mpi4py import MPI
 
 import geometry
-from fingerpad.cli import refuse, topography
+from fingerpad.cli import refuse, roughness
 from fingerpad.measurements import table as measurements
 from fingerpad.scene import SceneError, from_data
 from geometry.mesh import load
 from geometry.profiles import GeometryError
-from geometry.session import session
+from geometry.shape import session
 
 SLOW = 60  # s, of a mutant that hangs; most take some ms
 SIZE = (32, 24)  # pixels of a map, which are squares
@@ -177,7 +177,7 @@ def _read(path: Path) -> int:
         else:
             unit, size = ["--unit", "um"], ["--size", "32 um", "24 um"]
             given = {ending: unit + size for ending in (".npy", ".csv", ".xyz", ".mat", ".npz")}
-            return topography.main([str(path), *given.get(path.suffix, [])])
+            return roughness.topography([str(path), *given.get(path.suffix, [])])
     except (SceneError, GeometryError) as error:
         return refuse(str(error))
     return 0

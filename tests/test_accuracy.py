@@ -11,12 +11,10 @@ from mpi4py import MPI
 
 from fingerpad.accuracy import solves
 from fingerpad.accuracy.refinement import Refinement, with_errors
-from fingerpad.accuracy.rigid_screen import ORDER
-from fingerpad.accuracy.solves import Solve, State
-from fingerpad.model.feasibility import by_rule
-from fingerpad.model.options import FingerModel, plan
+from fingerpad.accuracy.solves import Solve, Solves, State
+from fingerpad.model.options import FingerModel, by_rule, plan
 from fingerpad.results.interrupt import Interrupted
-from fingerpad.richardson import MORE, ONCE
+from fingerpad.richardson import MORE, ONCE, ORDER
 from fingerpad.runs import restarts
 from fingerpad.scene import from_data
 from tests.measures import contact_state
@@ -25,7 +23,7 @@ from tests.small_finger import NINE
 from variational.contact.penalty import Penalty
 from variational.solvers.continuation import StepFailed
 from variational.solvers.equations import Control
-from variational.solvers.failure import NotConverged
+from variational.solvers.outcome import NotConverged
 from variational.solvers.transfer import StateSnapshot
 
 pytestmark = pytest.mark.slow
@@ -62,7 +60,7 @@ def known(model, states, comm, views=False) -> Solve:
 
 
 def refinement(model, path, show=lambda text: None, pause=lambda: None) -> Refinement:
-    return Refinement(model, path, MPI.COMM_SELF, show, pause)
+    return Refinement(Solves(model, path, MPI.COMM_SELF, show, pause))
 
 
 def search(monkeypatch, asked, solve=known, pause=lambda: None) -> Refinement:

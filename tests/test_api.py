@@ -19,7 +19,7 @@ from tests.measures import contact_state
 from tests.runs import no_pictures
 from tests.small_finger import NINE
 from variational.solvers.continuation import StepFailed
-from variational.solvers.failure import NotConverged
+from variational.solvers.outcome import NotConverged
 from variational.state import CONDITIONS, RESULTS
 
 pytestmark = pytest.mark.slow

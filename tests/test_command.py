@@ -16,7 +16,7 @@ from fingerpad.cli import run as run_command
 from fingerpad.cli.arguments import Parser, scene_of, separate
 from fingerpad.scene import Scene, SceneError
 from tests.commands import ROOT, python, refused
-from variational.roughness.selfaffine import SelfAffine
+from variational.roughness.spectrum import SelfAffine
 
 SCENES = ROOT / "demos/scenes"
 

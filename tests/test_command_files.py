@@ -10,9 +10,8 @@ from mpi4py import MPI
 
 from fingerpad.cli import main
 from fingerpad.cli.arguments import PICTURE, Kind, Parser
-from fingerpad.model.feasibility import by_rule, memory, unknowns
 from fingerpad.model.finger import meshed
-from fingerpad.model.options import FingerModel, plan
+from fingerpad.model.options import FingerModel, by_rule, memory, plan, unknowns
 from fingerpad.scene import Scene, load
 from fingerpad.scene.messages import SceneError
 from fingerpad.scene.reading import override

@@ -4,7 +4,7 @@ import shlex
 
 import pytest
 
-from fingerpad.cli import main, microscale, ranges, sweep
+from fingerpad.cli import main, ranges, roughness, sweep
 from fingerpad.reduced import cylinders
 from fingerpad.runs.sweep import sweep as run_sweep
 from fingerpad.scene import Scene, from_data, keys, load
@@ -68,7 +68,7 @@ def test_microscale_table_is_the_closure():
     """External pressure is that of Eq. 9, attraction that across the equivalent air gap (Eq. 12), to roundoff."""
     scene = Scene()
     law = scene.closure()
-    for row in microscale.table(scene, [100.0, 200.0], [5e3, 5e4]):
+    for row in roughness.table(scene, [100.0, 200.0], [5e3, 5e4]):
         assert row["p_ext"] == pytest.approx(float(law.external_pressure(row["u_bar"], row["voltage"])), rel=1e-9)
         across = 8.854e-12 * row["voltage"] ** 2 / 2 / (scene.h_0 + row["d_eq"]) ** 2
         assert row["p_el"] == pytest.approx(across, rel=1e-9)

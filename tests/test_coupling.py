@@ -29,10 +29,9 @@ from variational.roughness.bam import BearingArea
 from variational.roughness.closure import AirGap, Closure
 from variational.solvers.continuation import Target
 from variational.solvers.coupling import Coupling
-from variational.solvers.failure import NotConverged
 from variational.solvers.iteration import EXACT
+from variational.solvers.outcome import NotConverged, Timings
 from variational.solvers.secant import Secants
-from variational.solvers.timing import Timings
 
 H_0, EPS_0, FOLD_VOLTAGE = 0.514e-6, 8.854e-12, 200.0
 CENTRE = 2e-6  # m

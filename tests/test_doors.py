@@ -8,7 +8,8 @@ import pytest
 
 from fingerpad.scene import Scene, SceneError, override
 from fingerpad.scene import scene as scenes
-from fingerpad.scene.parameters import Contact, Load
+from fingerpad.scene.loads import Load
+from fingerpad.scene.parameters import Contact
 from geometry.parameters import Fingertip, MeshSize
 from tests import fuzz_files
 from tests.fuzz import bad_refusal, fault, mutant, prepare
@@ -187,7 +188,7 @@ def test_mutants_of_scenes_and_lines(folder):
 
 @pytest.mark.parametrize(
     ("broken", "value"),
-    [("fingerpad.scene.reading._MAX_DEPTH", 10**6), ("fingerpad.model.feasibility.refuse_sizes", lambda *given: None)],
+    [("fingerpad.scene.reading._MAX_DEPTH", 10**6), ("fingerpad.model.options.refuse_sizes", lambda *given: None)],
 )
 @pytest.mark.slow
 def test_what_is_broken_is_found(folder, monkeypatch, broken, value):

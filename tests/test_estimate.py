@@ -5,8 +5,8 @@ import pytest
 
 from benchmarks.errors import stiffer
 from fingerpad.accuracy import solves
-from fingerpad.accuracy.rigid_screen import ORDER, over_stiffer, rigid
-from fingerpad.richardson import MORE, ONCE, MeshParameter, errors, plus_minus, to_refine
+from fingerpad.accuracy.solves import over_stiffer
+from fingerpad.richardson import MORE, ONCE, ORDER, MeshParameter, errors, plus_minus, rigid, to_refine
 from fingerpad.scene import SceneError, from_data
 from variational.contact.penalty import Penalty
 from variational.solvers.equations import Control

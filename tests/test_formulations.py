@@ -10,11 +10,10 @@ from ffcx.naming import compute_signature
 from mpi4py import MPI
 
 from fingerpad.cli.check import _model
-from fingerpad.model.feasibility import by_rule
-from fingerpad.model.options import FingerModel, plan
+from fingerpad.model.options import FingerModel, by_rule, plan
 from fingerpad.scene import from_data
-from fingerpad.scene.laws import used
 from fingerpad.scene.parameters import FORMULATIONS
+from fingerpad.scene.remarks import used
 from geometry.bodies import block, ridge
 from geometry.mesh import load
 from tests.test_contact import HEIGHT, MU_F, TOLERANCE, WIDTH, confined_stress, over
@@ -23,7 +22,7 @@ from variational.contact.formulation import Formulation, Springs
 from variational.contact.nitsche import Nitsche
 from variational.contact.penalty import Penalty
 from variational.solvers.continuation import Continuation, StepFailed, Target
-from variational.solvers.failure import NotConverged
+from variational.solvers.outcome import NotConverged
 
 pytestmark = [pytest.mark.mpi, pytest.mark.slow]
 NITSCHE = [Nitsche(10.0, 0), Nitsche(100.0, 1), Nitsche(10.0, -1)]

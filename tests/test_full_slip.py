@@ -7,7 +7,7 @@ import pytest
 from mpi4py import MPI
 
 from fingerpad.accuracy.solves import StateRecorder
-from fingerpad.model.stability import FullSlip
+from fingerpad.model.checks import FullSlip
 from fingerpad.scene import from_data
 from geometry.bodies import block
 from geometry.mesh import load
@@ -18,8 +18,8 @@ from tests.test_contact import HEIGHT, WIDTH, over
 from variational.contact.augmented import AugmentedLagrangian
 from variational.contact.nitsche import Nitsche
 from variational.roughness.bam import BearingArea
+from variational.solvers.accepted import return_to_onset
 from variational.solvers.continuation import Target
-from variational.solvers.onset import return_to_onset
 
 pytestmark = pytest.mark.slow
 SCENE = NINE | {"f_ext": 1.0, "voltage": 100.0}

@@ -8,8 +8,8 @@ import scipy.io
 
 from tests.test_topography import grid, wave
 from variational.roughness.heightfile import _matrix, _text, scan
-from variational.roughness.missing import filled, mark
-from variational.roughness.selfaffine import SelfAffine
+from variational.roughness.spectrum import SelfAffine
+from variational.roughness.topography import filled, mark
 
 
 @pytest.mark.parametrize("name", ["map.npy", "map.txt", "map.csv"])

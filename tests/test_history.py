@@ -18,7 +18,7 @@ from variational import compat
 from variational.history import BodyField, History, SkinField
 from variational.problem import Problem
 from variational.solvers.continuation import Continuation, StepFailed, Target
-from variational.solvers.failure import NotConverged
+from variational.solvers.outcome import NotConverged
 from variational.solvers.transfer import restore, take_snapshot
 
 pytestmark = pytest.mark.mpi

@@ -12,12 +12,11 @@ import ufl
 import fingerpad as fp
 from fingerpad.reduced import cylinders
 from fingerpad.scene import CONTACT, Scene, SceneError, law_keys, load
-from fingerpad.scene.keys import docstrings
+from fingerpad.scene.keys import docstrings, schema
 from fingerpad.scene.law_code import digest
-from fingerpad.scene.laws import LAYERS, used
-from fingerpad.scene.materials import CLOSURES, FRICTION_LAWS, MATERIALS
+from fingerpad.scene.materials import CLOSURES, FRICTION_LAWS, LAYERS, MATERIALS
 from fingerpad.scene.reading import flat
-from fingerpad.scene.schema import schema
+from fingerpad.scene.remarks import used
 from geometry import tags
 from variational.coefficients import parameter
 from variational.contact.formulation import Springs
@@ -234,9 +233,9 @@ def test_law_of_the_package_is_one_line_of_a_registry(kind, law, table, key, mon
     assert law.__name__ in " ".join(used(scene).values()) and law in map(type, scene.laws().values())
     assert Scene(**json.loads(json.dumps(scene.parameters()))) == scene
     assert getattr(fp, law.__name__) is law
-    assert law.__name__ in json.dumps(schema())
+    assert law.__name__ in json.dumps(schema(Scene))
     words = {docstrings(law)[name] for name in law_keys.keys_of(law)}
-    assert words <= set(re.findall('"description": "([^"]*)"', json.dumps(schema())))
+    assert words <= set(re.findall('"description": "([^"]*)"', json.dumps(schema(Scene))))
     with pytest.raises(SceneError, match=f"{key} is '1 s'; its unit is not a unit of"):
         load(None, flat(table) | {key: "1 s"})
     cylinders.solve(scene, cylinders.given(1.5e-3, 15))

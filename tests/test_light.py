@@ -19,21 +19,20 @@ LIGHT = (
     "fingerpad.runs.context",
     "fingerpad.calculator.page",
     "fingerpad.model.options",
-    "fingerpad.model.feasibility",
+    "fingerpad.model.options",
     "fingerpad.results.folder",
     "fingerpad.cli",
     "fingerpad.cli.arguments",
-    "fingerpad.cli.calculator",
     "fingerpad.cli.estimate",
-    "fingerpad.cli.microscale",
+    "fingerpad.cli.report",
+    "fingerpad.cli.roughness",
     "fingerpad.cli.params",
-    "fingerpad.cli.topography",
     "fingerpad.results.terminal",
     "variational.attraction.cylinder",
     "variational.state",
     "variational.roughness.bam",
     "variational.roughness.heightfile",
-    "variational.roughness.selfaffine",
+    "variational.roughness.spectrum",
     "variational.roughness.spectrum",
     "geometry.profiles",
     "geometry.sizing",
@@ -41,7 +40,7 @@ LIGHT = (
 WORK = """
 import sys
 import fingerpad as fp
-from fingerpad.model.feasibility import check
+from fingerpad.model.options import check
 from fingerpad.scene import scene
 found = scene.load(None, {"voltage": 100.0})
 check(found)

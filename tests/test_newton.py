@@ -9,9 +9,9 @@ from geometry.mesh import load
 from tests.test_contact import HEIGHT, MU_F, WIDTH, make
 from variational.problem import SLIPS, STICKS
 from variational.solvers import iteration as module
-from variational.solvers.anderson import Anderson
 from variational.solvers.equations import Control
-from variational.solvers.failure import NotConverged
+from variational.solvers.outcome import NotConverged
+from variational.solvers.tangent import Anderson
 
 pytestmark = pytest.mark.mpi
 

@@ -78,7 +78,7 @@ def test_friction_of_a_charged_cylinder(offset):
 
     @cache
     def of(amount: float) -> float:
-        return 0.25 * ridge.under_load(4.0, amount).f_contact
+        return 0.25 * ridge.under_loads([4.0], amount)[0].f_contact
 
     def friction(voltage: float) -> float:
         return of(round(abs(voltage), 9))

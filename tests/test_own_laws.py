@@ -8,12 +8,12 @@ import ufl
 from mpi4py import MPI
 
 import fingerpad as fp
-from fingerpad.model import feasibility
+from fingerpad.model import options
 from fingerpad.model.simulation import Simulation
 from fingerpad.reduced import cylinders
 from fingerpad.runs import full
 from fingerpad.runs.context import RunContext
-from fingerpad.scene import Scene, SceneError, from_data, laws
+from fingerpad.scene import Scene, SceneError, from_data, remarks
 from geometry import tags
 from tests.measures import rows_of
 from tests.runs import followed
@@ -93,12 +93,12 @@ def test_cylinders_know_the_default_fingers_lengths_alone():
 def test_modulus_of_the_skin_is_the_given_materials():
     """The same solid given as a key and as an object has the same modulus. Tolerance: roundoff."""
     own = Scene(materials={"stratum_corneum": Ogden(86.76e3, -14.53, 0.48)})
-    assert laws.skin_modulus(own) == pytest.approx(laws.skin_modulus(Scene()), rel=1e-12)
+    assert remarks.skin_modulus(own) == pytest.approx(remarks.skin_modulus(Scene()), rel=1e-12)
 
 
 def test_rule_of_thumb_takes_a_law():
     """More friction rolls the finger further, by the coefficient at a ridge's pressure."""
-    plain, rough = (feasibility.by_rule(Scene(friction=law)) for law in (Coulomb(0.25), Derjaguin(0.25, 2e4)))
+    plain, rough = (options.by_rule(Scene(friction=law)) for law in (Coulomb(0.25), Derjaguin(0.25, 2e4)))
     assert rough.mesh.touching_half_arc > plain.mesh.touching_half_arc
 
 

@@ -7,7 +7,7 @@ import pytest
 import fingerpad as fp
 from fingerpad.cli import main
 from fingerpad.reduced import models
-from fingerpad.reduced.model import Model, at_rest, at_slip
+from fingerpad.reduced.model import Model, reduced_state
 from fingerpad.results.result import Result
 from fingerpad.scene import Scene, SceneError
 from tests.measures import rows_of
@@ -23,7 +23,7 @@ class Block(Model):
     def solve(self, scene, context) -> Result:
         contact = {"f_contact": scene.f_ext, "f_electrostatic": 0.0, "contact_length": LENGTH, "ridges_in_contact": 1}
         contact["bone_height"] = -1e-5 * scene.f_ext
-        return Result(scene, self.name, None, at_rest(scene, contact), at_slip(scene, contact))
+        return Result(scene, self.name, None, *(reduced_state(scene, contact, slips) for slips in (False, True)))
 
 
 @pytest.fixture(autouse=True)

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import fingerpad as fp
-from fingerpad.model.feasibility import check
+from fingerpad.model.options import check
 from fingerpad.scene import SceneError
 from fingerpad.scene import scene as scenes
 

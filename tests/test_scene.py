@@ -8,11 +8,11 @@ import jsonschema
 import pytest
 
 from fingerpad.cli import main
-from fingerpad.model.feasibility import check
+from fingerpad.model.options import check
 from fingerpad.scene import Load, Scene, SceneError, from_data
 from fingerpad.scene import scene as scenes
+from fingerpad.scene.keys import DIALECT, schema
 from fingerpad.scene.reading import model_of
-from fingerpad.scene.schema import DIALECT, schema
 from variational.contact.augmented import AugmentedLagrangian
 from variational.contact.nitsche import Nitsche
 from variational.contact.penalty import Penalty
@@ -139,7 +139,7 @@ def test_friendly_names(write):
 
 # -- the JSON Schema -------------------------------------------------------------------------------------------------
 FILE = Path(__file__).parents[1] / "docs" / "scene.schema.json"
-CHECK = jsonschema.Draft202012Validator(schema())
+CHECK = jsonschema.Draft202012Validator(schema(Scene))
 WRONG = [
     {"f_exts": 50.0},
     {"mesh": {"contacts": 1e-5}},
@@ -165,8 +165,8 @@ def test_file_is_the_generated_one(capsys):
 
 
 def test_schema_is_of_its_dialect():
-    assert schema()["$schema"] == DIALECT
-    jsonschema.Draft202012Validator.check_schema(schema())
+    assert schema(Scene)["$schema"] == DIALECT
+    jsonschema.Draft202012Validator.check_schema(schema(Scene))
 
 
 @pytest.mark.parametrize("data", RIGHT, ids=json.dumps)
@@ -184,7 +184,7 @@ def test_slip_is_refused_by_both(data):
 
 def test_every_key_has_a_description():
     """Editors show it beside the key; tables have that of their model."""
-    found = schema()
+    found = schema(Scene)
     parts = [found, *found["$defs"].values(), *found["$defs"]["Contact"]["anyOf"]]
     keys = [item for part in parts for item in part.get("properties", {}).items()]
     bare = [key for key, value in keys if not {"description", "$ref"} & {*value}]

@@ -9,12 +9,11 @@ import pytest
 from numpy.testing import assert_allclose
 
 from fingerpad.results.finger_picture import footprint
-from fingerpad.scene import Scene, SceneError, override
-from fingerpad.scene.slices import Slices
+from fingerpad.scene import Scene, SceneError
+from fingerpad.scene.parameters import Slices
 from fingerpad.slices.errors import MESH
 from fingerpad.slices.finger import WholeFinger
-from fingerpad.slices.profile import cylinder, profile
-from fingerpad.slices.total import BeyondTrace, at_force, at_indentation
+from fingerpad.slices.total import BeyondTrace, Profile, at_force, at_indentation, profile
 from fingerpad.slices.trace import Trace, TraceError, gross_width, trace
 from tests.measures import contact_state
 from variational.state import ContactState, RidgeStates
@@ -48,7 +47,8 @@ def kept(voltage: float, model: str = "full") -> Trace:
 
 def test_long_cylinder_is_the_cross_section_times_its_length():
     length, depth = 20e-3, 0.7e-3
-    total, one = at_indentation(cylinder(length), foundation(), depth, 12), foundation().at(np.array([depth]))
+    straight = Profile((0.0, length), np.zeros_like, np.ones_like, straight=True)
+    total, one = at_indentation(straight, foundation(), depth, 12), foundation().at(np.array([depth]))
     assert total.totals["f_ext"] == pytest.approx(length * one["f_ext"][0], rel=EXACT)
     assert total.totals["gross_area"] == pytest.approx(length * one["gross_width"][0], rel=EXACT)
     assert total.totals["f_ext"] / total.centre == pytest.approx(length, rel=EXACT)
@@ -185,8 +185,6 @@ def test_finger_under_another_force_is_read_from_its_traces():
         finger.under(-1.0)
     with pytest.raises(SceneError, match="the force is 0.0001 N, under which the centre of the finger bears"):
         finger.under(1e-4)
-    with pytest.raises(SceneError, match="read from a file without traces; run the scene again"):
-        WholeFinger(finger.states, "kept runs").under(0.2)
 
 
 def test_footprint_has_a_panel_for_each_state(tmp_path):
@@ -266,9 +264,3 @@ def test_forces_are_refused(force, words):
 def test_force_as_text():
     for force in ("500 mN", 0.5, np.float64(0.5), pint.UnitRegistry()("500 mN")):
         assert Scene(force=force).force == 0.5
-
-
-def test_default_table_changes_no_parameters():
-    """Runs kept by their parameters are found again; another table is one of them."""
-    assert "slices" not in Scene().parameters()
-    assert Scene(slices=dict([override("radius=0.02")])).parameters()["slices"]["radius"] == 0.02

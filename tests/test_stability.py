@@ -14,7 +14,7 @@ from tests.test_element import layered
 from variational.element import ELEMENTS
 from variational.quantities import Observer
 from variational.solvers.equations import Control
-from variational.solvers.failure import NotConverged
+from variational.solvers.outcome import NotConverged
 from variational.solvers.stability import Stability, StabilityCheck
 from variational.solvers.transient import EulerShift
 

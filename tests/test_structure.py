@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from benchmarks import structure
-from fingerpad.cli import COMMANDS
+from fingerpad.cli import _BESIDE, COMMANDS
 from tests.commands import python
 
 FILES = {name: path for folder in structure.PRODUCT for name, path in structure.modules(folder).items()}
@@ -54,12 +54,12 @@ def test_each_module_is_imported_by_a_quick_test():
     names = {".".join(file.with_suffix("").parts) for file in files if file.stem != "__main__"}
     imports = [
         *(f"tests.{name}" for name in QUICK),
-        *(f"fingerpad.cli.{name.replace('-', '_')}" for name in [*COMMANDS, "plot", "section"]),
+        *(f"fingerpad.cli.{_BESIDE.get(name, name)}" for name in COMMANDS),
         *(
             "fingerpad.report.run_page",
             "fingerpad.report.sweep_page",
             "fingerpad.results.drawing",
-            "fingerpad.runs.one",
+            "fingerpad.runs.batch",
         ),
     ]
     code = "\n".join(["import sys", *(f"import {name}" for name in imports), "print(*sys.modules)"])

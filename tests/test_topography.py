@@ -6,10 +6,8 @@ import numpy as np
 import pytest
 
 from variational.roughness.bam import BearingArea
-from variational.roughness.missing import filled
-from variational.roughness.selfaffine import SelfAffine, prefactor
-from variational.roughness.spectrum import power_spectrum, roughness_table
-from variational.roughness.topography import HeightMap, distribution, polynomials
+from variational.roughness.spectrum import SelfAffine, power_spectrum, prefactor, roughness_table
+from variational.roughness.topography import HeightMap, distribution, filled, polynomials
 
 UM = 1e-6
 SHAPE, SIZE = (256, 256), (800 * UM, 800 * UM)

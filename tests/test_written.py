@@ -12,7 +12,7 @@ import fingerpad as fp
 from fingerpad.results.result import Result
 from fingerpad.scene import Scene, SceneError, load
 from fingerpad.scene.law_code import digest
-from fingerpad.scene.laws import used
+from fingerpad.scene.remarks import used
 from tests.commands import python
 from tests.small_finger import small
 from variational.roughness.bam import BearingArea

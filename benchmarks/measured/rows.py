@@ -29,7 +29,7 @@ from benchmarks.measured.rules import (
 )
 from benchmarks.runs import FORCES, VOLTAGES
 from fingerpad.scene import Scene
-from fingerpad.scene.laws import coefficient
+from fingerpad.scene.remarks import coefficient
 
 Array = NDArray[np.float64]
 Numbers = dict[str, float]

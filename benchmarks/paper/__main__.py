@@ -23,7 +23,7 @@ from benchmarks.paper import energy, fields, friction, scenes
 from benchmarks.paper.statement import BUILT, HOLDS, IN_PART, NOT, Statement
 from benchmarks.runs import FORCES, VOLTAGES, Run
 from fingerpad.runs.batch import result
-from fingerpad.slices import solid
+from fingerpad.slices import errors
 
 _LIMIT = 3600.0  # s of processor time for one run; the sine takes longest
 
@@ -82,7 +82,7 @@ def draw(docs: Path) -> Path:
         "statements": statements,
         "count": [[s.verdict for s in statements].count(verdict) for verdict in (HOLDS, BUILT, IN_PART, NOT)],
         "runs": len(FORCES) * len(VOLTAGES),
-        "slices": solid.percent(solid.known(newtons.COMPARED)["f_t"]),
+        "slices": errors.percent(errors.known_at(newtons.COMPARED)["f_t"]),
         "limit": next((s.numbers["mu_app"] for s in statements if "mu_app" in s.numbers), None),
         "because": lambda s: f": {s.why}" if s.verdict != HOLDS and s.why else "",
         "missing": numbers.get("missing"),

@@ -19,7 +19,7 @@ from fingerpad.results.files import replace
 from fingerpad.results.quantities import FINGER, PER_LENGTH, Output
 from fingerpad.results.states import STATES, WORDS
 from fingerpad.runs.sweep_columns import described, head_of, newtons_of, printed, row, shown, tables
-from fingerpad.slices import solid
+from fingerpad.slices.errors import remarks
 from variational.state import CONDITIONS, RESULTS
 
 if TYPE_CHECKING:
@@ -174,7 +174,7 @@ class Sweep:
         lines = [f"{'Whole finger, at' if self.whole else 'At'} {WORDS[state]}", *_aligned(table)]
         for name, over_time in tables(rows, axes):
             lines += [f"Over time, in the load {name}", *_aligned(over_time)]
-        notes = solid.remarks(self._forces()) if self.whole else [PER_LENGTH]
+        notes = remarks(self._forces()) if self.whole else [PER_LENGTH]
         return "\n".join([*lines, *notes, *(f"! {caution}" for caution in self.cautions()), *self.notes])
 
     __repr__ = __str__
