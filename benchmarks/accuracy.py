@@ -23,7 +23,7 @@ from benchmarks import harness, limits
 from benchmarks.errors import DEFAULT, LEVELS, STATES, parted
 from benchmarks.limits import Limit
 from benchmarks.verification.normal_contact import E_STAR, HALF_WIDTH, RADIUS, SPAN, press
-from fingerpad.model.feasibility import by_rule, check
+from fingerpad.model.options import by_rule, check
 from fingerpad.richardson import MORE, ONCE, MeshParameter
 from fingerpad.runs.batch import Summary
 from fingerpad.scene import Scene, SceneError, load, start
@@ -211,7 +211,7 @@ def compute(args: Any) -> None:
     """Run what is missing and keep the numbers."""
     wanted, errors = loops(), harness.kept("errors", args.docs).numbers
     summaries = harness.run({name: scene for name, (scene, _) in wanted.items()}, args, _LIMIT)
-    ends = limits.solve_all({"default scene": DEFAULT} | drawn(), LEVELS, args.out.parent / "limits", args.jobs)
+    ends = limits.solve_all({"default scene": DEFAULT} | drawn(), LEVELS, args)
     cases, runs = list[Case](), dict[str, Any]()
     base = errors["default"]["unknowns"] * errors["default"]["factorisations"]
     for name, (_, plain) in wanted.items():

@@ -19,11 +19,10 @@ from benchmarks import harness, limits
 from benchmarks.limits import Limit
 from benchmarks.runs import SITES as AT_SITES
 from benchmarks.runs import Array, Run, finished
-from fingerpad.accuracy.rigid_screen import ORDER
-from fingerpad.model.feasibility import by_rule
+from fingerpad.model.options import by_rule
 from fingerpad.results import style
 from fingerpad.results.states import WORDS
-from fingerpad.richardson import plus_minus
+from fingerpad.richardson import ORDER, plus_minus
 from fingerpad.scene import Scene, load
 
 _LIMIT = 10800.0  # s of processor time for one run
@@ -92,7 +91,7 @@ def compute(args: Any) -> None:
     """Run what is missing and keep the numbers."""
     scenes = {f"{name} {value:g}": scene for name in STUDIES for value, scene in study(name).items()}
     summaries = harness.run({"default": DEFAULT} | scenes, args, _LIMIT)
-    again = limits.solve_all({"default": DEFAULT}, LEVELS, args.out.parent / "limits", 1)["default"]
+    again = limits.solve_all({"default": DEFAULT}, LEVELS, args)["default"]
     default = finished(DEFAULT, args.out)
     if default is None or "failure" in again:
         raise SystemExit(f"the default scene has no limit: {again.get('failure', 'its run did not reach full slip')}")

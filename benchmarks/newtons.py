@@ -23,10 +23,9 @@ from benchmarks.runs import FORCES, VOLTAGES, Run, trace
 from fingerpad.reduced import cylinders
 from fingerpad.results import style
 from fingerpad.scene import Scene
-from fingerpad.scene.slices import Slices
-from fingerpad.slices import estimate, solid, traces
-from fingerpad.slices.profile import Profile, profile
-from fingerpad.slices.total import Total, at_force, at_indentation
+from fingerpad.scene.parameters import Slices
+from fingerpad.slices import errors, estimate, traces
+from fingerpad.slices.total import Profile, Total, at_force, at_indentation, profile
 from fingerpad.slices.trace import Trace
 from fingerpad.slices.trace import trace as trace_of
 from variational.state import RESULTS, ContactState
@@ -41,7 +40,7 @@ CENTRES = (25.0, 50.0, 75.0, 100.0, 120.0)  # N/m, of the runs whose estimates a
 ESTIMATED = ("f_t", "f_electrostatic", "contact_area", "gross_area", "indentation")
 COUNTS, FINE = (6, 12, 24, 48, 96), 1536  # slices
 HIGH = 200.0  # V
-COMPARISONS = {"ridged, 200 V": solid.ONCE, "smooth, earlier": solid.EARLIER, "smooth, below": solid.SMOOTH}
+COMPARISONS = {"ridged, 200 V": errors.ONCE, "smooth, earlier": errors.EARLIER, "smooth, below": errors.SMOOTH}
 COARSE = 0.3  # N: below it a few elements of a solid finger are in contact
 Found = Mapping[str, Any]
 
@@ -243,7 +242,7 @@ def draw(docs: Path) -> Path:
     names = compared(numbers) | {
         "friction": friction, "least": at(numbers, RADII[1], HIGH)[0], "largest": _largest, "solids": solids,
         "comparisons": [
-            (words, of, points) for key, words in solid.WORDS.items() for of, known in COMPARISONS.items()
+            (words, of, points) for key, words in errors.COMPARED.items() for of, known in COMPARISONS.items()
             if (points := known.get(key, ()))
         ],
         "shares": [[errors[0] for _, errors in solids], *([errors[k] for errors in above] for k in (1, 2))],

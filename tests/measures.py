@@ -8,6 +8,8 @@ import ufl
 from dolfinx import fem
 from dolfinx.mesh import entities_to_geometry
 
+from variational.state import ContactState
+
 
 def integral(body, tag, integrand=1.0) -> float:
     """Integrate over a layer on all ranks."""
@@ -25,6 +27,12 @@ def vertices(body, facets):
     links = body.mesh.topology.connectivity(1, 0)
     points = np.unique(np.concatenate([links.links(f) for f in facets]))
     return body.mesh.geometry.x[entities_to_geometry(body.mesh, 0, points.astype(np.int32)).ravel(), :2]
+
+
+def contact_state(**values) -> ContactState:
+    """Return a state in contact; what is not given does not matter, or is that of a press by 1 N/m."""
+    given = {"f_ext": 1.0, "voltage": 0.0, "f_t": 0.0, "mu_app": 0.0, "f_contact": 1.0, "f_electrostatic": 0.0}
+    return ContactState(**given | {"ridges_in_contact": 3, "contact_length": 1e-3} | values)
 
 
 def rows_of(folder: Path, name: str = "steps") -> list[dict[str, str]]:

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from benchmarks import newtons
 from benchmarks.runs import VOLTAGES, plain
 from fingerpad.scene import Scene
-from fingerpad.scene.slices import Slices
+from fingerpad.scene.parameters import Slices
 from fingerpad.slices.total import at_force
 from fingerpad.slices.trace import trace
 

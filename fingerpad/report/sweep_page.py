@@ -20,7 +20,7 @@ from fingerpad.runs.sweep_columns import LOAD, head_of, in_time, loads, printed,
 from fingerpad.scene import SceneError
 from fingerpad.scene.messages import clip
 from fingerpad.scene.reading import DEFAULT_MODEL
-from fingerpad.slices import solid
+from fingerpad.slices.errors import remarks
 
 _CHARTS = ("mu_app", "f_t", "contact_length", "contact_area")
 _MAX_CAUTIONS = 3  # in the headline
@@ -228,7 +228,7 @@ def _points(table: Table) -> str:
         said = "failed" if row["failure"] else "" if table.reached(row) else f"no {state}"
         rows.append([*(printed(row[key]) for key in table.axes), *cells, said])
     heads = [*table.heads.values(), *(quantity.title for quantity in columns.values()), ""]
-    notes = solid.remarks(dict.fromkeys(table.forces())) or [PER_LENGTH]
+    notes = remarks(dict.fromkeys(table.forces())) or [PER_LENGTH]
     return html.section(
         "points",
         "Every point",

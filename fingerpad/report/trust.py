@@ -10,7 +10,7 @@ from fingerpad.report import page as html
 from fingerpad.report.page import BAD, CARE, GOOD
 from fingerpad.results.quantities import cell
 from fingerpad.results.states import LoadResult, called
-from fingerpad.scene.laws import coefficient
+from fingerpad.scene.remarks import coefficient
 from variational.state import ContactState
 
 if TYPE_CHECKING:

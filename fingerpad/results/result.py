@@ -25,9 +25,9 @@ from fingerpad.results.quantities import (
 )
 from fingerpad.results.quantities import read as read_outputs
 from fingerpad.results.states import STATES, LoadResult, called, load_results
-from fingerpad.scene.laws import coefficient
 from fingerpad.scene.messages import SceneError, clip
 from fingerpad.scene.reading import DEFAULT_MODEL
+from fingerpad.scene.remarks import coefficient
 from fingerpad.scene.scene import as_kept
 from variational.state import CONDITIONS, RESULTS, ContactState, Errors
 

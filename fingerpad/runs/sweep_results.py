@@ -19,7 +19,7 @@ from fingerpad.results.files import replace
 from fingerpad.results.quantities import FINGER, PER_LENGTH, Output
 from fingerpad.results.states import STATES, WORDS
 from fingerpad.runs.sweep_columns import described, head_of, newtons_of, printed, row, shown, tables
-from fingerpad.slices import solid
+from fingerpad.slices.errors import remarks
 from variational.state import CONDITIONS, RESULTS
 
 if TYPE_CHECKING:
@@ -102,10 +102,6 @@ class Sweep:
             values = [np.nan if each is None else float(getattr(each, quantity, np.nan)) for each in found]
         return np.array(values).reshape([len(values) for values in self.axes.values()])
 
-    def _forces(self) -> list[float]:
-        """Return the forces on the whole finger (N)."""
-        return list(dict.fromkeys(each.scene.force for each in self.results if each.scene.force is not None))
-
     def rows(self) -> list[dict[str, Any]]:
         """Return a flat row for each point in SI units: axes, :mod:`~fingerpad.runs.sweep_columns`, and failure."""
         return [point | row(result) for point, result in zip(self.points(), self.results, strict=True)]
@@ -171,7 +167,8 @@ class Sweep:
         lines = [f"{'Whole finger, at' if self.whole else 'At'} {WORDS[state]}", *_aligned(table)]
         for name, over_time in tables(rows, axes):
             lines += [f"Over time, in the load {name}", *_aligned(over_time)]
-        notes = solid.remarks(self._forces()) if self.whole else [PER_LENGTH]
+        forces = dict.fromkeys(each.scene.force for each in self.results if each.scene.force is not None)
+        notes = remarks(forces) if self.whole else [PER_LENGTH]
         return "\n".join([*lines, *notes, *(f"! {caution}" for caution in self.cautions()), *self.notes])
 
     __repr__ = __str__

@@ -1,15 +1,26 @@
-"""Tables of quantities on the screen, and in files by their names and in SI units."""
+"""What commands write: tables of quantities on the screen and in files, in SI units there, and pictures."""
 
 import argparse
 import csv
 import io
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import chdir, contextmanager
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import ArrayLike
 
 from fingerpad.cli.arguments import PICTURE, Kind, Parser, echo
 from fingerpad.results.files import replace
 from fingerpad.results.quantities import Output
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+_DASHES = ("-", "--", "-.", ":", (0, (6, 1, 1, 1, 1, 1)), (0, (8, 3)), (0, (1, 3)))
+_MAX_MARKERS = 15  # points up to which each has a marker
 
 
 def text(columns: Sequence[Output], rows: Sequence[Mapping[str, Any]]) -> str:
@@ -21,7 +32,7 @@ def text(columns: Sequence[Output], rows: Sequence[Mapping[str, Any]]) -> str:
 
 
 def write(file: Path, columns: Sequence[Output], rows: Sequence[Mapping[str, Any]]) -> None:
-    """Write a table as CSV in SI units, unrounded; :mod:`fingerpad.cli.ranges` has rounded its values."""
+    """Write a table as CSV in SI units, unrounded; :mod:`fingerpad.cli.arguments` has rounded its values."""
     out = io.StringIO()
     writer = csv.DictWriter(out, [c.name for c in columns], extrasaction="ignore", lineterminator="\n")
     writer.writerows(rows)
@@ -53,3 +64,27 @@ def write_files(
     for file in (args.csv, args.plot):
         if file:
             echo(f"Written: {file}")
+
+
+# -- pictures ------------------------------------------------------------------------------------------
+@contextmanager
+def panels(file: Path, title: str, count: int = 1) -> "Iterator[tuple[Figure, list[Axes]]]":
+    """Give a figure and its panels side by side; write it at the end of the block."""
+    with chdir("/"):  # a matplotlibrc of the current folder is not obeyed, see fingerpad.startup
+        from fingerpad.results import style
+
+    with style.look():
+        figure = style.figure(4.0, width=2.5 + 3.0 * count)
+        figure.suptitle(style.plain(title))
+        yield figure, list(figure.subplots(1, count, squeeze=False)[0])
+        style.save(figure, file)
+
+
+def curve(ax: "Axes", k: int, x: ArrayLike, y: ArrayLike, label: str, colour: Any = None) -> None:
+    """Draw curve number k, with markers where its points are few; ``colour`` takes the place of the palette's."""
+    from fingerpad.results import style
+
+    marked = np.size(x) <= _MAX_MARKERS
+    marker: dict[str, Any] = {"marker": style.MARKERS[k % len(style.MARKERS)], "ms": 5} if marked else {}
+    colour = style.CATEGORIES[k % len(style.CATEGORIES)] if colour is None else colour
+    ax.plot(x, y, color=colour, ls=_DASHES[k % len(_DASHES)], label=label, **marker)

@@ -1,4 +1,9 @@
-"""Whether accepted states of a finger are stable, and whether full slip is steady.
+"""Checks of accepted states of a finger: skin that cannot touch, stability, and whether full slip is steady.
+
+Ridges far from the contact have coarse elements and no contact forces. Which ones these are follows from a scene only
+roughly. So each accepted step is checked: the last ridge on either side that can touch must not, and skin beyond must
+stay clear of the screen. The last ridge touches long before the next one would: by the outline's curvature that one
+is a tenth of a millimetre higher. Where skin comes near the screen, the run starts again with more ridges.
 
 Stability is examined once a state. Full slip is steady if the forces stay the same over a further 0.2 mm of sliding,
 since the screen is uniform.
@@ -9,17 +14,87 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from dolfinx import fem
 
 from fingerpad.model.state import steady
 from fingerpad.results.states import SLIDE_ON, full_slip
+from geometry import tags
+from variational.quantities import RidgeLoads
 from variational.solvers.continuation import StepFailed
-from variational.solvers.failure import NotConverged
+from variational.solvers.outcome import NotConverged
 from variational.solvers.stability import Stability, StabilityCheck
 from variational.solvers.target import Target
 from variational.state import ContactState
 
 if TYPE_CHECKING:
     from fingerpad.model.finger import Finger
+    from fingerpad.model.options import FingerModel
+
+_MIN_CLEARANCE = 10e-6  # m, height of the skin at which an attraction of 200 V comes to 1 kPa
+_MORE = 2  # ridges on either side that are added at least, or
+_PART = 0.25  # this part of those that could touch before
+
+
+class FingerExceeded(RuntimeError):
+    """Skin touches beyond the last ridge that the finger has."""
+
+
+class ContactZone:
+    """Checks the skin of a finger."""
+
+    def __init__(self, finger: "Finger", model: "FingerModel") -> None:
+        """Find the skin that cannot touch; a mesh of a file has all the ridges there are."""
+        self._problem, self._ridges = finger.problem, finger.ridges
+        self._count, self._file = model.geometry.ridge_count, model.mesh_file
+        self._nodes = fem.locate_dofs_topological(self._problem.V, 1, finger.mesh.facets(tags.OUTER_SKIN))
+
+    def _lowest_outside(self) -> float:
+        """Return the lowest height (m) of the skin that cannot touch; collective."""
+        heights = self._problem.V.tabulate_dof_coordinates()[self._nodes, 1]
+        heights = heights + self._problem.displacement()[self._nodes, 1]
+        return float(np.min(self._problem.mesh.comm.allgather(float(heights.min(initial=np.inf)))))
+
+    def check(self, loads: RidgeLoads) -> tuple[int, str] | None:
+        """Return the last ridge, on either side, that must be able to touch, and why; None where it can; collective.
+
+        Args:
+            loads: resultants of the ridges that can touch.
+
+        Raises:
+            FingerExceeded: more ridges must be able to touch, and there are no more.
+        """
+        lowest = self._lowest_outside()
+        if self._file is not None:
+            if lowest < 0:
+                raise FingerExceeded(
+                    f"skin of the group 'outer skin' is at a height of {lowest:.3g} m; {self._file} must have more "
+                    "ridges, or f_ext be smaller"
+                )
+            return None
+        ridges, wider = self._ridges, more(self._ridges[-1], self._count)
+        last = [j for j, length in ((ridges[0], loads.length[0]), (ridges[-1], loads.length[-1])) if length > 0]
+        if last:
+            reason = f"ridge {last[0]}, the last one that is meshed to touch, is in contact"
+        elif lowest < (0.0 if wider is None else _MIN_CLEARANCE):
+            reason = f"skin beyond the ridges that are meshed to touch is at a height of {lowest:.3g} m"
+        else:
+            return None
+        if wider is None:
+            raise FingerExceeded(
+                f"{reason}, and the finger has no more ridges; geometry.ridge_count is {self._count} and must be "
+                "larger, or f_ext smaller"
+            )
+        return wider, reason
+
+
+def more(last: int, count: int) -> int | None:
+    """Return the last ridge, on either side, that can touch after a restart; None if all could before.
+
+    Args:
+        last: the last one before.
+        count: number of all ridges of the finger.
+    """
+    return None if last == (count - 1) // 2 else last + max(_MORE, round(_PART * last))
 
 
 @dataclass(frozen=True)

@@ -1,19 +1,26 @@
 """A sweep over the force on the whole finger: each point is the run under its force."""
 
-import csv
 import html
+import json
+import math
 import re
 import shlex
+from dataclasses import replace
 
 import numpy as np
 import pytest
+import xarray
 
 import fingerpad as fp
 from fingerpad.cli import main
 from fingerpad.cli import sweep as cli_sweep
 from fingerpad.report.sweep_page import _curves
 from fingerpad.report.write import read, write
+from fingerpad.runs.sweep_results import Sweep, _stacked
+from fingerpad.slices.finger import WholeFinger
+from tests.measures import rows_of
 from tests.small_finger import small
+from tests.test_loads_over_time import BY, PRESS, SLIDE, WAVE, scene
 
 pytestmark = pytest.mark.slow
 FORCES, VOLTAGES = (0.1, "200 mN", 0.5), (0.0, 200.0)
@@ -48,8 +55,7 @@ def test_charged_state_at_no_voltage_is_the_uncharged_one(found):
 
 
 def test_table_text_and_dataset_are_of_the_whole_finger(found):
-    with (found.folder / "table.csv").open(encoding="utf-8", newline="") as file:
-        rows = list(csv.DictReader(file))
+    rows = rows_of(found.folder, "table")
     assert not [key for key in rows[0] if re.match(r"(slip|normal|uncharged)_(?!finger_)", key)]
     assert float(rows[4]["full_slip_finger_f_t"]) == found.array("f_t")[1, 1]
     title, heads, *lines = str(found).splitlines()
@@ -107,10 +113,7 @@ def test_charts_have_the_units_of_their_titles(found):
 @pytest.mark.parametrize(
     ("axes", "words"),
     [
-        (
-            {"force": [0.1], "f_ext": [75.0]},
-            "force is 0.1 N and f_ext is 75 N/m; give one of the two",
-        ),
+        ({"force": [0.1], "f_ext": [75.0]}, "force is 0.1 N and f_ext is 75 N/m; give one of the two"),
         ({"force": [0.1, "100 mN"]}, "each value must be there once"),
         ({"force": ["75 N/m"]}, "force is '75 N/m'"),
         ({"force": [500.0]}, "force is 500"),
@@ -134,10 +137,8 @@ def test_command_and_measurements(tmp_path, capsys):
     assert main(words) == 0 and "Whole finger, at full slip" in capsys.readouterr().out
     table.write_text("# source: X 2020\nforce (mN), friction force (N)\n100, 0.09\n200, 0.15\n", encoding="utf-8")
     assert main(["compare-data", str(table), "--sweep", str(out), "--csv", str(tmp_path / "both.csv")]) == 0
-    with (out / "table.csv").open(encoding="utf-8", newline="") as file:
-        low, high = (float(row["full_slip_finger_f_t"]) for row in csv.DictReader(file))
-    with (tmp_path / "both.csv").open(encoding="utf-8", newline="") as file:
-        ours = [float(row["computed"]) for row in csv.DictReader(file)]
+    low, high = (float(row["full_slip_finger_f_t"]) for row in rows_of(out, "table"))
+    ours = [float(row["computed"]) for row in rows_of(tmp_path, "both")]
     assert ours == pytest.approx([low, np.sqrt(low * high)], rel=1e-9)
 
 
@@ -154,3 +155,104 @@ def test_full_model_in_processes_of_its_own(tmp_path, capfd):
     out = capfd.readouterr().out
     assert "force 0.001" in out and "force 0.002 (" not in out
     assert again.array("f_t")[1] == found.array("f_t")[0] and again.array("f_t")[0] < again.array("f_t")[1]
+
+
+# -- a sweep over the amplitude of a drive ---------------------------------------------------------------------------
+KEY, NAME = "history[2].voltage.amplitude", "my drive"
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    """The folder of a sweep over two amplitudes, and over a third of which the run failed."""
+    place = tmp_path_factory.mktemp("sweep")
+    results = [
+        fp.run(scene(PRESS, SLIDE, BY | {"name": NAME, "voltage": WAVE | {"amplitude": amplitude, "offset": 0.0}}))
+        for amplitude in (40.0, 80.0)
+    ]
+    failed = fp.Result(results[0].scene, "full", None, None, None, failure="no equilibrium")
+    done = Sweep({KEY: (40.0, 80.0, 120.0)}, (*results, failed), place)
+    done.to_csv(place / "table.csv")
+    asked = {"parameters": results[0].scene.parameters(), "model": "full"}
+    (place / "sweep.json").write_text(json.dumps(asked), encoding="utf-8")
+    assert not done.save()
+    return done
+
+
+def test_table_has_loads_over_time(folder):
+    """Extremes, mean and largest amplitude of each; empty where a run failed."""
+    rows = rows_of(folder.folder, "table")
+    for row, result in zip(rows[:2], folder.results, strict=False):
+        load = result.loads[2]
+        assert float(row[f"load_{NAME}_mu_app_max"]) == load.extremes["mu_app"].max > 0.25
+        assert float(row[f"load_{NAME}_f_t_mean"]) == load.over_time.mean["f_t"]
+        assert float(row[f"load_{NAME}_f_t_amplitude"]) == max(load.over_time.f_t_amplitude)
+        assert float(row[f"load_{NAME}_f_t_frequency"]) == pytest.approx(2 * WAVE["frequency"])
+        assert float(row["full_slip_mu_app"]) == pytest.approx(0.25)  # before the drive: the same at each point
+    assert rows[2][f"load_{NAME}_mu_app_max"] == "" and rows[2]["failure"] == "no equilibrium"
+    assert not any(key.startswith("load_press") for key in rows[0])  # it takes no time
+
+
+def test_text_has_a_table_of_each_load_over_time(folder):
+    lines = str(folder).splitlines()
+    at = lines.index(f"Over time, in the load {NAME}")
+    assert lines[at + 1].split("   ")[1:4] == ["least µ_app", "largest µ_app", "mean µ_app"]
+    assert lines[at + 2].split()[0] == "40" and lines[at + 4].split() == ["120", *"–" * 8]
+
+
+def test_dataset_has_the_loads_of_all_points(folder):
+    """By their names; NaN where a point has none."""
+    data = xarray.load_dataset(folder.folder / "sweep.nc")
+    assert data["load"].values.tolist() == ["press", "slide", NAME]
+    most = data["load_mu_app_max"]
+    assert most.dims == (KEY, "load") and most.attrs["units"] == "1"
+    for k, result in enumerate(folder.results[:2]):
+        assert most[k].values.tolist() == [load.extremes["mu_app"].max for load in result.loads]
+        amplitudes = data["load_f_t_amplitude"][k].sel(load=NAME)
+        np.testing.assert_array_equal(amplitudes, result.loads[2].over_time.f_t_amplitude)
+    assert most[2].isnull().all() and data["failure"].values[2] == "no equilibrium"
+
+
+def test_places_along_a_dimension_are_those_of_labels():
+    """Points that have other ridges than the first one."""
+    about = {"units": "1", "long_name": "x"}
+    points = [
+        {"ridge": (("ridge",), np.array(numbers), about), "x": (("ridge",), np.array(numbers, float), about)}
+        for numbers in ([0, 1], [-1, 0])
+    ]
+    found = _stacked([*points, {}], ("voltage",), [3])
+    assert found["ridge"][1].tolist() == [-1, 0, 1]
+    dims, values, _ = found["x"]
+    assert dims == ("voltage", "ridge")
+    np.testing.assert_array_equal(values, [[math.nan, 0, 1], [-1, 0, math.nan], [math.nan] * 3])
+
+
+def test_newtons_of_a_whole_finger(tmp_path):
+    """A sweep whose points have one shows its friction in the last column, and has it in table and dataset."""
+    result = replace(fp.run(fp.Scene(force="0.5 N"), model="cylinders"), scene=fp.Scene())
+    assert isinstance(result.finger, WholeFinger)
+    done = Sweep({"friction": (0.25,)}, (result,), tmp_path)
+    totals = result.finger.states["full_slip"].totals
+    row = done.rows()[0]
+    assert row["full_slip_finger_f_t"] == totals["f_t"] and row["charged_finger_f_ext"] == pytest.approx(0.5)
+    assert "charged_finger_f_t" not in row
+    heads, line = str(done).splitlines()[1:3]
+    assert heads.endswith("F_T (N)") and line.endswith(result.finger.shown("full_slip", "f_t"))
+    data = done.to_xarray()
+    assert float(data["finger_f_t"].sel(state="full_slip")[0]) == totals["f_t"]
+
+
+def test_cautions_of_points_are_the_sweep_s(tmp_path):
+    """Each with its number of points, in the text, in the file and on the page."""
+    found = fp.sweep(
+        fp.Scene(), tmp_path, model="cylinders", voltage=[200.0, 400.0], **{"electric.d_i": [1e-6, 100e-6, 50e-6]}
+    )
+    cautions = found.cautions()
+    ours = next(text for text in cautions if text.startswith("the error of this model is known of full runs"))
+    assert ours.endswith("and not at this load (3 of 6 points)")
+    places = [text for text in cautions if "the closure is out of its range" in text and "d_eq rises" in text]
+    count = sum(any("the closure is out of its range" in text for text in each.cautions) for each in found)
+    assert len(places) == 1 and places[0].endswith(f"({count} of 6 points)") and 1 < count < 6
+    assert f"! {ours}" in str(found).splitlines()
+    page = (tmp_path / "report.html").read_text(encoding="utf-8")
+    assert "Limits of validity are reached: " in page and ours in page
+    assert not fp.sweep(fp.Scene(), tmp_path / "known", model="cylinders", voltage=[0.0, 200.0]).cautions()
