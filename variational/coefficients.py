@@ -6,7 +6,7 @@ UFL coefficients in the place of the numbers.
 
 import copy
 from collections.abc import Mapping
-from dataclasses import MISSING, field, fields, is_dataclass
+from dataclasses import MISSING, field, fields, is_dataclass, replace
 from importlib import import_module
 from typing import Any, ClassVar, Self
 
@@ -49,6 +49,15 @@ def parameter(
         default: of the field; without it, the number must be given.
     """
     return field(default=default, metadata={"range": (low, high, unit, zero, sides)})
+
+
+def between(first: Any, last: Any, part: float) -> Any:
+    """Return a law whose numbers are a part of the way from one law's to another's of the same kind, else the last."""
+    if part >= 1 or type(first) is not type(last) or not is_dataclass(first):
+        return last
+    names = [f.name for f in fields(first) if f.type in (float, "float") and f.init]
+    numbers = {name: (1 - part) * getattr(first, name) + part * getattr(last, name) for name in names}
+    return replace(last, **numbers)  # type: ignore[type-var]
 
 
 class LawError(ValueError):

@@ -20,7 +20,7 @@ never solves.
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 from typing import TYPE_CHECKING
 
@@ -139,8 +139,8 @@ class Problem:
 
         self.voltage, self.eta, self.guess = constant(0.0), constant(0.0), constant(STICKS)
         self.ease, self.dt = constant(1.0), constant(0.0)
-        friction = None if interface.friction is None else interface.friction.with_constants(constant)
-        h_0 = constant(interface.h_0)
+        self._friction = friction = None if interface.friction is None else interface.friction.with_constants(constant)
+        self._h_0 = h_0 = constant(interface.h_0)
 
         w, v = self.w, ufl.TestFunction(self.V)
         H = ufl.grad(w)
@@ -265,6 +265,26 @@ class Problem:
     def displacement(self) -> np.ndarray:
         """Return the displacement (m) of this rank's nodes, ghosts included, shape (nodes, 2)."""
         return np.asarray(self.w.x.array.reshape(-1, 2) + self.bone.value)
+
+    def set_laws(self, friction: Friction | None, h_0: float) -> None:
+        """Give the law of friction other numbers, and the screen another insulator.
+
+        Args:
+            friction: of the present law's kind.
+            h_0: effective insulator thickness (m).
+
+        Raises:
+            ValueError: the law is of another kind, so that the forms would be others; in one sentence.
+        """
+        before = self.interface.friction
+        if friction is None or before is None or friction.kind() != before.kind():
+            if friction is not before:
+                raise ValueError(f"friction is {friction}; it must be {before}, or that law with other numbers")
+        else:
+            for name in friction.names():
+                getattr(self._friction, name).value = getattr(friction, name)
+        self._h_0.value = h_0
+        self.interface = replace(self.interface, friction=friction, h_0=h_0)
 
     def set_air_gaps(self, d_eq: np.ndarray) -> None:
         """Give each ridge its equivalent air gap (m), shape (ridges,)."""

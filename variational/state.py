@@ -144,6 +144,8 @@ class ContactState:
     slip_held: bool = False
     """Whether this full slip was held over a further 0.2 mm."""
     record: StepRecord | None = None
+    reached: str = "path"
+    """How the state was reached: by the path of its loads, or from another state of full slip."""
     mesh_contact: float = math.nan
     """Size of the facets that can touch (m)."""
     time: float = math.nan

@@ -238,6 +238,32 @@ class Simulation:
         if not steady:
             raise StepFailed(f"{again}, is not steady")
 
+    def slip_to(self, target: Target) -> ContactState:
+        """Solve for another state of full slip from the present one; collective.
+
+        Args:
+            target: with ``slips``.
+
+        Returns:
+            The state, all of whose points slip one way, steadily and stably.
+
+        Raises:
+            StepFailed: no such state was found from there.
+        """
+        name, path = target.name, self.finger.continuation
+        self._load, self._restart = name, None
+        path.run(target)
+        if self._restart is not None:
+            raise StepFailed(f"{name}: {self._restart.reason}")
+        self.energy = self.finger.book()  # what was dissipated on the way is not known
+        state = self.states[-1]
+        if not state.slip_held:
+            raise StepFailed(f"{name}: {'full slip is not steady' if state.all_slip else 'not every point slips'}")
+        checked = self.checks.check(name)
+        if not checked.stable:
+            raise StepFailed(f"{name}: full slip is {checked}")
+        return replace(state, stable=True, lambda_min=checked.frozen.lambda_min, gain=checked.gain)
+
     def present(self, loads: RidgeLoads, attempt: Attempt | None = None, touches: bool = False) -> Step:
         """Return the present state as a step without a record of energies and work.
 
@@ -272,9 +298,11 @@ class Simulation:
             if self._restart is not None:
                 return True
         step = self.present(loads, attempt, touches)
-        energy = self.energy.step(*finger.surface_and_bone())
-        record = step_record(finger.continuation, energy, imbalance, attempt)
-        if not (loads.f_contact.any() or finger.voltage):
+        record = None
+        if not target.slips:
+            energy = self.energy.step(*finger.surface_and_bone())
+            record = step_record(finger.continuation, energy, imbalance, attempt)
+        if record and not (loads.f_contact.any() or finger.voltage):
             where = f"step {finger.continuation.steps} ({self._load})"
             formulation = finger.problem.interface.formulation
             refuse_strained(where, record, self.states, finger.solver.force_scale, formulation)

@@ -22,12 +22,15 @@ from variational.solvers.outcome import NotConverged
 from variational.solvers.target import Control, Progress, Target, Way
 
 if TYPE_CHECKING:
+    from variational.contact.formulation import SurfaceState
     from variational.solvers.coupling import Coupling
 
 Array = NDArray[np.float64]
 
 
 _SMALLEST = 1e-3  # step below which a load is given up, over the largest
+_SMALLEST_SLIP = 1 / 32  # the same from full slip to full slip, where a path is the other way
+_BEHIND = 3e-3  # m, how far anchors of friction are put behind the skin, which moves by less between two loads
 _MANY = 0.5  # part of the contact points that slip, above which they are expected to slip on when the bone moves
 _STEP_OVER = 1.5  # step tried where the loop over the scales cycles, over the one that led there
 # To an equilibrium from a state from elsewhere.
@@ -63,6 +66,16 @@ class Attempt:
     def jump(self) -> bool:
         """Whether skin or an air gap moved without the loads."""
         return self.pseudo_transient > 0 or bool(self.jumped) or self.stepped_over_fold
+
+
+@dataclass(frozen=True)
+class Place:
+    """An accepted state of a continuation, on its own mesh."""
+
+    accepted: AcceptedState
+    surface: "SurfaceState"
+    slip: tuple[float, bool]
+    """See :class:`Continuation`."""
 
 
 class Continuation:
@@ -119,6 +132,15 @@ class Continuation:
         self._now = AcceptedState.of(self.coupling)
         self.steps += 1
         PETSc.garbage_cleanup(self.problem.mesh.comm)  # objects that several ranks have dropped wait for this
+
+    def place(self) -> "Place":
+        """Return the accepted state, to come back to by :meth:`go_to`."""
+        return Place(self._now, self.surface_state, self.slip)
+
+    def go_to(self, place: "Place") -> None:
+        """Accept a state again that was accepted before, under the same laws; collective."""
+        self._now, self.surface_state, self.slip = place.accepted, place.surface, place.slip
+        self._restore()
 
     # -- targets ---------------------------------------------------------------------------------------
     def run(self, target: Target) -> None:
@@ -191,16 +213,22 @@ class Continuation:
                 # jump, which no step is small enough for. One jump comes after the other: of facets, of ridges.
                 pseudo_transient = p.jumps or len(attempt.cutbacks) > 1 or p.cut >= _CUT
                 try:
-                    self._try(way.at(p.part + step), attempt, pseudo_transient, step * target.duration)
+                    if target.constants is not None:
+                        target.constants(p.part + step)
+                    behind = np.sign(-self._now.reaction[0]) * _BEHIND if target.slips else 0.0
+                    self._try(way.at(p.part + step), attempt, pseudo_transient, step * target.duration, behind=behind)
                     break
                 except NotConverged as failure:
                     self._restore()
+                    if target.constants is not None:
+                        target.constants(p.part)
                     attempt.cutbacks.append(f"{failure} at part {p.part + step:.4g}")
                     over = min(_STEP_OVER * within, 1 - p.part)
                     attempt.stepped_over_fold = failure.cycling and not attempt.stepped_over_fold and over > within
                     within = within if attempt.stepped_over_fold else within / 2
                     step = over if attempt.stepped_over_fold else within
-                    if failure.irrecoverable or pseudo_transient and within < _SMALLEST * largest:
+                    smallest = _SMALLEST_SLIP if target.slips else _SMALLEST * largest
+                    if failure.irrecoverable or pseudo_transient and within < smallest:
                         raise StepFailed(self._describe(target, p.part, failure)) from failure
             if target.until_full_slip and slides:
                 step -= return_to_onset(self.solver, self.observer, way.length) / abs(way.length)
@@ -302,12 +330,16 @@ class Continuation:
         pseudo_transient: bool,
         dt: float = 0.0,
         on_cone: bool = True,
+        behind: float = 0.0,
     ) -> None:
         counts = self.solver.counts
         self.problem.dt.value = dt
         newton, factorisations, shifted = counts.newton, counts.factorisations, counts.pseudo_transient
-        moves = load[0].x != self._now.control.x
-        self.solver.new_load(*load, slipping=moves and self.slip[0] > _MANY, on_cone=on_cone)
+        if behind:
+            history = self.problem.history
+            history.accept({"anchor": history.accepted["anchor"] - behind})
+        slipping = behind != 0.0 or (load[0].x != self._now.control.x and self.slip[0] > _MANY)
+        self.solver.new_load(*load, slipping=slipping, on_cone=on_cone and not behind)
         try:
             self.solve(pseudo_transient)
         finally:

@@ -50,6 +50,11 @@ class Target:
     continues: bool = False
     """A short piece of a longer way: the bone moves on as before, and the voltage changes as little as the piece is
     short. It is reached in one step where that is possible."""
+    slips: bool = False
+    """From full slip to full slip: in one step where possible, with every anchor of friction far behind the skin, so
+    that no point can stick and what was before does not count. Bone and skin stay where they are."""
+    constants: Callable[[float], None] | None = None
+    """Sets what else changes, constants of the laws, at a part of the way; called again with less after a failure."""
     duration: float = 0.0
     """How long the load takes (s), of which each step has its part as ``Problem.dt``; 0 where it changes at once."""
 
@@ -109,6 +114,8 @@ class Way:
     def largest_step(self, scale: float) -> float:
         """Return the largest part of the target that one step may cover; ``scale`` multiplies the usual one."""
         a, target = self.start, self.target
+        if target.slips:
+            return 1.0
         steps: list[tuple[float, float]] = []  # how far one step may go, and how far the target is
         if target.f_ext is not None:
             roots = np.sqrt(target.f_ext), np.sqrt(max(a.control.force, 0.0))

@@ -1,0 +1,124 @@
+r"""Full slip under other loads and laws, solved for from full slip: no path lies between.
+
+At full slip every touching point is at the limit of friction and slips one way. Its traction
+:math:`t_t = \mp t_{max}(p_n)` then follows from the pressure, and a state is an equilibrium that does not depend on how
+it was reached. So the state at another voltage, force, law of friction, roughness or coating is solved for from a
+neighbour, with the anchors of friction far behind the skin
+(:class:`variational.solvers.target.Target`). What changes the mesh or the layers is left to a path.
+
+There may be two such states: a ridge that touches already is held down by its attraction, and another one is not drawn
+down yet. Then the state depends on the side from which it is reached.
+"""
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+from fingerpad.model.simulation import Simulation
+from variational.coefficients import between
+from variational.contact.friction import Friction
+from variational.roughness.closure import Closure
+from variational.solvers.continuation import Place, StepFailed
+from variational.solvers.target import Target
+from variational.state import ContactState
+
+if TYPE_CHECKING:
+    from fingerpad.model.options import FingerModel
+
+_FIELDS = {"anchor", "pressure", "x"}  # of history, that full slip does not depend on
+
+
+@dataclass(frozen=True)
+class Conditions:
+    """Loads and laws of full slip."""
+
+    f_ext: float
+    """External normal force (N/m)."""
+    voltage: float
+    friction: Friction | None
+    roughness: Closure | None
+    """None where there is never a voltage."""
+    h_0: float
+    """Effective insulator thickness (m)."""
+
+    @classmethod
+    def of(cls, model: "FingerModel") -> "Conditions":
+        """Return those at the end of a model's loads."""
+        force = [load.f_ext for load in model.loads if load.f_ext is not None]
+        voltage = [load.level for load in model.loads if load.level is not None]
+        return cls(force[-1], [0.0, *voltage][-1], model.friction, model.closure, model.h_0)
+
+    def beside(self, other: "Conditions") -> str:
+        """Return what these have that others have not, in words."""
+        words = {"f_ext": f"f_ext {self.f_ext:g} N/m", "voltage": f"voltage {self.voltage:g} V"}
+        words |= {"friction": f"friction {self.friction}", "roughness": f"roughness {self.roughness}"}
+        words |= {"h_0": f"an insulator thickness of {self.h_0:g} m"}
+        return ", ".join(text for name, text in words.items() if getattr(self, name) != getattr(other, name))
+
+
+@dataclass(frozen=True)
+class Solved:
+    """A state of full slip, from which others are solved for."""
+
+    conditions: Conditions
+    state: ContactState
+    place: Place
+
+
+class FullSlips:
+    """Leads a finger from full slip to full slip."""
+
+    def __init__(self, simulation: Simulation) -> None:
+        """Take a simulation whose loads are reached.
+
+        Raises:
+            ValueError: friction has a memory, so that full slip depends on its past.
+        """
+        self._simulation, self._finger = simulation, simulation.finger
+        memory = set(self._finger.problem.history.fields) - _FIELDS
+        if memory:
+            raise ValueError(f"the model has the history {min(memory)!r}, on which full slip may depend")
+
+    def first(self, conditions: Conditions) -> Solved:
+        """Return the present state, the end of a path.
+
+        Args:
+            conditions: of the path.
+
+        Raises:
+            StepFailed: it is no full slip that was held.
+        """
+        state = self._simulation.states[-1]
+        if not state.slip_held:
+            raise StepFailed(f"the path ends without full slip over a further 0.2 mm (step {state.step})")
+        return Solved(conditions, state, self._finger.continuation.place())
+
+    def solve(self, conditions: Conditions, start: Solved) -> Solved:
+        """Return full slip under other conditions; collective.
+
+        Args:
+            conditions: whose law of friction is of the kind of the first one.
+            start: a neighbour, the nearer the better.
+
+        Raises:
+            StepFailed: no steady and stable full slip was found from there.
+            ValueError: another kind of law of friction.
+        """
+        before, path = start.conditions, self._finger.continuation
+
+        def set_laws(part: float) -> None:
+            self._set_laws(
+                between(before.friction, conditions.friction, part),
+                between(before.roughness, conditions.roughness, part),
+                (1 - part) * before.h_0 + part * conditions.h_0,
+            )
+
+        self._set_laws(before.friction, before.roughness, before.h_0)
+        path.go_to(start.place)
+        name = f"full slip from {before.beside(conditions) or 'itself'}"
+        target = Target(name, conditions.f_ext, voltage=conditions.voltage, slips=True, constants=set_laws)
+        state = replace(self._simulation.slip_to(target), reached=name)
+        return Solved(conditions, state, path.place())
+
+    def _set_laws(self, friction: Friction | None, roughness: Closure | None, h_0: float) -> None:
+        self._finger.problem.set_laws(friction, h_0)
+        self._finger.closure = self._finger.coupling.closure = roughness
