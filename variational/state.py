@@ -13,6 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
+PATH = "path"
+"""How a state of a path was reached."""
 
 
 @dataclass(frozen=True)
@@ -144,7 +146,7 @@ class ContactState:
     slip_held: bool = False
     """Whether this full slip was held over a further 0.2 mm."""
     record: StepRecord | None = None
-    reached: str = "path"
+    reached: str = PATH
     """How the state was reached: by the path of its loads, or from another state of full slip."""
     mesh_contact: float = math.nan
     """Size of the facets that can touch (m)."""

@@ -12,13 +12,14 @@ from fingerpad.ctrl_c import raises
 from fingerpad.reduced.models import MODELS
 from fingerpad.results.files import check_folder
 from fingerpad.runs import batch  # noqa: F401  # before Ctrl-C raises
-from fingerpad.runs.sweep import FILES, sweep
+from fingerpad.runs.sweep import FILES, STATES, sweep
 from fingerpad.scene import from_data, override
 from fingerpad.scene.messages import SceneError, clip, show
 from fingerpad.scene.reading import DEFAULT_MODEL, flat, put_all, read_study
 
 _EXAMPLES = """
     fingerpad sweep --over voltage=0:200:5 --over f_ext=25,75 --jobs 2 --out results/sweep
+    fingerpad sweep --over voltage=0:200:21 --over f_ext=25:75:11 --states full_slip
     fingerpad sweep --over force="0.1, 0.3, 0.5 N" --model cylinders
     fingerpad sweep study.toml --set friction=0.3
 """
@@ -33,13 +34,17 @@ def main(argv: Sequence[str]) -> int:
     parser.add_out("results/sweep", "folder of all runs and of table.csv", quiet="table")
     parser.add_argument("--jobs", type=positive, default=2, metavar="N", help="runs at a time (default: 2)")
     parser.add_argument("--model", choices=MODELS, default=DEFAULT_MODEL, help="model to run (default: %(default)s)")
+    words = "all, each point by its path, or full_slip alone, from point to point: some 20 times as fast (default: all)"
+    parser.add_argument("--states", choices=STATES, default=STATES[0], help=words)
     args = parser.read(argv)
     check_folder(args.out)
     base, axes = study(args.scene, args.set, args.over)
     scene = from_data(base)
     try:
         with raises():
-            found = sweep(scene, args.out, jobs=args.jobs, model=args.model, quiet=args.quiet, **axes)
+            found = sweep(
+                scene, args.out, jobs=args.jobs, model=args.model, quiet=args.quiet, states=args.states, **axes
+            )
     except (KeyboardInterrupt, SystemExit):  # of signals
         print(f"fingerpad: stopped; points are kept in {args.out}, and the same command goes on", file=sys.stderr)
         raise

@@ -73,8 +73,8 @@ class FullSlips:
         Raises:
             ValueError: friction has a memory, so that full slip depends on its past.
         """
-        self._simulation, self._finger = simulation, simulation.finger
-        memory = set(self._finger.problem.history.fields) - _FIELDS
+        self._simulation, self.finger = simulation, simulation.finger
+        memory = set(self.finger.problem.history.fields) - _FIELDS
         if memory:
             raise ValueError(f"the model has the history {min(memory)!r}, on which full slip may depend")
 
@@ -90,7 +90,7 @@ class FullSlips:
         state = self._simulation.states[-1]
         if not state.slip_held:
             raise StepFailed(f"the path ends without full slip over a further 0.2 mm (step {state.step})")
-        return Solved(conditions, state, self._finger.continuation.place())
+        return Solved(conditions, state, self.finger.continuation.place())
 
     def solve(self, conditions: Conditions, start: Solved) -> Solved:
         """Return full slip under other conditions; collective.
@@ -103,7 +103,7 @@ class FullSlips:
             StepFailed: no steady and stable full slip was found from there.
             ValueError: another kind of law of friction.
         """
-        before, path = start.conditions, self._finger.continuation
+        before, path = start.conditions, self.finger.continuation
 
         def set_laws(part: float) -> None:
             self._set_laws(
@@ -120,5 +120,5 @@ class FullSlips:
         return Solved(conditions, state, path.place())
 
     def _set_laws(self, friction: Friction | None, roughness: Closure | None, h_0: float) -> None:
-        self._finger.problem.set_laws(friction, h_0)
-        self._finger.closure = self._finger.coupling.closure = roughness
+        self.finger.problem.set_laws(friction, h_0)
+        self.finger.closure = self.finger.coupling.closure = roughness

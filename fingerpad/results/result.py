@@ -29,7 +29,7 @@ from fingerpad.scene.messages import SceneError, clip
 from fingerpad.scene.reading import DEFAULT_MODEL
 from fingerpad.scene.remarks import coefficient
 from fingerpad.scene.scene import as_kept
-from variational.state import CONDITIONS, RESULTS, ContactState, Errors
+from variational.state import CONDITIONS, PATH, RESULTS, ContactState, Errors
 
 if TYPE_CHECKING:
     import xarray
@@ -115,6 +115,7 @@ class Result(Answer):
         nested = {
             name: {key: values[f"{name}_{key}"] for key in self._kept()}
             | {kind: getattr(state, kind).known() for kind in CHANGES}
+            | ({} if state.reached == PATH else {"reached": state.reached})
             for name, state in self.named.items()
         }
         found: dict[str, Any] = {
@@ -182,7 +183,8 @@ class Result(Answer):
                 raise SceneError(f"the run in {name} was refused and has no results: {summary['failure']}")
             found = cls.from_dict(summary, folder)
             if (kept := dataset.read(folder, [each.name for each in found.outputs])) is not None:
-                found = replace(found, steps=kept[0], **kept[1])  # type: ignore[arg-type]
+                named = {name: replace(s, reached=found.named[name].reached) for name, s in kept[1].items()}
+                found = replace(found, steps=kept[0], **named)  # type: ignore[arg-type]
             elif (folder / "steps.csv").exists():
                 found = replace(found, steps=steps_of(folder))
             if not found.steps:
@@ -234,10 +236,11 @@ def _state(name: str, kept: Mapping[str, Any]) -> ContactState:
         kept: its values and errors.
     """
     values = {key: value for key, value in kept.items() if key not in CHANGES and value is not None}
-    if wrong := [key for key, value in values.items() if not isinstance(value, int | float) and key != "load"]:
+    texts = ("load", "reached")
+    if wrong := [key for key, value in values.items() if not isinstance(value, int | float) and key not in texts]:
         raise TypeError(f"{wrong[0]} of {name} is no number")
     more: dict[str, Any] = {kind: Errors(**kept.get(kind, {})) for kind in CHANGES}
-    more |= {key: values.pop(key) for key in STABILITY if key in values}
+    more |= {key: values.pop(key) for key in (*STABILITY, "reached") if key in values}
     slip = {"all_slip": True, "slip_held": True} if name == "full_slip" else {}
     return replace(ContactState.from_row({"mu_app": math.nan} | values | slip), **more)
 

@@ -19,6 +19,8 @@ from fingerpad.slices.finger import WholeFinger
 if TYPE_CHECKING:
     from fingerpad.results.result import Result
 
+OTHER = "full_slip_other"
+"""Beginning of the columns of a second state of full slip, where there are two."""
 LOAD = "load"
 """Beginning of the columns of a load over time."""
 _WHOLE = ("mu_app", "f_t", "f_electrostatic", "contact_area", "gross_area")
@@ -32,8 +34,12 @@ def row(result: "Result") -> dict[str, Any]:
     if result.whole:
         return (_newtons(result.finger) if result.finger is not None else {}) | {"failure": result.failure}
     values, keys = result.values(), (*SWEPT, *(each.name for each in result.outputs))
-    names = [f"{state}_{key}" for state in STATES for key in keys]
+    alone = "reached" in result.record  # full slip without a path
+    names = [f"{state}_{key}" for state in (STATES[-1:] if alone else STATES) for key in keys]
     cells = {key: values.get(key) for name in names for key in (name, f"{name}_error") if key in values}
+    if alone:
+        cells["full_slip_reached"] = result.record["reached"]
+    cells |= {f"{OTHER}_{key}": value for key, value in result.record.get(OTHER, {}).items()}
     if result.finger is not None:
         cells |= _newtons(result.finger)
     for load in result.loads:

@@ -1,0 +1,170 @@
+"""Sweeps of full slip from point to point: order, chains, both sides of two states, paths in between, and tables."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from mpi4py import MPI
+
+import fingerpad as fp
+from fingerpad.model.full_slip import Solved
+from fingerpad.runs import chain
+from fingerpad.runs.chain import Chain, chains
+from fingerpad.runs.sweep import _neighbours
+from fingerpad.scene import SceneError, from_data
+from tests.small_finger import NINE
+from variational.solvers.continuation import StepFailed
+from variational.solvers.outcome import Counts
+from variational.state import ContactState
+
+SCENE = NINE | {"f_ext": 1.0, "voltage": 100.0, "output": {"errors": False, "receptors": False}}
+
+
+def scenes(**axis):
+    ((key, values),) = axis.items()
+    return {str(value): from_data(SCENE | {key: value}) for value in values}
+
+
+def test_each_point_is_beside_the_one_before():
+    """From the largest values on; one axis changes at a time, by one of its values in order; voltages are fastest."""
+    axes = {"voltage": (0.0, 200.0, -100.0), "f_ext": (10.0, 30.0, 20.0, 40.0), "numerics.element": ("P1", "P2")}
+    along = _neighbours(axes)
+    assert sorted(along) == list(range(24))
+    places = np.array(np.unravel_index(along, (3, 4, 2))).T
+    ranks = np.column_stack([np.argsort([1, 2, 0])[places[:, 0]], np.array([3, 1, 2, 0])[places[:, 1]], places[:, 2]])
+    assert (np.abs(np.diff(ranks, axis=0)).sum(axis=1) == 1).all()
+    assert (np.diff(ranks[:, 0]) != 0).sum() == 8 * 2
+    assert (axes["voltage"][places[0, 0]], axes["f_ext"][places[0, 1]]) == (200.0, 40.0)
+
+
+def test_chains_share_a_mesh_and_a_law():
+    """Loads, laws' numbers, roughness and insulators leave the mesh as it is; sizes and another law do not."""
+    free = [{}, {"voltage": 50.0}, {"f_ext": 2.0}, {"friction": 0.3}, {"electric": {"d_i": 2e-6}}]
+    law = {"law": "Derjaguin", "mu_f": 0.3, "tau_0": 10.0}
+    other = [{"mesh": NINE["mesh"] | {"contact": 30e-6}}, {"friction": law}]
+    every = {str(k): from_data(SCENE | each) for k, each in enumerate([*free, *other])}
+    assert list(chains(every, 2)) == [["0", "1", "2", "3", "4"], ["5"], ["6"]]
+
+
+def test_long_chains_are_shared_among_the_jobs():
+    every = scenes(voltage=[float(v) for v in range(20)])
+    assert [len(names) for names in chains(every, 2)] == [10, 10]
+    assert [name for names in chains(every, 5) for name in names] == list(every)
+    assert len(list(chains(every, 5))) == 2, "a chain is not so short that its path takes most of the time"
+
+
+class Skin:
+    """In place of a finger: below 60 V there are 3 ridges, above 80 V 5, and between as many as there were before."""
+
+    def __init__(self, missing=()):
+        self.missing, self.paths = missing, 0
+        interface = SimpleNamespace(formulation=None)
+        solver = SimpleNamespace(counts=Counts(), iteration=SimpleNamespace(free=lambda: None))
+        self.finger = SimpleNamespace(
+            solver=solver, unknowns=7, force_error=1e-9, problem=SimpleNamespace(interface=interface)
+        )
+
+    def _found(self, conditions, ridges, reached):
+        f_t = 0.25 * ridges
+        state = ContactState(
+            f_ext=1.0, voltage=conditions.voltage, f_t=f_t, mu_app=f_t, f_contact=f_t / 0.25,
+            f_electrostatic=f_t / 0.25 - 1.0, ridges_in_contact=ridges, contact_length=0.0, slip_held=True,
+            reached=reached,
+        )  # fmt: skip
+        return Solved(conditions, state, None)
+
+    def first(self, conditions):
+        if conditions.voltage in self.missing:
+            raise StepFailed("no path")
+        self.paths += 1
+        return self._found(conditions, 3 if conditions.voltage < 60 else 5, "path")
+
+    def solve(self, conditions, start):
+        if conditions.voltage in self.missing or (start.conditions.voltage == 90.0 and conditions.voltage == 75.0):
+            raise StepFailed("not found")
+        u = conditions.voltage
+        ridges = 3 if u < 60 else 5 if u > 80 else start.state.ridges_in_contact
+        return self._found(conditions, ridges, f"full slip from {start.conditions.beside(conditions)}")
+
+
+def followed(monkeypatch, skin, voltages):
+    monkeypatch.setattr(Chain, "_path", lambda self, model: skin)
+    made = Chain([*scenes(voltage=voltages).values()], None, MPI.COMM_SELF)
+    written = list(made.follow())
+    return made.results, written
+
+
+def test_two_states_are_found_from_both_sides(monkeypatch):
+    """Down from 100 V five ridges touch at 70 V, up from 50 V three; at 100 V both ways lead to the same state."""
+    results, written = followed(monkeypatch, Skin(), [100.0, 70.0, 65.0, 50.0])
+    assert [r.full_slip.ridges_in_contact for r in results] == [5, 5, 5, 3]
+    assert written == [0, 1, 2, 3, 2, 1]
+    assert [r.record.get(chain.OTHER, {}).get("ridges_in_contact") for r in results] == [None, 3, 3, None]
+    assert results[2].record[chain.OTHER]["reached"] == "full slip from voltage 50 V"
+    caution = "there are two states of full slip: f_T 1.25 N/m with 5 ridges (full slip from voltage 70 V) and f_T 0.75"
+    assert results[2].cautions[-1].startswith(caution)
+    assert not any("two states" in text for r in (results[0], results[3]) for text in r.cautions)
+    assert results[1].record["reached"] == "full slip from voltage 100 V"
+
+
+def test_point_not_found_from_its_neighbour_has_a_path(monkeypatch):
+    skin = Skin()
+    results, _ = followed(monkeypatch, skin, [100.0, 90.0, 75.0, 70.0])
+    assert [r.full_slip.reached for r in results[1:3]] == ["full slip from voltage 100 V", "path"]
+    assert results[2].notes == ("Full slip is at the end of a path of its own: not found.",)
+    assert results[3].full_slip.reached == "full slip from voltage 75 V"
+    assert skin.paths == 2
+
+
+def test_point_without_full_slip_has_its_failure(monkeypatch):
+    """The others go on from the last one that was found."""
+    results, _ = followed(monkeypatch, Skin(missing=(90.0,)), [100.0, 90.0, 85.0])
+    assert results[1].failure == "no path" and results[1].full_slip is None
+    assert results[2].full_slip.reached == "full slip from voltage 100 V"
+
+
+@pytest.mark.parametrize(
+    ("changes", "message"),
+    [
+        ({"accuracy": {"mu_app": 0.01}}, "accuracy is given"),
+        ({"force": 0.1}, "force is 0.1"),
+        ({"history": [{"name": "press", "f_ext": 1.0}]}, "history is given"),
+    ],
+)
+def test_other_scenes_are_refused(changes, message, tmp_path):
+    with pytest.raises(SceneError, match=message):
+        fp.sweep(fp.Scene(**changes), tmp_path, states="full_slip", **{"roughness.h_rms": [2e-6]})
+
+
+def test_unknown_states_and_models_without_them_are_refused(tmp_path):
+    with pytest.raises(SceneError, match="states is 'some'; it must be 'all' or 'full_slip'"):
+        fp.sweep(out=tmp_path, states="some", voltage=[0])
+    with pytest.raises(SceneError, match="full slip alone is of the model 'full'"):
+        fp.sweep(out=tmp_path, states="full_slip", model="cylinders", voltage=[0])
+
+
+@pytest.mark.slow
+def test_sweep_of_full_slip_is_that_of_paths(tmp_path, monkeypatch):
+    """To 1e-6, with its own mesh given; a sweep with a further value starts one process, and one as before none."""
+    scene, axes = from_data(SCENE), {"friction": [0.0, 0.25], "voltage": [0, 60]}
+    paths = fp.sweep(scene, tmp_path / "paths", quiet=True, **axes)
+    direct = fp.sweep(scene, tmp_path / "direct", states="full_slip", quiet=True, **axes)
+    assert [bool(r.failure) for r in direct] == [True, True, False, False]
+    assert direct[0].failure.startswith("friction is 0")
+    for quantity in ("f_t", "mu_app", "f_electrostatic"):
+        expected = paths.array(quantity)[1]
+        assert direct.array(quantity)[1] == pytest.approx(expected, rel=1e-6), quantity
+    assert direct.array("contact_length")[1] == pytest.approx(paths.array("contact_length")[1], rel=1e-5)
+    assert [r.full_slip.reached for r in direct[2:]] == ["full slip from voltage 60 V", "path"]
+    row = direct.rows()[2]
+    assert row["full_slip_reached"] == "full slip from voltage 60 V"
+    assert not any(column.startswith(("uncharged", "charged")) for column in row)
+    assert (tmp_path / "direct" / "report.html").exists()
+
+    started, run = [], chain.run
+    monkeypatch.setattr(chain, "run", lambda *args: started.append(args) or run(*args))
+    again = fp.sweep(scene, tmp_path / "direct", states="full_slip", quiet=True, **axes)
+    assert not started
+    assert again.array("f_t")[1] == pytest.approx(direct.array("f_t")[1], rel=0, abs=0)
+    more = fp.sweep(scene, tmp_path / "direct", states="full_slip", quiet=True, friction=[0.25], voltage=[0, 60, 80])
+    assert len(started) == 1 and not any(r.failure for r in more)
