@@ -26,7 +26,7 @@ def scenes(**axis):
 
 
 def test_each_point_is_beside_the_one_before():
-    """From the largest values on; one axis changes at a time, by one of its values in order; voltages are fastest."""
+    """From the largest voltage and the least force on, one axis and one value at a time; voltages are the fastest."""
     axes = {"voltage": (0.0, 200.0, -100.0), "f_ext": (10.0, 30.0, 20.0, 40.0), "numerics.element": ("P1", "P2")}
     along = _neighbours(axes)
     assert sorted(along) == list(range(24))
@@ -34,7 +34,7 @@ def test_each_point_is_beside_the_one_before():
     ranks = np.column_stack([np.argsort([1, 2, 0])[places[:, 0]], np.array([3, 1, 2, 0])[places[:, 1]], places[:, 2]])
     assert (np.abs(np.diff(ranks, axis=0)).sum(axis=1) == 1).all()
     assert (np.diff(ranks[:, 0]) != 0).sum() == 8 * 2
-    assert (axes["voltage"][places[0, 0]], axes["f_ext"][places[0, 1]]) == (200.0, 40.0)
+    assert (axes["voltage"][places[0, 0]], axes["f_ext"][places[0, 1]]) == (200.0, 10.0)
 
 
 def test_chains_share_a_mesh_and_a_law():

@@ -245,14 +245,16 @@ def _in_processes(
 
 
 def _neighbours(axes: Mapping[str, Sequence[Any]]) -> list[int]:
-    """Return the places of a grid in an order in which each is beside the one before, largest values first.
+    """Return the places of a grid in an order in which each is beside the one before.
 
-    Voltages are the fastest: ridges come and go more seldom with them than with forces.
+    Voltages are the fastest and the largest come first. Forces begin with the least: a ridge that comes down takes a
+    third of the work of one that snaps off, and the first point is the end of a short path.
     """
     places = np.arange(math.prod(len(values) for values in axes.values())).reshape([len(v) for v in axes.values()])
-    for k, values in enumerate(axes.values()):
+    for k, (key, values) in enumerate(axes.items()):
         if all(isinstance(value, int | float) for value in values):
-            places = np.take(places, np.argsort([-abs(value) for value in values], kind="stable"), axis=k)
+            sign = 1 if key == "f_ext" else -1
+            places = np.take(places, np.argsort([sign * abs(value) for value in values], kind="stable"), axis=k)
     places = places.transpose(sorted(range(len(axes)), key=lambda k: [*axes][k] == "voltage"))
     along = [places]
     while along[0].ndim:  # there and back along each axis
