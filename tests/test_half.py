@@ -51,15 +51,13 @@ def follow(history, led: bool) -> Simulation:
     return FOLLOWED[key]
 
 
-@pytest.mark.mpi
 @pytest.mark.parametrize(
     "history",
     [
-        HISTORY,
-        [{"name": "lower", "bone_height": -60e-6}, *HISTORY[2:]],
-        [HISTORY[0], {"name": "lift", "f_ext": 0.2}, *HISTORY[1:3]],
+        pytest.param(HISTORY, id="press, charge, slide"),
+        pytest.param([{"name": "lower", "bone_height": -60e-6}, *HISTORY[2:]], id="bone height", marks=pytest.mark.mpi),
+        pytest.param([HISTORY[0], {"name": "lift", "f_ext": 0.2}, HISTORY[1], BRIEF[1]], id="lift"),
     ],
-    ids=["press, charge, slide", "bone height", "lift"],
 )
 def test_half_leads_to_the_states_of_the_whole(history):
     led, whole = (follow(history, half).states for half in (True, False))

@@ -7,18 +7,21 @@ import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 
 import fingerpad as fp
+from fingerpad.scene import from_data
 from tests.runs import no_pictures
-from tests.small_finger import small
+from tests.small_finger import NINE
 
 pytestmark = pytest.mark.slow
 KINDS = ("history", "surface", "finger")
+RUNS = {"plain": {"output": {"errors": False}}, "refined": {"accuracy": {"mu_app": 0.2}}}
 
 
-@pytest.fixture(scope="module", params=[{}, {"accuracy": {"mu_app": 0.2}}], ids=["plain", "refined"])
+@pytest.fixture(scope="module", params=RUNS)
 def ran(request, tmp_path_factory) -> fp.Result:
     """A run on one mesh, and one whose named states are on a finer mesh than its path."""
     with no_pictures():
-        return fp.run(small(**request.param), out=tmp_path_factory.mktemp("run") / "out")
+        scene = from_data(NINE | {"f_ext": 1.0, "voltage": 100.0} | RUNS[request.param])
+        return fp.run(scene, out=tmp_path_factory.mktemp("run") / "out")
 
 
 def pixels(figure) -> bytes:

@@ -49,7 +49,6 @@ def test_concave_pair_stays():
 
 
 @pytest.mark.slow
-@pytest.mark.mpi
 @pytest.mark.parametrize("half", [True, False])
 def test_sharp_tips_are_meshed(half):
     """Of the fifth harmonic alone; a mesh of gmsh's own has such triangles, on either side of the mirror."""

@@ -17,10 +17,9 @@ import fingerpad as fp
 from fingerpad.cli import run as command
 from fingerpad.model.simulation import Simulation
 from fingerpad.results.checkpoint import Checkpoint, CheckpointError
-from fingerpad.results.drawing import Drawing
-from fingerpad.results.writing import Writer
 from fingerpad.runs.batch import key, sweep
 from fingerpad.scene import SceneError
+from tests.runs import tables_alone
 from tests.test_history import Own
 from variational.problem import Problem
 from variational.solvers.coupling import Coupling
@@ -62,11 +61,10 @@ def tables(folder: Path) -> dict[str, list[dict[str, str]]]:
 
 
 @pytest.fixture(autouse=True)
-def bare(monkeypatch):
+def bare():
     """Nothing but tables and the summary is written."""
-    monkeypatch.setattr(Drawing, "write", lambda *args: None)
-    monkeypatch.setattr(Writer, "dataset", lambda self, result: "")
-    monkeypatch.setattr("fingerpad.report.write.attempt", lambda folder: None)
+    with tables_alone():
+        yield
 
 
 @pytest.fixture
