@@ -13,7 +13,7 @@ from fingerpad.model.options import FingerModel, plan
 from fingerpad.model.simulation import Simulation
 from fingerpad.scene import from_data
 from tests.runs import followed
-from tests.test_demo import MESH, NINE
+from tests.small_finger import NINE
 from variational.materials.neo_hooke import NeoHooke
 from variational.solvers import newton as solvers
 
@@ -32,7 +32,7 @@ BRIEF = [HISTORY[0], {"name": "slide", "bone_x": 5e-6}]
 
 def model(history, led: bool = True) -> FingerModel:
     """Return a small finger's model, led by its half or not."""
-    scene = by_rule(from_data(NINE | {"history": history, "mesh": MESH}))
+    scene = by_rule(from_data(NINE | {"history": history}))
     needed = plan(scene)
     assert needed.symmetric_start
     return FingerModel(scene, replace(needed, symmetric_start=led))
@@ -115,7 +115,7 @@ def test_record_is_that_of_the_state_and_not_of_a_probe(monkeypatch):
 def test_mixed_element_is_in_balance_on_the_whole_finger():
     """The pressure comes over with the displacement. Solved for again it left up to 5e-8, with a floor of 0."""
     layers = {layer: {"poisson": 0.4999} for layer in ("stratum_corneum", "viable_epidermis", "dermis")}
-    scene = NINE | {"history": BRIEF, "mesh": MESH, "numerics": {"element": "P2-P1"}, "materials": layers}
+    scene = NINE | {"history": BRIEF, "numerics": {"element": "P2-P1"}, "materials": layers}
     scene = by_rule(from_data(scene))
     assert plan(scene).symmetric_start
     path = followed(scene)
@@ -155,7 +155,7 @@ class Fibres(NeoHooke):
 @pytest.mark.parametrize(("history", "moves"), [(HISTORY, True), (HISTORY[:2], False)])
 def test_no_half_where_the_finger_is_not_its_own_mirror_image(history, moves):
     """An own material may have fibres at an angle; one of the program's may not."""
-    scene = from_data(NINE | {"history": history, "mesh": MESH})
+    scene = from_data(NINE | {"history": history})
     straight, inclined = (
         plan(scene.replace(materials={"dermis": solid})) for solid in (NeoHooke(2.5e3), Fibres(2.5e3))
     )
