@@ -85,9 +85,6 @@ def test_bad_height_map_of_a_scene(table, message):
     with pytest.raises(SceneError) as refusal:
         from_data({"roughness": {"topography": table}})
     assert str(refusal.value).startswith(message)
-
-
-def test_height_map_and_its_numbers_are_refused():
     with pytest.raises(SceneError, match="roughness.h_rms is 3e-06 and roughness.topography is given too"):
         from_data({"roughness": {"h_rms": 3e-6, "topography": {"file": "skin.csv", "unit": "um"}}})
 
