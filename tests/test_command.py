@@ -25,8 +25,8 @@ def run_line(*argv: str) -> tuple[Scene, argparse.Namespace, list[str]]:
     parser = Parser("run", "fingerpad run")
     parser.add_scene()
     parser.add_out("results", "folder")
-    args, petsc = parser.read_with_petsc(argv)
-    return scene_of(args), args, petsc
+    args = parser.read(argv, petsc=True)
+    return scene_of(args), args, args.petsc
 
 
 # -- options -----------------------------------------------------------------------------------------------
