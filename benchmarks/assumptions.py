@@ -7,10 +7,11 @@ docs/assumptions.json and docs/assumptions.md.
 """
 
 import argparse
+import shlex
 import sys
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
@@ -23,34 +24,32 @@ from fingerpad.scene import Scene, load
 from fingerpad.scene.reading import override
 
 _LIMIT = 3600.0  # s of processor time for one run
-_SCENES = harness.ROOT / "demos" / "scenes"
-_COARSE = ("mesh.contact=10e-6", "mesh.receptor=20e-6")
 PAPER, NEAR, LEAST_GAP = 0.55, 0.05, 1.7e-6  # µ_app, what counts as equal to it; m
 
 
-class Case(NamedTuple):
-    """A run by its command: a file of ``demos/scenes``, the changes beside the mesh, the mesh's."""
-
-    file: str = ""
-    changes: tuple[str, ...] = ()
-    mesh: tuple[str, ...] = _COARSE
-    errors: bool = False
-    """Whether the row states the estimated error."""
-
-    def scene(self) -> Scene:
-        """Return the scene of the command; runs whose errors the page does not state leave them out."""
-        changes = (*self.changes, *self.mesh, *([] if self.errors else ["output.errors=false"]))
-        path = _SCENES / f"{self.file}.toml" if self.file else None
-        return load(path, dict(override(change) for change in changes))
+def _set(*changes: str) -> str:
+    return " ".join(f'--set "{change}"' if " " in change else f"--set {change}" for change in changes)
 
 
-# -- full runs -----------------------------------------------------------------------------------------------
+_COARSE = _set("mesh.contact=10e-6", "mesh.receptor=20e-6")
+_FLAT = "demos/scenes/flat_ridges.toml"
+
+
+def scene(command: str, errors: bool = False) -> Scene:
+    """Return the scene of a command's options; runs whose errors the page does not state leave them out."""
+    words = [word for word in shlex.split(command) if word != "--set"]
+    files, changes = ([word for word in words if word.endswith(".toml") is is_file] for is_file in (True, False))
+    path = harness.ROOT / files[0] if files else None
+    return load(path, dict(map(override, changes + ["output.errors=false"] * (not errors))))
+
+
+# -- full runs, by name: their options ---------------------------------------------------------------------------
 READINGS = {
-    "finest": Case(mesh=()),
-    "reference": Case(),
-    "abaqus": Case("abaqus_exponent"),
-    "gap": Case("length_by_gap"),
-    "soft": Case("soft_screen"),
+    "finest": "",
+    "reference": _COARSE,
+    "abaqus": f"demos/scenes/abaqus_exponent.toml {_COARSE}",
+    "gap": f"demos/scenes/length_by_gap.toml {_COARSE}",
+    "soft": f"demos/scenes/soft_screen.toml {_COARSE}",
 }
 PARAMETERS = {  # change: in words, if it needs any
     "geometry.ridge_profile=[1, -0.125]": "tips half as curved",
@@ -75,38 +74,40 @@ LITTLE = {
     "geometry.merkel_offset=10e-6": "half",
     "geometry.merkel_offset=40e-6": "twice",
 }
-FLAT = {
-    "flat": Case("flat_ridges", mesh=(), errors=True),
-    "flat 170": Case("flat_ridges", errors=True),
-    "flat 200": Case("flat_ridges", ("voltage=200",), errors=True),
+FLAT = {  # with errors
+    "flat": _FLAT,
+    "flat 170": f"{_FLAT} {_COARSE}",
+    "flat 200": f"{_FLAT} --set voltage=200 {_COARSE}",
 }
-BESIDE = {"flat 0": Case("flat_ridges", ("voltage=0",)), "both": Case("", ("geometry.ridge_profile=[1, -0.11]",))}
+BESIDE = {
+    "flat 0": f"{_FLAT} --set voltage=0 {_COARSE}",
+    "both": f"{_set('geometry.ridge_profile=[1, -0.11]')} {_COARSE}",
+}
 
 
-def cases() -> dict[str, Case]:
-    """Return all full runs by name."""
-    changed = {change: Case("", (change,)) for change in (*PARAMETERS, *LITTLE)}
-    return {**READINGS, **changed, **FLAT, **BESIDE}
+def runs() -> dict[str, str]:
+    """Return the options of all full runs by name."""
+    return {**READINGS, **{change: f"{_set(change)} {_COARSE}" for change in (*PARAMETERS, *LITTLE)}, **FLAT, **BESIDE}
 
 
 # -- ridge profiles ------------------------------------------------------------------------------------------
-_WIDE = "mesh.touching_fraction=0.6"
 _SHOWN = ("[1]", "[1, 0, -0.11]", "[1, -0.125]", "[1, -0.25]", "[1, -0.48, 0.13]")
 _OTHERS = ("[1, -0.0625]", "[1, 0, -0.05]")
+LIGHT = ("flat, 10 N/m, 200 V", "flat, 10 N/m, 0 V")
 _BY_VOLTAGE = {"[1, -0.25]": (150, 165), "[1, -0.48, 0.13]": (165, 170, 172)}
 
 
-def _profile(profile: str, voltage: float, *more: str) -> tuple[str, Case]:
-    changes = (f"geometry.ridge_profile={profile}", f"voltage={voltage:g}", *more)
-    return f"{profile} at {voltage:g} V", Case("", changes, (*_COARSE, *([_WIDE] if profile.count(",") > 1 else [])))
+def _profile(profile: str, voltage: float, *more: str) -> str:
+    wide = ["mesh.touching_fraction=0.6"] * (profile.count(",") > 1)
+    return f"{_set(f'geometry.ridge_profile={profile}', f'voltage={voltage:g}', *more)} {_COARSE} {_set(*wide)}".strip()
 
 
-def profiles() -> dict[str, Case]:
-    """Return the runs of ridge profiles by name: at 200 V and other voltages, the flat one at 10 N/m."""
-    at_200 = dict(_profile(profile, 200.0) for profile in (*_SHOWN, *_OTHERS))
-    others = dict(_profile(profile, u) for profile, voltages in _BY_VOLTAGE.items() for u in voltages)
-    light = {f"flat, 10 N/m, {u:g} V": _profile(_SHOWN[-1], u, "f_ext=10")[1] for u in (0.0, 200.0)}
-    return at_200 | others | light
+def profiles() -> dict[str, str]:
+    """Return the options of the runs of ridge profiles: at 200 V and other voltages, the flat one at 10 N/m."""
+    pairs = [(profile, 200) for profile in (*_SHOWN, *_OTHERS)]
+    pairs += [(profile, u) for profile, voltages in _BY_VOLTAGE.items() for u in voltages]
+    light = {name: _profile(_SHOWN[-1], u, "f_ext=10") for name, u in zip(LIGHT, (200.0, 0.0), strict=True)}
+    return {f"{profile} at {u} V": _profile(profile, u) for profile, u in pairs} | light
 
 
 # -- numbers -------------------------------------------------------------------------------------------------
@@ -121,164 +122,78 @@ def _row(summary: Summary) -> dict[str, float | None]:
 
 def compute(args: argparse.Namespace) -> None:
     """Run what is missing and keep the numbers."""
-    scenes = {name: case.scene() for name, case in cases().items()}
-    shapes = {name: case.scene() for name, case in profiles().items()}
+    scenes = {name: scene(options, name in FLAT) for name, options in runs().items()}
+    shapes = {name: scene(options) for name, options in profiles().items()}
     full, shaped = harness.run(scenes, args, _LIMIT), harness.run(shapes, args, _LIMIT)
     if failed := [name for name, summary in (full | shaped).items() if "failure" in summary]:
         raise SystemExit(f"no numbers are kept: {'; '.join(failed)} failed; the other runs are kept in {args.out}")
     found: dict[str, dict[str, Any]] = {"full": {}, "profiles": {}}
-    for name, scene in scenes.items():
-        run = Run(scene, args.out)
+    for name, its in scenes.items():
+        run = Run(its, args.out)
         gaps = {state: run.on_ridges(run.row(state), "d_eq")[1].tolist() for state in ("charged", "full_slip")}
         found["full"][name] = _row(full[name]) | {"gaps": gaps, "penetration": float(run.steps["penetration"].max())}
-    for name, scene in shapes.items():
+    for name, its in shapes.items():
         pressure = shaped[name]["full_slip_f_contact"] / shaped[name]["full_slip_contact_length"]
-        more = {"pressure": pressure, "d_eq": float(scene.closure()(pressure).d_eq)}
+        more = {"pressure": pressure, "d_eq": float(its.closure()(pressure).d_eq)}
         found["profiles"][name] = _row(shaped[name]) | more
     harness.keep("assumptions", found, harness.made([*full.values(), *shaped.values()]), args.docs)
 
 
 # -- page ----------------------------------------------------------------------------------------------------
-_LENGTHS = ("L_R, full slip (mm)", "L_R, normal contact (mm)")
-_OF_LENGTHS = ("contact_length", "charged")
-_HEAD = ("µ_app", "f_T (N/m)", *_LENGTHS)
+def sentences(found: Mapping[str, Any]) -> dict[str, Any]:
+    """Return what the page's sentences have of the kept numbers, by their words in the template."""
+    rows, shaped = found["full"] | found["profiles"], found["profiles"].items()
 
+    def change(name: str, other: str = "reference", key: str = "mu_app") -> float:
+        """Return by how much a run differs from another (%)."""
+        return float(100 * (rows[name][key] / rows[other][key] - 1))
 
-def _command(case: Case, mesh: bool = True) -> str:
-    """Return the options of a run's command; those of the mesh on demand."""
-    words = [f"demos/scenes/{case.file}.toml"] if case.file else []
-    for change in (*case.changes, *(case.mesh if mesh else ())):
-        words += ["--set", f'"{change}"' if " " in change else change]
-    return f"`{' '.join(words)}`" if words else "none"
+    def gaps(name: str) -> Array:
+        """Return the air gaps of both states (m)."""
+        return np.concatenate([rows[name]["gaps"][state] for state in ("charged", "full_slip")])
 
+    def counts(name: str) -> tuple[int, int, int]:
+        """Return how many air gaps are in the paper's range, how many below it, and how many there are."""
+        return int(within(gaps(name)).sum()), int((gaps(name) < LEAST_GAP).sum()), len(gaps(name))
 
-def _mm(length: float) -> str:
-    return f"{1e3 * length:.3f}"
+    def near(row: Mapping[str, Any]) -> bool:
+        return bool(abs(row["mu_app"] / PAPER - 1) <= NEAR)
 
-
-def _micro(*lengths: float) -> str:
-    return " to ".join(f"{1e6 * each:.2f}" for each in lengths)
-
-
-def _friction(row: Mapping[str, Any]) -> str:
-    return plus_minus(row["mu_app"], row["error"]) if row["error"] else f"{row['mu_app']:.4f}"
-
-
-def _lines(full: Mapping[str, Any], named: Mapping[str, str]) -> list[list[str]]:
-    """Return a line for each run: its words, friction and lengths."""
-    return [
-        [words, _friction(full[name]), f"{full[name]['f_t']:.2f}", *(_mm(full[name][key]) for key in _OF_LENGTHS)]
-        for name, words in named.items()
-    ]
-
-
-def _changes(full: Mapping[str, Any], changes: Mapping[str, str]) -> str:
-    named = {
-        change: _command(Case("", (change,)), mesh=False) + (f": {words}" if words else "")
-        for change, words in changes.items()
-    }
-    return harness.table(("option", *_HEAD), _lines(full, {"reference": "none"} | named))
-
-
-def _profiles(found: Mapping[str, Any]) -> str:
-    rows = []
-    for profile in _SHOWN:
-        for voltage in sorted({200, *_BY_VOLTAGE.get(profile, ())}, reverse=True):
-            row = found[f"{profile} at {voltage} V"]
-            cells = (f"{row['mu_app']:.3f}", f"{1e3 * row['contact_length']:.2f}", f"{row['pressure'] / 1e3:.0f}")
-            rows.append([f"`{profile}`", voltage, *cells, _micro(row["d_eq"])])
-    head = ("`ridge_profile`", "U (V)", "µ_app", _LENGTHS[0], "f_c/L_R (kPa)", "d_eq (µm)")
-    return harness.table(head, rows)
-
-
-def _flat(full: Mapping[str, Any]) -> str:
-    rows = []
-    for name, case in FLAT.items():
-        row = full[name]
-        gaps = _gaps(row)
-        lengths = (_mm(row[key]) for key in _OF_LENGTHS)
-        rows.append([_command(case), _friction(row), *lengths, _micro(gaps.min(), gaps.max())])
-    return harness.table(("options", "µ_app", *_LENGTHS, "d_eq, both states (µm)"), rows)
-
-
-def _gaps(row: Mapping[str, Any]) -> Array:
-    """Return the air gaps of both states (m)."""
-    return np.concatenate([row["gaps"][state] for state in ("charged", "full_slip")])
-
-
-def _counts(row: Mapping[str, Any]) -> tuple[int, int, int]:
-    """Return how many air gaps of both states are in the paper's range, how many below it, and how many there are."""
-    gaps = _gaps(row)
-    return int(within(gaps).sum()), int((gaps < LEAST_GAP).sum()), len(gaps)
-
-
-def values(found: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the numbers in the page's sentences; changes in per cent."""
-    full, shaped = found["full"], found["profiles"]
-
-    def change(name: str, other: str = "reference", key: str = "mu_app", of: Mapping[str, Any] = full) -> float:
-        return float(100 * (of[name][key] / of[other][key] - 1))
-
-    near = [row for name, row in shaped.items() if name.endswith("200 V") and "flat" not in name]
-    close = [row["d_eq"] for row in near if abs(row["mu_app"] / PAPER - 1) <= NEAR]
-    gaps, both = _gaps(full["finest"]), full["both"]
-    light = "flat, 10 N/m, 200 V", "flat, 10 N/m, 0 V"
-    met = [
-        float(name.split()[-2])
-        for name, row in shaped.items()
-        if name.startswith(_SHOWN[-1]) and row["d_eq"] >= LEAST_GAP and abs(row["mu_app"] / PAPER - 1) <= NEAR
-    ]
-    lowest = _gaps(both)[_gaps(both) < LEAST_GAP]
+    at_200 = [row for name, row in shaped if name.endswith("200 V") and "flat" not in name]
+    flattest = [(float(name.split()[-2]), row) for name, row in shaped if name.startswith(_SHOWN[-1])]
     return {
-        "half": change(next(iter(PARAMETERS))),
-        "tops": change("flat 200"),
-        "abaqus": -change("abaqus"),
-        "abaqus_length": -change("abaqus", key="contact_length"),
-        "gap": -change("gap"),
-        "soft": change("soft", "gap"),
-        "soft_length": change("soft", "gap", "contact_length"),
-        "yields": 1e6 * full["soft"]["penetration"],
-        "little": max(abs(change(name)) for name in LITTLE),
-        "default": full["finest"]["mu_app"],
-        "gaps": _micro(gaps.min(), gaps.max()),
-        "profiles": len(near),
-        "close": len(close),
-        "close_gaps": _micro(min(close), max(close)),
-        "low": shaped["[1, -0.25] at 150 V"],
-        "low_gap": _micro(shaped["[1, -0.25] at 150 V"]["d_eq"]),
-        "met_low": min(met),
-        "met_high": max(met),
-        "flat": _counts(full["flat"]),
-        "flat_off": 100 * (full["flat"]["mu_app"] / PAPER - 1),
-        "flat_200": _counts(full["flat 200"]),
-        "flat_200_off": 100 * (full["flat 200"]["mu_app"] / PAPER - 1),
-        "both": both,
-        "both_off": 100 * (both["mu_app"] / PAPER - 1),
-        "both_gaps": _counts(both),
-        "both_range": _micro(lowest.min(), lowest.max()),
-        "light_normal": change(*light, "charged", shaped),
-        "light_slip": change(*light, "contact_length", shaped),
-        "heavy_normal": change("flat 200", "flat 0", "charged"),
-        "heavy_slip": change("flat 200", "flat 0", "contact_length"),
-    }
+        "rows": rows, "change": change, "gaps": gaps, "counts": counts, "near": at_200,
+        "off": lambda name: 100 * (rows[name]["mu_app"] / PAPER - 1),
+        "close": [row["d_eq"] for row in at_200 if near(row)],
+        "met": [voltage for voltage, row in flattest if row["d_eq"] >= LEAST_GAP and near(row)],
+    }  # fmt: skip
+
+
+def _span(lengths: Sequence[float]) -> str:
+    """Return the least and the largest of lengths (m) in µm, or the only one."""
+    return " to ".join(f"{1e6 * each:.2f}" for each in dict.fromkeys((min(lengths), max(lengths))))
 
 
 def draw(docs: Path) -> Path:
     """Draw the page from the kept numbers."""
-    kept, text = harness.kept("assumptions", docs), harness.prose("assumptions")
-    full, words = kept.numbers["full"], values(kept.numbers)
-    readings = {name: _command(case) for name, case in READINGS.items()}
-    body = [
-        f"## Readings\n\n{harness.table(('options', *_HEAD), _lines(full, readings))}",
-        text["readings"].format(**words),
-        f"## Parameters\n\n{text['parameters'].format(**words)}\n\n{_changes(full, PARAMETERS)}",
-        harness.folded("Parameters that change little", _changes(full, LITTLE)),
-        *(text["tips"].format(**words), text["profiles"], _profiles(kept.numbers["profiles"])),
-        *(text["other-profiles"].format(**words), text["flat"], _flat(full), text["rest"].format(**words)),
+    names = sentences(harness.kept("assumptions", docs).numbers)
+    rows = names["rows"]
+
+    def friction(name: str) -> str:
+        row = rows[name]
+        return plus_minus(row["mu_app"], row["error"]) if row["error"] else f"{row['mu_app']:.4f}"
+
+    def line(name: str) -> str:
+        row = rows[name]
+        return f"{friction(name)} | {row.f_t:.2f} | {1e3 * row.contact_length:.3f} | {1e3 * row.charged:.3f}"
+
+    shown = [
+        (profile, voltage, rows[f"{profile} at {voltage} V"])
+        for profile in _SHOWN
+        for voltage in sorted({200, *_BY_VOLTAGE.get(profile, ())}, reverse=True)
     ]
-    title, finding, how = "Assumptions and what they change", text["finding"].format(**words), text["how"]
-    command = "python3 -m benchmarks.assumptions"
-    return harness.page(docs / "assumptions.md", title, finding, how, body, command, kept.made, ["assumptions"])
+    names |= {"friction": friction, "line": line, "span": _span, "shown": shown, "HALF": next(iter(PARAMETERS))}
+    return harness.page(docs, "assumptions", "python3 -m benchmarks.assumptions", globals() | names)
 
 
 if __name__ == "__main__":

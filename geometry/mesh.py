@@ -17,8 +17,7 @@ except ImportError:
 
 from geometry import tags
 from geometry.profiles import GeometryError
-from geometry.session import session
-from geometry.shape import Shape
+from geometry.shape import Shape, session
 
 
 @dataclass(frozen=True)

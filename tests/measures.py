@@ -8,11 +8,13 @@ import ufl
 from dolfinx import fem
 from dolfinx.mesh import entities_to_geometry
 
+from variational.state import ContactState
 
-def integral(body, tag, integrand=1.0) -> float:
-    """Integrate over a layer on all ranks."""
-    dx = ufl.Measure("dx", body.mesh, subdomain_data=body.cell_tags)
-    form = fem.form(fem.Constant(body.mesh, 1.0) * integrand * dx(tag))
+
+def integral(body, tag, integrand=1.0, kind="dx") -> float:
+    """Integrate over a layer, or with the kind "ds" over a group of facets, on all ranks."""
+    measure = ufl.Measure(kind, body.mesh, subdomain_data=body.cell_tags if kind == "dx" else body.facet_tags)
+    form = fem.form(fem.Constant(body.mesh, 1.0) * integrand * measure(tag))
     return body.mesh.comm.allreduce(fem.assemble_scalar(form))
 
 
@@ -25,6 +27,12 @@ def vertices(body, facets):
     links = body.mesh.topology.connectivity(1, 0)
     points = np.unique(np.concatenate([links.links(f) for f in facets]))
     return body.mesh.geometry.x[entities_to_geometry(body.mesh, 0, points.astype(np.int32)).ravel(), :2]
+
+
+def contact_state(**values) -> ContactState:
+    """Return a state in contact; what is not given does not matter, or is that of a press by 1 N/m."""
+    given = {"f_ext": 1.0, "voltage": 0.0, "f_t": 0.0, "mu_app": 0.0, "f_contact": 1.0, "f_electrostatic": 0.0}
+    return ContactState(**given | {"ridges_in_contact": 3, "contact_length": 1e-3} | values)
 
 
 def rows_of(folder: Path, name: str = "steps") -> list[dict[str, str]]:

@@ -8,8 +8,7 @@ from unittest.mock import patch
 
 from mpi4py import MPI
 
-from fingerpad.model.feasibility import by_rule
-from fingerpad.model.options import FingerModel, plan
+from fingerpad.model.options import FingerModel, by_rule, plan
 from fingerpad.model.simulation import Simulation
 from fingerpad.results import curves, finger_picture, style
 from fingerpad.results.drawing import Drawing
@@ -54,7 +53,6 @@ def followed(scene: Scene, *reports: Any, comm: MPI.Comm = MPI.COMM_WORLD) -> Si
 
 
 def touch(path: Path, *args: Any, **options: Any) -> None:
-    """Leave a picture's file empty."""
     Path(path).touch()
 
 

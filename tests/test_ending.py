@@ -2,11 +2,13 @@
 
 import json
 import os
+import random
 import resource
 import signal
 import subprocess
 import sys
 import time
+import tomllib
 from pathlib import Path
 
 import pytest
@@ -14,7 +16,8 @@ from mpi4py import MPI
 
 from fingerpad.results.files import Table, replace_json
 from fingerpad.results.interrupt import Interrupt, Interrupted
-from tests.measures import accepted
+from tests.commands import python
+from tests.measures import accepted, rows_of
 
 pytestmark = pytest.mark.slow
 ROOT = Path(__file__).resolve().parents[1]
@@ -136,9 +139,7 @@ run(load(Path(sys.argv[1])), Path(sys.argv[2]), MPI.COMM_WORLD)
 def test_what_one_rank_raises_ends_all(tmp_path, rank):
     """The other one waits in a collective call."""
     (scene := tmp_path / "scene.toml").write_text(LONG, encoding="utf-8")
-    command = ["mpirun", "-n", "2", sys.executable, "-c", RAISES, str(scene), str(tmp_path / "out"), str(rank)]
-    environment = {**os.environ, "PYTHONPATH": str(ROOT)}
-    done = subprocess.run(command, env=environment, capture_output=True, text=True, timeout=200)
+    done = python("-c", RAISES, scene, tmp_path / "out", rank, ranks=2)
     assert done.returncode == 1
     assert done.stderr.count("ValueError: raised on one rank") == 1
     assert (tmp_path / "out" / "steps.csv").exists() and not (tmp_path / "out" / "summary.json").exists()
@@ -151,8 +152,7 @@ def test_full_disk(tmp_path):
     code += "resource.setrlimit(resource.RLIMIT_FSIZE, (100_000, 100_000))\n"
     code += "runpy.run_module('fingerpad', run_name='__main__')"
     (scene := tmp_path / "scene.toml").write_text(LONG, encoding="utf-8")
-    command = [sys.executable, "-c", code, "run", str(scene), "--out", str(tmp_path / "out")]
-    done = subprocess.run(command, env={**os.environ, "PYTHONPATH": str(ROOT)}, capture_output=True, text=True)
+    done = python("-c", code, "run", scene, "--out", tmp_path / "out")
     assert done.returncode == 1
     said = done.stderr.strip()
     assert said.startswith("fingerpad: File too large: no more results can be written")
@@ -199,3 +199,136 @@ def test_numbers_that_json_lacks_are_null(tmp_path):
     replace_json(tmp_path / "summary.json", data)
     text = (tmp_path / "summary.json").read_text()
     assert json.loads(text) == {"lambda_min": None, "shares": [None, 1.0], "number": [2, None]}
+
+
+# -- Ctrl-C before, beside and after a run ---------------------------------------------------------------------------
+START = """
+import atexit, os, runpy, signal, sys
+signal.signal(signal.SIGINT, signal.{handler})  # a pytest in the background has processes ignore it
+def come():
+    os.kill(os.getpid(), signal.SIGINT)
+class Callback:
+    def __del__(self):  # as importlib's own, where an exception is lost
+        come()
+class Finder:
+    def find_spec(self, name, path, target=None):
+        if name == {moment!r}:
+            Callback()
+sys.meta_path.insert(0, Finder())
+if {moment!r} == "the end":
+    atexit.register(come)
+"""
+SCRIPT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]["scripts"]["fingerpad"]
+DOORS = {
+    "module": "runpy.run_module('fingerpad', run_name='__main__', alter_sys=True)",
+    "script": "from {} import {} as main; sys.exit(main())".format(*SCRIPT.split(":")),
+}
+
+
+def interrupted(code: str, *words: object, moment: str = "", handler: str = "default_int_handler"):
+    """Run code in a process that gets SIGINT at a moment: when a module is imported, or at the end."""
+    return python("-c", START.format(moment=moment, handler=handler) + code, *words)
+
+
+@pytest.mark.parametrize(
+    ("door", "moment"), [("module", "numpy"), ("script", "fingerpad.cli.params"), ("script", "the end")]
+)
+def test_ctrl_c_ends_the_program_quietly(door, moment):
+    done = interrupted(DOORS[door], "params", "f_ext", moment=moment)
+    assert (done.returncode, done.stderr) == (130, "")
+
+
+def test_ctrl_c_while_finite_elements_are_imported(tmp_path):
+    """The run has not begun then."""
+    done = interrupted(DOORS["module"], "run", "--out", tmp_path / "new", moment="dolfinx")
+    assert (done.returncode, done.stdout, done.stderr) == (130, "", "")
+    assert not (tmp_path / "new").exists()
+
+
+def test_ctrl_c_that_is_ignored_stays_ignored():
+    done = interrupted(DOORS["module"], "params", "f_ext", moment="numpy", handler="SIG_IGN")
+    assert (done.returncode, done.stderr) == (0, "") and "f_ext" in done.stdout
+
+
+def test_library_leaves_signals_alone():
+    code = "import fingerpad, fingerpad.__main__, fingerpad.cli.run\n"
+    code += "assert signal.getsignal(signal.SIGINT) is signal.default_int_handler"
+    assert interrupted(code).returncode == 0
+
+
+TABLES = ("steps", "ridges", "coupling")
+
+
+def tables(folder: Path) -> dict[str, list[dict[str, str]]]:
+    """Return all tables as text, without the time that steps took."""
+    found = {}
+    for name in TABLES:
+        found[name] = [{k: v for k, v in row.items() if "seconds" not in k} for row in rows_of(folder, name)]
+    return found
+
+
+WRAPPER = """
+import os, sys
+kind, number = sys.argv.pop(1), int(sys.argv.pop(1))
+from variational.solvers.coupling import Coupling
+from fingerpad.results import checkpoint, files
+def kill_at(owner, name, do=lambda *args: None):
+    plain, count = getattr(owner, name), [0]
+    def call(*args, **more):
+        count[0] += 1
+        if count[0] == number:
+            do(*args)
+            os.kill(os.getpid(), 9)
+        return plain(*args, **more)
+    setattr(owner, name, call)
+if kind == "solve":
+    kill_at(Coupling, "solve")
+elif kind == "part":
+    kill_at(checkpoint.np, "savez", lambda stream, *rest: stream.write(b"PK half of it"))
+elif kind == "row":
+    kill_at(files.Table, "write")
+from fingerpad.results.drawing import Drawing
+Drawing.write = lambda *args: None
+from fingerpad.cli import main
+sys.exit(main(sys.argv[1:]))
+"""
+
+
+def process(kind: str, number: int, *words: str) -> int:
+    """Run a command that kills itself at a solve, in writing a part of the checkpoint, or at a row of a table."""
+    done = python("-c", WRAPPER, kind, number, *words)
+    assert done.returncode in (0, -signal.SIGKILL), done.stderr[-2000:]
+    return done.returncode
+
+
+MOMENTS = [("solve", 9), ("part", 3), ("row", 40), *(("solve", n) for n in random.Random(1).sample(range(2, 36), 7))]
+
+
+@pytest.fixture(scope="module")
+def undisturbed(tmp_path_factory):
+    """Return a file of a scene with an error estimate, and the tables of its run."""
+    folder = tmp_path_factory.mktemp("undisturbed")
+    file = folder / "scene.toml"
+    text = (ROOT / "demos" / "scenes" / "small_finger.toml").read_text(encoding="utf-8")
+    file.write_text(text.replace("contact = 20e-6", "contact = 40e-6"), encoding="utf-8")
+    assert process("", 0, "run", str(file), "--quiet", "--out", str(folder / "run")) == 0
+    return file, tables(folder / "run"), (folder / "run" / "summary.json").read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize(
+    ("kind", "number"), [MOMENTS[0], *(pytest.param(*m, marks=pytest.mark.long) for m in MOMENTS[1:])]
+)
+def test_kill_9(undisturbed, tmp_path, kind, number):
+    """At a solve of the path or of the error estimate, in writing a part, between two rows."""
+    file, whole, summary = undisturbed
+    out = tmp_path / "run"
+    assert process(kind, number, "run", str(file), "--quiet", "--out", str(out)) == -signal.SIGKILL
+    resumed = (out / "checkpoint").exists()
+    words = ["--resume", str(out)] if resumed else [str(file), "--out", str(out)]
+    assert process("", 0, "run", "--quiet", *words) == 0
+    assert tables(out) == whole
+
+    def lines(text):
+        return [line for line in text.splitlines() if not any(word in line for word in ("seconds", "memory"))]
+
+    assert lines((out / "summary.json").read_text(encoding="utf-8")) == lines(summary)

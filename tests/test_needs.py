@@ -56,11 +56,7 @@ def test_what_cannot_matter_is_left_out_with_its_reason(data, part, reason):
 
 @pytest.mark.parametrize(
     "data",
-    [
-        {"history": [PRESS, {"name": "on", "voltage": 10.0}, {"name": "off", "voltage": 0.0}]},
-        {"friction": 1e-6},
-        {},
-    ],
+    [{"history": [PRESS, {"name": "on", "voltage": 10.0}, {"name": "off", "voltage": 0.0}]}, {"friction": 1e-6}, {}],
 )
 def test_what_matters_for_a_while_stays(data):
     """A voltage that is switched off again, a little friction."""
@@ -72,7 +68,6 @@ def test_what_matters_for_a_while_stays(data):
 # -- forms -------------------------------------------------------------------------------------------------
 @pytest.fixture(scope="module")
 def body():
-    """One papillary ridge."""
     return load(MPI.COMM_WORLD, ridge(20e-6))
 
 
@@ -155,7 +150,6 @@ RESULTS = ["bone_height", "f_contact", "contact_length", "ridges_in_contact"]
 
 @pytest.fixture(scope="module")
 def pressed(tmp_path_factory):
-    """A finger pressed by displacement without voltage."""
     folder = tmp_path_factory.mktemp("pressed")
     return folder, summary_of({"history": [{"name": "press", "bone_height": -60e-6}]}, folder)
 

@@ -1,11 +1,15 @@
 """Options of PETSc that it refuses or does not know end a run before it starts, with one sentence."""
 
+import importlib.util
+import json
+import re
+
 import pytest
 from mpi4py import MPI
 from petsc4py import PETSc
 
-from fingerpad.results import provenance
-from fingerpad.results.provenance import OptionError, check_options
+from fingerpad.results import provenance as module
+from fingerpad.results.provenance import OptionError, check_options, provenance
 
 
 @pytest.fixture
@@ -57,7 +61,7 @@ def test_misspelt(given, text, nearest):
     with pytest.raises(OptionError) as refusal:
         check_options()
     assert text in str(refusal.value) and "; the nearest known one is -fingerpad_" in str(refusal.value)
-    if nearest in provenance._KNOWN:  # PETSc's help lists it once a process, maybe in another test
+    if nearest in module._KNOWN:  # PETSc's help lists it once a process, maybe in another test
         assert str(refusal.value).endswith(nearest)
 
 
@@ -73,10 +77,38 @@ def test_what_two_equations_do_not_have_is_left_to_the_first_solve(given):
     given("-fingerpad_pc_type gamg -fingerpad_mg_levels_9_ksp_typo cg")
     check_options(element="P2-P1")
     with pytest.raises(OptionError, match="mg_levels_9_ksp_typo"):
-        provenance.refuse_unread()
+        module.refuse_unread()
 
 
 def test_options_of_others_are_none_of_ours(given):
     given("-other_snes_type nonsense")
     check_options()
-    assert provenance.in_use()["-other_snes_type"] == "nonsense"
+    assert module.in_use()["-other_snes_type"] == "nonsense"
+
+
+# -- what else of the environment a summary holds --------------------------------------------------------------------
+PETSC_ALONE = importlib.util.find_spec("dolfinx_solver") is not None
+
+
+def test_versions():
+    versions = provenance()["versions"]
+    names = "fingerpad source dolfinx basix ffcx ufl petsc mumps gmsh numpy scipy python"
+    assert set(versions) == set(names.split())
+    linked = PETSC_ALONE and versions.pop("mumps") is None  # into PETSc's own file, which names no version of it
+    assert linked == PETSC_ALONE
+    assert all(re.match(r"\d+\.\d+", version) for name, version in versions.items() if name != "source")
+
+
+def test_nothing_else_of_the_environment(monkeypatch):
+    monkeypatch.setenv("MY_TOKEN", "secret")
+    assert "secret" not in json.dumps(provenance())
+
+
+def test_options():
+    """The solver's, and those that PETSc does not read."""
+    PETSC, name = PETSc.Options(), "fingerpad_ksp_rtol"
+    PETSC.setValue(name, "1e-3")
+    try:
+        assert provenance()["petsc_options"][f"-{name}"] == "1e-3"
+    finally:
+        PETSC.delValue(name)

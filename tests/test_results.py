@@ -11,7 +11,7 @@ from petsc4py import PETSc
 
 from fingerpad.accuracy.solves import StateRecorder
 from fingerpad.model import report
-from fingerpad.model.stability import FullSlip
+from fingerpad.model.checks import FullSlip
 from fingerpad.model.state import force_error
 from fingerpad.results import drawing, writing
 from fingerpad.results.states import RESULTS, named
@@ -51,7 +51,6 @@ def kept_titles(monkeypatch: pytest.MonkeyPatch) -> dict[str, str]:
 
 @pytest.fixture
 def titles(monkeypatch) -> dict[str, str]:
-    """Titles of a run's pictures."""
     return kept_titles(monkeypatch)
 
 

@@ -16,6 +16,7 @@ from fingerpad.report.write import NAME, write
 from fingerpad.runs.sweep import sweep
 from fingerpad.scene import Scene, SceneError, from_data, override
 from tests.browser import SIZES, asked
+from tests.measures import rows_of
 
 
 @pytest.fixture(scope="module")
@@ -23,8 +24,7 @@ def table(tmp_path_factory) -> Path:
     """The folder of a sweep in which one of six points failed."""
     place = tmp_path_factory.mktemp("sweep")
     sweep(Scene(), place, model="cylinders", voltage=[0, 100, 200], f_ext=[25, 75])
-    with (place / "table.csv").open(encoding="utf-8", newline="") as file:
-        rows = list(csv.DictReader(file))
+    rows = rows_of(place, "table")
     rows[-1] = {key: value if key in ("voltage", "f_ext") else "" for key, value in rows[-1].items()}
     rows[-1]["failure"] = "no equilibrium at part 0.31 of <slide>"
     with (place / "table.csv").open("w", encoding="utf-8", newline="") as file:

@@ -38,7 +38,6 @@ def highest_floor(made: Simulation) -> float:
 
 
 def held(made: Simulation) -> bool:
-    """Return whether full slip was reached and held."""
     return made.states[-1].slip_held
 
 

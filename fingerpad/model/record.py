@@ -11,20 +11,19 @@ import numpy as np
 from mpi4py import MPI
 from numpy.typing import NDArray
 
-from fingerpad.model import symmetry
 from fingerpad.results import states
 from fingerpad.results.drawing import Drawing, View
 from fingerpad.scene import Load
-from variational.output import Snapshot, gather_mesh
-from variational.receptors import Receptors
+from variational.output import Receptors, Snapshot, gather_mesh
 from variational.state import ContactState, Sites, Skin
 
 if TYPE_CHECKING:
+    from fingerpad.model.checks import Checked
     from fingerpad.model.finger import Finger, Step
-    from fingerpad.model.stability import Checked
 
 Array = NDArray[np.float64]
 _PROFILE = ("x", "y", "p_n", "t_t", "p_el", "area_x", "area_y")
+_HORIZONTAL = ("x", "t_t", "area_x")  # the other way round in the mirror
 
 
 class Viewer:
@@ -53,7 +52,7 @@ class Viewer:
             return None
         where = ridge[0, :, 0].astype(int)
         if not self._finger.options.both_halves:
-            values, where = symmetry.profile(_PROFILE, values, where)
+            values, where = _both_sides(values, where)
         assert step.state.ridges is not None
         x, y, p_n, t_t, p_el, area_x, area_y = values
         stretch = np.hypot(area_x, area_y)
@@ -64,7 +63,7 @@ class Viewer:
         snapshot, ridges = gather_mesh(self._finger.problem), np.array(self._finger.profiles.ridges)
         merkel = self._sites.positions()[: len(ridges)] if self._sites else None
         if not self._finger.options.both_halves:
-            snapshot = symmetry.snapshot(snapshot) if snapshot else None
+            snapshot = snapshot.whole() if snapshot else None
             if merkel is not None:
                 merkel[ridges < 0, 0] *= -1
         return snapshot, merkel
@@ -76,6 +75,18 @@ class Viewer:
         names, sed = self._finger.profiles.ridges, self._sites.sed()
         left, right = sed[len(names) :].reshape(-1, 2).T
         return Sites(np.array(names), sed[: len(names)], left, right)
+
+
+def _both_sides(half: Array, ridge: NDArray[np.int64]) -> tuple[Array, NDArray[np.int64]]:
+    """Return the skin of both sides of that at x >= 0, and the place of each facet's ridge among all.
+
+    Args:
+        half: the columns of a profile, shape (columns, facets, points).
+        ridge: number of each facet's ridge, shape (facets,).
+    """
+    signs = np.array([-1.0 if name in _HORIZONTAL else 1.0 for name in _PROFILE])[:, None, None]
+    last = int(ridge.max())
+    return np.concatenate([half, signs * half], axis=1), np.concatenate([last + ridge, last - ridge])
 
 
 class PathRecord:

@@ -1,25 +1,75 @@
-"""A path while it is followed: each accepted state kept, printed and written at once."""
+"""A path while it is followed: each accepted state kept, printed and written at once, and the time that it takes."""
 
 import json
 import logging
-from collections.abc import Mapping, Sequence
+import time
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
-from fingerpad.model.cost import Clock
+from mpi4py import MPI
+
 from fingerpad.model.options import Omission
 from fingerpad.model.record import PathRecord, Viewer
 from fingerpad.results import states
+from fingerpad.results.answer import Cost
 from fingerpad.results.drawing import View
 from fingerpad.results.quantities import Output, valued
 from fingerpad.results.terminal import Console
 from fingerpad.results.writing import Writer, ridge_rows, site_rows
 from variational.solvers import checkpoint
+from variational.solvers.outcome import Counts, memory_mb
 from variational.state import ContactState
 
 if TYPE_CHECKING:
     from fingerpad.model.finger import Step
     from fingerpad.model.simulation import Simulation
+
+
+class Clock:
+    """Wall and processor time since the run began.
+
+    Attributes:
+        seconds: wall time of the set-up and of the output (s), by these names.
+    """
+
+    def __init__(self, comm: MPI.Comm) -> None:
+        """Start."""
+        self._comm = comm
+        self._wall, self._processor = time.perf_counter(), time.process_time()
+        self.seconds = {"setup": 0.0, "output": 0.0}
+
+    @contextmanager
+    def phase(self, name: str) -> Iterator[None]:
+        """Count the time inside as that of a phase, ``setup`` or ``output``."""
+        start = time.perf_counter()
+        yield
+        self.seconds[name] += time.perf_counter() - start
+
+    def earlier(self, wall: float, processor: float) -> None:
+        """Add the time (s) that the run took before it was cut short, all ranks' processor time together."""
+        self._wall -= wall
+        self._processor -= processor / self._comm.size
+
+    def present(self) -> tuple[float, float]:
+        """Return wall time and processor time of all ranks since the start (s); collective."""
+        return time.perf_counter() - self._wall, self.processor_seconds()
+
+    def processor_seconds(self) -> float:
+        """Return the processor time (s) of all ranks since the start; collective."""
+        return float(self._comm.allreduce(time.process_time() - self._processor))
+
+    def cost(self, counts: Counts, unknowns: int) -> Cost:
+        """Return the cost of a run, the same on every rank; collective.
+
+        Args:
+            counts: iterations of the path's solver.
+            unknowns: of the final mesh.
+        """
+        memory, (wall, processor) = self._comm.allreduce(memory_mb()), self.present()
+        found = Cost(processor, wall, counts.newton, counts.factorisations, unknowns, memory, self._comm.size)
+        return self._comm.bcast(found)
 
 
 class Report:
@@ -81,13 +131,17 @@ class Report:
             skin = self._viewer.skin(step)
             if skin is not None:
                 self.record.skins[state.step] = skin
-            self._writer.row("steps", state.row())
-            self._tables("", {"step": state.step}, state, state.mesh_contact)
-            for iteration, change in enumerate(state.changes):
-                self._writer.row("coupling", {"step": state.step, "iteration": iteration + 1, "change": change})
-            self._console.step(state, done)
+            self._show(state, done)
             if self._simulation.finger.problem.mesh.comm.rank == 0:
                 self._log(step, state)
+
+    def _show(self, state: ContactState, done: float) -> None:
+        """Write the rows of an accepted state, and print it."""
+        self._writer.row("steps", state.row())
+        self._tables("", {"step": state.step}, state, state.mesh_contact)
+        for iteration, change in enumerate(state.changes):
+            self._writer.row("coupling", {"step": state.step, "iteration": iteration + 1, "change": change})
+        self._console.step(state, done)
 
     def _tables(self, end: str, first: Mapping[str, Any], state: ContactState, size: float | None) -> None:
         """Write the rows of ridges in contact and of receptor sites of a state."""
@@ -131,7 +185,7 @@ class Report:
             "skins": self.record.skins,
             "ends": self._ends,
             "logged": self._logged,
-            "tables": self._writer.kept(),
+            "log": self._writer.log_text(),
         }
 
     def resume(self, kept: Mapping[str, Any], places: Mapping[str, Any], done: float) -> None:
@@ -143,7 +197,7 @@ class Report:
             done: part of the whole history that is done.
         """
         finger = self._simulation.finger
-        self._writer.resume(kept["tables"])
+        self._writer.earlier_log = kept["log"]
         self._writer.take(finger.problem)
         self.record.states, self._logged = kept["states"], kept["logged"]
         self._ends, self._written = kept["ends"], kept["ends"][-1][0] if kept["ends"] else 0
@@ -159,7 +213,7 @@ class Report:
         finger.solver.x.array_w[:] = now
         finger.solver.equations.to_fields(finger.solver.x)
         for state in self.record.states:
-            self._console.step(state, done)
+            self._show(state, done)
 
     def _log_checks(self) -> None:
         for step, check in list(self._simulation.checks.items())[self._logged :]:

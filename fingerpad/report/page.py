@@ -20,6 +20,9 @@ PAPER = (
     "Forsbach, F., Heß, M., Papangelo, A. (2023). A two-scale FEM-BAM approach for fingerpad friction under "
     "electroadhesion. Frontiers in Mechanical Engineering. doi:10.3389/fmech.2022.1074393"
 )
+GOOD, CARE, BAD = "holds", "care", "fails"
+MARKS = {GOOD: "✓ holds", CARE: "! care", BAD: "✗ fails"}
+"""Verdicts as they are shown."""
 
 
 def text(words: object) -> str:
@@ -30,6 +33,24 @@ def text(words: object) -> str:
 def paragraph(words: object, kind: str = "") -> str:
     """Return a paragraph, with the class ``kind``."""
     return f"<p{_class(kind)}>{text(words)}</p>"
+
+
+def banner(what: str, folder: Path | None, number: str, said: str, kind: str, words: str) -> str:
+    """Return the head of a page.
+
+    Args:
+        what: the page is.
+        folder: of the results.
+        number: the finding, HTML.
+        said: of what the number is.
+        kind: the verdict.
+        words: of the verdict, HTML.
+    """
+    where = "" if folder is None else f" · {text(folder.resolve().name)}"
+    return (
+        f'<header><p class="kind">fingerpad · {what}{where}</p><h1>{number}</h1><p class="said">{text(said)}</p>'
+        f'<p class="verdict {kind}"><b>{MARKS[kind]}</b> {words}</p></header>'
+    )
 
 
 def items(lines: Iterable[object]) -> str:

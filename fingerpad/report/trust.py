@@ -7,17 +7,15 @@ from typing import TYPE_CHECKING, NamedTuple
 from fingerpad.reduced.cylinder_errors import in_words
 from fingerpad.reduced.models import follows_path
 from fingerpad.report import page as html
+from fingerpad.report.page import BAD, CARE, GOOD
 from fingerpad.results.quantities import cell
 from fingerpad.results.states import LoadResult, called
-from fingerpad.scene.laws import coefficient
+from fingerpad.scene.remarks import coefficient
 from variational.state import ContactState
 
 if TYPE_CHECKING:
     from fingerpad.results.result import Result
 
-GOOD, CARE, BAD = "holds", "care", "fails"
-MARKS = {GOOD: "✓ holds", CARE: "! care", BAD: "✗ fails"}
-"""Verdicts as they are shown."""
 _SMALL, _LARGE = 0.02, 0.1
 """Relative errors below which an error is small, and above which the mesh is too coarse for more than a trend."""
 
@@ -149,9 +147,8 @@ def _balance(result: "Result") -> Iterator[Finding]:
         yield Finding("balance of forces", GOOD if abs(left) < 1e-3 * abs(state.f_ext) else BAD, words)
         return
     words += f" The solver's tolerance allows {floor:.1g} N/m."
-    yield Finding(
-        "balance of forces" if abs(left) <= floor else "forces do not balance", _worse(abs(left) > floor), words
-    )
+    holds = abs(left) <= floor
+    yield Finding("balance of forces" if holds else "forces do not balance", GOOD if holds else BAD, words)
 
 
 def _stability(result: "Result") -> Iterator[Finding]:
@@ -206,10 +203,6 @@ def jumped(state: ContactState) -> bool:
     return state.record is not None and state.record.jump
 
 
-def _worse(wrong: bool) -> str:
-    return BAD if wrong else GOOD
-
-
 # -- headline --------------------------------------------------------------------------------------------
 def conditions(result: "Result") -> str:
     """Return force and voltage of a run in words."""
@@ -259,12 +252,7 @@ def head(result: "Result") -> str:
         number, said = "No contact state was kept", conditions(result)
     kind, words = verdict(findings(result), number.partition(" ± ")[2])
     more = ' <a href="#trust">What is not in it</a>' if kind == GOOD else ""
-    where = "" if result.folder is None else f" · {html.text(result.folder.resolve().name)}"
-    return (
-        f'<header><p class="kind">fingerpad · report of a run{where}</p><h1>{number}</h1>'
-        f'<p class="said">{html.text(said)}</p>'
-        f'<p class="verdict {kind}"><b>{MARKS[kind]}</b> {html.text(words)}{more}</p></header>'
-    )
+    return html.banner("report of a run", result.folder, number, said, kind, html.text(words) + more)
 
 
 def _timed(result: "Result") -> LoadResult | None:

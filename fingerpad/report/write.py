@@ -2,22 +2,21 @@
 
 import csv
 import sys
-from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING
 
 from fingerpad.reduced.models import MODELS
 from fingerpad.results.files import read_object, replace
-from fingerpad.results.quantities import Output
-from fingerpad.results.quantities import read as read_outputs
 from fingerpad.results.result import Result, steps_of
 from fingerpad.results.states import load_results, named
 from fingerpad.scene import SceneError, as_kept
 from fingerpad.scene.messages import clip
 from fingerpad.scene.reading import DEFAULT_MODEL
 
+if TYPE_CHECKING:
+    from fingerpad.report.sweep_page import Table
+
 NAME = "report.html"
-_RESULTS = ("uncharged_", "charged_", "full_slip_", "load_")
 
 
 def write(folder: Path) -> Path:
@@ -61,49 +60,14 @@ def attempt(folder: Path) -> Path | None:
 
 def draw_footprint(result: Result) -> None:
     """Write ``footprint.png`` at the end of a run with a whole finger; a line on the console where it fails; serial."""
-    if result.finger is None or result.folder is None:
-        return
-    from fingerpad.results.finger_picture import footprint  # Matplotlib
-
-    try:
-        footprint(result.finger, result.folder / "footprint.png")
-    except OSError as error:
-        print(f"fingerpad: footprint.png was not written: {error.strerror or error}", file=sys.stderr)
+    if result.finger is not None and result.folder is not None:
+        try:
+            result.plot("footprint", result.folder / "footprint.png")
+        except OSError as error:
+            print(f"fingerpad: footprint.png was not written: {error.strerror or error}", file=sys.stderr)
 
 
-@dataclass(frozen=True)
-class Table:
-    """The table of a sweep, as text."""
-
-    folder: Path
-    axes: tuple[str, ...]
-    """Keys that are varied."""
-    rows: tuple[dict[str, str], ...]
-    parameters: dict[str, Any]
-    """Every parameter of the scene that it varies."""
-    model: str = DEFAULT_MODEL
-    version: str = ""
-    """Of the program that made the table; empty where it is not known."""
-    cautions: tuple[str, ...] = ()
-    """Limits of validity that points reach."""
-    notes: tuple[str, ...] = ()
-    """Remarks on the points."""
-    outputs: tuple[Output, ...] = ()
-    """Of the points, computed from a state."""
-
-    @property
-    def whole(self) -> bool:
-        """Whether forces are those on the whole finger."""
-        return "force" in self.axes or "force" in self.parameters
-
-    def forces(self) -> list[float]:
-        """Return the forces on the whole finger (N)."""
-        if "force" in self.axes:
-            return [float(row["force"]) for row in self.rows]
-        return [float(self.parameters["force"])] if self.whole else []
-
-
-def read(folder: Path) -> Result | Table:
+def read(folder: Path) -> "Result | Table":
     """Return what is in a folder.
 
     Raises:
@@ -115,7 +79,9 @@ def read(folder: Path) -> Result | Table:
     if (folder / "summary.json").exists():
         return Result.load(folder)
     if (folder / "table.csv").exists():
-        return _sweep(folder)
+        from fingerpad.report.sweep_page import table_of
+
+        return table_of(folder)
     if (folder / "steps.csv").exists():
         return _unfinished(folder)
     points = [folder / name for name, model in MODELS.items() if model.meshes and (folder / name).is_dir()]
@@ -151,27 +117,3 @@ def _unfinished(folder: Path) -> Result:
         failure=f"the run has not ended, or was killed, after step {steps[-1].step}: these are its steps so far",
         folder=folder,
     )
-
-
-def _sweep(folder: Path) -> Table:
-    name = clip(str(folder), 80)
-    try:
-        with (folder / "table.csv").open(encoding="utf-8", newline="") as file:
-            reader = csv.DictReader(file)
-            rows, columns = tuple(reader), list(reader.fieldnames or ())
-    except (OSError, UnicodeDecodeError, csv.Error) as error:
-        raise SceneError(f"the table of {name} cannot be read: {error}") from None
-    axes = tuple(key for key in columns if not key.startswith(_RESULTS) and key != "failure")
-    if "failure" not in columns or not axes or not rows:
-        raise SceneError(f"table.csv in {name} is not the table of a sweep of fingerpad, or is cut short")
-    whole = [row for row in rows if None not in row and None not in row.values()]
-    if len(whole) < len(rows):
-        raise SceneError(f"table.csv in {name} is cut short; give the command of the sweep again to write it anew")
-    try:
-        asked = read_object(folder / "sweep.json")
-        more = str(asked["model"]), str(asked.get("version", ""))
-        cautions, notes = (tuple(map(str, asked.get(name, ()))) for name in ("cautions", "notes"))
-        outputs = read_outputs(asked.get("outputs", ()))
-        return Table(folder, axes, rows, dict(asked["parameters"]), *more, cautions, notes, outputs)
-    except (OSError, ValueError, KeyError, TypeError) as error:
-        raise SceneError(f"sweep.json in {name} cannot be read: {error}") from None

@@ -20,11 +20,9 @@ from fingerpad.results import curves, files, finger_picture, style
 from fingerpad.results.curves import SurfaceProfile
 from fingerpad.results.over_time import without_parts_of_jumps
 from fingerpad.results.states import WORDS, before_sliding, by_load, called, named, partial_slip
-from fingerpad.scene.laws import coefficient
 from variational.state import ContactState, Skin
 
 if TYPE_CHECKING:
-    from fingerpad.results.result import Result
     from variational.output import Snapshot
 
 Array = NDArray[np.float64]
@@ -255,26 +253,38 @@ def _put(path: Path, arrays: Mapping[str, Any]) -> None:
     files.replace(path, data.getvalue())
 
 
-def read(result: "Result") -> Drawing:
-    """Return what the pictures of a result that was read from its folder are drawn from."""
-    assert result.folder is not None
-    folder, record, skins = result.folder, result.record, dict[int, Any]()
-    meshes = (record.get("path_mesh"), record.get("accuracy", {}).get("mesh"))
-    path, size = (mesh["contact"] if mesh and result.scene.accuracy is not None else None for mesh in meshes)
-    mu_0 = None if "laws" in record.get("parameters", {}) else coefficient(result.scene)
+def read(
+    folder: Path,
+    states: Sequence[ContactState],
+    named: Mapping[str, ContactState],
+    mu_0: float | None,
+    starting_size: float | None,
+    final_size: float | None,
+) -> Drawing:
+    """Return what the pictures of a result that was read are drawn from.
+
+    Args:
+        folder: with the arrays of :meth:`Drawing.write`.
+        states: accepted states.
+        named: named states.
+        mu_0: friction coefficient; None where the law of friction is not Coulomb's.
+        starting_size: contact size (m) of the mesh of the path, where an accuracy was asked for.
+        final_size: contact size (m) of the final mesh, where an accuracy was asked for.
+    """
+    skins = dict[int, Any]()
     ends, finer = dict[str, View](), dict[str, View]()
-    for load, states in by_load(result.steps):
+    for load, mine in by_load(states):
         if finger := finger_of(folder / f"finger_{_file(load)}.npz"):
-            ends[load] = _view(states[-1], None, None, finger)
+            ends[load] = _view(mine[-1], None, None, finger)
         if along := skin_of(folder / f"surface_{_file(load)}.npz", "end"):
-            skins[states[-1].step] = along
-    drawing = Drawing(mu_0, result.steps, skins, ends, finer, path, result.named)
+            skins[mine[-1].step] = along
+    drawing = Drawing(mu_0, states, skins, ends, finer, starting_size, named)
     for name, (_, state, _) in drawing._shown().items():
         skin = skin_of(folder / "surface.npz", name)
         finger = finger_of(folder / f"finger_{_file(WORDS.get(name, ''))}.npz")
-        if skin and finger and size is not None:
-            there = replace(result.named[name], bone_x=float(finger.get("bone_x", state.bone_x)))
-            finer[name] = _view(there, size, skin, finger)
+        if skin and finger and final_size is not None:
+            there = replace(named[name], bone_x=float(finger.get("bone_x", state.bone_x)))
+            finer[name] = _view(there, final_size, skin, finger)
         elif skin:
             skins[state.step] = skin
     return drawing

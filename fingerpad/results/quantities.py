@@ -132,7 +132,7 @@ STEPS = _listed(
     ("load_number", "", "number of the load, from 1"),
     ("f_ext", "N/m", "external normal force on the bone per metre of finger", "external force f_ext", 2),
     ("voltage", "V", "instantaneous voltage", "voltage U", 1),
-    ("bone_x", "m", "horizontal position of the bone"),
+    ("bone_x", "mm", "horizontal position of the bone", "bone x", 4),
     ("bone_height", "mm", "change of the bone's height from the unloaded position", "height of the bone", 4),
     ("f_t", "N/m", "friction force on the bone per metre of finger", "friction force f_T", 3),
     (
@@ -287,3 +287,19 @@ def read(kept: Sequence[dict[str, Any]]) -> tuple[Output, ...]:
 def cell(key: str, value: float, error: float = math.nan) -> str:
     """Return a quantity of :data:`QUANTITIES` as :meth:`Output.shown` does."""
     return QUANTITIES[key].shown(value, error)
+
+
+def head_rows(states: Sequence[str]) -> list[list[str]]:
+    """Return the two lines of heads of states side by side, by their words."""
+    heads = [words.split(" normal") for words in states]
+    return [["", *(head[0] for head in heads)], ["", *("normal" + head[1] if head[1:] else "" for head in heads)]]
+
+
+def side_by_side(rows: Sequence[Sequence[str]]) -> list[str]:
+    """Return the lines of a table whose first column is words and whose others are numbers."""
+    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+    lines = list[str]()
+    for first, *rest in rows:
+        cells = (cell.rjust(width) for cell, width in zip(rest, widths[1:], strict=True))
+        lines.append("   ".join(["  " + first.ljust(widths[0]), *cells]).rstrip())
+    return lines

@@ -19,18 +19,23 @@ from fingerpad.results.quantities import (
     Output,
     cell,
     checked,
+    head_rows,
+    side_by_side,
     valued,
 )
 from fingerpad.results.quantities import read as read_outputs
 from fingerpad.results.states import STATES, LoadResult, called, load_results
 from fingerpad.scene.messages import SceneError, clip
 from fingerpad.scene.reading import DEFAULT_MODEL
+from fingerpad.scene.remarks import coefficient
 from fingerpad.scene.scene import as_kept
 from variational.state import CONDITIONS, RESULTS, ContactState, Errors
 
 if TYPE_CHECKING:
     import xarray
     from matplotlib.figure import Figure
+
+    from fingerpad.results.drawing import Drawing
 
 KINDS = ("surface", "finger", "history", "footprint", "time")
 """Pictures of a result."""
@@ -65,9 +70,7 @@ class Result(Answer):
 
             return footprint(self.finger, None if path is None else Path(path)) if terminal.rank() == 0 else None
         if (drawing := self.drawing) is None and self.steps and self.folder is not None and terminal.rank() == 0:
-            from fingerpad.results.drawing import read  # Matplotlib
-
-            drawing = read(self)
+            drawing = _drawing(self, self.folder)
         if drawing is not None:
             return drawing.figure(kind, None if path is None else Path(path))
         if not self.steps:
@@ -75,11 +78,7 @@ class Result(Answer):
         return None  # on the other ranks
 
     def to_xarray(self) -> "xarray.Dataset":
-        """Return steps, loads, ridges, sites and named states as one dataset with units, as ``result.nc`` has it.
-
-        Raises:
-            ImportError: xarray is not installed.
-        """
+        """Return steps, loads, ridges, sites and named states as one dataset with units, as ``result.nc`` has it."""
         return dataset.dataset(self)
 
     def with_outputs(self, outputs: Iterable[Output]) -> "Result":
@@ -160,7 +159,7 @@ class Result(Answer):
             finger=WholeFinger.from_dict(summary["finger"], bare.scene.slices) if "finger" in summary else None,
         )
         used = {*bare.to_dict(), "failure", "interrupted", "notes", "cautions", "outputs", "finger"}
-        used |= {f"{name}_{field.name}_{kind}" for name in STATES for field in fields(Errors) for kind in CHANGES}
+        used |= {f"{name}_{each.name}_{kind}" for name in STATES for each in fields(Errors) for kind in CHANGES}
         record = {key: value for key, value in summary.items() if key not in used}
         if "laws" in parameters:  # objects of Python, of which only the names are kept
             record["parameters"] = parameters
@@ -217,6 +216,16 @@ def steps_of(folder: Path) -> tuple[ContactState, ...]:
         return tuple(ContactState.from_row(row) for row in csv.DictReader(file) if None not in row.values())
 
 
+def _drawing(result: Result, folder: Path) -> "Drawing":
+    """Return what the pictures of a result that was read are drawn from."""
+    from fingerpad.results.drawing import read  # Matplotlib
+
+    meshes = (result.record.get("path_mesh"), result.record.get("accuracy", {}).get("mesh"))
+    path, final = (mesh["contact"] if mesh and result.scene.accuracy is not None else None for mesh in meshes)
+    mu_0 = None if "laws" in result.record.get("parameters", {}) else coefficient(result.scene)
+    return read(folder, result.steps, result.named, mu_0, path, final)
+
+
 def _state(name: str, kept: Mapping[str, Any]) -> ContactState:
     """Return a named state of ``summary.json``.
 
@@ -243,20 +252,13 @@ def _text(result: Result) -> str:
     lines = ["Result" if result.finger is None else _SECTION]
     lines[0] += f" (model '{result.model}')" if result.model != DEFAULT_MODEL else ""
     if shown:
-        heads = [called(name, state.voltage).split(" normal") for name, state in shown.items()]
-        rows = [
-            ["", *(head[0] for head in heads)],
-            ["", *(("normal" + head[1]) if head[1:] else "" for head in heads)],
-        ]
+        rows = head_rows([called(name, state.voltage) for name, state in shown.items()])
         values = ((quantity.title, result.cells(key)) for key, quantity in result.printed.items())
         rows += [[title, *each] for title, each in values if set(each) - {"–"}]
         if any(state.stable is not None for state in shown.values()):
             verdicts = {True: "yes", False: "no", None: "–"}
             rows.append(["stable", *(verdicts[state.stable] for state in shown.values())])
-        widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
-        for first, *rest in rows:
-            cells = (cell.rjust(width) for cell, width in zip(rest, widths[1:], strict=True))
-            lines.append("   ".join(["  " + first.ljust(widths[0]), *cells]).rstrip())
+        lines += side_by_side(rows)
     least = result.record.get("force_error") or 0.0
     lines += [f"  {_in_time(load, least)}" for load in result.loads if load.over_time is not None]
     lines += [f"  {note}" for note in _remarks(result)]

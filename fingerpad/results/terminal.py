@@ -1,4 +1,4 @@
-"""What a person at a terminal gets of a run: one line a step under a legend, a progress bar and the time that is left.
+"""What a person at a terminal gets of a run: one line a step, a progress bar and the time that is left.
 
 Launchers of MPI give each rank a number in the environment, so that it is there before MPI has started. mpirun prints
 through a terminal of its own, whatever its output goes to: under a launcher, the output of the launcher counts.
@@ -39,8 +39,7 @@ _SHORT = 1.0  # s, below which no time is printed
 
 def rank() -> int:
     """Return the rank of this process under a launcher of MPI, 0 without one."""
-    given = _rank()
-    return 0 if given is None else given
+    return _rank() or 0
 
 
 def ranks() -> int:

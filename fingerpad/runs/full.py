@@ -3,14 +3,14 @@
 import json
 import signal
 from collections.abc import Sequence
+from contextlib import closing
 from pathlib import Path
 from typing import Any
 
 import fingerpad.startup  # noqa: F401
 from fingerpad.accuracy.solves import State
-from fingerpad.model.cost import Clock
-from fingerpad.model.feasibility import by_rule
-from fingerpad.model.options import FingerModel, plan
+from fingerpad.model.options import FingerModel, by_rule, plan
+from fingerpad.model.report import Clock
 from fingerpad.results.checkpoint import Checkpoint, CheckpointError
 from fingerpad.results.interrupt import Interrupt, all_together, no_room
 from fingerpad.results.provenance import check_options, provenance
@@ -22,13 +22,13 @@ from fingerpad.runs.attempt import Attempt, Session
 from fingerpad.runs.context import RunContext
 from fingerpad.runs.restarts import Restarts
 from fingerpad.scene import Scene, SceneError
-from fingerpad.scene.laws import coefficient
 from fingerpad.scene.reading import DEFAULT_MODEL
+from fingerpad.scene.remarks import coefficient
 from fingerpad.startup import MPI
 from geometry.parameters import MeshSize
 from geometry.profiles import GeometryError
+from variational.solvers.outcome import Counts
 from variational.solvers.target import Control, Progress
-from variational.solvers.timing import Counts
 from variational.solvers.transfer import SkinState, StateSnapshot
 from variational.state import ContactState, Errors, RidgeStates, Skin, StepRecord
 
@@ -62,7 +62,10 @@ def run(scene: Scene, context: RunContext) -> Result:
     all_together(comm)
     check_options(comm, scene.numerics.element)
     try:
-        with context.console() as console, context.place(scene, DEFAULT_MODEL) as place:
+        with (
+            closing(Console(comm, context.lines, context.bar)) as console,
+            context.place(scene, DEFAULT_MODEL) as place,
+        ):
             checkpoint = None if place is None else _checkpoint(scene, place.folder, outputs)
             kept = read(checkpoint, comm) if context.resume and checkpoint is not None else None
             writer = Writer(place, comm)

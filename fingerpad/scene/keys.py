@@ -1,7 +1,10 @@
-"""Every key of a scene: unit, default, range and meaning, from the models themselves.
+"""Every key of a scene: unit, default, range and meaning, and their JSON Schema, from the models themselves.
 
 What a key means is the text under it in the source of its model, by the standard library's ``ast``: pydantic's own
 ``use_attribute_docstrings`` would ask every model to be configured for it.
+
+By the JSON Schema of scenes editors complete and check TOML files. A number with a unit may also be a text such as
+``"10 um"``. What concerns several keys at once, and whether a unit fits, is checked by the program alone.
 """
 
 import ast
@@ -15,9 +18,22 @@ from functools import cache
 from typing import Annotated, Any, Literal, Union, get_args, get_origin
 
 from pydantic import BaseModel, WrapValidator
+from pydantic.json_schema import GenerateJsonSchema, JsonSchemaValue
+from pydantic_core import core_schema
 
 from fingerpad.scene.law_keys import LawKey, keys_of, range_of
-from geometry.units import Range
+from geometry.units import QUANTITIES, Range
+
+DIALECT = "https://json-schema.org/draft/2020-12/schema"
+_NUMBER = r"^\s*[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]{1,3})?"
+_NUMBER_AND_UNIT = _NUMBER + r"\s*[^\s0-9.+-].*$"
+_SWEEP = {
+    "type": "object",
+    "description": "Of a study, for fingerpad sweep: a list or a range such as 0:200:5 by key.",
+    "additionalProperties": {
+        "anyOf": [{"type": "array", "minItems": 1}, {"type": "string"}, {"type": "object"}],
+    },
+}
 
 
 @dataclass(frozen=True)
@@ -26,16 +42,30 @@ class Key:
 
     name: str
     """With its tables, as in ``roughness.h_rms``; entries of a list of tables have ``[]``."""
-    unit: str
     default: Any
-    allowed: str
-    """What it may be, in words."""
     meaning: str
     """From the docstring of the key."""
+    limits: Range | None = None
+    """Of a number, or of each in a list."""
+    choices: str = ""
+    """What it may be besides, in words."""
     required: bool = False
     """Whether a table of its kind must give it."""
     law: str = ""
     """Law that reads it, where that is not the default one."""
+
+    @property
+    def unit(self) -> str:
+        """Its SI unit; empty without one."""
+        return self.limits.unit if self.limits else ""
+
+    @property
+    def allowed(self) -> str:
+        """What it may be, in words."""
+        if self.limits is None:
+            return self.choices
+        sign = ", either sign" if self.limits.sides == 2 else ""
+        return f"{self.choices}{'0 or ' if self.limits.zero else ''}{self.limits.low:g} to {self.limits.high:g}{sign}"
 
 
 def every(scene: type[BaseModel]) -> Iterator[Key]:
@@ -61,8 +91,7 @@ def _of(model: type[BaseModel], table: str, instance: BaseModel | None) -> Itera
             meaning = docstrings(model).get(name, "")
             if law.number:
                 limits = range_of(keys_of(law.default)[law.number])
-                allowed = "" if limits is None else _words(limits)
-                yield Key(table + name, "", getattr(law.default, law.number), allowed, meaning)
+                yield Key(table + name, getattr(law.default, law.number), meaning, limits)
             laws.append((f"{table}{name}.", law, "" if law.number else meaning))
             continue
         inside = [part for part in parts if isinstance(part, type) and issubclass(part, BaseModel)]
@@ -72,9 +101,9 @@ def _of(model: type[BaseModel], table: str, instance: BaseModel | None) -> Itera
             inner.append((inside[0], f"{table}{name}{many}.", value if isinstance(value, inside[0]) else None))
             if not any(isinstance(part, WrapValidator) for part in parts):  # else it may be a number too
                 continue
-        unit, allowed = _allowed(parts)
         required = instance is None and field.is_required()
-        yield Key(table + name, unit, None if required else value, allowed, docstrings(model).get(name, ""), required)
+        meaning = docstrings(model).get(name, "")
+        yield Key(table + name, None if required else value, meaning, *_allowed(parts), required=required)
     for where, key, meaning in laws:
         yield from _of_law(where, key, meaning)
     for kind, where, value in inner:
@@ -88,7 +117,7 @@ def _of_law(table: str, key: LawKey, meaning: str) -> Iterator[Key]:
     table = table.removesuffix("law.") if key.flat else table
     several = bool(key.number or key.flat)
     text = f"{meaning or 'Name of the law.'} A law of your own has its import path here (docs/laws.md)."
-    yield Key(table + (key.flat or "law"), "", None if key.number else name, f"{names} or module:Class", text)
+    yield Key(table + (key.flat or "law"), None if key.number else name, text, choices=f"{names} or module:Class")
     seen = set[str]()
     for law in dict.fromkeys([type(default), *(key.kind.laws.values() if several else ())]):
         for field in keys_of(law).values():
@@ -97,22 +126,12 @@ def _of_law(table: str, key: LawKey, meaning: str) -> Iterator[Key]:
             seen.add(field.name)
             value = None if key.number or field.default is MISSING else field.default
             value = value if key.number or law is not type(default) else getattr(default, field.name)
-            limits = range_of(field)
-            unit, allowed = ("", _choices(field)) if limits is None else (limits.unit, _words(limits))
+            choices = ", ".join(map(str, field.metadata.get("allowed", ())))
             of = "" if law is type(default) else key.kind.name(law)
-            yield Key(table + field.name, unit, value, allowed, docstrings(law).get(field.name, ""), law=of)
+            meaning = docstrings(law).get(field.name, "")
+            yield Key(table + field.name, value, meaning, range_of(field), choices, law=of)
     for each in key.tables:
         yield from _of(each, f"{table}{each.__name__.lower()}.", None)
-
-
-def _choices(field: "Field[Any]") -> str:
-    return ", ".join(map(str, field.metadata.get("allowed", ())))
-
-
-def _words(limits: Range, several: str = "") -> str:
-    """Return a range in words."""
-    sign = ", either sign" if limits.sides == 2 else ""
-    return f"{several}{'0 or ' if limits.zero else ''}{limits.low:g} to {limits.high:g}{sign}"
 
 
 def _parts(annotation: Any) -> Iterator[Any]:
@@ -129,22 +148,22 @@ def _parts(annotation: Any) -> Iterator[Any]:
         yield annotation
 
 
-def _allowed(parts: tuple[Any, ...]) -> tuple[str, str]:
-    """Return unit and range of a key."""
+def _allowed(parts: tuple[Any, ...]) -> tuple[Range | None, str]:
+    """Return the range of a key, and what it may be besides, in words."""
     for part in parts:
         found = part.func if isinstance(part, WrapValidator) else None
         if isinstance(found, Range):
-            return found.unit, _words(found, "list: " if tuple in parts else "")
+            return found, "list: " if tuple in parts else ""
     for part in parts:
         if get_origin(part) is Literal:
-            return "", ", ".join(repr(value) for value in get_args(part)).replace("'", '"')
+            return None, ", ".join(repr(value) for value in get_args(part)).replace("'", '"')
     bounds = [part for meta in parts for part in getattr(meta, "metadata", [meta])]  # of Field(...), or bare
     low, high = (next((getattr(b, n) for b in bounds if hasattr(b, n)), None) for n in ("ge", "le"))
     if low is not None and high is not None:
-        return "", f"whole, {low} to {high}"
+        return Range(low, high), "whole, "
     if bool in parts:
-        return "", "true or false"
-    return "", "text" if str in parts else ""
+        return None, "true or false"
+    return None, "text" if str in parts else ""
 
 
 @cache
@@ -172,3 +191,113 @@ def _plain(text: str) -> str:
     """Return a docstring as a line of text, without the marks of reStructuredText."""
     text = re.sub(r":\w+:`~?([^`]*)`", r"\1", " ".join(text.split()))
     return text.replace("``", "").replace("*Assumption*", "Assumption").replace("*assumption*", "assumption")
+
+
+# -- schema --------------------------------------------------------------------------------------------
+class _Generator(GenerateJsonSchema):
+    """Writes ranges and texts with a unit, where pydantic sees a function; TOML has no null."""
+
+    def function_wrap_schema(self, schema: core_schema.WrapValidatorFunctionSchema) -> JsonSchemaValue:
+        """Return the schema of a number within a range."""
+        function = schema["function"]["function"]
+        return _number(function) if isinstance(function, Range) else super().function_wrap_schema(schema)
+
+    def function_plain_schema(self, schema: core_schema.PlainValidatorFunctionSchema) -> JsonSchemaValue:
+        """Return the schema of a law."""
+        key = getattr(schema["function"]["function"], "__self__", None)
+        return _law(key) if isinstance(key, LawKey) else super().function_plain_schema(schema)
+
+    def nullable_schema(self, schema: core_schema.NullableSchema) -> JsonSchemaValue:
+        """Return the schema of the value; a key that may be missing is left out."""
+        return self.generate_inner(schema["schema"])
+
+    def default_schema(self, schema: core_schema.WithDefaultSchema) -> JsonSchemaValue:
+        """Return the schema with its default, unless this is a whole table or nothing."""
+        found = super().default_schema(schema)
+        if found.get("default") is None or isinstance(found["default"], dict):
+            found.pop("default", None)
+        return found
+
+
+def schema(scene: type[BaseModel]) -> dict[str, Any]:
+    """Return the JSON Schema of the file of a scene, ready for JSON; of the model of a scene."""
+    found = scene.model_json_schema(schema_generator=_Generator, mode="validation")
+    parts = found["$defs"] | {scene.__name__: found}
+    for model in dict.fromkeys(tables(scene)):
+        _describe(parts[model.__name__], model)
+        for name, field in model.model_fields.items():
+            if flat := next((key.flat for key in field.metadata if isinstance(key, LawKey)), ""):
+                _flatten(parts[model.__name__], name, flat)
+    found["properties"]["sweep"] = _SWEEP
+    return {"$schema": DIALECT, "title": "Scene of fingerpad"} | found
+
+
+def _describe(part: JsonSchemaValue, model: type[BaseModel]) -> JsonSchemaValue:
+    """Return the schema of a table, with the docstrings of the model and its keys put into it."""
+    part["description"] = " ".join((model.__doc__ or "").split("\n\n")[0].split())
+    part.pop("title", None)
+    for name, value in part["properties"].items():
+        value.pop("title", None)
+        if words := docstrings(model).get(name):
+            value["description"] = words
+    return part
+
+
+def _law(key: LawKey) -> JsonSchemaValue:
+    """Return the schema of a law: a table of one of the package or of one's own, or the number that a key takes."""
+    limits = range_of(keys_of(key.default)[key.number]) if key.number else None
+    found = [] if limits is None else [_number(limits)]
+    for name, law in key.kind.laws.items():
+        default = law is type(key.default)
+        own = {each.name: _parameter(law, each) for each in keys_of(law).values()}
+        for table in key.tables if default else ():
+            own[table.__name__.lower()] = _describe(table.model_json_schema(schema_generator=_Generator), table)
+        left = [each.name for each in keys_of(law).values() if each.default is MISSING]
+        found.append(
+            {
+                "type": "object",
+                "properties": {"law": {"const": name, "description": "Name of the law."}} | own,
+                "additionalProperties": False,
+            }
+            | ({} if default else {"required": ["law", *left]})
+        )
+    own_law = {"type": "string", "pattern": r"^[\w.]+:[\w.]+$", "description": "module:Class on Python's path"}
+    return {"anyOf": [*found, {"type": "object", "properties": {"law": own_law}, "required": ["law"]}]}
+
+
+def _flatten(part: JsonSchemaValue, law: str, name: str) -> None:
+    """Put the keys of a law into the table around it.
+
+    Args:
+        part: schema of that table.
+        law: key that holds the law.
+        name: key of the law's name.
+    """
+    properties = part.pop("properties")
+    part["anyOf"] = properties.pop(law)["anyOf"]
+    for table in part["anyOf"]:
+        table["properties"] = {name: table["properties"].pop("law")} | table["properties"] | properties
+        if "required" in table:
+            table["required"] = [name, *table["required"][1:]]
+    part.pop("additionalProperties", None)
+
+
+def _parameter(law: type, field: "Field[Any]") -> JsonSchemaValue:
+    limits = range_of(field)
+    words = docstrings(law).get(field.name)
+    return ({} if limits is None else _number(limits)) | ({"description": words} if words else {})
+
+
+def _number(bounds: Range) -> JsonSchemaValue:
+    """Return the schema of a number within its range, or of a text with a unit where the quantity has one."""
+    ranges: list[JsonSchemaValue] = [{"minimum": bounds.low, "maximum": bounds.high}]
+    if bounds.sides == 2:
+        ranges.append({"minimum": -bounds.high, "maximum": -bounds.low})
+    if bounds.zero:
+        ranges.append({"const": 0})
+    number = {"type": "number"} | (ranges[0] if len(ranges) == 1 else {"anyOf": ranges})
+    if not bounds.unit:
+        return number
+    words = f"a number with a unit of {QUANTITIES[bounds.unit]}"
+    text = {"type": "string", "pattern": _NUMBER_AND_UNIT, "description": words}
+    return {"anyOf": [number, text]}
