@@ -217,7 +217,7 @@ def draw(docs: Path) -> Path:
     names = {
         "counts": counts,
         "ends": counts[0][2],
-        "named": {n: named_table(each, rows) for n, each in ({"neighbours": plan.neighbours()} | plan.named()).items()},
+        "named": {n: named_table(each, rows) for n, each in plan.named().items()},
         "slips": {name: full_slips(random, name) for name in scenes.FORMULATIONS},
         "drawn": [
             (k, scenes.drawn(k), [_scene_cell(ends.get((k, name))) for name in scenes.FORMULATIONS])
@@ -229,7 +229,7 @@ def draw(docs: Path) -> Path:
 
 def main(given: Sequence[str] | None = None) -> int:
     """Run what is missing, keep its numbers and draw the page; or make one row."""
-    names = [name for group in (plan.neighbours(), *plan.named().values()) for name in group.cases]
+    names = [name for group in plan.named().values() for name in group.cases]
     asked = parser(__doc__, "stability")
     asked.add_argument("--limit", type=float, default=120.0, help="seconds of processor time for one run")
     asked.add_argument("--hours", type=float, default=6.0, help="after which no run of the map is started")
@@ -237,7 +237,7 @@ def main(given: Sequence[str] | None = None) -> int:
     asked.add_argument("--row", choices=names, metavar="NAME", help=f"this row alone, printed: {', '.join(names)}")
     args = asked.parse_args(given)
     if args.row:
-        group = next(group for group in (plan.neighbours(), *plan.named().values()) if args.row in group.cases)
+        group = next(group for group in plan.named().values() if args.row in group.cases)
         case = group.cases[args.row]
         runs = numbers(outcomes([case, case.reference] if group.referenced else [case], args))["runs"]
         rows = {Case(**each["case"]): each for each in runs}

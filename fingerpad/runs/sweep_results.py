@@ -127,9 +127,6 @@ class Sweep:
             loads, ridges, sites and sums over the whole finger, where a point has them; its failure and cost. The
             attributes are the parameters that all points share. Under a force on the whole finger there are
             sums over it alone.
-
-        Raises:
-            ImportError: xarray is not installed.
         """
         return _dataset(self)
 
