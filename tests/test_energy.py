@@ -15,7 +15,7 @@ from tests.test_contact import HEIGHT, MU_F, WIDTH, make
 from variational.attraction import electroadhesion
 from variational.attraction.electroadhesion import Attraction
 from variational.energy import Balance, EnergyBook
-from variational.quantities import Observer
+from variational.resultants import Observer
 from variational.solvers.equations import Control
 
 pytestmark = pytest.mark.slow

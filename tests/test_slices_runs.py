@@ -11,7 +11,7 @@ import pytest
 
 import fingerpad as fp
 from fingerpad.model.simulation import Simulation
-from fingerpad.reduced.models import find
+from fingerpad.reduced.registry import find
 from fingerpad.report import run_page
 from fingerpad.results.folder import full_scene
 from fingerpad.runs import solve
