@@ -50,7 +50,7 @@ _PACKAGES = ("geometry", "variational", "fingerpad")
 _WITHOUT_NUMBERS = (  # these start, read, refuse, order runs, write and print
     *(f"fingerpad/{wing}/" for wing in ("cli", "io", "results", "report", "calculator", "runs")),  # io: now results
     *("fingerpad/startup.py", "fingerpad/installed.py", "geometry/meshfile.py", "fingerpad/model/cost.py"),
-    *("fingerpad/model/expected.py", "fingerpad/scene/remarks.py", "fingerpad/scene/messages.py"),
+    *("fingerpad/model/expected.py", "fingerpad/scene/contradictions.py", "fingerpad/scene/messages.py"),
     "fingerpad/model/report.py",
 )
 _REDUCED = "fingerpad/reduced"  # no full run uses it: part of the programs that import it

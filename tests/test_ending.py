@@ -268,10 +268,8 @@ def tables(folder: Path) -> dict[str, list[dict[str, str]]]:
 
 
 WRAPPER = """
-import os, sys, random
+import os, sys
 kind, number = sys.argv.pop(1), int(sys.argv.pop(1))
-from tests.test_history import Own
-from variational.problem import Problem
 from variational.solvers.coupling import Coupling
 from fingerpad.results import checkpoint, files
 def kill_at(owner, name, do=lambda *args: None):

@@ -59,7 +59,6 @@ def test_area(finger_mesh, profiles, layer):
     assert integral(finger_mesh, tag) == pytest.approx(areas(profiles)[tag], rel=1e-2 if "nail" in layer else 5e-3)
 
 
-@pytest.mark.mpi
 @pytest.mark.parametrize("layer", list(tags.LAYERS))
 def test_layers_are_mirrored(finger_mesh, layer):
     """Left and right of x = 0 weigh the same. Tolerance: the placing of nodes along the mirrored curves."""
@@ -172,7 +171,6 @@ def at_the_tips(receptors=True, growth=0.25):
     return load(MPI.COMM_WORLD, partial(fingertip.build, Fingertip(), size, receptors, half=True))
 
 
-@pytest.mark.mpi
 def test_elements_at_the_tips_below_the_merkel_sites(profiles):
     """Where ridges can touch their edges are as long as asked, elsewhere several times as long.
 
@@ -189,7 +187,6 @@ def test_elements_at_the_tips_below_the_merkel_sites(profiles):
     assert max(means[:3]) < 1.5 * RECEPTOR < 4 * RECEPTOR < means[3]
 
 
-@pytest.mark.mpi
 def test_triangles_of_a_merkel_site():
     """By default fewer than 200 each, and more than 100; the site on the line of symmetry counts half."""
     with_sites, without = (at_the_tips(wanted).mesh.topology.index_map(2).size_global for wanted in (True, False))
@@ -199,14 +196,12 @@ def test_triangles_of_a_merkel_site():
 @pytest.mark.mpi
 def test_bone_rim(finger_mesh, profiles):
     """The rim is closed: its normals add up to nothing; its length is the ellipse's. Tolerance: chords of 1 mm."""
-    ds = ufl.Measure("ds", finger_mesh.mesh, subdomain_data=finger_mesh.facet_tags)(tags.BONE_RIM)
-    comm, n = finger_mesh.mesh.comm, ufl.FacetNormal(finger_mesh.mesh)
+    n = ufl.FacetNormal(finger_mesh.mesh)
     rim = profiles.bone(np.linspace(-np.pi, np.pi, 20001))
     length = np.linalg.norm(np.diff(rim, axis=0), axis=1).sum()
-    one = fem.Constant(finger_mesh.mesh, 1.0)
-    assert comm.allreduce(fem.assemble_scalar(fem.form(one * ds))) == pytest.approx(length, rel=1e-2)
+    assert integral(finger_mesh, tags.BONE_RIM, kind="ds") == pytest.approx(length, rel=1e-2)
     for k in (0, 1):
-        assert abs(comm.allreduce(fem.assemble_scalar(fem.form(n[k] * ds)))) < 1e-12 * length
+        assert abs(integral(finger_mesh, tags.BONE_RIM, n[k], "ds")) < 1e-12 * length
 
 
 def test_ridge_tags():
@@ -271,7 +266,6 @@ def test_concave_pair_stays():
 
 
 @pytest.mark.slow
-@pytest.mark.mpi
 @pytest.mark.parametrize("half", [True, False])
 def test_sharp_tips_are_meshed(half):
     """Of the fifth harmonic alone; a mesh of gmsh's own has such triangles, on either side of the mirror."""

@@ -124,6 +124,14 @@ def test_numbers_are_kept_as_they_are(tmp_path):
     assert '   {"k": 0, "value": 0.1},\n' in (tmp_path / "study.json").read_text(encoding="utf-8")
 
 
+def test_template_is_filled():
+    """Fields are f-strings, a row is repeated, a part is there where its condition holds."""
+    template = "{x:.2f}\nfor k, v in rows: | {k} | {cells(v, None)} |\nif not rows:\nnone\nend\n{len(rows)}\n"
+    names = {"x": 1.5, "rows": [("a", 0.123456), ("b", 2)], "cells": harness.cells}
+    assert harness._filled(template, names) == "1.50\n| a | 0.1235 | – |\n| b | 2 | – |\n2\n"
+    assert harness._filled(template, names | {"rows": []}) == "1.50\n\nnone\n0\n"
+
+
 # -- The picture that opens the README is drawn from the numbers in git ---
 @pytest.mark.slow
 def test_hero_is_drawn_from_kept_numbers(tmp_path):

@@ -55,12 +55,7 @@ def test_each_module_is_imported_by_a_quick_test():
     imports = [
         *(f"tests.{name}" for name in QUICK),
         *(f"fingerpad.cli.{_BESIDE.get(name, name)}" for name in COMMANDS),
-        *(
-            "fingerpad.report.run_page",
-            "fingerpad.report.sweep_page",
-            "fingerpad.results.drawing",
-            "fingerpad.runs.batch",
-        ),
+        *(f"fingerpad.{name}" for name in ("report.run_page", "report.sweep_page", "results.drawing", "runs.batch")),
     ]
     code = "\n".join(["import sys", *(f"import {name}" for name in imports), "print(*sys.modules)"])
     done = python("-c", code, cwd=ROOT)

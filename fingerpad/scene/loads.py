@@ -51,16 +51,11 @@ def load_name(name: str) -> str:
     return name
 
 
-def file_name(name: str) -> str:
-    """Return the part of a file's name that stands for a load."""
-    return name.replace(" ", "_")
-
-
 def first_clash(names: Sequence[str]) -> tuple[int, int] | None:
     """Return the places of the first two loads whose files would be one, also where letters have no case."""
     seen: dict[str, int] = {}
     for k, name in enumerate(names):
-        key = unicodedata.normalize("NFKC", file_name(name)).casefold()
+        key = unicodedata.normalize("NFKC", name.replace(" ", "_")).casefold()
         if key in seen:
             return seen[key], k
         seen[key] = k
@@ -195,8 +190,12 @@ def refuse_contradictions(history: Sequence[Load], given: Mapping[str, Any], acc
         ValueError: the keys, their values and the remedy.
     """
     _refuse_history(history, given)
-    if accurate:
-        _refuse_names(history)
+    for k, load in enumerate(history) if accurate else ():
+        if first_clash([*FINAL_STATES, load.name]) is not None:
+            raise ValueError(
+                f"history[{k}].name is {show(load.name)} and accuracy is given, with which the state of that name has "
+                "files of its own; take another name"
+            )
     _refuse_times(history, step_scale)
     _refuse_floating(history)
 
@@ -220,16 +219,6 @@ def _refuse_history(history: Sequence[Load], given: Mapping[str, Any]) -> None:
             f"history[{clash[1]}].name is {other} and history[{clash[0]}].name is {one}; each load must have a "
             "name of its own, also where spaces become _ and letters have no case, since files are named by it"
         )
-
-
-def _refuse_names(history: Sequence[Load]) -> None:
-    """Refuse a load whose files would be those of a state on the final mesh."""
-    for k, load in enumerate(history):
-        if first_clash([*FINAL_STATES, load.name]) is not None:
-            raise ValueError(
-                f"history[{k}].name is {show(load.name)} and accuracy is given, with which the state of that name has "
-                "files of its own; take another name"
-            )
 
 
 def _refuse_floating(history: Sequence[Load]) -> None:

@@ -19,7 +19,7 @@ from variational.coefficients import Law
 from variational.roughness.closure import Closure
 
 DEFAULT_MODEL = "full"
-"""Model of a run whose files name none, by :data:`fingerpad.reduced.models.MODELS`."""
+"""Model of a run whose files name none, by :data:`fingerpad.reduced.registry.MODELS`."""
 _MAX_DEPTH = 8  # of tables in lists in tables; a scene has 3
 _DEPTH = f"a scene has at most {_MAX_DEPTH} inside one another"
 _MAX_BITS = 1000  # of a whole number; floating point has 1024
@@ -91,7 +91,7 @@ def read_study(path: Path) -> dict[str, Any]:
         SceneError: the file cannot be read, or is of a run that was given more than a scene.
     """
     if path.suffix.lower() == ".json":
-        return _of_run(path)
+        return {key: value for key, value in _kept(path).items() if key != "model"}
     data: dict[str, Any] = plain(read(path))
     _beside(data, path.parent)
     _beside(data.get("sweep"), path.parent)
@@ -107,11 +107,6 @@ def model_of(path: Path | None) -> str:
     if path is None or path.suffix.lower() != ".json":
         return DEFAULT_MODEL
     return str(_kept(path).get("model", DEFAULT_MODEL))
-
-
-def _of_run(path: Path) -> dict[str, Any]:
-    """Return the data of the scene of a run's folder."""
-    return {key: value for key, value in _kept(path).items() if key != "model"}
 
 
 def _kept(path: Path) -> dict[str, Any]:
