@@ -17,7 +17,8 @@ from fingerpad.model.simulation import Simulation
 from variational.coefficients import between
 from variational.contact.friction import Friction
 from variational.roughness.closure import Closure
-from variational.solvers.continuation import Place, StepFailed
+from variational.solvers.accepted import Place
+from variational.solvers.continuation import StepFailed
 from variational.solvers.target import Target
 from variational.state import ContactState
 
@@ -116,8 +117,17 @@ class FullSlips:
         path.go_to(start.place)
         name = f"full slip from {before.beside(conditions) or 'itself'}"
         target = Target(name, conditions.f_ext, voltage=conditions.voltage, slips=True, constants=set_laws)
-        state = replace(self._simulation.slip_to(target), reached=name)
-        return Solved(conditions, state, path.place())
+        state = self._checked(self._simulation.slip_to(target), name)
+        return Solved(conditions, replace(state, reached=name), path.place())
+
+    def _checked(self, state: ContactState, name: str) -> ContactState:
+        """Return a state with its stability; refuse one that is no steady and stable full slip."""
+        if not state.slip_held:
+            raise StepFailed(f"{name}: {'full slip is not steady' if state.all_slip else 'not every point slips'}")
+        checked = self._simulation.checks.check(name)
+        if not checked.stable:
+            raise StepFailed(f"{name}: full slip is {checked}")
+        return replace(state, stable=True, lambda_min=checked.frozen.lambda_min, gain=checked.gain)
 
     def _set_laws(self, friction: Friction | None, roughness: Closure | None, h_0: float) -> None:
         self.finger.problem.set_laws(friction, h_0)

@@ -25,6 +25,7 @@ from variational.solvers.outcome import NotConverged
 from variational.solvers.target import Control
 
 if TYPE_CHECKING:
+    from variational.contact.formulation import SurfaceState
     from variational.history import Values
     from variational.resultants import Observer
     from variational.solvers.coupling import Coupling
@@ -81,6 +82,16 @@ class AcceptedState:
         solver.control = replace(self.control)
         problem.voltage.value = self.voltage
         solver.reaction = self.reaction.copy()
+
+
+@dataclass(frozen=True)
+class Place:
+    """An accepted state of a continuation, on its own mesh."""
+
+    accepted: AcceptedState
+    surface: "SurfaceState"
+    slip: tuple[float, bool]
+    """See :class:`variational.solvers.continuation.Continuation`."""
 
 
 def return_to_onset(solver: "Solver", observer: "Observer", way: float) -> float:

@@ -17,12 +17,11 @@ from mpi4py import MPI
 from numpy.typing import NDArray
 from petsc4py import PETSc
 
-from variational.solvers.accepted import AcceptedState, relax, return_to_onset
+from variational.solvers.accepted import AcceptedState, Place, relax, return_to_onset
 from variational.solvers.outcome import NotConverged
 from variational.solvers.target import Control, Progress, Target, Way
 
 if TYPE_CHECKING:
-    from variational.contact.formulation import SurfaceState
     from variational.solvers.coupling import Coupling
 
 Array = NDArray[np.float64]
@@ -66,16 +65,6 @@ class Attempt:
     def jump(self) -> bool:
         """Whether skin or an air gap moved without the loads."""
         return self.pseudo_transient > 0 or bool(self.jumped) or self.stepped_over_fold
-
-
-@dataclass(frozen=True)
-class Place:
-    """An accepted state of a continuation, on its own mesh."""
-
-    accepted: AcceptedState
-    surface: "SurfaceState"
-    slip: tuple[float, bool]
-    """See :class:`Continuation`."""
 
 
 class Continuation:
@@ -133,11 +122,11 @@ class Continuation:
         self.steps += 1
         PETSc.garbage_cleanup(self.problem.mesh.comm)  # objects that several ranks have dropped wait for this
 
-    def place(self) -> "Place":
+    def place(self) -> Place:
         """Return the accepted state, to come back to by :meth:`go_to`."""
         return Place(self._now, self.surface_state, self.slip)
 
-    def go_to(self, place: "Place") -> None:
+    def go_to(self, place: Place) -> None:
         """Accept a state again that was accepted before, under the same laws; collective."""
         self._now, self.surface_state, self.slip = place.accepted, place.surface, place.slip
         self._restore()
