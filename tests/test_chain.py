@@ -111,8 +111,9 @@ def test_point_not_found_from_its_neighbour_has_a_path(monkeypatch):
     skin = Skin()
     results, _ = followed(monkeypatch, skin, [100.0, 90.0, 75.0, 70.0])
     assert [r.full_slip.reached for r in results[1:3]] == ["full slip from voltage 100 V", "path"]
-    assert results[2].notes == ("Full slip is at the end of a path of its own: not found.",)
+    assert results[2].notes[-1] == "It was not found from its neighbour: not found."
     assert results[3].full_slip.reached == "full slip from voltage 75 V"
+    assert results[3].notes[-1].endswith("it was reached by: full slip from voltage 75 V.")
     assert skin.paths == 2
 
 
@@ -156,6 +157,7 @@ def test_sweep_of_full_slip_is_that_of_paths(tmp_path, monkeypatch):
         assert direct.array(quantity)[1] == pytest.approx(expected, rel=1e-6), quantity
     assert direct.array("contact_length")[1] == pytest.approx(paths.array("contact_length")[1], rel=1e-5)
     assert [r.full_slip.reached for r in direct[2:]] == ["full slip from voltage 60 V", "path"]
+    assert "1 of 2 states of full slip are from a neighbour, the others from paths." in str(direct)
     row = direct.rows()[2]
     assert row["full_slip_reached"] == "full slip from voltage 60 V"
     assert not any(column.startswith(("uncharged", "charged")) for column in row)

@@ -282,7 +282,8 @@ class Chain:
         cost = replace(
             cost, newton_iterations=work["newton"], factorisations=work["factorisations"], unknowns=finger.unknowns
         )
-        notes = (f"Full slip is at the end of a path of its own: {why}.",) if why else ()
+        notes = [f"This is full slip alone, without an error estimate; it was reached by: {state.reached}."]
+        notes += [f"It was not found from its neighbour: {why}."] if why else []
         return Result(
             scene,
             DEFAULT_MODEL,
@@ -291,7 +292,7 @@ class Chain:
             state,
             cost=cost,
             failure=broken(state, finger.force_error, coefficient(scene)),
-            notes=notes,
+            notes=tuple(notes),
             cautions=(
                 *remarks(scene),
                 *cautions.on_states([state], scene.closure(), finger.problem.interface.formulation),

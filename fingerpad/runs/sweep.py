@@ -27,6 +27,7 @@ from fingerpad.scene import Scene
 from fingerpad.scene.messages import SceneError, clip, show
 from fingerpad.scene.reading import DEFAULT_MODEL, plain, put
 from fingerpad.scene.remarks import leakage
+from variational.state import PATH
 
 if TYPE_CHECKING:
     from fingerpad.reduced.model import Model
@@ -112,9 +113,16 @@ def sweep(
     replace_json(folder / FILES[-1], asked | {"cautions": done.cautions(), "notes": [leaks] if leaks else []})
     done.to_csv(folder / FILES[0])
     kept = folder / (model if states == STATES[0] else states)
-    notes = tuple(filter(None, (leaks, done.save(), _older(done, kept))))
+    notes = tuple(filter(None, (leaks, _reached(done), done.save(), _older(done, kept))))
     attempt(folder)
     return replace(done, notes=notes)
+
+
+def _reached(done: Sweep) -> str:
+    """Return a note on how the states of a sweep of full slip alone were reached; empty for another one."""
+    alone = [each.full_slip.reached for each in done if "reached" in each.record and each.full_slip is not None]
+    direct = len(alone) - alone.count(PATH)
+    return f"{direct} of {len(alone)} states of full slip are from a neighbour, the others from paths." if alone else ""
 
 
 def _older(done: Sweep, folder: Path) -> str:
