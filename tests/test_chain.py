@@ -161,7 +161,7 @@ def test_sweep_of_full_slip_is_that_of_paths(tmp_path, monkeypatch):
     row = direct.rows()[2]
     assert row["full_slip_reached"] == "full slip from voltage 60 V"
     assert not any(column.startswith(("uncharged", "charged")) for column in row)
-    assert (tmp_path / "direct" / "report.html").exists()
+    assert "--states full_slip" in (tmp_path / "direct" / "report.html").read_text(encoding="utf-8")
 
     started, run = [], chain.run
     monkeypatch.setattr(chain, "run", lambda *args: started.append(args) or run(*args))

@@ -261,6 +261,7 @@ def _cite(table: Table) -> str:
     kept = {key: value for key, value in given.items() if not (key in table.axes or "[" in key or value is None)}
     options = [html.option_of(key, value) for key, value in kept.items()]
     options += [f"--model {table.model}"] if table.model != DEFAULT_MODEL else []
+    options += ["--states full_slip"] if any("full_slip_reached" in row for row in table.rows) else []
     values = table.values()
     if all(type(value) in (int, float) for each in values.values() for value in each):
         over = [html.option_of(key, ",".join(map(repr, each)), "--over") for key, each in values.items()]
