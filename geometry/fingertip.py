@@ -7,9 +7,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geometry import tags
+from geometry.curved import curve_edges
 from geometry.parameters import Fingertip, MeshSize
 from geometry.profiles import Profiles
-from geometry.reflection import HalfMesh
+from geometry.reflection import HalfMesh, swap_corners
 from geometry.shape import shape
 from geometry.sizing import check, growth_from_tips, touching_ridges
 
@@ -47,6 +48,8 @@ def _half(finger: Fingertip, size: MeshSize, receptors: bool) -> HalfMesh:
     _surfaces(curves)
     _sizes(profiles, size, curves, touching, receptors)
     gmsh.model.mesh.generate(2)
+    swap_corners()
+    curve_edges()
     return HalfMesh.read()
 
 

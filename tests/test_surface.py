@@ -102,7 +102,8 @@ def test_every_facet_is_counted_once(name, request):
     body = request.getfixturevalue(name)
     surface = make(body)
     lengths = surface.per_ridge(np.ones((len(surface.pairs), 4)))
-    ds = ufl.Measure("ds", body.mesh, subdomain_data=body.facet_tags)
+    rule = {"quadrature_degree": surface.degree}
+    ds = ufl.Measure("ds", body.mesh, subdomain_data=body.facet_tags, metadata=rule)
     for k, j in enumerate(surface.ridge_numbers):
         form = fem.form(fem.Constant(body.mesh, 1.0) * ds(tags.ridge(j)))
         length = body.mesh.comm.allreduce(fem.assemble_scalar(form))

@@ -151,7 +151,7 @@ def gather_mesh(problem: "Problem") -> Snapshot | None:
     """Bring the current state to rank 0, None on the others; numbered as the mesh was before it was distributed."""
     mesh = problem.mesh
     cells, sed = sed_per_cell(problem)
-    nodes = compat.cell_geometry(mesh)[cells]
+    nodes = compat.cell_geometry(mesh)[cells][:, :3]
     # The first three degrees of freedom of a Lagrange triangle are its vertices, in the geometry's order.
     u = problem.displacement()[problem.V.dofmap.list[cells][:, :3]]
     tag = np.zeros(len(cells), dtype=np.int32)

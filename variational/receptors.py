@@ -7,11 +7,12 @@ from mpi4py import MPI
 from numpy.typing import NDArray
 
 from variational import compat, jit
-from variational.cellwise import Cellwise, owned_cells
+from variational.cellwise import Cellwise, owned_cells, reference_places
 from variational.problem import Problem
 
 Array = NDArray[np.float64]
 _ROUNDOFF = 1e-8  # of a barycentric coordinate: a site on a facet belongs to both cells
+_BEYOND = 1e-3  # of the body's size: what a curved edge may be beyond its nodes
 
 
 class Receptors:
@@ -73,7 +74,7 @@ class Receptors:
 
 
 def _find(mesh: dolfinx.mesh.Mesh, sites: Array) -> tuple[NDArray[np.int32], NDArray[np.int64], Array]:
-    """Find sites among this rank's own cells, straight-sided triangles.
+    """Find sites among this rank's own cells.
 
     Returns:
         For each pair of a site and one of its cells the cell's number and the site's, both (pairs,), and the reference
@@ -83,15 +84,14 @@ def _find(mesh: dolfinx.mesh.Mesh, sites: Array) -> tuple[NDArray[np.int32], NDA
     cell, numbers, points = [], [], []
     if len(cells):
         extent = float(np.ptp(mesh.geometry.x, axis=0).max())
-        tree = geometry.bb_tree(mesh, 2, entities=cells, padding=_ROUNDOFF * extent)
+        tree = geometry.bb_tree(mesh, 2, entities=cells, padding=_BEYOND * extent)
         candidates = geometry.compute_collisions_points(tree, np.column_stack([sites, np.zeros(len(sites))]))
-        corners = mesh.geometry.x[compat.cell_geometry(mesh)][:, :, :2]
+        nodes = mesh.geometry.x[compat.cell_geometry(mesh)][:, :, :2]
         for k, site in enumerate(sites):
-            for c in candidates.links(k):
-                a, b, d = corners[c]
-                X = np.linalg.solve(np.column_stack([b - a, d - a]), site - a)
-                if min(X[0], X[1], 1 - X[0] - X[1]) >= -_ROUNDOFF:
-                    cell.append(c)
-                    numbers.append(k)
-                    points.append(X)
+            near = candidates.links(k)
+            places = reference_places(nodes[near], np.broadcast_to(site, (len(near), 2)))
+            inside = np.minimum(places.min(axis=1), 1 - places.sum(axis=1)) >= -_ROUNDOFF
+            cell.extend(near[inside])
+            numbers.extend([k] * int(inside.sum()))
+            points.extend(places[inside])
     return np.array(cell, dtype=np.int32), np.array(numbers, dtype=np.int64), np.array(points).reshape(-1, 2)

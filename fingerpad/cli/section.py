@@ -120,8 +120,9 @@ def _read(gmsh: Any, unit: float = 1e-3) -> Section:
     groups = {tag for _, tag in gmsh.model.getPhysicalGroups(2)}
     for tag in filter(groups.__contains__, tags.LAYERS.values()):
         for entity in gmsh.model.getEntitiesForPhysicalGroup(2, tag):
-            for nodes in gmsh.model.mesh.getElements(2, entity)[2]:
-                triangles.append(nodes.astype(int).reshape(-1, 3))
+            for kind, _, nodes in zip(*gmsh.model.mesh.getElements(2, entity), strict=True):
+                count = gmsh.model.mesh.getElementProperties(kind)[3]
+                triangles.append(nodes.astype(int).reshape(-1, count)[:, :3])
                 layers.append(np.full(len(triangles[-1]), tag))
     ridges = sum(tags.is_ridge(tag) for dimension, tag in gmsh.model.getPhysicalGroups(1))
     every = np.concatenate(triangles)

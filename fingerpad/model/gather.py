@@ -22,7 +22,7 @@ class Nodes:
         self._comm, cells = mesh.comm, np.arange(mesh.topology.index_map(2).size_local)
         # The first three degrees of freedom of a Lagrange triangle are its vertices, in the geometry's order.
         self._dofs = made.problem.V.dofmap.list[cells][:, :3]
-        nodes = compat.cell_geometry(mesh)[cells]
+        nodes = compat.cell_geometry(mesh)[cells][:, :3]
         names = self._together(np.asarray(mesh.geometry.input_global_indices)[nodes])
         self._sort = np.argsort(self._together(np.asarray(mesh.topology.original_cell_index)[cells]))
         _, self._first, corners = np.unique(names[self._sort].ravel(), return_index=True, return_inverse=True)
