@@ -14,7 +14,7 @@ from geometry.profiles import GeometryError
 Array = NDArray[np.float64]
 Numbers = NDArray[np.int64]
 TRIANGLE, LINE = 9, 8  # gmsh's numbers of elements of second order
-_LEAST = 0.2  # of the straight triangle's area: least det dX/dxi of a triangle that keeps its curved edges
+_LEAST = 0.2  # of the straight triangle's area: least det dX/dxi of a triangle with curved edges
 _PLACES = [(i / 4, j / 4) for i in range(5) for j in range(5 - i)]  # of the reference triangle, its edges included
 
 
@@ -42,23 +42,25 @@ def curve_edges() -> None:
     """Give the mesh of the current gmsh model nodes in the middle of its edges.
 
     Where an edge is so curved that a triangle beside it would be folded, or nearly, as in a layer that is much thinner
-    than the edge is long, all edges of that triangle are straight.
+    than the edge is long or at a tip that is much sharper, the edges of that triangle are less curved.
     """
     gmsh.model.mesh.setOrder(2)
     numbers, coordinates, _ = gmsh.model.mesh.getNodes()
     order = np.argsort(numbers)
     points = np.asarray(coordinates).reshape(-1, 3)[order]
-    nodes = np.searchsorted(numbers[order], gmsh.model.mesh.getElementsByType(TRIANGLE)[1]).reshape(-1, 6)
-    moved: set[int] = set()
-    while True:
-        folded = nodes[least(points[nodes][:, :, :2]) < _LEAST]
-        if not len(folded):
-            break
-        middles = (points[folded[:, :3]] + points[folded[:, [1, 2, 0]]]) / 2
-        points[folded[:, 3:]] = middles
-        moved.update(folded[:, 3:].ravel().tolist())
-    for node in moved:
+    nodes = np.searchsorted(numbers[order], second_order())
+    straight, given = points.copy(), points.copy()
+    straight[nodes[:, 3:]] = (points[nodes[:, :3]] + points[nodes[:, [1, 2, 0]]]) / 2
+    while len(folded := nodes[least(points[nodes][:, :, :2]) < _LEAST]):
+        middles = np.unique(folded[:, 3:])
+        points[middles] = (points[middles] + straight[middles]) / 2
+    for node in np.flatnonzero((points != given).any(axis=1)):
         gmsh.model.mesh.setNode(int(numbers[order[node]]), points[node], [])
+
+
+def second_order() -> Numbers:
+    """Return the nodes of the triangles of second order of the current gmsh model, shape (triangles, 6)."""
+    return np.asarray(gmsh.model.mesh.getElementsByType(TRIANGLE)[1], dtype=np.int64).reshape(-1, 6)
 
 
 def refuse_folded(triangles: Numbers, unit: float = 1.0) -> None:
@@ -71,7 +73,7 @@ def refuse_folded(triangles: Numbers, unit: float = 1.0) -> None:
     Raises:
         GeometryError: where the first is.
     """
-    if triangles.shape[1] < 6:
+    if triangles.shape[1] < 6 or not len(triangles):
         return
     numbers, coordinates, _ = gmsh.model.mesh.getNodes()
     order = np.argsort(numbers)

@@ -50,9 +50,10 @@ def areas(profiles) -> dict[int, float]:
 @pytest.mark.mpi
 @pytest.mark.parametrize("layer", list(tags.LAYERS))
 def test_area(finger_mesh, profiles, layer):
-    """Tolerance: facets of up to 120 um cut the corners of waves of 483 um, those of 1 mm the nail's two faces."""
+    """Tolerance: facets of up to 120 um on tips with a radius of 6 um, where the parabolas do not follow them."""
     tag = tags.LAYERS[layer]
-    assert integral(finger_mesh, tag) == pytest.approx(areas(profiles)[tag], rel=1e-2 if "nail" in layer else 5e-3)
+    off = {"viable epidermis": 6e-3, "nail": 3e-3}.get(layer, 1e-3)  # the nail's edge is such a tip, too
+    assert integral(finger_mesh, tag) == pytest.approx(areas(profiles)[tag], rel=off)
 
 
 @pytest.mark.mpi
