@@ -38,7 +38,7 @@ test:
 
 check:
 	environment/wheels
-	FINGERPAD_CHROMIUM=$$(environment/browser) $(run) python3 -m pytest -q --color=no -n auto --dist worksteal -m "not long" --quick tests
+	FINGERPAD_CHROMIUM=$$(environment/browser) $(run) python3 -m pytest -q --color=no -n auto --dist worksteal -m "not long and not slow" tests
 
 test-pip:
 	SUITE=pip PYTHON="$(PYTHON)" $(run) python3 -m pytest -q --color=no tests/test_digits.py

@@ -23,7 +23,7 @@ from benchmarks import harness, limits
 from benchmarks.errors import DEFAULT, LEVELS, STATES, parted
 from benchmarks.limits import Limit
 from benchmarks.verification.normal_contact import E_STAR, HALF_WIDTH, RADIUS, SPAN, press
-from fingerpad.model.feasibility import by_rule, check
+from fingerpad.model.options import by_rule, check
 from fingerpad.richardson import MORE, ONCE, MeshParameter
 from fingerpad.runs.batch import Summary
 from fingerpad.scene import Scene, SceneError, load, start
@@ -78,6 +78,15 @@ class Case:
         if self.error > self.allowed:
             return "no"
         return "yes" if self.error + self.bar <= self.allowed else "likely"
+
+    @property
+    def line(self) -> str:
+        """Return the case as a row of a table; an effectivity in brackets is of an error that is not clear."""
+        error = f"{self.error:.2g} ± {self.bar:.1g}" if self.bar else f"{self.error:.2g}"
+        effectivity = f"{self.effectivity:.2f}" if self.clear else f"({self.effectivity:.2f})"
+        allowed = "" if self.allowed is None else f"{self.allowed:.2g}"
+        cells = (self.scene, self.quantity, allowed, f"{self.estimate:.2g}", error, effectivity, self.met)
+        return " | ".join(cells)
 
     def covered(self, factor: float) -> bool:
         """Return whether the error is at most ``factor`` times the estimate."""
@@ -220,27 +229,6 @@ def compute(args: Any) -> None:
 
 
 # -- page ----------------------------------------------------------------------------------------------------
-def _coverages(cases: Sequence[Case]) -> str:
-    """Return the table of the coverage by kind and factor."""
-    rows, factors = [], {True: f"once: factor {ONCE:g}", False: f"more often: factor {MORE:g}"}
-    for kind, once in itertools.product(KINDS, factors):
-        n, *covered = coverage(cases, kind, once)
-        rows.append([kind, factors[once], n, *(f"{k} ({100 * k / n:.0f} %)" if n else "–" for k in covered)])
-    return harness.table(["quantity", "sizes changed", "cases", "covered by the estimate", "with its factor"], rows)
-
-
-def table(cases: Iterable[Case]) -> str:
-    """Return cases as a table; effectivities of errors that are not clear are in brackets."""
-    rows = []
-    for c in cases:
-        error = f"{c.error:.2g} ± {c.bar:.1g}" if c.bar else f"{c.error:.2g}"
-        effectivity = f"{c.effectivity:.2f}" if c.clear else f"({c.effectivity:.2f})"
-        allowed = "" if c.allowed is None else f"{c.allowed:.2g}"
-        rows.append([c.scene, c.quantity, allowed, f"{c.estimate:.2g}", error, effectivity, c.met])
-    head = ["scene", "quantity", "requested (%)", "estimate (%)", "error (%)", "effectivity", "met"]
-    return harness.table(head, rows)
-
-
 def _verdicts(runs: Mapping[str, Mapping[str, Any]], cases: Sequence[Case]) -> list[str]:
     """Return how often each request was met in the scenes drawn; a run that failed did not meet it."""
     good: dict[str, list[bool]] = {}
@@ -252,47 +240,20 @@ def _verdicts(runs: Mapping[str, Mapping[str, Any]], cases: Sequence[Case]) -> l
     return [f"{request} in {sum(met)} of {len(met)} scenes" for request, met in good.items()]
 
 
-def _chosen(runs: Mapping[str, Mapping[str, Any]]) -> str:
-    rows = []
-    for name, r in runs.items():
-        sizes = [f"{r[key] * (1 if key == 'growth' else 1e6):g}" for key in _PARAMETERS if key in r]
-        cells = [*sizes, r["unknowns"], r["solves"], f"{r['cost']:.2f}"] if sizes else [*r.values(), *[""] * 5]
-        rows.append([name, *cells])
-    return harness.table(["scene", *_PARAMETERS.values(), "unknowns", "solves", "cost"], rows)
-
-
 def draw(docs: Path) -> Path:
     """Draw the page from the kept numbers."""
-    found, cases, text = harness.kept("accuracy", docs), kept(docs), harness.prose("accuracy")
-    n, bare, safe = coverage(cases)
-    of_bare, of_safe = 100 * bare / n, 100 * safe / n
-    verdicts, how = "; ".join(_verdicts(found.numbers["runs"], cases)), text["how"].format(once=ONCE, more=MORE)
-    whole, _, whole_safe = coverage([case for case in cases if case.source == WHOLE])
+    cases, factors = kept(docs), {True: f"once: factor {ONCE:g}", False: f"more often: factor {MORE:g}"}
     densities = [case for case in cases if case.source in _PARAMETERS and case.kind == "energy density"]
-    alone, _, alone_safe = coverage(densities)
-    density, _, density_safe = coverage(cases, "energy density")
-    other, other_safe = n - density, safe - density_safe
-    finding = text["finding"].format(
-        n=n, bare=bare, safe=safe, of_bare=of_bare, of_safe=of_safe, verdicts=verdicts,
-        whole=whole, whole_safe=whole_safe, alone=alone, alone_safe=alone_safe,
-        other=other, other_safe=other_safe, of_other=100 * other_safe / other,
-        density=density, density_safe=density_safe, of_density=100 * density_safe / density,
-    )  # fmt: skip
-    one = text["one"].format(scatter=max(case.error for case in densities if case.source == "growth"))
-
-    def all_of(name: str, sources: Sequence[str]) -> str:
-        return harness.folded(f"All cases of {name}", table([c for s in sources for c in cases if c.source == s]))
-
-    body = [
-        f"## Coverage\n\n{_coverages(cases)}",
-        f"## Whole runs\n\n{all_of('whole runs', [WHOLE])}",
-        harness.folded("Chosen meshes and their cost", _chosen(found.numbers["runs"])),
-        f"## One mesh parameter at a time\n\n{one}\n\n{all_of('one mesh parameter', list(_PARAMETERS))}",
-        f"## Hertz's contact\n\n{text['hertz']}\n\n" + all_of("Hertz's contact", [HERTZ]),
-    ]
-    path, command, names = docs / "accuracy.md", "python3 -m benchmarks.accuracy", ["accuracy", "errors"]
-    title = "Accuracy of the error estimate"
-    return harness.page(path, title, finding, how, body, command, found.made, names)
+    names: dict[str, Any] = dict(zip(("n", "bare", "safe"), coverage(cases), strict=True)) | {
+        "cases": cases,
+        "densities": densities,
+        "density": coverage(cases, "energy density"),
+        "alone": coverage(densities),
+        "whole": coverage([case for case in cases if case.source == WHOLE]),
+        "verdicts": _verdicts(harness.kept("accuracy", docs).numbers["runs"], cases),
+        "coverages": [(k, words, *coverage(cases, k, once)) for k in KINDS for once, words in factors.items()],
+    }
+    return harness.page(docs, "accuracy", "python3 -m benchmarks.accuracy", globals() | names, "errors")
 
 
 if __name__ == "__main__":

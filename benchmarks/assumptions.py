@@ -8,7 +8,7 @@ docs/assumptions.json and docs/assumptions.md.
 
 import argparse
 import sys
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -93,6 +93,7 @@ def cases() -> dict[str, Case]:
 _WIDE = "mesh.touching_fraction=0.6"
 _SHOWN = ("[1]", "[1, 0, -0.11]", "[1, -0.125]", "[1, -0.25]", "[1, -0.48, 0.13]")
 _OTHERS = ("[1, -0.0625]", "[1, 0, -0.05]")
+LIGHT = ("flat, 10 N/m, 200 V", "flat, 10 N/m, 0 V")
 _BY_VOLTAGE = {"[1, -0.25]": (150, 165), "[1, -0.48, 0.13]": (165, 170, 172)}
 
 
@@ -139,11 +140,6 @@ def compute(args: argparse.Namespace) -> None:
 
 
 # -- page ----------------------------------------------------------------------------------------------------
-_LENGTHS = ("L_R, full slip (mm)", "L_R, normal contact (mm)")
-_OF_LENGTHS = ("contact_length", "charged")
-_HEAD = ("µ_app", "f_T (N/m)", *_LENGTHS)
-
-
 def _command(case: Case, mesh: bool = True) -> str:
     """Return the options of a run's command; those of the mesh on demand."""
     words = [f"demos/scenes/{case.file}.toml"] if case.file else []
@@ -152,133 +148,71 @@ def _command(case: Case, mesh: bool = True) -> str:
     return f"`{' '.join(words)}`" if words else "none"
 
 
-def _mm(length: float) -> str:
-    return f"{1e3 * length:.3f}"
+class Comparison:
+    """The rows of all runs, and what the page's sentences and tables have of them.
+
+    Attributes:
+        rows: by name.
+        near: at 200 V, of ridge profiles that are not flat.
+        close: air gaps (m) of those of them that have the paper's friction.
+        met: voltages (V) at which the flattest profile has both of the paper's numbers.
+    """
+
+    def __init__(self, found: Mapping[str, Any]) -> None:
+        """Take the kept numbers."""
+        self.rows: dict[str, Any] = found["full"] | found["profiles"]
+        shaped = found["profiles"].items()
+        self.near = [row for name, row in shaped if name.endswith("200 V") and "flat" not in name]
+        self.close = [row["d_eq"] for row in self.near if abs(row["mu_app"] / PAPER - 1) <= NEAR]
+        flattest = [(float(name.split()[-2]), row) for name, row in shaped if name.startswith(_SHOWN[-1])]
+        both = (u for u, row in flattest if row["d_eq"] >= LEAST_GAP and abs(row["mu_app"] / PAPER - 1) <= NEAR)
+        self.met = list(both)
+
+    def change(self, name: str, other: str = "reference", key: str = "mu_app") -> float:
+        """Return by how much a run differs from another (%)."""
+        return float(100 * (self.rows[name][key] / self.rows[other][key] - 1))
+
+    def off(self, name: str) -> float:
+        """Return by how much the friction of a run is above the paper's (%)."""
+        return float(100 * (self.rows[name]["mu_app"] / PAPER - 1))
+
+    def gaps(self, name: str) -> Array:
+        """Return the air gaps of both states (m)."""
+        return np.concatenate([self.rows[name]["gaps"][state] for state in ("charged", "full_slip")])
+
+    def counts(self, name: str) -> tuple[int, int, int]:
+        """Return how many air gaps are in the paper's range, how many below it, and how many there are."""
+        gaps = self.gaps(name)
+        return int(within(gaps).sum()), int((gaps < LEAST_GAP).sum()), len(gaps)
+
+    def friction(self, name: str) -> str:
+        """Return µ_app of a run, with its error where the page states it."""
+        row = self.rows[name]
+        return plus_minus(row["mu_app"], row["error"]) if row["error"] else f"{row['mu_app']:.4f}"
+
+    def line(self, name: str) -> str:
+        """Return the cells of a run: friction and lengths."""
+        row = self.rows[name]
+        return f"{self.friction(name)} | {row.f_t:.2f} | {1e3 * row.contact_length:.3f} | {1e3 * row.charged:.3f}"
 
 
-def _micro(*lengths: float) -> str:
-    return " to ".join(f"{1e6 * each:.2f}" for each in lengths)
-
-
-def _friction(row: Mapping[str, Any]) -> str:
-    return plus_minus(row["mu_app"], row["error"]) if row["error"] else f"{row['mu_app']:.4f}"
-
-
-def _lines(full: Mapping[str, Any], named: Mapping[str, str]) -> list[list[str]]:
-    """Return a line for each run: its words, friction and lengths."""
-    return [
-        [words, _friction(full[name]), f"{full[name]['f_t']:.2f}", *(_mm(full[name][key]) for key in _OF_LENGTHS)]
-        for name, words in named.items()
-    ]
-
-
-def _changes(full: Mapping[str, Any], changes: Mapping[str, str]) -> str:
-    named = {
-        change: _command(Case("", (change,)), mesh=False) + (f": {words}" if words else "")
-        for change, words in changes.items()
-    }
-    return harness.table(("option", *_HEAD), _lines(full, {"reference": "none"} | named))
-
-
-def _profiles(found: Mapping[str, Any]) -> str:
-    rows = []
-    for profile in _SHOWN:
-        for voltage in sorted({200, *_BY_VOLTAGE.get(profile, ())}, reverse=True):
-            row = found[f"{profile} at {voltage} V"]
-            cells = (f"{row['mu_app']:.3f}", f"{1e3 * row['contact_length']:.2f}", f"{row['pressure'] / 1e3:.0f}")
-            rows.append([f"`{profile}`", voltage, *cells, _micro(row["d_eq"])])
-    head = ("`ridge_profile`", "U (V)", "µ_app", _LENGTHS[0], "f_c/L_R (kPa)", "d_eq (µm)")
-    return harness.table(head, rows)
-
-
-def _flat(full: Mapping[str, Any]) -> str:
-    rows = []
-    for name, case in FLAT.items():
-        row = full[name]
-        gaps = _gaps(row)
-        lengths = (_mm(row[key]) for key in _OF_LENGTHS)
-        rows.append([_command(case), _friction(row), *lengths, _micro(gaps.min(), gaps.max())])
-    return harness.table(("options", "µ_app", *_LENGTHS, "d_eq, both states (µm)"), rows)
-
-
-def _gaps(row: Mapping[str, Any]) -> Array:
-    """Return the air gaps of both states (m)."""
-    return np.concatenate([row["gaps"][state] for state in ("charged", "full_slip")])
-
-
-def _counts(row: Mapping[str, Any]) -> tuple[int, int, int]:
-    """Return how many air gaps of both states are in the paper's range, how many below it, and how many there are."""
-    gaps = _gaps(row)
-    return int(within(gaps).sum()), int((gaps < LEAST_GAP).sum()), len(gaps)
-
-
-def values(found: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the numbers in the page's sentences; changes in per cent."""
-    full, shaped = found["full"], found["profiles"]
-
-    def change(name: str, other: str = "reference", key: str = "mu_app", of: Mapping[str, Any] = full) -> float:
-        return float(100 * (of[name][key] / of[other][key] - 1))
-
-    near = [row for name, row in shaped.items() if name.endswith("200 V") and "flat" not in name]
-    close = [row["d_eq"] for row in near if abs(row["mu_app"] / PAPER - 1) <= NEAR]
-    gaps, both = _gaps(full["finest"]), full["both"]
-    light = "flat, 10 N/m, 200 V", "flat, 10 N/m, 0 V"
-    met = [
-        float(name.split()[-2])
-        for name, row in shaped.items()
-        if name.startswith(_SHOWN[-1]) and row["d_eq"] >= LEAST_GAP and abs(row["mu_app"] / PAPER - 1) <= NEAR
-    ]
-    lowest = _gaps(both)[_gaps(both) < LEAST_GAP]
-    return {
-        "half": change(next(iter(PARAMETERS))),
-        "tops": change("flat 200"),
-        "abaqus": -change("abaqus"),
-        "abaqus_length": -change("abaqus", key="contact_length"),
-        "gap": -change("gap"),
-        "soft": change("soft", "gap"),
-        "soft_length": change("soft", "gap", "contact_length"),
-        "yields": 1e6 * full["soft"]["penetration"],
-        "little": max(abs(change(name)) for name in LITTLE),
-        "default": full["finest"]["mu_app"],
-        "gaps": _micro(gaps.min(), gaps.max()),
-        "profiles": len(near),
-        "close": len(close),
-        "close_gaps": _micro(min(close), max(close)),
-        "low": shaped["[1, -0.25] at 150 V"],
-        "low_gap": _micro(shaped["[1, -0.25] at 150 V"]["d_eq"]),
-        "met_low": min(met),
-        "met_high": max(met),
-        "flat": _counts(full["flat"]),
-        "flat_off": 100 * (full["flat"]["mu_app"] / PAPER - 1),
-        "flat_200": _counts(full["flat 200"]),
-        "flat_200_off": 100 * (full["flat 200"]["mu_app"] / PAPER - 1),
-        "both": both,
-        "both_off": 100 * (both["mu_app"] / PAPER - 1),
-        "both_gaps": _counts(both),
-        "both_range": _micro(lowest.min(), lowest.max()),
-        "light_normal": change(*light, "charged", shaped),
-        "light_slip": change(*light, "contact_length", shaped),
-        "heavy_normal": change("flat 200", "flat 0", "charged"),
-        "heavy_slip": change("flat 200", "flat 0", "contact_length"),
-    }
+def _span(lengths: Sequence[float]) -> str:
+    """Return the least and the largest of lengths (m) in µm, or the only one."""
+    return " to ".join(f"{1e6 * each:.2f}" for each in dict.fromkeys((min(lengths), max(lengths))))
 
 
 def draw(docs: Path) -> Path:
     """Draw the page from the kept numbers."""
-    kept, text = harness.kept("assumptions", docs), harness.prose("assumptions")
-    full, words = kept.numbers["full"], values(kept.numbers)
-    readings = {name: _command(case) for name, case in READINGS.items()}
-    body = [
-        f"## Readings\n\n{harness.table(('options', *_HEAD), _lines(full, readings))}",
-        text["readings"].format(**words),
-        f"## Parameters\n\n{text['parameters'].format(**words)}\n\n{_changes(full, PARAMETERS)}",
-        harness.folded("Parameters that change little", _changes(full, LITTLE)),
-        *(text["tips"].format(**words), text["profiles"], _profiles(kept.numbers["profiles"])),
-        *(text["other-profiles"].format(**words), text["flat"], _flat(full), text["rest"].format(**words)),
+    found = Comparison(harness.kept("assumptions", docs).numbers)
+    shown = [
+        (profile, voltage, found.rows[f"{profile} at {voltage} V"])
+        for profile in _SHOWN
+        for voltage in sorted({200, *_BY_VOLTAGE.get(profile, ())}, reverse=True)
     ]
-    title, finding, how = "Assumptions and what they change", text["finding"].format(**words), text["how"]
-    command = "python3 -m benchmarks.assumptions"
-    return harness.page(docs / "assumptions.md", title, finding, how, body, command, kept.made, ["assumptions"])
+    names = {name: getattr(found, name) for name in dir(found) if not name.startswith("_")}
+    names |= {"command": _command, "span": _span, "shown": shown, "HALF": next(iter(PARAMETERS))}
+    names["option"] = lambda name: _command(Case("", () if name == "reference" else (name,)), mesh=False)
+    return harness.page(docs, "assumptions", "python3 -m benchmarks.assumptions", globals() | names)
 
 
 if __name__ == "__main__":

@@ -21,12 +21,11 @@ from benchmarks import errors, harness
 from benchmarks.errors import STATES, parted
 from benchmarks.limits import Limit
 from benchmarks.runs import finished
-from fingerpad.model.feasibility import by_rule
+from fingerpad.model.options import by_rule
 from fingerpad.results import style
 from fingerpad.scene import Scene, load
 
 _LIMIT = 10800.0  # s of processor time for one run
-MEASURES = {"work": "factorisations × unknowns", "seconds": "processor time"}
 TARGETS = (5e-2, 1e-2, 2e-3)  # errors whose cost is in the tables
 DEFAULT = "default"
 OTHER_MODEL = "formulation"
@@ -162,17 +161,6 @@ def _words(quantity: str) -> str:
     return "largest error of all quantities" if quantity == ALL else f"{KINDS[kind]}, {STATES[state]}"
 
 
-def _costs(points: Sequence[Point], reference: Reference, measure: str) -> str:
-    """Return the table of the cheapest runs for each error, beside the default's error."""
-    rows, default = list[list[str]](), _default(points)
-    for quantity in (*QUANTITIES, ALL):
-        error = f"{100 * default.error(quantity):.2g} ± {100 * reference[quantity].relative:.1g} %"
-        best = (cheapest(points, quantity, target, measure) for target in TARGETS)
-        rows.append([_words(quantity), *best, error, "yes" if default in front(points, quantity, measure) else "no"])
-    head = ["quantity", *(f"{100 * t:g} %" for t in TARGETS), "error of the default", "on the front"]
-    return harness.table(head, rows)
-
-
 def _panel(ax: Axes, points: Sequence[Point], quantity: str, bar: float) -> None:
     def at(some: Sequence[Point]) -> tuple[list[float], list[float]]:
         return [p.cost(quantity) / own for p in some], [max(p.error(quantity), 1.2 * lowest) for p in some]
@@ -202,58 +190,25 @@ def _paint(figure: Figure, points: Sequence[Point], reference: Reference) -> Non
     figure.legend(*axes[0, 0].get_legend_handles_labels(), loc="outside lower center", ncols=4)
 
 
-def _finding(points: Sequence[Point]) -> str:
-    text, error, everything = harness.prose("chart"), 100 * _default(points).error(ALL), [*QUANTITIES, ALL]
-    on = sum(_default(points) in front(points, quantity) for quantity in everything)
-    aims = ((ALL, 0.05), ("full_slip_f_t", 0.01), ("full_slip_f_t", 0.002))
-    best = [cheapest(points, *aim) for aim in aims]
-    parts = [text["finding"].format(*best, error=error, on=on, n=len(everything))]
-    for p in points:
-        if p.label == "P1":
-            wrong = (100 * p.errors[name] for name in ("charged_contact_length", "full_slip_sed_0"))
-            parts.append(text["linear"].format(*wrong))
-    return "\n\n".join(parts)
-
-
-def _other_models(points: Sequence[Point]) -> str:
-    names = ("full_slip_f_t", "charged_contact_length", "full_slip_contact_length")
-    own, others = _default(points).cost(ALL), [p for p in points if p.family == OTHER_MODEL]
-    rows = [
-        [p.label, f"{p.work['full_slip'] / own:.2g}"] + [f"{100 * p.errors[q]:.2g} %" for q in names] for p in others
-    ]
-    return harness.table(["formulation or penalty", "work", *map(_words, names)], rows)
-
-
-def fronts(points: Sequence[Point]) -> str:
-    """Return a table of the runs on any front and their places there, from cheap to expensive."""
-    names = (*QUANTITIES, ALL)
-    places = {name: {p.label: k for k, p in enumerate(front(points, name), start=1)} for name in names}
+def fronts(points: Sequence[Point]) -> list[tuple[str, list[int | str]]]:
+    """Return the runs on any front, from cheap to expensive, and their places there; empty where they are not."""
+    places = [{p.label: k for k, p in enumerate(front(points, name), start=1)} for name in (*QUANTITIES, ALL)]
     labels = [p.label for p in sorted(points, key=lambda p: p.cost(ALL))]
-    some = [label for label in labels if any(label in each for each in places.values())]
-    rows = [[label, *(places[name].get(label, "") for name in names)] for label in some]
-    return harness.table(["run", *map(_words, names)], rows)
+    return [
+        (label, [each.get(label, "") for each in places]) for label in labels if any(label in each for each in places)
+    ]
 
 
 def draw(docs: Path) -> Path:
     """Draw page and picture from the kept numbers."""
-    kept, text = harness.kept("chart", docs), harness.prose("chart")
-    points, lost = [Point(**each) for each in kept.numbers["points"]], kept.numbers["lost"]
-    reference = {name: Limit(**each) for name, each in kept.numbers["reference"].items()}
+    numbers = harness.kept("chart", docs).numbers
+    points = [Point(**each) for each in numbers["points"]]
+    reference = {name: Limit(**each) for name, each in numbers["reference"].items()}
     reference[ALL] = Limit(1.0, max(end.relative for end in reference.values()), None)
-    work, time = (_costs(points, reference, measure) for measure in MEASURES)
-    body = [
-        harness.picture(docs / "chart.png", (9, 7), lambda figure: _paint(figure, points, reference), text["caption"]),
-        "## Cheapest run for an error\n\nA number is the work over that of the default scene.",
-        work,
-        harness.folded("The same by processor time", time),
-        "## Other formulations and penalties\n\nDifferences from the limit over the default's penalty.",
-        _other_models(points),
-        harness.folded("Places on the fronts over work, from cheap to expensive", fronts(points)),
-        f"## Runs\n\n{len(points)} of {len(points) + len(lost)} runs reached full slip.",
-        *(f"Not reached: {words}" for words in lost),
-    ]
-    path, names = docs / "chart.md", ["chart", "errors"]
-    return harness.page(path, "Error over work", _finding(points), text["how"], body, "make chart", kept.made, names)
+    harness.picture(docs / "chart.png", (9, 7), lambda figure: _paint(figure, points, reference))
+    names = {"points": points, "reference": reference, "default": _default(points), "fronts": fronts(points)}
+    names |= {"words": _words, "linear": next((p for p in points if p.label == "P1"), None)}
+    return harness.page(docs, "chart", "make chart", globals() | names, "errors")
 
 
 if __name__ == "__main__":

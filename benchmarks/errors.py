@@ -8,7 +8,7 @@ other pages are drawn.
 """
 
 import sys
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -16,14 +16,13 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from benchmarks import harness, limits
-from benchmarks.limits import Limit, limit
+from benchmarks.limits import Limit
 from benchmarks.runs import SITES as AT_SITES
 from benchmarks.runs import Array, Run, finished
-from fingerpad.accuracy.rigid_screen import ORDER
-from fingerpad.model.feasibility import by_rule
+from fingerpad.model.options import by_rule
 from fingerpad.results import style
 from fingerpad.results.states import WORDS
-from fingerpad.richardson import plus_minus
+from fingerpad.richardson import ORDER, plus_minus
 from fingerpad.scene import Scene, load
 
 _LIMIT = 10800.0  # s of processor time for one run
@@ -41,11 +40,11 @@ QUANTITIES: Mapping[str, tuple[str, float]] = {  # name: words, and the value of
 }
 LENGTHS = [f"{state}_contact_length" for state in STATES]
 _COST = ("unknowns", "factorisations")
-STUDIES: dict[str, tuple[str, float, str, Sequence[float]]] = {  # heading, unit, its name, settings
-    "contact": ("Contact size", 1e-6, "µm", (20e-6, 10e-6, 5e-6, 2.5e-6)),
-    "growth": ("Growth of the elements with depth", 1, "", (0.5, 0.25, 0.125)),
-    "receptor": ("Size at the Merkel sites", 1e-6, "µm", (40e-6, 20e-6, 10e-6, 5e-6, 2.5e-6)),
-    "penalty": ("Penalty stiffness", 1e9, "MPa/mm", (0.5e12, 1.5e12, 5e12)),
+STUDIES = {  # settings, from coarse to fine
+    "contact": (20e-6, 10e-6, 5e-6, 2.5e-6),
+    "growth": (0.5, 0.25, 0.125),
+    "receptor": (40e-6, 20e-6, 10e-6, 5e-6, 2.5e-6),
+    "penalty": (0.5e12, 1.5e12, 5e12),
 }
 
 
@@ -59,7 +58,7 @@ def parted(name: str) -> tuple[str, str]:
 def study(name: str) -> dict[float, Scene]:
     """Return the scenes of a study by the value of its setting, from coarse to fine."""
     key, at = "contact.eps_n" if name == "penalty" else f"mesh.{name}", {"mesh.contact": AT, "mesh.receptor": AT_SITES}
-    return {value: by_rule(load(None, at | {key: value})) for value in STUDIES[name][3]}
+    return {value: by_rule(load(None, at | {key: value})) for value in STUDIES[name]}
 
 
 def values(run: Run) -> dict[str, float]:
@@ -123,34 +122,10 @@ def stiffer(docs: Path = harness.DOCS) -> dict[str, tuple[float, float]]:
 
 
 # -- page ----------------------------------------------------------------------------------------------------
-def _end(end: Limit, unit: float) -> list[str]:
+def _end(end: Limit, unit: float = 1.0) -> list[str]:
     """Return a limit with its bar, and its order."""
     value = plus_minus(end.value / unit, end.bar / unit) if end.bar else f"{end.value / unit:.5g}"
     return [value, "–" if end.order is None else f"{end.order:.1f}"]
-
-
-def _limits(numbers: Mapping[str, Any], ends: Mapping[str, Limit]) -> str:
-    whole, levels = numbers["default"], numbers["again"]["levels"]
-    sizes = [f"{level['mesh']['contact'] * 1e6:.3g} µm" for level in levels]
-    rows = []
-    for name, (words, unit) in QUANTITIES.items():
-        error = f"{100 * (whole[name] / ends[name].value - 1):.2g} ± {100 * ends[name].relative:.1g} %"
-        cells = [f"{each[name] / unit:.5g}" for each in (whole, *(level["values"] for level in levels))]
-        rows.append([words, *cells, *_end(ends[name], unit), error])
-    rows += [[name, f"{whole[name]:.0f}", *(level[name] for level in levels), "", "", ""] for name in _COST]
-    return harness.table(["quantity", "default mesh", *sizes, "limit", "order", "error of the default mesh"], rows)
-
-
-def _study(name: str, rows: Sequence[Mapping[str, Any]]) -> str:
-    heading, size, unit_name, _ = STUDIES[name]
-    head = ["quantity", *(f"{row['value'] / size:g} {unit_name}".strip() for row in rows)]
-    head += ["largest difference"] if name == "penalty" else ["one-parameter limit", "order"]
-    lines = []
-    for quantity, (words, unit) in QUANTITIES.items():
-        found = [row["quantities"][quantity] for row in rows]
-        last = [f"{100 * (max(found) / min(found) - 1):.2g} %"] if name == "penalty" else _end(limit(found), unit)
-        lines.append([words, *(f"{value / unit:.5g}" for value in found), *last])
-    return f"### {heading}\n\n{harness.table(head, lines)}"
 
 
 def _paint(figure: Figure, numbers: Mapping[str, Any], ends: Mapping[str, Limit]) -> None:
@@ -177,27 +152,23 @@ def _paint(figure: Figure, numbers: Mapping[str, Any], ends: Mapping[str, Limit]
 
 def draw(docs: Path) -> Path:
     """Draw page and picture from the kept numbers."""
-    kept, ends, text = harness.kept("errors", docs), known(docs), harness.prose("errors")
-    numbers, whole, studies = kept.numbers, kept.numbers["default"], kept.numbers["studies"]
-    errors = {name: abs(whole[name] / end.value - 1) for name, end in ends.items()}
-    worst = [100 * max(errors[n] for n in errors if kind in n) for kind in ("mu_app", "contact_length", "sed_")]
-    middle, stiff = (row["quantities"] for row in studies["penalty"][1:])
-    friction, *rigid = (100 * (stiff[name] / middle[name] - 1) for name in ("full_slip_mu_app", *LENGTHS))
-    mu, length = _end(ends["full_slip_mu_app"], 1)[0], _end(ends["charged_contact_length"], 1e-3)[0]
-    finding = text["finding"].format(*worst, mu=mu, length=length, least=min(rigid), most=max(rigid), friction=friction)
-    factor = max(max(predicted / change, change / predicted) for predicted, change in stiffer(docs).values())
-    again = numbers["again"]["own"]["values"]["full_slip_f_t"]
-    body = [
-        harness.picture(docs / "errors.png", (9, 3.6), lambda figure: _paint(figure, numbers, ends), text["caption"]),
-        f"## Limits\n\n{_limits(numbers, ends)}",
-        text["one"],
-        *(_study(name, studies[name]) for name in ("contact", "growth", "receptor")),
-        text["penalty"].format(order=ORDER, factor=factor),
-        _study("penalty", studies["penalty"]),
-    ]
-    how = text["how"].format(apart=max(abs(again / whole["full_slip_f_t"] - 1), 1e-8))
-    title = "Discretisation error of the default scene"
-    return harness.page(docs / "errors.md", title, finding, how, body, "make chart", kept.made, ["errors"])
+    numbers, ends = harness.kept("errors", docs).numbers, known(docs)
+    whole, studies = numbers["default"], numbers["studies"]
+
+    def study(name: str, quantity: str) -> list[float]:
+        return [row["quantities"][quantity] / QUANTITIES[quantity][1] for row in studies[name]]
+
+    def rigid(quantity: str) -> float:
+        _, middle, stiff = study("penalty", quantity)
+        return 100 * (stiff / middle - 1)
+
+    def worst(kind: str) -> float:
+        return 100 * max(abs(whole[name] / end.value - 1) for name, end in ends.items() if kind in name)
+
+    harness.picture(docs / "errors.png", (9, 3.6), lambda figure: _paint(figure, numbers, ends))
+    names = {"whole": whole, "ends": ends, "again": numbers["again"], "penalty": stiffer(docs), "end": _end}
+    names |= {"study": study, "rigid": rigid, "worst": worst, "limit": limits.limit}
+    return harness.page(docs, "errors", "make chart", globals() | names)
 
 
 if __name__ == "__main__":

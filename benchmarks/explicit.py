@@ -18,9 +18,8 @@ from mpi4py import MPI
 from petsc4py import PETSc
 from scipy.sparse.linalg import eigsh
 
-from fingerpad.model.feasibility import by_rule
 from fingerpad.model.finger import Finger
-from fingerpad.model.options import FingerModel, plan
+from fingerpad.model.options import FingerModel, by_rule, plan
 from fingerpad.scene import Scene
 from geometry import tags
 from geometry.bodies import ridge

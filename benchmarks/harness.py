@@ -4,8 +4,8 @@ A study has three steps:
 
 1. :func:`run` computes those of its scenes that are missing in ``results/traces``, kept by their parameters;
 2. :func:`keep` writes the numbers that its page shows to ``docs/NAME.json``, with the version that made them;
-3. its function ``draw(docs)`` reads them by :func:`kept` and writes page and pictures by :func:`page` and
-   :func:`picture`, its texts by :func:`prose`. No run is needed: ``python3 -m benchmarks.pages`` draws all again.
+3. its function ``draw(docs)`` reads them by :func:`kept` and draws its pictures by :func:`picture` and its page by
+   :func:`page`, from a template in ``benchmarks/prose``. ``python3 -m benchmarks.pages`` draws all, without a run.
 """
 
 import argparse
@@ -15,7 +15,6 @@ import subprocess
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from datetime import date
-from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -100,6 +99,13 @@ def _git(*words: str) -> str:
         return ""
 
 
+class Record(dict[str, Any]):
+    """A record of kept numbers, whose values are its attributes too."""
+
+    def __getattr__(self, name: str) -> Any:
+        return self[name]
+
+
 @dataclass(frozen=True)
 class Kept:
     """Numbers of a page, as JSON holds them, and who made them."""
@@ -125,59 +131,78 @@ def _text(data: Any, indent: str = "") -> str:
 
 def kept(name: str, docs: Path = DOCS) -> Kept:
     """Return the numbers of ``docs/NAME.json``."""
-    data = json.loads((docs / f"{name}.json").read_text(encoding="utf-8"))
+    data = json.loads((docs / f"{name}.json").read_text(encoding="utf-8"), object_hook=Record)
     return Kept(data["numbers"], Made(**data["made"]))
 
 
 # -- pages ---------------------------------------------------------------------------------------------------
-def page(
-    path: Path, title: str, finding: str, how: str, body: Iterable[str], command: str, by: Made, names: Iterable[str]
-) -> Path:
-    """Write a page: finding, how it was found, sections of which empty ones are left out, and origin; return its path.
+def page(docs: Path, name: str, command: str, names: Mapping[str, Any], *others: str) -> Path:
+    """Write docs/NAME.md from its template, benchmarks/prose/NAME.md; return its path.
 
-    ``command`` computes the numbers anew, ``by`` made them, and they are in the files ``docs/NAME.json`` of ``names``.
+    A template is the page with expressions of Python in braces, as in an f-string. A line ``for TARGET in VALUES: | …``
+    is a row for each of the values. Lines from ``if CONDITION:`` to ``end`` are there where it holds. An image alone on
+    a line gets its words as a caption too.
+
+    Args:
+        docs: folder of the page, its pictures and its numbers.
+        name: of page, template and numbers.
+        command: which computes the numbers anew.
+        names: what the expressions may use beside ``numbers``, the kept ones, :func:`cell` and :func:`cells`.
+        others: names of further numbers that the page shows.
     """
-    files = ", ".join(f"[{name}.json]({name}.json)" for name in names)
-    origin = f"{by} Computed by `{command}` into {files}; drawn from there by `make pages`: do not edit this page."
-    parts = [f"# {title}", finding, "## How the numbers were found", how, *body, f"---\n\n{origin}"]
-    replace(path, "\n\n".join(part.strip() for part in parts if part.strip()) + "\n")
-    return path
+    found = kept(name, docs)
+    template = (ROOT / "benchmarks" / "prose" / f"{name}.md").read_text(encoding="utf-8")
+    text = _filled(template, {**names, "numbers": found.numbers, "cell": cell, "cells": cells})
+    text = re.sub(r"^!\[(.+)\]\((.+)\)$", r"![\1](\2)\n\n*\1*", text, flags=re.MULTILINE)
+    files = ", ".join(f"[{each}.json]({each}.json)" for each in (name, *others))
+    origin = (
+        f"{found.made} Computed by `{command}` into {files}; drawn from there by `make pages`: do not edit this page."
+    )
+    replace(docs / f"{name}.md", re.sub(r"\n{3,}", "\n\n", f"{text.strip()}\n\n---\n\n{origin}\n"))
+    return docs / f"{name}.md"
 
 
-@cache
-def prose(name: str) -> dict[str, str]:
-    """Return the texts of a page by their headings in ``benchmarks/prose/NAME.md``, with places to fill in braces."""
-    text = (ROOT / "benchmarks" / "prose" / f"{name}.md").read_text(encoding="utf-8")
-    parts = re.split(r"^# ([\w-]+)\n", text, flags=re.MULTILINE)
-    return {heading: words.strip() for heading, words in zip(parts[1::2], parts[2::2], strict=True)}
+def _filled(template: str, names: dict[str, Any]) -> str:
+    tables: list[str] = []
+
+    def chosen(part: re.Match[str]) -> str:
+        return part[2] if eval(part[1], names) else ""
+
+    def repeated(row: re.Match[str]) -> str:
+        tables.append("\n".join(eval(f"[rf'''{row[2]}''' for {row[1]}]", names)))
+        return f"{{_tables[{len(tables) - 1}]}}"
+
+    text = re.sub(r"^if (.+):\n((?s:.*?))^end\n", chosen, template, flags=re.MULTILINE)
+    text = re.sub(r"^for (.+?): (\|.*)$", repeated, text, flags=re.MULTILINE)
+    return str(eval(f"rf'''{text}'''", names | {"_tables": tables}))
 
 
 def table(head: Sequence[str], rows: Iterable[Sequence[Any]]) -> str:
     """Return a Markdown table; numbers have four digits, None is a dash."""
     lines = ["| " + " | ".join(head) + " |", "|---" * len(head) + "|"]
-    return "\n".join([*lines, *("| " + " | ".join(map(_cell, row)) + " |" for row in rows)])
+    return "\n".join([*lines, *("| " + " | ".join(map(cell, row)) + " |" for row in rows)])
 
 
-def _cell(value: Any) -> str:
+def cell(value: Any, spec: str = ".4g") -> str:
+    """Return a value as a table has it: a number as specified, None as a dash."""
     if value is None:
         return "–"
-    return f"{value:.4g}" if isinstance(value, float) else str(value).replace("|", "\\|").replace("\n", " ")
+    return format(value, spec) if isinstance(value, float) else str(value).replace("|", "\\|").replace("\n", " ")
 
 
-def folded(summary: str, body: str) -> str:
-    """Return a part of a page that opens on a click, for long tables."""
-    return f"<details><summary>{summary}</summary>\n\n{body}\n\n</details>"
+def cells(*values: Any, spec: str = ".4g") -> str:
+    """Return values as neighbouring cells of a table."""
+    return " | ".join(cell(value, spec) for value in values)
 
 
 # -- pictures ------------------------------------------------------------------------------------------------
-def picture(path: Path, size: tuple[float, float], paint: Callable[[Figure], None], caption: str) -> str:
-    """Have a figure of width and height (inches) painted into a PNG; return the Markdown that shows it on a page."""
+def picture(path: Path, size: tuple[float, float], paint: Callable[[Figure], None]) -> None:
+    """Have a figure of width and height (inches) painted into a PNG."""
     path.parent.mkdir(parents=True, exist_ok=True)
     with style.look():
         figure = style.figure(size[1], size[0])
         paint(figure)
         figure.savefig(path)
-    return f"![{caption}]({path.name})\n\n*{caption}*"
 
 
 def ticks(ax: Axes, values: Sequence[float]) -> None:

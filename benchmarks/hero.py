@@ -91,7 +91,7 @@ def draw(docs: Path) -> Path:
         for corner in (0, 1):
             figure.add_artist(ConnectionPatch((_MM * centre, 0.1), (0, corner), "data", "axes fraction", **look))
 
-    picture(docs / "hero.png", (style.WIDTH, 3.5), paint, "")
+    picture(docs / "hero.png", (style.WIDTH, 3.5), paint)
     return docs / "hero.png"
 
 

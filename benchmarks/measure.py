@@ -26,12 +26,11 @@ from petsc4py import PETSc
 
 from benchmarks import explicit
 from fingerpad.accuracy.refinement import Refinement
-from fingerpad.model.feasibility import by_rule
+from fingerpad.model.checks import StabilityChecks
 from fingerpad.model.finger import Finger
-from fingerpad.model.options import FingerModel, plan
+from fingerpad.model.options import FingerModel, by_rule, plan
 from fingerpad.model.report import Report
 from fingerpad.model.simulation import Simulation
-from fingerpad.model.stability import StabilityChecks
 from fingerpad.results.drawing import Drawing
 from fingerpad.results.writing import Writer
 from fingerpad.runs import full
@@ -40,8 +39,8 @@ from fingerpad.scene import load
 from variational.quantities import Observer
 from variational.solvers.equations import Equations
 from variational.solvers.iteration import PREFIX, Iteration
+from variational.solvers.outcome import memory_mb
 from variational.solvers.skin_layer import SkinLayer
-from variational.solvers.timing import memory_mb
 
 Numbers = dict[str, Any]
 _Key = tuple[str, str]

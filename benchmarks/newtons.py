@@ -10,24 +10,22 @@ Writes docs/newtons.json, docs/newtons.md and its picture; docs/paper.md has the
 import argparse
 import itertools
 import sys
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from matplotlib.figure import Figure
 
-from benchmarks import harness, three_dimensions
+from benchmarks import harness
 from benchmarks.models import SIZE, name
 from benchmarks.runs import FORCES, VOLTAGES, Run, trace
 from fingerpad.reduced import cylinders
 from fingerpad.results import style
-from fingerpad.results.states import WORDS
 from fingerpad.scene import Scene
-from fingerpad.scene.slices import Slices
-from fingerpad.slices import estimate, traces
-from fingerpad.slices.profile import Profile, profile
-from fingerpad.slices.total import Total, at_force, at_indentation
+from fingerpad.scene.parameters import Slices
+from fingerpad.slices import errors, estimate, traces
+from fingerpad.slices.total import Profile, Total, at_force, at_indentation, profile
 from fingerpad.slices.trace import Trace
 from fingerpad.slices.trace import trace as trace_of
 from variational.state import RESULTS, ContactState
@@ -42,6 +40,8 @@ CENTRES = (25.0, 50.0, 75.0, 100.0, 120.0)  # N/m, of the runs whose estimates a
 ESTIMATED = ("f_t", "f_electrostatic", "contact_area", "gross_area", "indentation")
 COUNTS, FINE = (6, 12, 24, 48, 96), 1536  # slices
 HIGH = 200.0  # V
+COMPARISONS = {"ridged, 200 V": errors.ONCE, "smooth, earlier": errors.EARLIER, "smooth, below": errors.SMOOTH}
+COARSE = 0.3  # N: below it a few elements of a solid finger are in contact
 Found = Mapping[str, Any]
 
 
@@ -174,22 +174,21 @@ def compute(args: argparse.Namespace) -> None:
 
 
 # -- page ----------------------------------------------------------------------------------------------------
-def at(numbers: Found, radius: float, voltage: float) -> list[dict[str, float]]:
+def at(numbers: Found, radius: float, voltage: float) -> list[harness.Record]:
     """Return the sums at full slip over force, of a radius (m) and a voltage (V)."""
     return [each for each in numbers["friction"] if each["radius"] == radius and each["voltage"] == voltage]
 
 
-def lower(numbers: Found) -> tuple[float, float]:
-    """Return the least and largest share by which µ_app is below that of the 20 mm, at 200 V."""
-    rows = [each for each in at(numbers, RADII[1], HIGH) if each["by_20_mm"] is not None]
-    shares = [1 - each["mu_app"] / each["by_20_mm"] for each in rows]
-    return min(shares), max(shares)
+def compared(numbers: Found) -> dict[str, Any]:
+    """Return what docs/newtons.md and docs/paper.md have of the sums.
 
-
-def widths(numbers: Found) -> tuple[float, float]:
-    """Return the least and largest ratio of the force to that of the centre (m), of all sums."""
-    found = [each["f_ext"] / each["centre"] for each in numbers["friction"]]
-    return min(found), max(found)
+    ``middle``: that at :data:`COMPARED` and :data:`HIGH`; ``widths``: the least and largest ratio of a force to that of
+    the centre (m); ``lower``: the least and largest share by which µ_app is below that of the 20 mm, at :data:`HIGH`.
+    """
+    rows, ratios = at(numbers, RADII[1], HIGH), [each["f_ext"] / each["centre"] for each in numbers["friction"]]
+    shares = [1 - each.mu_app / each.by_20_mm for each in rows if each.by_20_mm is not None]
+    middle = next(each for each in rows if abs(each.f_ext / COMPARED - 1) < 1e-6)
+    return {"middle": middle, "widths": (min(ratios), max(ratios)), "lower": (min(shares), max(shares))}
 
 
 def paint(figure: Figure, numbers: Found) -> None:
@@ -214,117 +213,44 @@ def paint(figure: Figure, numbers: Found) -> None:
     left.legend()
 
 
-def picture(numbers: Found, docs: Path) -> str:
-    """Draw the picture and return the Markdown that shows it."""
-    caption = " ".join(harness.prose("newtons")["caption"].split())
-    return harness.picture(docs / "newtons.png", (10, 4), lambda figure: paint(figure, numbers), caption)
+def picture(numbers: Found, docs: Path) -> None:
+    """Draw docs/newtons.png, which docs/paper.md shows too."""
+    harness.picture(docs / "newtons.png", (10, 4), lambda figure: paint(figure, numbers))
 
 
-def _table_of_friction(numbers: Found) -> str:
-    rows = []
-    for middle in (each for u in (0.0, HIGH) for each in at(numbers, RADII[1], u)):
-        same = [each for each in numbers["friction"] if each["voltage"] == middle["voltage"]]
-        band = sorted(each["mu_app"] for each in same if abs(each["f_ext"] / middle["f_ext"] - 1) < 1e-6)
-        rows.append(
-            [
-                f"{middle['voltage']:g}", f"{middle['f_ext']:.2f}", f"{middle['centre']:.1f}",
-                f"{1e3 * middle['f_ext'] / middle['centre']:.1f}", f"{middle['mu_app']:.3f}",
-                f"{band[0]:.3f} to {band[-1]:.3f}",
-                "–" if middle["by_20_mm"] is None else f"{middle['by_20_mm']:.3f}",
-                f"{1e6 * middle['gross_area']:.0f}", f"{1e6 * middle['contact_area']:.1f}",
-            ]
-        )  # fmt: skip
-    heads = ("U (V)", "F_ext (N)", "f_ext at the centre (N/m)", "their ratio (mm)", "µ_app", "µ_app, R_z 15 to 40 mm")
-    return harness.table((*heads, "µ_app by 20 mm", "gross area (mm²)", "ridge contact area (mm²)"), rows)
-
-
-def _table_of_models(numbers: Found) -> str:
-    rows = []
-    for voltage in VOLTAGES:
-        mine = {each["model"]: each for each in numbers["models"] if each["voltage"] == voltage}
-        full = mine["full"]
-        cells = [
-            f"{100 * (mine['cylinders'][key] / full[key] - 1):+.1f}" for key in ("mu_app", "contact_area", "gross_area")
-        ]
-        rows.append([f"{voltage:g}", f"{full['mu_app']:.4f}", *cells])
-    quantities = ("µ_app", "ridge area", "gross area")
-    kinds = [f"{what}, `cylinders` (%)" for what in quantities]
-    return harness.table(("U (V)", "µ_app, `full`", *kinds), rows)
-
-
-def _table_of_estimates(numbers: Found) -> str:
-    keys = ("f_t", "contact_area", "gross_area")
-    mine = [e for e in numbers["estimates"] if e["centre"] == CENTRE and e["state"] == "full_slip"]
-    rows = [
-        [f"{e['voltage']:g}", f"{e['f_ext_full']:.3f}", f"{e['f_t_full']:.4f}", *(f"{100 * e[k]:+.1f}" for k in keys)]
-        for e in mine
-    ]
-    errors = ("error of F_T (%)", "of ridge area (%)", "of gross area (%)")
-    return harness.table(("U (V)", "F_ext (N)", "F_T (N)", *errors), rows)
-
-
-def _table_of_largest(numbers: Found) -> str:
-    rows = []
-    for state in ("charged", "full_slip"):
-        mine = [each for each in numbers["estimates"] if each["state"] == state]
-        largest = {key: max(abs(100 * each[key]) for each in mine) for key in ESTIMATED}
-        rubs = state == "full_slip"
-        rows.append([WORDS[state], *(f"{largest[key]:.1f}" if key != "f_t" or rubs else "–" for key in ESTIMATED)])
-    return harness.table(("largest error (%)", "F_T", "F_el", "ridge area", "gross area", "δ"), rows)
-
-
-def _table_of_paths(numbers: Found) -> str:
-    rows = [
-        [f"{p['f_ext']:g}", f"{p['f_t']:.3f}", f"{p['f_t_raised']:.3f}", f"{p['ridges']:g}", f"{p['ridges_raised']:g}",
-         f"{100 * (p['f_t_raised'] / p['f_t'] - 1):+.2f}",
-         f"{100 * (p['contact_length_raised'] / p['contact_length'] - 1):+.2f}"]
-        for p in numbers["paths"]
-    ]  # fmt: skip
-    heads = ("f_ext (N/m)", "f_T, pressed first (N/m)", "f_T, raised in sliding (N/m)", "ridges, pressed first")
-    return harness.table((*heads, "ridges, raised in sliding", "change of f_T (%)", "of L_R (%)"), rows)
-
-
-def _table_of_slices(numbers: Found) -> str:
-    keys = ("f_ext", "f_t", "contact_area", "gross_area")
-    rows = [[str(each["slices"]), *(f"{each[key]:+.1e}" for key in keys)] for each in numbers["refined"]]
-    return harness.table(("slices", "F_ext", "F_T", "ridge contact area", "gross area"), rows)
+def _largest(estimates: Iterable[Mapping[str, Any]], key: str, centre: float | None = None) -> float:
+    return 100 * max(abs(each[key]) for each in estimates if centre in (None, each["centre"]))
 
 
 def draw(docs: Path) -> Path:
     """Draw the page from the kept numbers."""
-    found, text = harness.kept("newtons", docs), harness.prose("newtons")
-    numbers = found.numbers
-    middle = next(e for e in at(numbers, RADII[1], HIGH) if abs(e["f_ext"] / COMPARED - 1) < 1e-6)
-    slips = [each for each in numbers["estimates"] if each["state"] == "full_slip"]
-    worst, near = (max(abs(e["f_t"]) for e in slips if e["centre"] in of) for of in (CENTRES, (CENTRE,)))
-    lost = [p["f_t_raised"] / p["f_t"] - 1 for p in numbers["paths"]]
-    same = [abs(p["f_t_raised"] / p["f_t"] - 1) for p in numbers["paths"] if p["ridges"] == p["ridges_raised"]]
-    values = {
-        "mu_app": middle["mu_app"], "centre": middle["centre"], "by_20_mm": middle["by_20_mm"],
-        "narrow": 1e3 * widths(numbers)[0], "wide": 1e3 * widths(numbers)[1],
-        "low": 100 * lower(numbers)[0], "high": 100 * lower(numbers)[1],
-        "size": 1e6 * SIZE, "default": 1e6 * Scene().mesh.contact,
-        "light": FORCES[0], "continued": 100 * middle["continued"],
-        "most_continued": 100 * at(numbers, RADII[1], HIGH)[0]["continued"],
-        "estimate": 100 * near, "estimates": 100 * worst, "lost": -100 * min(lost), "same": 100 * max(same),
-    }  # fmt: skip
-    body = [
-        picture(numbers, docs),
-        f"## Full slip over force\n\n{_table_of_friction(numbers)}",
-        f"## Errors\n\n{text['errors']}\n\n{three_dimensions.comparisons()}\n\n{text['comparisons']}",
-        three_dimensions.section(docs),
-        f"## Which model feeds the sum\n\n{text['models']}\n\n{_table_of_models(numbers)}",
-        f"## What a run estimates\n\n{text['estimates'].format(**values)}\n\n{_table_of_estimates(numbers)}",
-        f"{text['largest'].format(**values)}\n\n{_table_of_largest(numbers)}",
-        f"## Two paths to full slip\n\n{text['paths'].format(**values)}\n\n{_table_of_paths(numbers)}",
-        f"## Number of slices\n\n{text['slices']}\n\n{_table_of_slices(numbers)}",
+    numbers, pairs = harness.kept("newtons", docs).numbers, (("f_ext_slices", "f_ext"), ("area_slices", "area"))
+    picture(numbers, docs)
+    solids = [
+        (s, [100 * (s[a] / s[b] - 1) for a, b in (*pairs, ("area_slices_at_force", "area"))])
+        for s in harness.kept("solid", docs).numbers
     ]
-    finding, command = text["finding"].format(**values), "python3 -m benchmarks.newtons"
-    names = ["newtons", "models", *(["solid"] if (docs / "solid.json").exists() else [])]
-    path = docs / "newtons.md"
-    return harness.page(
-        path, "Newtons and square millimetres", finding, text["how"].format(**values), body, command, found.made, names
-    )
+    above = [errors for s, errors in solids if s["f_ext"] > COARSE]
+    friction = [
+        (
+            each,
+            [r["mu_app"] for r in numbers["friction"] if r["voltage"] == u and abs(r["f_ext"] / each.f_ext - 1) < 1e-6],
+        )
+        for u in (0.0, HIGH)
+        for each in at(numbers, RADII[1], u)
+    ]
+    names = compared(numbers) | {
+        "friction": friction, "least": at(numbers, RADII[1], HIGH)[0], "largest": _largest, "solids": solids,
+        "comparisons": [
+            (words, of, points) for key, words in errors.COMPARED.items() for of, known in COMPARISONS.items()
+            if (points := known.get(key, ()))
+        ],
+        "shares": [[errors[0] for _, errors in solids], *([errors[k] for errors in above] for k in (1, 2))],
+        "slips": [each for each in numbers["estimates"] if each["state"] == "full_slip"],
+        "presses": [each for each in numbers["estimates"] if each["state"] == "charged"],
+        "paths": [(p, p["f_t_raised"] / p["f_t"] - 1) for p in numbers["paths"]],
+    }  # fmt: skip
+    return harness.page(docs, "newtons", "python3 -m benchmarks.newtons", globals() | names, "models", "solid")
 
 
 if __name__ == "__main__":

@@ -7,9 +7,10 @@ A page is older than the code where a file that computes its numbers differs fro
 packages (geometry, variational, fingerpad without what starts, reads, refuses, orders runs, writes and prints), or of
 the page's own program, without what only draws it. Comments and docstrings do not count, nor packages that were found
 to compute the same numbers (docs/same.json, by benchmarks/same.py), or the same but for some that the page's program
-has no word of. The commit that made numbers is found by the hash of the packages' files that is kept with them; a
-program in benchmarks/ is compared with that of the commit that brought them into git. Numbers of files that are in no
-commit count as made by the commit that brought them, and so do older numbers, which have no hash.
+has no word of. Where these agree within a tolerance alone, the page is listed with it. The commit that made numbers is
+found by the hash of the packages' files that is kept with them; a program in benchmarks/ is compared with that of the
+commit that brought them into git. Numbers of files that are in no commit count as made by the commit that brought them,
+and so do older numbers, which have no hash.
 """
 
 import argparse
@@ -35,20 +36,22 @@ PAGES = {
     "chart": "benchmarks.chart",
     "errors": "benchmarks.errors",
     "hero": "benchmarks.hero",
-    "measured": "benchmarks.measured.page",
+    "measured": "benchmarks.measured.__main__",
     "models": "benchmarks.models",
     "newtons": "benchmarks.newtons",
-    "paper": "benchmarks.paper.page",
-    "peers": "benchmarks.peers.page",
+    "paper": "benchmarks.paper.__main__",
+    "peers": "benchmarks.peers.__main__",
     "performance": "benchmarks.performance",
     "stability": "benchmarks.stability.page",
     "verification": "benchmarks.verification.case",
 }
+SAME = "same.json"  # pairs of commits that compute the same numbers
 _PACKAGES = ("geometry", "variational", "fingerpad")
 _WITHOUT_NUMBERS = (  # these start, read, refuse, order runs, write and print
-    *(f"fingerpad/{wing}/" for wing in ("cli", "results", "report", "calculator", "runs")),
+    *(f"fingerpad/{wing}/" for wing in ("cli", "io", "results", "report", "calculator", "runs")),  # io: now results
     *("fingerpad/startup.py", "fingerpad/installed.py", "geometry/meshfile.py", "fingerpad/model/cost.py"),
-    *("fingerpad/scene/contradictions.py", "fingerpad/scene/messages.py"),
+    *("fingerpad/model/expected.py", "fingerpad/scene/remarks.py", "fingerpad/scene/messages.py"),
+    "fingerpad/model/report.py",
 )
 _REDUCED = "fingerpad/reduced"  # no full run uses it: part of the programs that import it
 _SHARED = ("runs", "limits", "measure", "explicit")  # modules of benchmarks/ that make numbers of several pages
@@ -129,13 +132,13 @@ def program(name: str) -> tuple[str, ...]:
     return *(f"benchmarks/{name}.py" for name in shared), f"benchmarks/{path.name}"
 
 
-def since(commit: str, aside: tuple[str, ...], pairs: Sequence[Mapping[str, Any]]) -> set[str]:
-    """Return the files of the packages that compute something else since a commit.
+def since(commit: str, aside: tuple[str, ...], pairs: Sequence[Mapping[str, Any]]) -> tuple[set[str], float]:
+    """Return the files of the packages that compute something else since a commit, and the tolerance of the others.
 
     Args:
         commit: the older commit.
         aside: beginnings of paths that do not count.
-        pairs: commits that compute the same numbers.
+        pairs: commits that compute the same numbers, within a part of the largest one where they say so.
     """
 
     def differ(older: str, newer: str) -> set[str]:
@@ -143,17 +146,17 @@ def since(commit: str, aside: tuple[str, ...], pairs: Sequence[Mapping[str, Any]
         return {path for path in found if not path.startswith(aside)}
 
     if not (found := differ(commit, "HEAD")):
-        return set()
-    for pair in pairs:
-        others = [other for other in pairs if other is not pair]
-        if not differ(commit, pair["before"]) and not since(pair["now"], aside, others):
-            return set()
-    return found
+        return set(), 0.0
+    for pair in (pair for pair in pairs if not differ(commit, pair["before"])):
+        left, within = since(pair["now"], aside, [other for other in pairs if other is not pair])
+        if not left:
+            return set(), max(within, pair.get("within", 0.0))
+    return found, 0.0
 
 
 def _same(docs: Path, texts: Iterable[bytes]) -> list[dict[str, Any]]:
     """Return the pairs of commits that compute the same numbers for a program, by the texts of its files."""
-    path = docs / "same.json"
+    path = docs / SAME
     pairs = json.loads(path.read_text(encoding="utf-8")) if path.exists() else []
     words = set(re.findall(r"[a-z]+", b" ".join(texts).decode()))
     return [pair for pair in pairs if not words & set(pair.get("but", ()))]
@@ -170,11 +173,13 @@ def stale(name: str, docs: Path) -> tuple[str, list[str]]:
         found = [next((commit for commit in before if source(commit) == state), brought) for state in states]
     now = files("HEAD", own := program(name))
     pairs = _same(docs, now.values())
-    differ = {path for commit in found for path in since(commit, (*_WITHOUT_NUMBERS, _REDUCED), pairs)}
+    compared = [since(commit, (*_WITHOUT_NUMBERS, _REDUCED), pairs) for commit in found]
+    differ, within = set[str]().union(*(paths for paths, _ in compared)), max(part for _, part in compared)
     if any(_REDUCED.replace("/", ".").encode() in text for text in now.values()):
-        differ |= {path for path in since(brought, _WITHOUT_NUMBERS, pairs) if path.startswith(_REDUCED)}
+        differ |= {path for path in since(brought, _WITHOUT_NUMBERS, pairs)[0] if path.startswith(_REDUCED)}
     differ |= {path for path in changed(files(brought, own), now) if not path.endswith("/page.py")}
-    return f"version {made['version']} of {made['date']}, commit {', '.join(found)}", sorted(differ)
+    words = f"version {made['version']} of {made['date']}, commit {', '.join(found)}"
+    return words + f"; the packages compute the same within {within:g} ({SAME})" * (within > 0), sorted(differ)
 
 
 def main(given: Sequence[str] | None = None) -> int:
@@ -192,11 +197,13 @@ def main(given: Sequence[str] | None = None) -> int:
             print(import_module(PAGES[name]).draw(args.docs))
         return 0
     found = {name: stale(name, args.docs) for name in names}
-    older = {name: (words, differ) for name, (words, differ) in found.items() if differ}
-    for name, (words, differ) in older.items():
-        shown = f"{', '.join(differ[:_SHOWN])}{' …' if len(differ) > _SHOWN else ''}"
-        print(f"{name}: {words}; since then changed: {shown}")
-    print(f"{len(older)} of {len(found)} pages are older than the code that they rest on")
+    for name, (words, differ) in found.items():
+        if differ:
+            words += f"; since then changed: {', '.join(differ[:_SHOWN])}{' …' * (len(differ) > _SHOWN)}"
+        if differ or "within" in words:
+            print(f"{name}: {words}")
+    older = sum(bool(differ) for _, differ in found.values())
+    print(f"{older} of {len(found)} pages are older than the code that they rest on")
     return 0
 
 

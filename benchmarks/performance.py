@@ -20,12 +20,12 @@ from typing import Any
 import numpy as np
 
 from benchmarks import harness
-from benchmarks.harness import Made, keep, kept, made, prose, table
+from benchmarks.harness import keep, kept, made
 
 FACTORS = (2.0, 1.4, 1.0, 0.7, 0.5, 0.31)  # on the element sizes of the default scene: 45 k to 1.16 M unknowns
 ON_RANKS, REPEATS = (1.0, 0.5), 3
 IDLE = 0.5  # load average above which a ratio of wall times is not measured
-OPERATIONS = {"tangent": "tangent", "factorisation": "LU", "solution": "back-substitution", "residual": "residual"}
+OPERATIONS = ("tangent", "factorisation", "solution", "residual")
 LAYER = "layer at the screen"
 _LINK, _LATENCY = 10e9, 2e-6  # bytes/s and s, of a cluster's network
 _MASSES = ("explicit, one density", "explicit, scaled mass")
@@ -136,81 +136,6 @@ def cluster(one: Mapping[str, Any], ranks: int) -> tuple[float, float, float]:
     return sent, halo, sent / _LINK + messages * _LATENCY
 
 
-def _work(run: Mapping[str, Any]) -> str:
-    path = sum(run["path"].values())
-    rows = [
-        ["LU factorisations, those of stability checks included", run["factorisations"]],
-        ["of these with half of the finger, before the bone moves sideways", run["led"]],
-        ["factorisations of the layer at the screen", run["calls"][LAYER]],
-        ["Newton iterations", run["newton"]],
-        ["accepted steps", run["steps"]],
-        ["path, in units of one factorisation with its tangent", path / unit(run)],
-        ["whole run with errors and pictures, in the same units", run["processor"] / unit(run)],
-        ["path (processor s)", path],
-        ["whole run (processor s)", run["processor"]],
-        ["one factorisation with its tangent (processor s)", unit(run)],
-    ]
-    return table(["default scene", "measured"], rows)
-
-
-def _parts(run: Mapping[str, Any]) -> str:
-    whole = sum(run["path"].values())
-    rows = [
-        [name, run["calls"].get(name), f"{100 * seconds / whole:.1f} %", f"{seconds:.1f}"]
-        for name, seconds in sorted(run["path"].items(), key=lambda item: -item[1])
-    ]
-    rows.append(["path", None, "100 %", f"{whole:.1f}"])
-    rows += [[f"{name} (not of the path)", None, f"{100 * s / whole:.1f} %", f"{s:.1f}"]
-             for name, s in run["beside"].items()]  # fmt: skip
-    return table(["part", "calls", "of the path", "processor s"], rows)
-
-
-def _growth(sizes: Sequence[Mapping[str, Any]]) -> str:
-    n = [size["unknowns"] for size in sizes]
-    rows: list[list[Any]] = [
-        [size["unknowns"], *(size["processor"][name] for name in OPERATIONS), _step(size), size["first"]]
-        for size in sizes
-    ]
-    powers = [exponent(n, [row[k] for row in rows]) for k in range(1, len(rows[0]))]
-    rows = [[*row, size["memory"] / 1e3] for row, size in zip(rows, sizes, strict=True)]
-    rows.append(["exponent", *(f"{power:.2f}" for power in powers), f"{_memory(sizes):.2f}"])
-    timed = [f"{words} (s)" for words in (*OPERATIONS.values(), "all four", "first LU, with analysis")]
-    return table(["unknowns", *timed, "peak (GB)"], rows)
-
-
-def _step(size: Mapping[str, Any]) -> float:
-    """Return the processor seconds of one step of Newton's method with a tangent of its own."""
-    return float(sum(size["processor"][name] for name in OPERATIONS))
-
-
-def _memory(sizes: Sequence[Mapping[str, Any]]) -> float:
-    """Return the exponent of the memory that the mesh adds to the program itself."""
-    return exponent([size["unknowns"] for size in sizes], [size["memory"] - size["before"] for size in sizes])
-
-
-def _two(sizes: Sequence[Mapping[str, Any]]) -> str:
-    rows = []
-    for size in sizes:
-        one, two = size["1"], size["2"]
-        step = [sum(each["wall"].values()) for each in (one, two)]
-        ratios = [one["wall"][name] / two["wall"][name] for name in OPERATIONS]
-        span = f"{min(size['ratios']):.2f} to {max(size['ratios']):.2f}"
-        rows.append([one["unknowns"], faster(size), span, *ratios, step[0], step[1]])
-    head = ["unknowns", "Newton step: times as fast", "in all runs", *OPERATIONS.values(), "1 rank (s)", "2 ranks (s)"]
-    return table(head, rows)
-
-
-def _cluster(sizes: Sequence[Mapping[str, Any]]) -> str:
-    rows = []
-    for one in (size for size in sizes if size["factor"] in ON_RANKS):
-        for ranks in (2, 8, 64):
-            sent, halo, seconds = cluster(one, ranks)
-            work = sum(one["processor"].values()) / ranks
-            rows.append([one["unknowns"], ranks, sent / 1e6, halo / 1e3, 1e3 * seconds, 1e3 * work])
-    head = ["unknowns", "ranks", "sent a rank (MB)", "of it by a residual (kB)", "network (ms)", "work a rank (ms)"]
-    return table(head, rows)
-
-
 def worst(found: Mapping[str, Any], reference: Mapping[str, Any]) -> float:
     """Return the largest relative difference of contact forces and lengths, and of friction in the last state."""
     differences = np.abs(np.array(found["answers"]) / reference["answers"] - 1)
@@ -218,61 +143,36 @@ def worst(found: Mapping[str, Any], reference: Mapping[str, Any]) -> float:
     return float(differences.max())
 
 
-def _explicit(found: Mapping[str, Any], run: Mapping[str, Any]) -> str:
-    rows, costs, finger = list[list[Any]](), list[list[Any]](), found["finger"]
-    residuals = sum(run["path"].values()) / run["path"]["residual"] * run["calls"]["residual"]  # as long as the path
-    for each in found["ridges"]:
-        size, base = f"{1e6 * each['size']:g} µm", each["implicit"]
-        rows.append([size, "implicit", base["steps"], base["iterations"], None, None, 1.0, base["seconds"]])
-        for name, ran in zip(_MASSES, each["explicit"], strict=True):
-            shares = [f"{100 * share:.2g} %" for share in (ran["ratio"], worst(ran, base))]
-            times = ran["seconds"] / base["seconds"]
-            rows.append([size, name, ran["steps"], ran["steps"], *shares, times, ran["seconds"]])
-    for name, (low, high), ran in zip(_MASSES, finger["frequencies"], each["explicit"], strict=True):
-        steps = 3 * ran["periods"] * np.pi * high / low / found["safety"]
-        hours = steps * finger["residual"] / 3600
-        costs.append([name, ran["periods"], high / low, f"{steps:.2g}", steps / residuals, hours])
-    head = ["facets", "way", "steps", "iterations or residuals", "kinetic over strain energy", "largest difference"]
-    far = ["default finger", "periods a load", "largest over least frequency", "steps", "over the path", "core hours"]
-    text = prose("performance")["explicit"].format(**found)
-    return f"{text}\n\n{table([*head, 'over implicit', 'processor s'], rows)}\n\n{table(far, costs)}"
-
-
-def _origin(numbers: Mapping[str, Any]) -> str:
-    by = {name: Made(**part["made"]) for name, part in numbers.items()}
-    rows = [
-        [name, f"{b.version}, {b.commit or b.source}", b.date, f"{numbers[name]['load']:.2f}"] for name, b in by.items()
-    ]
-    return table(["part", "version, commit or source", "date", "load average at its start"], rows)
+def _times(size: Mapping[str, Any]) -> list[float]:
+    """Return the processor seconds of each operation, of one step of Newton's method and of the first factorisation."""
+    each = [float(size["processor"][name]) for name in OPERATIONS]
+    return [*each, sum(each), size["first"]]
 
 
 def draw(docs: Path) -> Path:
     """Write docs/performance.md from docs/performance.json."""
-    found, text = kept("performance", docs), prose("performance")
-    of = {name: part["found"] for name, part in found.numbers.items()}
-    run, sizes = of["run"], of["operations"]
-    path, largest = sum(run["path"].values()), max(run["path"], key=run["path"].__getitem__)
-    power = exponent([s["unknowns"] for s in sizes], [_step(s) for s in sizes])
+    of = harness.Record({name: part["found"] for name, part in kept("performance", docs).numbers.items()})
+    run, sizes, explicit = of["run"], of["operations"], of["explicit"]
+    unknowns = [size["unknowns"] for size in sizes]
     own = next(size["processor"] for size in sizes if size["factor"] == 1.0)
-    saved = (own["tangent"] + own["factorisation"]) / (own["solution"] + own["residual"])
-    finding = text["finding"].format(
-        **run, units=path / unit(run), largest=largest, share=100 * run["path"][largest] / path, power=power
-    )  # fmt: skip
-    cold, warm = (of["compile"][state] for state in ("cold", "warm"))
-    two = f"{text['ranks']}\n\n{_two(of['ranks'])}" if "ranks" in of else "Not measured: the machine was busy."
-    body = [
-        f"## Counts and ratios\n\n{_work(run)}",
-        f"## Where the time goes\n\n{_parts(run)}",
-        text["layer"].format(calls=run["calls"][LAYER], share=100 * run["path"][LAYER] / path),
-        text["compile"].format(files=of["compile"]["files"], ratio=cold["seconds"] / unit(run), cold=cold, warm=warm),
-        f"## How the cost grows\n\n{text['growth'].format(saved=saved)}\n\n{_growth(sizes)}",
-        f"## Two ranks\n\n{two}",
-        f"{text['cluster']}\n\n{_cluster(sizes)}\n\n{text['array']}",
-        f"## Explicit dynamics\n\n{_explicit(of['explicit'], run)}",
-        f"## Versions and load\n\n{_origin(found.numbers)}",
-    ]
-    file, command = docs / "performance.md", "make performance"
-    return harness.page(file, "Performance", finding, text["how"], body, command, found.made, ["performance"])
+    ways, costs, finger = [], [], explicit["finger"]
+    for each in explicit["ridges"]:
+        ran = [("implicit", each["implicit"]), *zip(_MASSES, each["explicit"], strict=True)]
+        ways += [(each["size"], way, found, each["implicit"]) for way, found in ran]
+    for (_, way, found, _), (low, high) in zip(ways[-len(_MASSES) :], finger["frequencies"], strict=True):
+        steps = 3 * found["periods"] * np.pi * high / low / explicit["safety"]
+        costs.append((way, found["periods"], high / low, steps))
+    names = {
+        "of": of, "run": run, "path": sum(run["path"].values()), "unit": unit(run), "times": _times,
+        "largest": max(run["path"], key=run["path"].__getitem__),
+        "powers": [exponent(unknowns, seconds) for seconds in zip(*map(_times, sizes), strict=True)],
+        "memory": exponent(unknowns, [size["memory"] - size["before"] for size in sizes]),
+        "saved": (own["tangent"] + own["factorisation"]) / (own["solution"] + own["residual"]),
+        "clusters": [(s, ranks, cluster(s, ranks)) for s in sizes if s["factor"] in ON_RANKS for ranks in (2, 8, 64)],
+        "ways": ways, "costs": costs,
+        "residuals": sum(run["path"].values()) / run["path"]["residual"] * run["calls"]["residual"],
+    }  # fmt: skip
+    return harness.page(docs, "performance", "make performance", globals() | names)
 
 
 def main(given: Sequence[str] | None = None) -> int:

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from fingerpad.model.feasibility import by_rule
+from fingerpad.model.options import by_rule
 from fingerpad.runs.batch import key, result
 from fingerpad.scene import Scene, from_data
 

@@ -12,8 +12,8 @@ Runs have a folder. Programs up to fe45c88 factorise at other places without one
 case is compared to 1e-6 of the largest number of a key.
 
 A change that moves numbers by roundoff alone has ``--within``: a number may then differ by this part of the largest one
-of its key, and the records of the solver's steps are left out. Two ranks, which add in another order in each run,
-always have it.
+of its key, and the records of the solver's steps are left out. The pair is kept with this tolerance, and ``make stale``
+names it. Two ranks, which add in another order in each run, always have one.
 
 Numbers that a change is meant to change are left out by a word of their key, as in ``--but sed`` for full_slip_sed_0.
 Then the two commits are the same for those pages alone whose programs do not have the word.
@@ -30,9 +30,8 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
 
-from benchmarks.pages import ROOT, git
+from benchmarks.pages import ROOT, SAME, git
 
-SAME = "same.json"
 _SMALL = tomllib.loads((ROOT / "demos/scenes/small_finger.toml").read_text(encoding="utf-8"))
 _PROGRAM = (ROOT / "benchmarks/same_run.py").read_text(encoding="utf-8")
 _PRESS, _CHARGE = {"name": "press", "f_ext": 1.0}, {"name": "charge", "voltage": 100.0}
@@ -199,9 +198,10 @@ def main(given: Sequence[str] | None = None) -> int:
         return 1
     path = args.docs / SAME
     kept = json.loads(path.read_text(encoding="utf-8")) if path.exists() else []
-    more = {name: value for name in ("but", "within") if (value := getattr(args, name))}
+    looser = {name: part for name in SCENES if (part := MORE.get(name, {}).get("within", 0.0)) > args.within}
+    more = {"but": args.but, "within": args.within, "looser": looser}  # the last by case
     kept = [pair for pair in kept if (pair["before"], pair.get("but", [])) != (older, args.but)]  # that said so before
-    kept.append({"before": older, "now": present, "scenes": list(SCENES)} | more)
+    kept.append({"before": older, "now": present, "scenes": list(SCENES)} | {k: v for k, v in more.items() if v})
     path.write_text(json.dumps(kept, indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
     exact = f"within {args.within:g}" if args.within else "to the last bit"
     print(f"{older} and {present} compute the same numbers of {len(SCENES)} scenes, {exact}; kept in {path}")

@@ -26,8 +26,7 @@ from mpi4py import MPI
 from petsc4py import PETSc
 
 from benchmarks import harness
-from fingerpad.slices.profile import Profile
-from fingerpad.slices.total import at_force, at_indentation
+from fingerpad.slices.total import Profile, at_force, at_indentation
 from fingerpad.slices.trace import Trace
 from variational.materials.neo_hooke import NeoHooke
 

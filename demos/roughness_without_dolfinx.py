@@ -18,8 +18,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 import fingerpad as fp
-from variational.roughness.selfaffine import SelfAffine
-from variational.roughness.spectrum import power_spectrum
+from variational.roughness.spectrum import SelfAffine, power_spectrum
 from variational.roughness.topography import distribution
 
 EPS_0 = 8.854e-12  # F/m

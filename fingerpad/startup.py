@@ -5,7 +5,7 @@ PETSc (``.petscrc``, ``petscrc``), dolfinx (``dolfinx_jit_options.json``, and th
 FFCx (``ffcx_options.json``) and Matplotlib (``matplotlibrc``) when they start. PETSc alone has an option against it. So
 all of them are started in a folder of the system, where nothing is configured. Files in the user's home were written
 for other programs and would change results without a trace in the scene: PETSc, dolfinx and FFCx read none, pictures
-have :mod:`fingerpad.results.style`, meshes :mod:`geometry.session`.
+have :mod:`fingerpad.results.style`, meshes :mod:`geometry.shape`.
 
 PETSc's options come from the environment, ``PETSC_OPTIONS``, and from :func:`start`. This module comes before any other
 import of these libraries.
@@ -23,7 +23,7 @@ from fingerpad.installed import need_compiler
 
 __all__ = ["MPI", "start"]
 
-# What PETSc did not read is found by fingerpad.results.petsc_options, not listed when everything is over; its handlers
+# What PETSc did not read is found by fingerpad.results.provenance, not listed when everything is over; its handlers
 # of signals would end a run that the caller has ignore SIGHUP.
 _QUIET = ("-options_left", "no", "-no_signal_handler", "-skip_petscrc")
 _HOME = "XDG_CONFIG_HOME"  # which libraries look into for the user's configuration

@@ -18,8 +18,7 @@ except ImportError:
 from geometry import tags
 from geometry.curved import refuse_folded, second_order
 from geometry.profiles import GeometryError
-from geometry.session import session
-from geometry.shape import Shape
+from geometry.shape import Shape, session
 
 
 @dataclass(frozen=True)

@@ -6,11 +6,10 @@ where a range has one of its own. Consistency of several parameters is checked b
 
 from typing import Annotated
 
-from pydantic import BaseModel, ConfigDict, Field, model_validator
+from pydantic import Field, model_validator
 
-from geometry.units import within
+from geometry.units import Finite, Table, within
 
-Finite = Annotated[float, Field(strict=True, allow_inf_nan=False)]
 Outline = Annotated[Finite, within(1e-3, 0.1, "m")]
 Part = Annotated[Finite, within(1e-5, 0.1, "m")]
 Layer = Annotated[Finite, within(1e-6, 1e-2, "m")]
@@ -20,14 +19,12 @@ ElementSize = Annotated[Finite, within(1e-8, 1e-2, "m")]
 MOST_HARMONICS = 16
 
 
-class Fingertip(BaseModel):
+class Fingertip(Table):
     """Cross-section of a fingertip (Table 1 of Forsbach et al. 2023; all lengths in m).
 
     The outline is an ellipse that the ridge tips touch; the lowest tip is at y = 0. Choices that the paper leaves open
     are marked as *assumption*.
     """
-
-    model_config = ConfigDict(extra="forbid", frozen=True)
 
     width: Outline = 20e-3
     """Width of the outline. Range: the digit of a mouse to a hand."""
@@ -99,10 +96,8 @@ class Fingertip(BaseModel):
         return self
 
 
-class MeshSize(BaseModel):
+class MeshSize(Table):
     """Element sizes of the fingertip's mesh (m); elements grow linearly with the distance from the finest ones."""
-
-    model_config = ConfigDict(extra="forbid", frozen=True)
 
     contact: ElementSize = 5e-6
     """Length of surface facets where ridges can touch. Range: below 10 nm skin is no continuum; 10 mm is the finger
@@ -120,7 +115,7 @@ class MeshSize(BaseModel):
     of the intermediate ridges."""
     touching_half_arc: Annotated[Finite, within(1e-6, 0.2, "m")] | None = None
     """Arc length on either side of the centre within which ridges can touch. By default a rule of thumb gives it
-    (:mod:`fingerpad.model.feasibility`). A run that finds contact at the end of this arc starts again with more
+    (:mod:`fingerpad.model.options`). A run that finds contact at the end of this arc starts again with more
     ridges."""
     touching_fraction: Annotated[Finite, within(1e-3, 1)] = 0.4
     """Part of a ridge's period, around its crest, that can touch. Grooves have coarser facets."""

@@ -1,10 +1,15 @@
-"""A cross-section as a value: what is to be meshed, and nothing of gmsh until it is."""
+"""A cross-section as a value, which is meshed later, and the session of gmsh in which that is done."""
 
 import inspect
-from collections.abc import Callable, Iterable
+import tempfile
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import wraps
+from pathlib import Path
 from typing import Any, ParamSpec
+
+import gmsh
 
 P = ParamSpec("P")
 
@@ -45,3 +50,38 @@ def shape(needed: Iterable[int]) -> Callable[[Callable[P, float]], Callable[P, S
         return make
 
     return decorate
+
+
+@contextmanager
+def session(name: str) -> Iterator[None]:
+    """Work in an empty model with gmsh's default options; a caller's models and options are there again afterwards.
+
+    No configuration of gmsh is read: the options that its window saves in the user's home would change the mesh.
+
+    Args:
+        name: name of the model.
+    """
+    if gmsh.isInitialized():
+        with tempfile.TemporaryDirectory(prefix="fingerpad-") as folder:
+            options, current = str(Path(folder) / "options.opt"), gmsh.model.getCurrent()
+            gmsh.write(options)
+            gmsh.option.restoreDefaults()
+            try:
+                _begin(name)
+                yield
+            finally:
+                gmsh.merge(options)  # which would name a model of the caller that has no name
+                gmsh.model.remove()
+                gmsh.model.setCurrent(current)
+    else:
+        gmsh.initialize(readConfigFiles=False, interruptible=False)
+        try:
+            _begin(name)
+            yield
+        finally:
+            gmsh.finalize()
+
+
+def _begin(name: str) -> None:
+    gmsh.option.setNumber("General.Terminal", 0)
+    gmsh.model.add(name)

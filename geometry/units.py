@@ -18,9 +18,9 @@ from contextvars import ContextVar
 from dataclasses import dataclass
 from decimal import Decimal
 from functools import cache
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
-from pydantic import ValidatorFunctionWrapHandler, WrapValidator
+from pydantic import BaseModel, ConfigDict, Field, ValidatorFunctionWrapHandler, WrapValidator
 from pydantic_core import PydanticCustomError
 
 if TYPE_CHECKING:
@@ -134,6 +134,17 @@ def in_si(unit: str) -> tuple[str, float]:
         return unit, 1.0
     same = [(known, float(root[0] / found[0])) for known, root in roots if found and root[1] == found[1]]
     return same[0] if same else (unit, 1.0)
+
+
+# -- tables --------------------------------------------------------------------------------------------
+Finite = Annotated[float, Field(strict=True, allow_inf_nan=False)]
+Switch = Annotated[bool, Field(strict=True)]
+
+
+class Table(BaseModel):
+    """A table of parameters that refuses keys it does not have, and cannot be changed."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
 
 
 # -- ranges --------------------------------------------------------------------------------------------

@@ -18,18 +18,9 @@ from geometry.mesh import TaggedMesh, load
 from geometry.parameters import Fingertip, MeshSize
 from geometry.profiles import Profiles
 
-LONGER = (
-    "accuracy api counts demo demos digits element ending energy environment faults formulations kept_drawing "
-    "light loads_over_time symmetry needs own_laws own_mesh performance quantities reach report results resume "
-    "shown_commands slices_runs stability_map full_slip sweep_columns sweep_force translation verification "
-    "contact_zone dataset written"
-)
-"""Tests that `make check` leaves out, by the names of their files: whole runs. A new file is checked."""
-
 
 def pytest_addoption(parser):
     """Let the suite be run with other rounding: ``OPENBLAS_CORETYPE`` chooses the kernels, this the order of cells."""
-    parser.addoption("--quick", action="store_true", help="leave out the tests that take longer, as make check does")
     parser.addoption("--renumber", action="store_true", help="mesh with the cells in reverse order")
 
 
@@ -38,13 +29,6 @@ def pytest_configure(config):
     if config.getoption("--renumber"):
         create = meshing.gmshio.create_mesh
         meshing.gmshio.create_mesh = lambda comm, cells, *rest, **more: create(comm, cells[::-1].copy(), *rest, **more)
-
-
-def pytest_ignore_collect(collection_path, config):
-    """Leave out, in a quick run, the files that take longer."""
-    if config.getoption("--quick") and collection_path.stem.removeprefix("test_") in LONGER.split():
-        return True
-    return None
 
 
 def pytest_sessionstart():
@@ -59,16 +43,10 @@ def pytest_sessionstart():
 
 
 def pytest_collection_modifyitems(config, items):
-    """Leave out, under mpirun, what is written for one rank; in a quick run, what takes a second or more."""
-    left_out = [
-        item
-        for item in items
-        if (MPI.COMM_WORLD.size > 1 and item.get_closest_marker("mpi") is None)
-        or (config.getoption("--quick") and item.get_closest_marker("slow") is not None)
-    ]
-    if left_out:
-        config.hook.pytest_deselected(items=left_out)
-        items[:] = [item for item in items if item not in left_out]
+    """Leave out, under mpirun, what is written for one rank."""
+    if MPI.COMM_WORLD.size > 1:
+        config.hook.pytest_deselected(items=[item for item in items if item.get_closest_marker("mpi") is None])
+        items[:] = [item for item in items if item.get_closest_marker("mpi") is not None]
 
 
 @pytest.fixture(scope="session", autouse=True)

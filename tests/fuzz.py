@@ -31,7 +31,7 @@ from pydantic import BaseModel
 from fingerpad.cli import refuse
 from fingerpad.cli.arguments import Parser, scene_of
 from fingerpad.model import options
-from fingerpad.model.feasibility import by_rule, refuse_sizes
+from fingerpad.model.options import by_rule, refuse_sizes
 from fingerpad.reduced.cylinders import tip_radius
 from fingerpad.results.files import check_folder
 from fingerpad.scene import Scene, SceneError
@@ -61,20 +61,7 @@ _STRAY = (
     "-fingerpad_ksp_type=\n", "--set=voltage=200 V",
 )  # fmt: skip
 _ODD_FILES = ("/dev/zero", "/dev/null", "/dev/stdout", "/", "none.toml", "n" * 300, "n/" * 3000, "\udcff.toml", "")
-_ODD_FOLDERS = (
-    "out",
-    "a/b/c",
-    "n" * 300,
-    "n/" * 3000,
-    "\udcff",
-    "",
-    "/dev/null",
-    "/proc/1",
-    "file",
-    "file/below",
-    ".",
-    "-o",
-)
+_ODD_FOLDERS = (*"out a/b/c /dev/null /proc/1 file file/below . -o".split(), "n" * 300, "n/" * 3000, "\udcff", "")
 
 
 @dataclass(frozen=True)
@@ -88,7 +75,6 @@ class Mutant:
 
 # -- making them ---------------------------------------------------------------------------------------
 def mutant(seed: int, number: int) -> Mutant:
-    """Return one mutant."""
     chance = random.Random(f"{seed}-{number}")
     file, argv = None, []
     if chance.random() < 0.85:
@@ -281,14 +267,13 @@ def _unready(scene: Scene) -> str:
         horny = scene.materials.stratum_corneum
         ridge = Cylinder(tip_radius(scene.geometry), 2 * horny.shear_modulus / (1 - horny.poisson), scene.h_0, closure)
         voltages = (load.wave.peak if load.wave else load.level or 0.0 for load in scene.loads())
-        ridge.under_load(max(load.f_ext or 1.0 for load in scene.loads()) / 9, max(voltages))
+        ridge.under_loads([max(load.f_ext or 1.0 for load in scene.loads()) / 9], max(voltages))[0]
     except (NoEquilibriumError, SceneError) as error:
         return "" if len(str(error)) < LONGEST else str(error)
     return ""
 
 
 def main(argv: list[str] | None = None) -> int:
-    """Try many mutants; return the exit code."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     for name, default in (("--count", 10000), ("--seed", 1), ("--first", 0)):
         parser.add_argument(name, type=int, default=default)

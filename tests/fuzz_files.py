@@ -24,12 +24,12 @@ import scipy.io
 from mpi4py import MPI
 
 import geometry
-from fingerpad.cli import refuse, topography
+from fingerpad.cli import refuse, roughness
 from fingerpad.measurements import table as measurements
 from fingerpad.scene import SceneError, from_data
 from geometry.mesh import load
 from geometry.profiles import GeometryError
-from geometry.session import session
+from geometry.shape import session
 
 SLOW = 60  # s, of a mutant that hangs; most take some ms
 SIZE = (32, 24)  # pixels of a map, which are squares
@@ -61,10 +61,7 @@ def whole() -> tuple[tuple[str, bytes], ...]:
     voltages = "time (s),voltage (V)\n" + "".join(f"{k / 10},{20 * k % 150}\n" for k in range(8))
     table = "# source: Surname 2020\n# people: 5\nforce (N/m), voltage (V), friction (1), spread (1)\n"
     table += "".join(f"{10 * k}, 100, 0.{k}, 0.0{k}\n" for k in range(1, 8))
-    tables = [
-        (".volts", voltages.encode()),
-        (".measured", table.encode()),
-    ]
+    tables = [(".volts", voltages.encode()), (".measured", table.encode())]
     return (*plain, *_instruments(heights), *_meshes() * 2, *tables * 4)
 
 
@@ -111,7 +108,6 @@ def _meshes() -> tuple[tuple[str, bytes], ...]:
 
 # -- mutants -------------------------------------------------------------------------------------------
 def mutant(seed: int, number: int) -> Mutant:
-    """Return one mutant."""
     chance = random.Random(f"file-{seed}-{number}")
     ending, content = chance.choice(whole())
     for _ in range(chance.choice((0, 1, 1, 1, 2, 3))):
@@ -182,7 +178,7 @@ def _read(path: Path) -> int:
             unit, size = ["--unit", "um"], ["--size", "32 um", "24 um"]
             given = {ending: unit + size for ending in (".npy", ".csv", ".xyz")}
             given |= {ending: unit + size for ending in (".mat", ".npz")}
-            return topography.main([str(path), *given.get(path.suffix, [])])
+            return roughness.topography([str(path), *given.get(path.suffix, [])])
     except (SceneError, GeometryError) as error:
         return refuse(str(error))
     return 0

@@ -9,6 +9,7 @@ from dolfinx import fem
 from dolfinx.mesh import entities_to_geometry
 
 from variational import compat
+from variational.state import ContactState
 
 
 def integral(body, tag, integrand=1.0) -> float:
@@ -35,6 +36,12 @@ def straightened(body):
     for k, (a, b) in enumerate(((1, 2), (0, 2), (0, 1))):
         x[cells[:, 3 + k]] = (x[cells[:, a]] + x[cells[:, b]]) / 2
     return body
+
+
+def contact_state(**values) -> ContactState:
+    """Return a state in contact; what is not given does not matter, or is that of a press by 1 N/m."""
+    given = {"f_ext": 1.0, "voltage": 0.0, "f_t": 0.0, "mu_app": 0.0, "f_contact": 1.0, "f_electrostatic": 0.0}
+    return ContactState(**given | {"ridges_in_contact": 3, "contact_length": 1e-3} | values)
 
 
 def rows_of(folder: Path, name: str = "steps") -> list[dict[str, str]]:

@@ -8,15 +8,14 @@ from unittest.mock import patch
 
 from mpi4py import MPI
 
-from fingerpad.model.feasibility import by_rule
-from fingerpad.model.options import FingerModel, plan
+from fingerpad.model.options import FingerModel, by_rule, plan
 from fingerpad.model.simulation import Simulation
-from fingerpad.results import finger_picture, history_picture, skin_picture, style
+from fingerpad.results import curves, finger_picture, style
 from fingerpad.runs import full
 from fingerpad.runs.context import RunContext
 from fingerpad.scene import Scene
 
-PICTURES = ((finger_picture, "finger"), (skin_picture, "surface"), (history_picture, "history"))
+PICTURES = ((finger_picture, "finger"), (curves, "surface"), (curves, "history"))
 
 
 @contextmanager
@@ -42,7 +41,6 @@ def followed(scene: Scene, *reports: Any, comm: MPI.Comm = MPI.COMM_WORLD) -> Si
 
 
 def touch(path: Path, *args: Any, **options: Any) -> None:
-    """Leave a picture's file empty."""
     Path(path).touch()
 
 

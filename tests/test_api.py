@@ -15,23 +15,19 @@ from fingerpad.runs import attempt, full
 from fingerpad.runs.processes import End
 from fingerpad.runs.restarts import finer_mesh_may_help
 from fingerpad.scene import from_data
+from tests.measures import contact_state
 from tests.runs import no_pictures
+from tests.small_finger import NINE
 from variational.solvers.continuation import StepFailed
-from variational.solvers.failure import NotConverged
-from variational.state import CONDITIONS, RESULTS, ContactState
+from variational.solvers.outcome import NotConverged
+from variational.state import CONDITIONS, RESULTS
 
-SMALL = {
-    "f_ext": 1.0,
-    "voltage": 60.0,
-    "geometry": {"ridge_count": 9},
-    "mesh": {"contact": 40e-6, "receptor": 100e-6, "interface": 200e-6, "growth": 1.0, "touching_half_arc": 1.0e-3},
-    "output": {"receptors": False},
-}
+pytestmark = pytest.mark.slow
+SMALL = NINE | {"f_ext": 1.0, "voltage": 60.0, "output": {"receptors": False}}
 
 
 @pytest.fixture(scope="module")
 def ran(tmp_path_factory):
-    """A small run into a folder."""
     folder = tmp_path_factory.mktemp("run") / "out"
     with no_pictures():
         return fp.run(from_data(SMALL), out=folder), folder
@@ -40,11 +36,6 @@ def ran(tmp_path_factory):
 # -- the door ----------------------------------------------------------------------------------------------
 def test_every_name_is_there():
     assert [name for name in fp.__all__ if getattr(fp, name, None) is None] == []
-
-
-def test_model_that_is_none_is_refused():
-    with pytest.raises(fp.SceneError, match="model is 'rigid'; it must be 'cylinders' or 'full'"):
-        fp.run(model="rigid")
 
 
 # -- a run -------------------------------------------------------------------------------------------------
@@ -108,12 +99,6 @@ def test_signal_ends_the_program_after_the_step(monkeypatch, name, error):
     assert caught.value.result is ended
 
 
-# -- text --------------------------------------------------------------------------------------------------
-def state(**values) -> ContactState:
-    rest = {"f_ext": 75.0, "voltage": 200.0, "f_contact": 150.0, "f_electrostatic": 75.0, "ridges_in_contact": 16}
-    return ContactState(**(rest | {"f_t": 39.0, "mu_app": 0.52, "contact_length": 1.5e-3} | values))
-
-
 # -- smaller elements by itself ----------------------------------------------------------------------------
 @pytest.mark.parametrize(
     ("reason", "helps"), [("DIVERGED_LOCAL_MIN", True), ("COUPLING_CAP at ridge 1", False), ("NOT_A_NUMBER", False)]
@@ -164,7 +149,7 @@ def test_sweep_is_taken_up_again(tmp_path, monkeypatch):
         asked.append((scene["voltage"], arguments[3]))
         if scene["voltage"] > 0:
             return End(1, "CRASH_1", "out of luck", "")
-        done = fp.Result(from_data(scene), "full", None, None, state(voltage=0.0), cost=Cost(1.0))
+        done = fp.Result(from_data(scene), "full", None, None, contact_state(mu_app=0.52), cost=Cost(1.0))
         (Path(arguments[1]) / "summary.json").write_text(json.dumps(done.to_dict()), encoding="utf-8")
         return End(0, "", "", "")
 
@@ -180,7 +165,6 @@ def test_sweep_is_taken_up_again(tmp_path, monkeypatch):
     ("axes", "words"),
     [
         ({}, "the sweep has no axis"),
-        ({"voltage": 100}, r"voltage of the sweep is 100; it must be a list, such as \[100\]"),
         ({"geometry.ridge_profile": [[1.0], [1.0, -0.1]]}, "it must be a list of at least one value, none a list"),
         ({"volt": [1.0]}, "did you mean voltage"),
         (dict.fromkeys(("voltage", "f_ext"), list(range(1, 201))), "the sweep has 40000 points; at most 10000"),
@@ -207,7 +191,7 @@ def test_sweep_under_a_launcher_of_mpi_is_refused(monkeypatch, tmp_path):
 
 
 def test_what_results_do_not_have_is_refused(ran, tmp_path):
-    """And a file in the place of a scene; each in a sentence that names what there is."""
+    """Each in a sentence that names what there is."""
     found = fp.sweep(fp.Scene(), tmp_path, model="cylinders", voltage=[0.0])
     with pytest.raises(ValueError, match="quantity is 'stable'; it must be one of f_ext"):
         found.array("stable")
@@ -215,16 +199,3 @@ def test_what_results_do_not_have_is_refused(ran, tmp_path):
         found.array("mu_app", "slip")
     with pytest.raises(ValueError, match="kind is 'movie'; it must be one of surface, finger, history, footprint"):
         ran[0].plot("movie")
-    with pytest.raises(fp.SceneError, match="a file is read by Scene.load"):
-        fp.run("scene.toml")
-
-
-@pytest.mark.parametrize("change", [{"model": "full"}, {"voltage": 50.0}])
-def test_models_do_not_overwrite_each_other(tmp_path, change):
-    """A folder belongs to one scene and one model."""
-    fp.run(fp.Scene(), out=tmp_path, model="cylinders")
-    before = (tmp_path / "summary.json").read_bytes()
-    model = change.pop("model", "cylinders")
-    with pytest.raises(fp.SceneError, match="holds the results of another scene"):
-        fp.run(fp.Scene(**change), out=tmp_path, model=model)
-    assert (tmp_path / "summary.json").read_bytes() == before

@@ -9,6 +9,7 @@ import pytest
 from fingerpad.model.finger import Finger
 from fingerpad.model.state import broken, refuse_strained, refuse_unbalanced
 from fingerpad.report import trust
+from tests.measures import contact_state
 from variational.contact.nitsche import Nitsche
 from variational.contact.penalty import Penalty
 from variational.solvers.continuation import StepFailed
@@ -33,7 +34,7 @@ SLIP = {"f_contact": 100.0, "f_electrostatic": 25.0, "f_ext": 75.0, "f_t": -25.0
 )
 def test_balance_and_cone(change, words):
     """The limit is what the solves leave of a sum of forces; roundoff of the cone is 0.25 % of it."""
-    slip = ContactState(**(SLIP | {"ridges_in_contact": 3, "contact_length": 1e-3} | change))
+    slip = contact_state(**(SLIP | change))
     found = broken(slip, LEFT, 0.25)
     assert words in found and bool(found) == bool(words)
     assert broken(None, LEFT, 0.25) == ""
@@ -44,9 +45,8 @@ def test_balance_and_cone(change, words):
 )
 def test_report_has_the_same_limit(record, limit):
     """A thousandth of the load in results that do not have what the solves leave."""
-    touching = SLIP | {"ridges_in_contact": 3, "contact_length": 1e-3}
     for part in (0.9, -0.9, 1.1, -1.1):
-        slip = ContactState(**(touching | {"f_contact": 100.0 + part * limit}))
+        slip = contact_state(**(SLIP | {"f_contact": 100.0 + part * limit}))
         (found,) = trust._balance(SimpleNamespace(full_slip=slip, record=record))
         assert found.verdict == (trust.GOOD if abs(part) < 1 else trust.BAD)
 
@@ -87,7 +87,7 @@ def test_finger_tells_the_roundoff_of_its_solver():
 
 
 def test_friction_of_another_law_is_not_compared_with_coulomb_s():
-    slip = ContactState(**(SLIP | {"ridges_in_contact": 3, "contact_length": 1e-3, "f_t": 30.0}))
+    slip = contact_state(**(SLIP | {"f_t": 30.0}))
     assert broken(slip, 1e-4, None) == ""
 
 
@@ -99,8 +99,7 @@ def record(stored: float) -> StepRecord:
 
 
 def state(f_contact: float, stored: float) -> ContactState:
-    made = {"ridges_in_contact": 2, "contact_length": 1e-3, "f_contact": f_contact, "record": record(stored)}
-    return ContactState(**(SLIP | made))
+    return contact_state(**(SLIP | {"f_contact": f_contact, "record": record(stored)}))
 
 
 class Own(Penalty):

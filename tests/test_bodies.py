@@ -1,9 +1,6 @@
 """Bodies of the verification: their sizes, their groups and what they refuse."""
 
-import subprocess
-import sys
-from dataclasses import replace
-
+import gmsh
 import numpy as np
 import pytest
 import ufl
@@ -116,9 +113,17 @@ def test_foot():
     assert lengths(body)[tags.BONE_RIM] == pytest.approx(span, rel=1e-12, abs=0)
 
 
-@pytest.mark.parametrize(("build", "name"), [(pad(MM, 8, 0.1, 2 * MM), "flank"), (foot(UM, MM, UM, MM), "recess")])
-def test_body_without_its_sides_is_refused(build, name):
-    with pytest.raises(GeometryError, match=f"{name} is .*; it must be positive"):
+@pytest.mark.parametrize(
+    ("build", "words"),
+    [
+        (pad(MM, 8, 0.1, 2 * MM), "flank is .*; it must be positive"),
+        (foot(UM, MM, UM, MM), "recess is .*; it must be positive"),
+        (ridge(10 * UM, amplitude=MM), "amplitude is 0.001 m; it must be below the height, 0.0006 m"),
+        (quarter_tube(MM, MM, 4), "inner is 0.001 m; it must be below the outer radius, 0.001 m"),
+    ],
+)
+def test_body_without_sides_top_or_wall_is_refused(build, words):
+    with pytest.raises(GeometryError, match=words):
         build()
 
 
@@ -132,16 +137,6 @@ def test_verification_body_is_refused(build, name, value):
         build(**lengths)()
 
 
-def test_ridge_without_a_top_is_refused():
-    with pytest.raises(GeometryError, match="amplitude is 0.001 m; it must be below the height, 0.0006 m"):
-        ridge(10 * UM, amplitude=MM)()
-
-
-def test_tube_without_a_wall_is_refused():
-    with pytest.raises(GeometryError, match="inner is 0.001 m; it must be below the outer radius, 0.001 m"):
-        quarter_tube(MM, MM, 4)()
-
-
 # -- shapes --------------------------------------------------------------------------------------------
 def test_shape_is_a_value():
     assert geometry.ridge(size=10e-6) == geometry.ridge(10e-6) != geometry.ridge(size=20e-6)
@@ -151,11 +146,6 @@ def test_shape_is_a_value():
         _ = geometry.rigde
 
 
-def test_geometry_imports_no_gmsh():
-    code = "import sys, geometry; assert 'gmsh' not in sys.modules; geometry.ridge; assert 'gmsh' in sys.modules"
-    subprocess.run([sys.executable, "-c", code], check=True)
-
-
 def test_finger_has_its_layers_and_ridges():
     sizes = {"contact": 100e-6, "interface": 200e-6, "growth": 0.5}
     body = load(MPI.COMM_SELF, geometry.finger(touching_half_arc=1e-3, **sizes))
@@ -163,8 +153,43 @@ def test_finger_has_its_layers_and_ridges():
     assert list(body.ridge_tags()) == [-2, -1, 0, 1, 2]
 
 
-def test_shape_without_what_it_needs_is_refused():
-    """A shape that forgets a group it promises: the message of :func:`geometry.mesh.load`."""
-    bare = replace(geometry.block(MM, MM, MM), needed=(tags.NAIL,))
-    with pytest.raises(GeometryError, match=f"the mesh has no cell or facet with tag {tags.NAIL}"):
-        load(MPI.COMM_SELF, bare)
+# -- a caller's own gmsh session -------------------------------------------------------------------------------------
+def coordinates() -> np.ndarray:
+    return load(MPI.COMM_SELF, ridge(30e-6)).mesh.geometry.x.copy()
+
+
+@pytest.fixture
+def session():
+    """A session with a meshed model and options of its own."""
+    gmsh.initialize(interruptible=False)
+    gmsh.option.setNumber("General.Terminal", 0)
+    gmsh.option.setNumber("Mesh.MeshSizeFactor", 0.5)
+    gmsh.model.add("mine")
+    gmsh.model.occ.addRectangle(0, 0, 0, 1, 1)
+    gmsh.model.occ.synchronize()
+    gmsh.model.mesh.generate(2)
+    gmsh.model.add("other")
+    gmsh.model.setCurrent("mine")
+    yield
+    gmsh.finalize()
+
+
+def test_callers_session_and_ours_are_apart(session):
+    before = gmsh.model.mesh.getNodes()[1]
+    beside = coordinates()
+    assert gmsh.model.getCurrent() == "mine" and gmsh.model.list()[-2:] == ["mine", "other"]
+    np.testing.assert_array_equal(gmsh.model.mesh.getNodes()[1], before)
+    assert gmsh.option.getNumber("Mesh.MeshSizeFactor") == 0.5
+    gmsh.finalize()
+    np.testing.assert_array_equal(coordinates(), beside)
+    assert not gmsh.isInitialized()
+    gmsh.initialize(interruptible=False)
+
+
+def test_callers_session_outlives_a_failure(session):
+    def fail() -> float:
+        raise ValueError("no body")
+
+    with pytest.raises(ValueError, match="no body"):
+        load(MPI.COMM_SELF, fail)
+    assert gmsh.model.getCurrent() == "mine" and gmsh.model.getEntities(2) == [(2, 1)]

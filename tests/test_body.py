@@ -63,9 +63,6 @@ def test_stiffnesses_are_positive(kind, numbers, name):
     """A negative one drags the skin along: µ_app of -0.36 under a coefficient of 0.25."""
     with pytest.raises(ValueError, match=f"{name} of {kind.__name__} is .*; it must be finite and"):
         kind(*numbers)
-
-
-def test_variants_of_nitsche_are_three():
     with pytest.raises(ValueError, match="theta of Nitsche is 5; it must be 1, 0 or -1"):
         Nitsche(10.0, 5)
 

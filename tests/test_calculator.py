@@ -21,7 +21,6 @@ from fingerpad.reduced import cylinder_errors, cylinders
 from fingerpad.scene import Scene, SceneError
 from fingerpad.scene.reading import put
 from tests.browser import asked
-from tests.commands import kept
 
 FIELDS = {field.key: field for field in (*fields.fields(), *fields.contact())}
 NUMBERS = ("mu_app", "f_t", "f_electrostatic", "contact_length", "ridges_in_contact")
@@ -275,10 +274,7 @@ BANDS = cylinder_errors.KNOWN_ERROR["full_slip"]
 # Sets values into fields; returns what the page shows of its error.
 SHOWN = """
 function shown(values) {
-  for (const number of document.querySelectorAll("input[type=number]")) number.value = number.defaultValue;
-  document.getElementById("finger_" + ("length" in values ? "given" : "default")).checked = true;
-  for (const [key, value] of Object.entries(values)) document.getElementById(key).value = value;
-  document.getElementById("f_ext").dispatchEvent(new Event("change"));
+  set(values);
   const curve = (id) => {
     const lines = [...document.querySelectorAll(`#${id} polyline`)];
     const solid = lines.filter((each) => !each.getAttribute("stroke-dasharray"));
@@ -300,17 +296,7 @@ function shown(values) {
 
 def shown(whole: str, folder, *values: dict) -> list[dict]:
     """Return what the page shows with each of some sets of values."""
-    return asked(whole, f"{SHOWN} return {json.dumps(values)}.map(shown);", folder)
-
-
-def test_ranges_are_those_of_the_kept_runs():
-    """Forces and voltages from the first to the last of docs/models.json; all else is the default there."""
-    numbers = kept("models.json")
-    loads = [[float(part.split()[0]) for part in name.split(",")] for name in numbers["scenes"] | numbers["held_out"]]
-    data = fields.data()["known"]
-    assert data["forces"] == (min(f for f, _ in loads), max(f for f, _ in loads))
-    assert data["voltages"] == (min(u for _, u in loads), max(u for _, u in loads))
-    assert data["error"] == BANDS and data["runs"] == len(loads)
+    return asked(whole, f"{SET}{SHOWN} return {json.dumps(values)}.map(shown);", folder)
 
 
 def test_point_that_no_run_is_at_has_no_error(whole, tmp_path):

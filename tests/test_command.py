@@ -12,12 +12,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+import fingerpad as fp
 from fingerpad.cli import COMMANDS, main, ranges
+from fingerpad.cli import run as run_command
 from fingerpad.cli.arguments import Parser, scene_of, separate
-from fingerpad.scene import Scene
-from fingerpad.scene.messages import SceneError
+from fingerpad.scene import Scene, SceneError
 from tests.commands import ROOT, refused
-from variational.roughness.selfaffine import SelfAffine
+from variational.roughness.spectrum import SelfAffine
 
 SCENES = ROOT / "demos/scenes"
 
@@ -62,13 +63,9 @@ def test_options_of_petsc_are_told_from_the_others(words, own, petsc):
     ("argv", "message"),
     [
         (["--set", "voltage=high"], "voltage is 'high'; it must be a number"),
-        (
-            ["--set", "f_ext=0.5 N"],
-            "f_ext is '0.5 N'; it must be in N/m; a force on the whole finger is the key force",
-        ),
+        (["--set", "f_ext=0.5 N"], "f_ext is '0.5 N'; it must be in N/m; a force on the whole finger is the key force"),
         (["--force", "nan"], "force is nan; "),
         (["--set", "voltage=50", "--set", " voltage = 100"], "--set voltage is given twice; give one value"),
-        (["--set", "f_ext=-3"], "f_ext is -3 N/m; it must be from 0.001 to 5000 N/m"),
         (["--set", "voltage"], "voltage is no change of a scene; it must be key=value"),
         (["-voltage", "300"], "-voltage is not an option; did you mean --set voltage=...?"),
         (["--out", f"{__file__}/below"], f"--out {__file__}/below cannot be a folder, since {__file__} is a file;"),
@@ -86,18 +83,6 @@ def test_options_of_petsc_are_told_from_the_others(words, own, petsc):
 )
 def test_bad_command_line(argv, message, capsys):
     assert refused(capsys, "run", *argv).startswith(message)
-
-
-@pytest.mark.parametrize(
-    ("argv", "message"),
-    [
-        (["estimate", "--f-ext", "75", "--set", "f_ext=50"], "--set f_ext is given and --f-ext too; give one of"),
-        (["estimate", "--voltage", "-200:200:3"], "has an equals sign before it; write --voltage=-200:200:3"),
-        (["run", "--force", "-0.5 N"], "has an equals sign before it; write --force='-0.5 N'"),
-    ],
-)
-def test_options_that_are_not_what_was_meant(capsys, argv, message):
-    assert message in refused(capsys, *argv)
 
 
 def test_folder_that_is_read_only(tmp_path, monkeypatch, capsys):
@@ -279,3 +264,23 @@ def test_file_that_cannot_be_written_is_named(capsys, tmp_path, monkeypatch):
     assert main(["estimate", "--csv", str(tmp_path / "mu.csv")]) == 2
     said = capsys.readouterr()
     assert "µ_app" in said.out and "mu.csv cannot be used: No space left on device" in said.err
+
+
+def test_refused_options_of_a_run_that_goes_on(tmp_path):
+    with pytest.raises(SceneError, match="only a full run in a folder can go on"):
+        fp.run(resume=True)
+    with pytest.raises(SceneError, match="only a full run in a folder can go on"):
+        fp.run(out=tmp_path, model="cylinders", resume=True)
+    for words in (["scene.toml"], ["--set", "voltage=1"], ["--model", "cylinders"], ["--out", "x"], ["--force", "1 N"]):
+        with pytest.raises(SceneError, match="and --resume are given"):
+            run_command.main([*words, "--resume", str(tmp_path)])
+    with pytest.raises(SceneError, match=r"has no scene.json of a run, and so no run to go on with"):
+        run_command.main(["--resume", str(tmp_path)])
+    for kept, match in (
+        ('{"model": "cylinders"}', "only a full one can go on"),
+        ('{"friction": {"law": "__main__:Mine"}}', "known to the program that made it alone; put it into a module"),
+        ('{"mesh": ' * 100_000 + "0" + "}" * 100_000, "has no scene.json of a run"),
+    ):
+        (tmp_path / "scene.json").write_text(kept, encoding="utf-8")
+        with pytest.raises(SceneError, match=match):
+            run_command.main(["--resume", str(tmp_path)])

@@ -1,15 +1,21 @@
 """Files that commands write: a user's own are not replaced, those of an earlier run of the command are."""
 
 import os
+import re
 from importlib.resources import files
 from pathlib import Path
 
 import pytest
+from mpi4py import MPI
 
 from fingerpad.cli import main
 from fingerpad.cli.arguments import PICTURE, Kind, Parser
+from fingerpad.model.finger import meshed
+from fingerpad.model.options import FingerModel, by_rule, memory, plan, unknowns
+from fingerpad.scene import Scene, load
 from fingerpad.scene.messages import SceneError
-from tests.commands import refused
+from fingerpad.scene.reading import override
+from tests.commands import COARSE, refused
 
 OUTPUTS = (
     ("calculator", "--out", "a page; its name must end with .html"),
@@ -81,3 +87,91 @@ def test_no_link_and_no_device_is_written(tmp_path):
     for name in ("link.csv", "gone.csv", "pipe.csv"):
         with pytest.raises(SceneError, match=f"{name} cannot be written, since it is no ordinary file"):
             read("--csv", str(tmp_path / name))
+
+
+# -- check and mesh --------------------------------------------------------------------------------------------------
+@pytest.mark.slow
+def test_check(tmp_path, capsys):
+    """Loads in order, what is left out with its reason, and a picture."""
+    argv = ["check", "--set", "voltage=0", "--out", str(tmp_path)]
+    assert main([*argv, *(word for text in COARSE for word in ("--set", text))]) == 0
+    text = capsys.readouterr().out
+    assert text.index("1. press: force to 75 N/m") < text.index("3. slide: bone sideways to 5 mm, or until full slip")
+    assert "attraction and the air gaps of the ridges: no load has a voltage" in text
+    assert "friction: Coulomb(mu_f=0.25)" in text and "closure: none" in text
+    assert (tmp_path / "mesh.png").stat().st_size > 10_000
+
+
+@pytest.mark.parametrize(("formulation", "told"), [("augmented", 1), ("penalty", 0), ("nitsche", 0)])
+def test_method_for_comparison_is_named_before_a_run(tmp_path, monkeypatch, capsys, formulation, told):
+    """One line of the model, for the augmented Lagrangian alone."""
+    monkeypatch.setattr("fingerpad.cli.check._picture", lambda *given: "")
+    argv = ["check", "--set", f"contact.formulation={formulation}", "--out", str(tmp_path)]
+    assert main([*argv, *(word for text in COARSE for word in ("--set", text))]) == 0
+    assert capsys.readouterr().out.count("contact by a method for comparison") == told
+
+
+@pytest.mark.slow
+def test_loads_that_were_never_tried_are_named(tmp_path, capsys):
+    """There is no promise for them."""
+    argv = ["check", "--out", str(tmp_path), *(word for text in COARSE for word in ("--set", text))]
+    assert main([*argv, "--set", "voltage=5000"]) == 0
+    text = capsys.readouterr().out
+    assert "can be run" not in text
+    assert "charge has 75 N/m and 5000 V, and tried were 5 to 150 N/m and 0 to 200 V" in text
+    assert main(argv) == 0
+    assert capsys.readouterr().out.endswith("The scene can be run.\n")
+
+
+def test_mesh_is_counted(tmp_path, capsys):
+    """Its triangles and unknowns are those of the run, and the memory follows from them."""
+    argv = ["check", "--out", str(tmp_path), *(word for text in COARSE for word in ("--set", text))]
+    assert main(argv) == 0
+    triangles, number, gigabytes = re.search(
+        r"(\d+) triangles of element P2, (\d+) unknowns\n.*\n  about ([\d.]+) GB", capsys.readouterr().out
+    ).groups()
+    scene = load(None, dict(map(override, COARSE)))
+    mesh = meshed(FingerModel(by_rule(scene), plan(scene)), MPI.COMM_SELF).mesh
+    points, made = (mesh.topology.index_map(d).size_global for d in (0, 2))
+    assert int(triangles) == made and int(number) == unknowns(points, made, "P2")
+    assert float(gigabytes) == pytest.approx(memory(int(number)) / 1e9, rel=0.02)
+
+
+def test_mesh_beyond_the_memory_is_refused(capsys):
+    """It is meshed, and passes the bound; the refusal has the number of its unknowns."""
+    words = [word for text in (*COARSE, "numerics.memory=0.35e9") for word in ("--set", text)]
+    assert "the mesh has " in refused(capsys, "check", *words)
+
+
+def test_mesher_that_fails_is_refused_in_a_sentence(monkeypatch, capsys):
+    """With what gmsh says; an error of the program stays one."""
+    pytest.importorskip("gmsh")
+
+    def fail(*given):
+        raise Exception("no closed loop")  # noqa: TRY002  # as gmsh's are
+
+    monkeypatch.setattr("geometry.fingertip.build", fail)
+    assert "gmsh cannot mesh the finger: no closed loop; try smaller" in refused(capsys, "mesh", "--out", "x.msh")
+    monkeypatch.setattr("geometry.fingertip.build", lambda *given: 1 / 0)
+    with pytest.raises(ZeroDivisionError):
+        main(["mesh", "--out", "x.msh"])
+
+
+def test_mesh_is_read_again_with_its_names(tmp_path, capsys):
+    """Lengths in m, groups by name; a facet of 30 um takes 1 um off the tip of a ridge, of a radius of 0.12 mm."""
+    import gmsh
+
+    file = tmp_path / "finger.msh"
+    assert main(["mesh", "--out", str(file), *(word for text in COARSE for word in ("--set", text))]) == 0
+    assert "ridges that can touch" in capsys.readouterr().out
+    gmsh.initialize(interruptible=False)
+    try:
+        gmsh.option.setNumber("General.Terminal", 0)
+        gmsh.open(str(file))
+        groups = {gmsh.model.getPhysicalName(*group) for group in gmsh.model.getPhysicalGroups()}
+        y = gmsh.model.mesh.getNodes()[1].reshape(-1, 3)[:, 1]
+    finally:
+        gmsh.finalize()
+    assert {"stratum corneum", "dermis", "bone rim", "outer skin", "ridge 0", "ridge -1"} <= groups
+    assert y.min() == pytest.approx(0, abs=2e-6)
+    assert y.max() == pytest.approx(Scene().geometry.height, rel=1e-3)  # chords of an ellipse

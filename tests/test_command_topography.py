@@ -11,7 +11,7 @@ from fingerpad.scene import from_data, load
 from fingerpad.scene.messages import SceneError
 from fingerpad.scene.remarks import remarks
 from tests.commands import refused
-from variational.roughness.selfaffine import SelfAffine
+from variational.roughness.spectrum import SelfAffine
 
 
 def heights(folder: Path) -> np.ndarray:

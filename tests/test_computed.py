@@ -16,29 +16,20 @@ from fingerpad.slices.errors import MESH
 from fingerpad.slices.finger import WholeFinger
 from fingerpad.slices.total import Total
 from tests.commands import refused
-from variational.state import ContactState, Errors
+from tests.measures import contact_state
+from variational.state import Errors
 
 
 def state(step, f_ext, voltage=0.0, bone_x=0.0, **more):
-    values = {"f_t": 0.0, "mu_app": 0.0, "f_contact": f_ext, "f_electrostatic": 0.0, "ridges_in_contact": 3}
-    return ContactState(
-        step=step,
-        f_ext=f_ext,
-        voltage=voltage,
-        bone_x=bone_x,
-        bone_height=-1e-5 * f_ext,
-        contact_length=1e-4 * f_ext,
-        **values | more,
-    )
+    pressed = {"f_ext": f_ext, "f_contact": f_ext, "bone_height": -1e-5 * f_ext, "contact_length": 1e-4 * f_ext}
+    return contact_state(step=step, voltage=voltage, bone_x=bone_x, **pressed | more)
 
 
 def compared(runs, table):
-    """Return the rows of a table beside the values of runs."""
     return beside(table, computed(runs, table))
 
 
 def ratio(runs, table):
-    """Return computed over measured values."""
     found = compared(runs, table)
     return found.computed.to_numpy() / found.measured.to_numpy()
 

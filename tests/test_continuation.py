@@ -13,7 +13,7 @@ from tests.small_finger import NINE, small
 from tests.test_contact import HEIGHT, MU_F, WIDTH, over
 from variational.solvers import continuation
 from variational.solvers.continuation import StepFailed, Target
-from variational.solvers.failure import NotConverged
+from variational.solvers.outcome import NotConverged
 
 
 @pytest.fixture

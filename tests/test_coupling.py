@@ -29,10 +29,9 @@ from variational.roughness.bam import BearingArea
 from variational.roughness.closure import AirGap, Closure
 from variational.solvers.continuation import Target
 from variational.solvers.coupling import Coupling
-from variational.solvers.failure import NotConverged
 from variational.solvers.iteration import EXACT
+from variational.solvers.outcome import NotConverged, Timings
 from variational.solvers.secant import Secants
-from variational.solvers.timing import Timings
 
 H_0, EPS_0, FOLD_VOLTAGE = 0.514e-6, 8.854e-12, 200.0
 CENTRE = 2e-6  # m
@@ -57,11 +56,9 @@ class Stub:
         self.coupling = Coupling(self, self, closure)
 
     def solve(self, pseudo_transient: bool = False, stop=EXACT, tried: bool = False) -> None:
-        """The formula needs no solve."""
         self.stops.append("pseudo-transient" if tried else stop)
 
     def attempt(self, stop) -> bool:
-        """The formula needs no solve."""
         self.stops.append(stop)
         return not self.lost(float(self.d[0]))
 

@@ -34,7 +34,7 @@ def ridge(closure=None) -> Cylinder:
 @pytest.mark.parametrize("f", [0.01, 1.0, 10.0])
 def test_uncharged_cylinder_is_hertz(f):
     """f = pi E* a^2 / 4R, and hertz_modulus is its inverse."""
-    state = ridge().under_load(f, 0.0)
+    state = ridge().under_loads([f], 0.0)[0]
     assert state.length == pytest.approx(2 * np.sqrt(4 * RADIUS * f / (np.pi * MODULUS)), rel=1e-9)
     assert state.p_c == pytest.approx(f / state.length, rel=1e-9)
     assert state.f_attraction == 0
@@ -45,7 +45,7 @@ def test_uncharged_cylinder_is_hertz(f):
 def test_charged_cylinder_is_maugis(f):
     """At one air gap, force and attracted length are those of a constant attraction of its strength and range."""
     d_eq = 1.7e-6
-    state = ridge(Held(d_eq)).under_load(f, VOLTAGE)
+    state = ridge(Held(d_eq)).under_loads([f], VOLTAGE)[0]
     sigma, a = EPS_0 * VOLTAGE**2 / 2 / (H_0 + d_eq) ** 2, state.length / 2
     m = maugis_ratio(a, RADIUS, MODULUS, sigma, H_0 + 2 * d_eq)
     assert state.attracted == pytest.approx(2 * m * a, rel=1e-9)
@@ -59,7 +59,7 @@ def test_loads_together_are_the_loads_one_by_one(voltage):
     forces, moduli = np.geomspace(0.01, 10.0, 5), np.geomspace(1e5, 1e6, 5)
     together = Cylinder(RADIUS, moduli, H_0, BearingArea(H_0)).under_loads(forces, voltage)
     for f, modulus, state in zip(forces, moduli, together, strict=True):
-        alone = Cylinder(RADIUS, modulus, H_0, BearingArea(H_0)).under_load(f, voltage)
+        alone = Cylinder(RADIUS, modulus, H_0, BearingArea(H_0)).under_loads([f], voltage)[0]
         for name in ("length", "attracted", "p_c", "d_eq", "f_contact", "f_attraction"):
             assert getattr(state, name) == pytest.approx(getattr(alone, name), rel=1e-11)
 
@@ -74,7 +74,7 @@ def test_range_keeps_the_work_of_adhesion():
 @pytest.mark.parametrize("voltage", [0.0, 100.0, 200.0])
 def test_length_and_load_agree(voltage):
     """The length that a force leads to bears that force in the same state."""
-    loaded = ridge().under_load(4.0, voltage)
+    loaded = ridge().under_loads([4.0], voltage)[0]
     borne = ridge().over_length(loaded.length, 4.0, voltage)
     assert borne.p_c == pytest.approx(loaded.p_c, rel=1e-9)
     assert borne.attracted == pytest.approx(loaded.attracted, rel=1e-9)
@@ -95,7 +95,7 @@ def test_wide_contact_is_the_closure_table(p_ext, voltage):
 
 
 def test_voltage_widens_the_contact():
-    lengths = [ridge().under_load(4.0, voltage).length for voltage in (0.0, 100.0, 200.0)]
+    lengths = [ridge().under_loads([4.0], voltage)[0].length for voltage in (0.0, 100.0, 200.0)]
     assert lengths[0] < 1.02 * lengths[0] < lengths[1] < 1.02 * lengths[1] < lengths[2]
 
 
@@ -114,7 +114,7 @@ def test_branch_in_contact_is_taken_and_the_others_are_named():
 @pytest.mark.parametrize("voltage", [1e4, 1e6, 1e9])
 def test_absurd_voltage_is_refused(voltage):
     """In one sentence, whatever the force, by either way to close the equations."""
-    for solve in (lambda: ridge().under_load(1.0, voltage), lambda: ridge().over_length(1e-4, 1.0, voltage)):
+    for solve in (lambda: ridge().under_loads([1.0], voltage)[0], lambda: ridge().over_length(1e-4, 1.0, voltage)):
         with pytest.raises(NoEquilibriumError) as refusal:
             solve()
         assert len(str(refusal.value)) < 300
@@ -124,4 +124,4 @@ def test_what_nothing_bears_is_refused():
     with pytest.raises(NoEquilibriumError, match="bears 1 N/m on a ridge at 0 V"):
         ridge().over_length(1e-8, 1.0, 0.0)
     with pytest.raises(NoEquilibriumError, match="force on a ridge is 0 N/m; it must be greater than 0"):
-        ridge().under_load(0.0, VOLTAGE)
+        ridge().under_loads([0.0], VOLTAGE)[0]

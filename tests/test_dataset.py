@@ -1,6 +1,5 @@
 """A run and a sweep as NetCDF: the numbers of the tables, with units; a file that cannot be written loses nothing."""
 
-import csv
 import errno
 import json
 import shutil
@@ -20,11 +19,12 @@ from fingerpad.results.over_time import OverTime
 from fingerpad.results.result import Result
 from fingerpad.runs.sweep_results import Sweep
 from fingerpad.scene import from_data
+from tests.measures import rows_of
 from tests.runs import run
+from tests.small_finger import NINE
 
-SCENE = {
-    "geometry": {"ridge_count": 9},
-    "mesh": {"contact": 40e-6, "receptor": 100e-6, "interface": 200e-6, "growth": 1.0, "touching_half_arc": 1.0e-3},
+pytestmark = pytest.mark.slow
+SCENE = NINE | {
     "output": {"errors": False},
     "history": [
         {"name": "press", "f_ext": 1.0},
@@ -32,11 +32,6 @@ SCENE = {
         {"name": "nudge", "bone_x": "10 um"},
     ],
 }
-
-
-def rows_of(folder: Path, name: str) -> list[dict[str, str]]:
-    with (folder / f"{name}.csv").open(encoding="utf-8", newline="") as file:
-        return list(csv.DictReader(file))
 
 
 @pytest.fixture(scope="module")
@@ -141,13 +136,7 @@ def test_skin_that_was_read_back_is_that_of_the_run(folder, data):
         np.testing.assert_array_equal(state.skin.p_n, data["skin_p_n"].sel(state=name).values[known])
 
 
-@pytest.mark.parametrize(
-    "content",
-    [
-        None,
-        "half",
-    ],
-)
+@pytest.mark.parametrize("content", [None, "half"])
 def test_skin_is_left_out_where_the_dataset_is_not_whole(folder, tmp_path, content):
     """All other numbers are those of the tables."""
     copy = Path(shutil.copytree(folder, tmp_path / "run", ignore=shutil.ignore_patterns("*.bp", "*.png", "*.npz")))
@@ -198,7 +187,6 @@ def test_swept_keys_are_coordinates(tmp_path):
 
 # -- faults ----------------------------------------------------------------------------------------------
 def full(file, text):
-    """Find no room for a dataset."""
     if Path(file).suffix == ".nc":
         raise OSError(errno.ENOSPC, "No space left on device")
     Path(file).write_bytes(text.encode() if isinstance(text, str) else text)

@@ -6,6 +6,8 @@ from fingerpad.scene import load
 from tests.runs import run
 from tests.small_finger import SMALL
 
+pytestmark = pytest.mark.slow
+
 # By Debian 13's dolfinx 0.9.0 and PETSc 3.22.
 DIGITS = {
     "uncharged_contact_length": 0.000145728682,

@@ -145,7 +145,3 @@ def test_every_equation_of_the_paper_has_a_place():
 def test_page_is_the_generated_one():
     """If not: fingerpad params --markdown > docs/scene.md."""
     assert text("docs/scene.md") == page(list(every(Scene))) + "\n"
-
-
-def test_every_key_has_a_meaning():
-    assert [key.name for key in every(Scene) if not key.meaning] == []

@@ -2,11 +2,13 @@
 
 import json
 import os
+import random
 import resource
 import signal
 import subprocess
 import sys
 import time
+import tomllib
 from pathlib import Path
 
 import pytest
@@ -14,8 +16,9 @@ from mpi4py import MPI
 
 from fingerpad.results.files import Table, replace_json
 from fingerpad.results.interrupt import Interrupt, Interrupted
-from tests.measures import accepted
+from tests.measures import accepted, rows_of
 
+pytestmark = pytest.mark.slow
 ROOT = Path(__file__).resolve().parents[1]
 GOOD = 2  # steps accepted before a run is disturbed
 LONG = """# a light finger on a long way: its start is short, and there are a hundred steps to disturb it in
@@ -198,3 +201,143 @@ def test_numbers_that_json_lacks_are_null(tmp_path):
     replace_json(tmp_path / "summary.json", data)
     text = (tmp_path / "summary.json").read_text()
     assert json.loads(text) == {"lambda_min": None, "shares": [None, 1.0], "number": [2, None]}
+
+
+# -- Ctrl-C before, beside and after a run ---------------------------------------------------------------------------
+START = """
+import atexit, os, runpy, signal, sys
+signal.signal(signal.SIGINT, signal.{handler})  # a pytest in the background has processes ignore it
+def come():
+    os.kill(os.getpid(), signal.SIGINT)
+class Callback:
+    def __del__(self):  # as importlib's own, where an exception is lost
+        come()
+class Finder:
+    def find_spec(self, name, path, target=None):
+        if name == {moment!r}:
+            Callback()
+sys.meta_path.insert(0, Finder())
+if {moment!r} == "the end":
+    atexit.register(come)
+"""
+SCRIPT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]["scripts"]["fingerpad"]
+DOORS = {
+    "module": "runpy.run_module('fingerpad', run_name='__main__', alter_sys=True)",
+    "script": "from {} import {} as main; sys.exit(main())".format(*SCRIPT.split(":")),
+}
+
+
+def python(code: str, *words: str, moment: str = "", handler: str = "default_int_handler"):
+    """Run code in a process that gets SIGINT at a moment: when a module is imported, or at the end."""
+    command = [sys.executable, "-c", START.format(moment=moment, handler=handler) + code, *words]
+    environment = {**os.environ, "PYTHONPATH": str(ROOT)}
+    return subprocess.run(command, env=environment, capture_output=True, text=True, timeout=100)
+
+
+@pytest.mark.parametrize(
+    ("door", "moment"), [("module", "numpy"), ("script", "fingerpad.cli.params"), ("script", "the end")]
+)
+def test_ctrl_c_ends_the_program_quietly(door, moment):
+    done = python(DOORS[door], "params", "f_ext", moment=moment)
+    assert (done.returncode, done.stderr) == (130, "")
+
+
+def test_ctrl_c_while_finite_elements_are_imported(tmp_path):
+    """The run has not begun then."""
+    done = python(DOORS["module"], "run", "--out", str(tmp_path / "new"), moment="dolfinx")
+    assert (done.returncode, done.stdout, done.stderr) == (130, "", "")
+    assert not (tmp_path / "new").exists()
+
+
+def test_ctrl_c_that_is_ignored_stays_ignored():
+    done = python(DOORS["module"], "params", "f_ext", moment="numpy", handler="SIG_IGN")
+    assert (done.returncode, done.stderr) == (0, "") and "f_ext" in done.stdout
+
+
+def test_library_leaves_signals_alone():
+    code = "import fingerpad, fingerpad.__main__, fingerpad.cli.run\n"
+    code += "assert signal.getsignal(signal.SIGINT) is signal.default_int_handler"
+    assert python(code).returncode == 0
+
+
+TABLES = ("steps", "ridges", "coupling")
+
+
+def tables(folder: Path) -> dict[str, list[dict[str, str]]]:
+    """Return all tables as text, without the time that steps took."""
+    found = {}
+    for name in TABLES:
+        found[name] = [{k: v for k, v in row.items() if "seconds" not in k} for row in rows_of(folder, name)]
+    return found
+
+
+WRAPPER = """
+import os, sys, random
+kind, number = sys.argv.pop(1), int(sys.argv.pop(1))
+from tests.test_history import Own
+from variational.problem import Problem
+from variational.solvers.coupling import Coupling
+from fingerpad.results import checkpoint, files
+def kill_at(owner, name, do=lambda *args: None):
+    plain, count = getattr(owner, name), [0]
+    def call(*args, **more):
+        count[0] += 1
+        if count[0] == number:
+            do(*args)
+            os.kill(os.getpid(), 9)
+        return plain(*args, **more)
+    setattr(owner, name, call)
+if kind == "solve":
+    kill_at(Coupling, "solve")
+elif kind == "part":
+    kill_at(checkpoint.np, "savez", lambda stream, *rest: stream.write(b"PK half of it"))
+elif kind == "row":
+    kill_at(files.Table, "write")
+from fingerpad.results.drawing import Drawing
+Drawing.write = lambda *args: None
+from fingerpad.cli import main
+sys.exit(main(sys.argv[1:]))
+"""
+
+
+def process(kind: str, number: int, *words: str) -> int:
+    """Run a command that kills itself at a solve, in writing a part of the checkpoint, or at a row of a table."""
+    done = subprocess.run(
+        [sys.executable, "-c", WRAPPER, kind, str(number), *words],
+        env={**os.environ, "PYTHONPATH": str(ROOT)}, capture_output=True, text=True, check=False, timeout=600,
+    )  # fmt: skip
+    assert done.returncode in (0, -signal.SIGKILL), done.stderr[-2000:]
+    return done.returncode
+
+
+MOMENTS = [("solve", 9), ("part", 3), ("row", 40), *(("solve", n) for n in random.Random(1).sample(range(2, 36), 7))]
+
+
+@pytest.fixture(scope="module")
+def undisturbed(tmp_path_factory):
+    """Return a file of a scene with an error estimate, and the tables of its run."""
+    folder = tmp_path_factory.mktemp("undisturbed")
+    file = folder / "scene.toml"
+    text = (ROOT / "demos" / "scenes" / "small_finger.toml").read_text(encoding="utf-8")
+    file.write_text(text.replace("contact = 20e-6", "contact = 40e-6"), encoding="utf-8")
+    assert process("", 0, "run", str(file), "--quiet", "--out", str(folder / "run")) == 0
+    return file, tables(folder / "run"), (folder / "run" / "summary.json").read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize(
+    ("kind", "number"), [MOMENTS[0], *(pytest.param(*m, marks=pytest.mark.long) for m in MOMENTS[1:])]
+)
+def test_kill_9(undisturbed, tmp_path, kind, number):
+    """At a solve of the path or of the error estimate, in writing a part, between two rows."""
+    file, whole, summary = undisturbed
+    out = tmp_path / "run"
+    assert process(kind, number, "run", str(file), "--quiet", "--out", str(out)) == -signal.SIGKILL
+    resumed = (out / "checkpoint").exists()
+    words = ["--resume", str(out)] if resumed else [str(file), "--out", str(out)]
+    assert process("", 0, "run", "--quiet", *words) == 0
+    assert tables(out) == whole
+
+    def lines(text):
+        return [line for line in text.splitlines() if not any(word in line for word in ("seconds", "memory"))]
+
+    assert lines((out / "summary.json").read_text(encoding="utf-8")) == lines(summary)

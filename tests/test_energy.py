@@ -18,6 +18,8 @@ from variational.energy import Balance, EnergyBook
 from variational.quantities import Observer
 from variational.solvers.equations import Control
 
+pytestmark = pytest.mark.slow
+
 
 @pytest.fixture(scope="module", params=["block", "ridge"])
 def cycles(request):

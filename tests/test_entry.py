@@ -30,7 +30,6 @@ print(ffcx.options.get_options()["epsilon"], matplotlib.rcParams["lines.linewidt
 
 
 def python(folder: Path, code: str, **environment: str) -> subprocess.CompletedProcess[str]:
-    """Run code in a folder."""
     variables = {**os.environ, "PYTHONPATH": str(ROOT), **environment}
     command = [sys.executable, "-P", "-W", "ignore", "-c", code]
     return subprocess.run(command, cwd=folder, env=variables, capture_output=True, text=True)
@@ -84,6 +83,6 @@ def test_the_environment_and_the_command_line_are_obeyed(tmp_path):
 def test_modules_of_the_current_folder_are_not_run(tmp_path):
     """Processes of a sweep are started with python3 -m, which looks there first."""
     (tmp_path / "numpy.py").write_text("raise SystemExit('found')")
-    run = "processes.run('fingerpad.runs.one', ['no.json', '.', '9', 'full'], 9).message"
+    run = "processes.run('fingerpad.runs.batch', ['no.json', '.', '9', 'full'], 9).message"
     code = f"from fingerpad.runs import processes; print({run})"
     assert "No such file or directory: 'no.json'" in python(tmp_path, code).stdout

@@ -12,8 +12,9 @@ from pathlib import Path
 
 import pytest
 
-from tests.test_tools import script
+from tests.test_packages import script
 
+pytestmark = pytest.mark.slow
 HERE = Path(__file__).resolve().parents[1] / "environment"
 # Tells its arguments, then runs the command in a process of its own and names it, as bubblewrap does.
 BWRAP = """#!/bin/bash
@@ -69,14 +70,12 @@ def environment(checkout: Path, **variables: str) -> dict[str, str]:
 
 
 def enter(checkout: Path, *command: str, cwd: Path | None = None, **variables: str) -> subprocess.CompletedProcess[str]:
-    """Run a command as a user does."""
     line, where = [str(checkout / "environment" / "run"), *command], cwd or checkout
     variables = environment(checkout, PWD=str(where), **variables)
     return subprocess.run(line, cwd=where, env=variables, capture_output=True, text=True)
 
 
 def told(checkout: Path) -> list[str]:
-    """Return bubblewrap's arguments."""
     return (checkout.parent / "told").read_text().splitlines()
 
 

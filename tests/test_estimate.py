@@ -1,8 +1,16 @@
 """The error estimate on errors that are known: what it finds, and what it does not believe."""
 
+import numpy as np
 import pytest
 
-from fingerpad.richardson import MORE, ONCE, MeshParameter, errors, to_refine
+from benchmarks.errors import stiffer
+from fingerpad.accuracy import solves
+from fingerpad.accuracy.solves import over_stiffer
+from fingerpad.richardson import MORE, ONCE, ORDER, MeshParameter, errors, plus_minus, rigid, to_refine
+from fingerpad.scene import SceneError, from_data
+from variational.contact.penalty import Penalty
+from variational.solvers.equations import Control
+from variational.solvers.transfer import SkinState, StateSnapshot
 
 
 def law(order: float, c: float = 0.1):
@@ -46,17 +54,12 @@ def test_accidentally_small_change_is_not_believed(name, left):
     assert found.share(name) == pytest.approx(left, rel=1e-12)
 
 
-def test_ridges_that_change_both_ways_do_not_cancel():
+@pytest.mark.parametrize(("after", "left"), [([1.1, 0.9] * 8, 0.4), ([1.1] * 16, 1.6)])
+def test_ridges_that_change_both_ways_do_not_cancel(after, left):
     """Sixteen that go up and down by 0.1, a sum that does not change: 0.4, as if their signs were random."""
     found = MeshParameter()
-    found.record({"length": [1.0] * 16}, {"length": [1.1, 0.9] * 8})
-    assert found.share("length") == pytest.approx(0.4, rel=1e-12)
-
-
-def test_ridges_that_change_one_way_add_up():
-    found = MeshParameter()
-    found.record({"length": [1.0] * 16}, {"length": [1.1] * 16})
-    assert found.share("length") == pytest.approx(1.6, rel=1e-12)
+    found.record({"length": [1.0] * 16}, {"length": after})
+    assert found.share("length") == pytest.approx(left, rel=1e-12)
 
 
 def test_errors_of_parameters_add_up_whatever_their_signs():
@@ -84,3 +87,96 @@ def test_as_few_are_halved_as_will_do(allowed, keys):
     """Shares of 0.05 and 0.005 become half at first order; each may spend half of what is allowed."""
     parameters = {"b": parameter(law(1.0, 0.01), 0), "a": parameter(law(1.0, 0.1), 0)}
     assert to_refine(parameters, {"q": ONCE * allowed}) == keys
+
+
+# -- what a penalty changes ------------------------------------------------------------------------------------------
+def test_law_is_extrapolated_exactly():
+    """To roundoff."""
+
+    def q(eps):
+        return 1 + 0.3 * eps**-ORDER
+
+    assert rigid({"q": q(4.0)}, {"q": q(8.0)})["q"] == pytest.approx(1 - q(4.0), rel=1e-12)
+
+
+def test_both_stiffnesses_are_doubled():
+    assert Penalty(3e12, 5e10).over_stiffer_screen() == Penalty(6e12, 1e11)
+
+
+def test_stiffer_springs_bear_the_same_friction():
+    """Of the stuck skin: half the elastic slip of twice the stiffness; all else of the state stays."""
+    line = np.array([0.0, 1e-6])
+    history = {"anchor": np.array([2e-7, -3e-8]), "pressure": line}
+    skin = SkinState(line, line, line, line, history)
+    state = StateSnapshot(line, line, {4: skin}, {}, {4: 2e-6}, {4: 0.5}, line, Control(), 0.0)
+    found = over_stiffer(state)
+    assert found.skin[4].history["anchor"].tolist() == [1e-7, -1.5e-8]
+    assert found.skin[4].history["pressure"] is line and found.u is line and found.gain == {4: 0.5}
+
+
+@pytest.mark.parametrize("state", ["uncharged", "charged", "full_slip"])
+def test_order_predicts_the_contact_over_a_stiffer_screen(state):
+    """From 500 and 1500 MPa/mm, what 5000 changes of the default scene's contact: to a factor of two."""
+    predicted, found = stiffer()[state]
+    assert found < 0
+    assert 0.5 < predicted / found < 2
+
+
+def test_scene_that_asks_starts_coarse_where_it_gives_no_size():
+    mesh = from_data({"accuracy": {"mu_app": 0.01}, "mesh": {"growth": 0.3}}).mesh
+    assert (mesh.contact, mesh.growth, mesh.receptor) == (20e-6, 0.3, 40e-6)
+    assert from_data({"accuracy": {"sed": 0.01}}).mesh.receptor == 10e-6, "coarser sites do not see the tips"
+
+
+@pytest.mark.parametrize(
+    ("given", "words"),
+    [
+        ({"accuracy": {"mu_app": 1.5}}, "accuracy.mu_app is 1.5; it must be from 1e-06 to 0.5"),
+        ({"accuracy": {"f_n": 0.1}}, "accuracy.f_n is not a key of accuracy"),
+        ({"accuracy": {}}, "accuracy is empty; give at least one of accuracy.mu_app, accuracy.f_t"),
+        (
+            {"accuracy": {"sed": 0.1}, "output": {"receptors": False}},
+            "accuracy.sed is 0.1 and output.receptors is false, without which there are no sites",
+        ),
+        (
+            {"accuracy": {"f_t": 0.1}, "friction": 0},
+            "accuracy.f_t is 0.1 and friction is 0, with which the quantity is zero and has no relative accuracy",
+        ),
+        (
+            {"accuracy": {"f_t": 0.1}, "history": [{"name": "Full_slip", "f_ext": 1.0}]},
+            "history.0..name is 'Full_slip' and accuracy is given, with which the state of that name has files",
+        ),
+    ],
+)
+def test_impossible_accuracy_is_refused(given, words):
+    with pytest.raises(SceneError, match=words):
+        from_data(given)
+
+
+@pytest.mark.parametrize(
+    ("value", "error", "text"),
+    [(0.47512, 0.0041, "0.4751 ± 0.0041"), (39.226, 12.0, "39 ± 12"), (1.0, 0.0, "1.000000 ± 0.000000")]
+    + [(-1e-9, 0.01, "0.000 ± 0.010")],
+)
+def test_plus_minus(value, error, text):
+    assert plus_minus(value, error) == text
+
+
+@pytest.mark.parametrize(
+    ("places", "kept"),
+    [
+        ((None, None, 1e-3), 2),
+        ((2e-3, None, 3e-3), 2),
+        ((2e-3, 2e-3, 1e-3), 2),
+        ((2e-3, 3e-3, 4e-3), 1),
+        ((None, None, None, 2e-3, None, 3e-3), 5),
+    ],
+)
+def test_loads_to_normal_contact(places, kept):
+    """A way through the air is none; a bone that is pressed and moved in one load slides in that load."""
+    loads = [{"name": "away", "bone_height": 1e-5}, {"name": "press", "f_ext": 1.0}, {"name": "slide"}]
+    if len(places) > 3:
+        loads[2:] = [{"name": "lift", "bone_height": 1e-5}, {"name": "over"}, {"name": "again", "f_ext": 1.0}, loads[2]]
+    moves = [{} if place is None else {"bone_x": place} for place in places]
+    scene = from_data({"history": [load | move for load, move in zip(loads, moves, strict=True)]})
+    assert solves.loads_to_normal_contact(scene.loads()) == scene.history[:kept]

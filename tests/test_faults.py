@@ -18,9 +18,10 @@ from variational.roughness.bam import BearingArea
 from variational.roughness.closure import AirGap
 from variational.solvers.continuation import Attempt, Continuation
 from variational.solvers.equations import Control, Equations
-from variational.solvers.failure import NotConverged
 from variational.solvers.newton import Solver
+from variational.solvers.outcome import NotConverged
 
+pytestmark = pytest.mark.slow
 MESH = {"contact": 30e-6, "receptor": 80e-6, "interface": 150e-6, "growth": 0.8, "touching_half_arc": 1.3e-3}
 HISTORY = [{"name": "press", "bone_height": -60e-6}, {"name": "charge", "voltage": 100.0}]
 GOOD = 2  # steps accepted before a fault

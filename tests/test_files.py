@@ -15,7 +15,7 @@ from fingerpad.measurements.table import read as measurements
 from fingerpad.scene import SceneError, from_data, load
 from geometry.meshfile import file as mesh
 from geometry.profiles import GeometryError
-from geometry.session import session
+from geometry.shape import session
 from tests.test_meshfile import write
 from variational import files
 from variational.roughness.heightfile import scan
@@ -124,7 +124,7 @@ def test_neighbours_of_a_mesh_are_not_run(tmp_path, monkeypatch, name):
 def test_options_of_gmsh_in_the_home_have_no_effect(tmp_path, name, variable):
     """As its window saves them; the control shows that gmsh reads them."""
     (tmp_path / name).write_text("Mesh.MeshSizeFactor = 2;\n", encoding="utf-8")
-    code = "import gmsh, geometry; from geometry.session import session\n"
+    code = "import gmsh, geometry; from geometry.shape import session\n"
     code += "gmsh.initialize(); print(gmsh.option.getNumber('Mesh.MeshSizeFactor')); gmsh.finalize()\n"
     code += "with session('a'): geometry.ridge(size=40e-6)(); print(len(gmsh.model.mesh.getNodes()[0]))"
     environment = {key: value for key, value in os.environ.items() if key != "GMSH_HOME"}

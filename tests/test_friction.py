@@ -13,9 +13,9 @@ from geometry.mesh import load
 from tests import test_contact, test_problem
 from tests.cycle import cycle
 from variational.body import Body
-from variational.contact import return_mapping
+from variational.contact import formulation
 from variational.contact.augmented import AugmentedLagrangian
-from variational.contact.formulation import Formulation, _limit
+from variational.contact.formulation import Formulation
 from variational.contact.friction import CONE_ROUNDOFF, Coulomb, Derjaguin, Friction, law_of
 from variational.contact.nitsche import Nitsche
 from variational.contact.penalty import Penalty
@@ -29,7 +29,7 @@ LIMIT = 2e4
 
 def traction(u_x: float, anchor: float = 0.0, limit: float = LIMIT) -> float:
     """Evaluate the law at numbers."""
-    return float(return_mapping.traction(ufl.as_ufl(u_x), anchor, limit, EPS_T))
+    return float(formulation.traction(ufl.as_ufl(u_x), anchor, limit, EPS_T))
 
 
 @pytest.mark.parametrize("part", [-3.0, -1.1, -0.9, -0.2, 0.0, 0.2, 0.9, 1.1, 3.0])
@@ -45,7 +45,7 @@ def test_anchor(part):
     """The new anchor slackens a spring that then gives the same traction. Tolerance: roundoff."""
     u_x = part * LIMIT / EPS_T
     t_t = traction(u_x)
-    anchor = return_mapping.new_anchor(u_x, t_t, EPS_T)
+    anchor = formulation.new_anchor(u_x, t_t, EPS_T)
     assert traction(u_x, anchor) == pytest.approx(t_t, rel=1e-14)
     assert anchor == pytest.approx((part - np.clip(part, -1, 1)) * LIMIT / EPS_T, abs=1e-12 * LIMIT / EPS_T)
 
@@ -53,14 +53,14 @@ def test_anchor(part):
 def test_open_point_carries_its_anchor_along():
     """Without pressure there is no traction, and the spring stays slack."""
     assert traction(5e-7, 0.0, 0.0) == 0
-    assert return_mapping.new_anchor(5e-7, 0.0, EPS_T) == 5e-7
+    assert formulation.new_anchor(5e-7, 0.0, EPS_T) == 5e-7
 
 
 @pytest.mark.parametrize("u_x", [5e-7, -5e-7, 0.0])
 def test_open_point_has_no_stiffness(u_x):
     """Nothing holds a point without pressure, be its spring slack or not: its place was carried along."""
     x = ufl.variable(ufl.as_ufl(u_x))
-    slope = ufl.diff(return_mapping.traction(x, 0.0, 0.0, EPS_T), x)
+    slope = ufl.diff(formulation.traction(x, 0.0, 0.0, EPS_T), x)
     assert float(ufl.algorithms.apply_derivatives.apply_derivatives(slope)) == 0
 
 
@@ -101,8 +101,6 @@ def test_dissipation_is_the_limit_times_the_way():
 # -- what is no law --------------------------------------------------------------------------------------------
 @dataclass(frozen=True)
 class Formula(Friction):
-    """A law of any formula."""
-
     formula: object
     scale: float = 1.0
 
@@ -156,15 +154,6 @@ def test_what_is_no_coefficient_is_refused(given):
         law_of(given)
 
 
-def test_limit_that_ufl_cannot_hold_is_refused():
-    """NumPy's functions take arrays, so that the law itself is one; the weak form cannot have it."""
-    law = Formula(lambda p: 1e3 * np.tanh(p / 1e3))
-    law.check()
-    with pytest.raises(ValueError, match="the law Formula cannot be put .*; write it with arithmetic, or") as error:
-        _limit(law, ufl.variable(ufl.as_ufl(1.0)))
-    assert "\n" not in str(error.value)
-
-
 def test_interface_takes_a_law_a_coefficient_or_none():
     laws = [Interface(Penalty(1e12, 1e11), given, 1e-6).friction for given in (LAW, 0.25, 1, 0, 0.0, None)]
     assert laws == [LAW, Coulomb(0.25), Coulomb(1.0), None, None, None]
@@ -198,7 +187,6 @@ EPS = Penalty(1e11, 1e10)
 
 
 def slid(law, way: float, formulation: Formulation = EPS) -> Body:
-    """Press a block and slide it to full slip."""
     body = load(MPI.COMM_WORLD, block(WIDTH, WIDTH / 2, WIDTH / 8))
     skin = {tags.STRATUM_CORNEUM: Ogden(86.76e3, -14.53, 0.48)}
     made = Body(body, skin, Interface(formulation, law, 1e-6), force_scale=FORCE, touch_depth=1e-6)

@@ -8,8 +8,7 @@ import ufl
 from mpi4py import MPI
 
 from fingerpad.model import simulation
-from fingerpad.model.feasibility import by_rule
-from fingerpad.model.options import FingerModel, plan
+from fingerpad.model.options import FingerModel, by_rule, plan
 from fingerpad.model.simulation import Simulation
 from fingerpad.scene import from_data
 from tests.runs import followed

@@ -2,16 +2,19 @@
 
 import math
 import re
+from dataclasses import replace
 
 import pytest
 
 import fingerpad as fp
 from fingerpad.report import trust
-from fingerpad.report.headline import head
+from fingerpad.report.trust import head
 from fingerpad.results.quantities import PLUS_MINUS
 from fingerpad.results.result import Result
 from fingerpad.results.states import load_result
 from fingerpad.scene import from_data
+from tests.measures import contact_state
+from tests.test_slices import whole
 from variational.state import ContactState, Errors
 
 WAVE = {"waveform": "sine", "amplitude": 120.0, "frequency": 20.0, "offset": 200.0}
@@ -27,8 +30,7 @@ SCENE = from_data(
 
 def state(time: float = math.nan, f_t: float = 4.0, **values) -> ContactState:
     given = {"f_ext": 10.0, "voltage": 100.0, "f_contact": 16.0, "f_electrostatic": 6.0, "load": "wave", "step": 9}
-    given |= {"ridges_in_contact": 5, "contact_length": 1e-3, "f_t": f_t, "mu_app": f_t / 10.0}
-    return ContactState(**given | values, time=time)
+    return contact_state(**given | {"f_t": f_t, "mu_app": f_t / 10.0} | values, time=time)
 
 
 def waved(*slips: bool) -> Result:
@@ -74,3 +76,36 @@ def test_plus_minus_is_explained_where_it_is_printed():
     shown = str(Result(fp.Scene(), "full", None, None, state(error=Errors(mu_app=0.0026))))
     assert PLUS_MINUS in shown and "what the finger and the model assume is not in it" in PLUS_MINUS
     assert PLUS_MINUS not in str(Result(fp.Scene(), "full", None, None, state()))
+
+
+# -- what a result prints --------------------------------------------------------------------------------------------
+def test_cautions_follow_the_notes_with_a_mark():
+    lines = str(fp.Result(fp.Scene(), "cylinders", None, None, state(), notes=("a note",), cautions=("mind this",)))
+    assert lines.startswith("Result (model 'cylinders')")
+    assert lines.splitlines()[-2:] == ["  a note", "  ! mind this"]
+    assert ["friction", "force", "f_T", "(N/m)", "4.000"] in [line.split() for line in lines.splitlines()]
+
+
+def test_states_of_two_meshes_name_them():
+    """As with an accuracy, whose uncharged state is of the path's mesh."""
+    coarse, fine = state(mesh_contact=20e-6, voltage=0.0), state(mesh_contact=5e-6)
+    told = str(fp.Result(fp.Scene(), "full", coarse, fine, fine))
+    assert "Facets of 20 µm (uncharged normal contact), 5 µm (charged normal contact), 5 µm (full slip): " in told
+    assert "Facets of" not in str(fp.Result(fp.Scene(), "full", fine, fine, fine))
+
+
+def test_whole_finger_comes_first_where_newtons_were_asked_for():
+    run = fp.Result(fp.Scene(), "full", None, None, state(), finger=whole())
+    assert str(run).startswith("Section at the centre of the finger\n") and str(run).endswith(str(run.finger))
+    asked = replace(run, scene=fp.Scene(force=0.5))
+    assert str(asked).startswith(str(run.finger))
+    assert "\nSection at the centre of the finger\n" in str(asked)
+    assert str(replace(asked, finger=None)).startswith("Result\n"), "a trace was interrupted"
+
+
+def test_cheaper_models_say_what_computed_them(tmp_path):
+    """In their files and reports, as a full run does."""
+    fp.run(model="cylinders", out=tmp_path)
+    page = (tmp_path / "report.html").read_text(encoding="utf-8")
+    assert f"<blockquote>fingerpad {fp.__version__}: two-scale" in page
+    assert fp.__version__ in fp.Result.load(tmp_path).to_xarray().attrs["provenance"]

@@ -19,7 +19,7 @@ from variational import compat
 from variational.history import BodyField, History, SkinField
 from variational.problem import Problem
 from variational.solvers.continuation import Continuation, StepFailed, Target
-from variational.solvers.failure import NotConverged
+from variational.solvers.outcome import NotConverged
 from variational.solvers.transfer import restore, take_snapshot
 
 pytestmark = pytest.mark.mpi
@@ -36,7 +36,6 @@ class Own:
 
     @classmethod
     def of(cls, problem: Problem, mesh_degree: int = 1) -> "Own":
-        """Add both to a problem."""
         slip = fem.Function(problem.surface.history_space)
         strain = fem.Function(fem.functionspace(problem.mesh, ("Discontinuous Lagrange", mesh_degree, (2, 2))))
         step = abs(problem.contact.new_anchor - problem.anchor)

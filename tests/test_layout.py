@@ -23,7 +23,6 @@ def space(request) -> fem.FunctionSpace:
 
 @pytest.fixture
 def layout(space) -> RigidRimLayout:
-    """The top of the square is rigid."""
     return RigidRimLayout(space, rim(space.mesh))
 
 

@@ -1,6 +1,5 @@
 """Tables of measurements beside computed values: what is read, compared, and refused in one sentence."""
 
-import csv
 import re
 import shutil
 
@@ -15,6 +14,7 @@ from fingerpad.measurements.table import Measured, read
 from fingerpad.runs.sweep import sweep
 from fingerpad.scene import Scene, SceneError
 from tests.commands import ROOT, refused
+from tests.measures import rows_of
 from tests.pages import blocks, printed
 
 
@@ -102,10 +102,7 @@ def test_what_is_compared(grid):
 @pytest.mark.parametrize(
     ("columns", "words"),
     [
-        (
-            {},
-            "no quantity; it has the columns Fn .N., U, CoF, and must have one of .* as in {'CoF': 'friction .1.'}",
-        ),
+        ({}, "no quantity; it has the columns Fn .N., U, CoF, and must have one of .* as in {'CoF': 'friction .1.'}"),
         ({"CoF": "friction"}, "column 3: 'CoF' has no unit; write 'friction .1.' in the head or by columns"),
         ({"CoF": "friction (1)", "Fn (N)": "force"}, "has no voltage, and its column 'U' may be one; name it"),
         ({"CoF": "friction (1)", "U": ""}, "has no force, and its column .* it out by {'Fn .N.': ''}"),
@@ -168,8 +165,7 @@ def at(known, force, voltage):
 
 def test_computed_values_are_those_of_the_sweep(folder):
     """At its points to roundoff; between them a power law of the force, and linear in U²; not beyond."""
-    with (folder / "table.csv").open(encoding="utf-8", newline="") as file:
-        rows = {(float(r["f_ext"]), float(r["voltage"])): float(r["full_slip_mu_app"]) for r in csv.DictReader(file)}
+    rows = {(float(r["f_ext"]), float(r["voltage"])): float(r["full_slip_mu_app"]) for r in rows_of(folder, "table")}
     found = computed(folder, asked())
     for (force, voltage), value in rows.items():
         assert at(found, [force * (1 + 1e-9)], [voltage])[0] == pytest.approx(value, rel=1e-12)
@@ -207,7 +203,7 @@ def test_numbers_are_written(folder, table, tmp_path, capsys):
     argv = ["compare-data", *map(str, second), "--sweep", str(folder), "--csv", str(csv_file)]
     assert main(argv) == 0
     assert capsys.readouterr().out.endswith(f"Written: {csv_file}\n")
-    rows = list(csv.DictReader(csv_file.read_text(encoding="utf-8").splitlines()))
+    rows = rows_of(tmp_path, "out")
     assert [(row["quantity"], row["state"], row["unit"]) for row in rows] == [
         *[("contact length", "full slip", "m")] * 2,
         ("friction", "full slip", "1"),

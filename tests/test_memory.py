@@ -7,9 +7,9 @@ from dolfinx import fem
 from mpi4py import MPI
 
 from fingerpad.accuracy.refinement import Refinement
-from fingerpad.model.feasibility import check, memory, unknowns
+from fingerpad.accuracy.solves import Solves
 from fingerpad.model.finger import meshed
-from fingerpad.model.options import FingerModel, plan
+from fingerpad.model.options import FingerModel, check, memory, plan, unknowns
 from fingerpad.scene import SceneError, from_data
 from geometry import fingertip
 from geometry.mesh import load
@@ -86,13 +86,7 @@ def test_mesh_that_needs_too_much_memory_is_refused_when_it_is_made():
         meshed(FingerModel(scene, plan(scene)), MPI.COMM_WORLD)
 
 
-@pytest.mark.parametrize(
-    ("mesh", "key"),
-    [
-        ({"contact": 1e-8}, "contact"),
-        ({"interface": 1e-8}, "interface"),
-    ],
-)
+@pytest.mark.parametrize(("mesh", "key"), [({"contact": 1e-8}, "contact"), ({"interface": 1e-8}, "interface")])
 def test_too_fine_a_mesh(mesh, key):
     """The size that would help most is named, and a larger bound lets the scene pass."""
     with pytest.raises(SceneError, match=f"numerics.memory allows 16 GB: raise it, or make mesh.{key} larger"):
@@ -107,6 +101,6 @@ def test_refinement_ends_where_memory_does():
     numerics = scene.numerics.model_copy(update={"memory": 3e8})
     scene = scene.model_copy(update={"numerics": numerics})
     model = FingerModel(scene, plan(scene))
-    search = Refinement(model, known(model, {}, MPI.COMM_SELF), MPI.COMM_SELF, lambda line: None, lambda: None)
+    search = Refinement(Solves(model, known(model, {}, MPI.COMM_SELF), MPI.COMM_SELF, lambda line: None, lambda: None))
     search.run()
     assert search.failure.startswith("the accuracy asked for could not be established: the mesh ")

@@ -17,6 +17,7 @@ from geometry import tags
 from geometry.mesh import load
 from geometry.profiles import GeometryError
 from tests.measures import straightened
+from tests.pages import ROOT, blocks, printed
 from variational.contact.penalty import Penalty
 from variational.materials.ogden import Ogden
 
@@ -359,11 +360,9 @@ def test_other_file_is_refused_and_not_run(place, text):
 @pytest.mark.slow
 def test_page_runs(tmp_path, monkeypatch):
     """The example of the documentation runs as written."""
-    page = Path(__file__).parents[1] / "docs" / "mesh.md"
-    blocks = re.findall(r"```python\n(.*?)```", page.read_text(encoding="utf-8"), flags=re.DOTALL)
     monkeypatch.chdir(tmp_path)
-    space: dict = {}
-    for block in blocks:
-        exec(block, space)
-    skin = space["pad"].skin
+    names: dict = {}
+    for code, _ in blocks((ROOT / "docs" / "mesh.md").read_text(encoding="utf-8")):
+        printed(code, names)
+    skin = names["pad"].skin
     assert (np.diff(skin.x.ravel()) > 0).all()

@@ -26,6 +26,7 @@ from variational.quantities import RidgeLoads
 from variational.roughness.bam import BearingArea
 from variational.solvers.continuation import Target
 
+pytestmark = pytest.mark.slow
 H_0, FORCE = 0.514e-6, 5.0
 MESH = {"contact": 30e-6, "receptor": 80e-6, "interface": 150e-6, "growth": 0.8, "touching_half_arc": 1.3e-3}
 PRESS = {"name": "press", "f_ext": 2.0}
@@ -55,11 +56,7 @@ def test_what_cannot_matter_is_left_out_with_its_reason(data, part, reason):
 
 @pytest.mark.parametrize(
     "data",
-    [
-        {"history": [PRESS, {"name": "on", "voltage": 10.0}, {"name": "off", "voltage": 0.0}]},
-        {"friction": 1e-6},
-        {},
-    ],
+    [{"history": [PRESS, {"name": "on", "voltage": 10.0}, {"name": "off", "voltage": 0.0}]}, {"friction": 1e-6}, {}],
 )
 def test_what_matters_for_a_while_stays(data):
     """A voltage that is switched off again, a little friction."""
@@ -71,7 +68,6 @@ def test_what_matters_for_a_while_stays(data):
 # -- forms -------------------------------------------------------------------------------------------------
 @pytest.fixture(scope="module")
 def body():
-    """One papillary ridge."""
     return load(MPI.COMM_WORLD, ridge(20e-6))
 
 
@@ -154,7 +150,6 @@ RESULTS = ["bone_height", "f_contact", "contact_length", "ridges_in_contact"]
 
 @pytest.fixture(scope="module")
 def pressed(tmp_path_factory):
-    """A finger pressed by displacement without voltage."""
     folder = tmp_path_factory.mktemp("pressed")
     return folder, summary_of({"history": [{"name": "press", "bone_height": -60e-6}]}, folder)
 

@@ -10,14 +10,12 @@ from dolfinx import fem
 from mpi4py import MPI
 
 from variational import compat, kinematics
-from variational.cellwise import Cellwise
 from variational.contact.penalty import Penalty
-from variational.materials import ogden, saint_venant, stress
+from variational.materials import ogden, saint_venant
 from variational.materials.ogden import Ogden
 from variational.materials.saint_venant import SaintVenant
-from variational.output import Fields, gather_mesh, sed_per_cell
+from variational.output import Cellwise, Fields, Receptors, gather_mesh, sed_per_cell
 from variational.problem import Interface, Problem
-from variational.receptors import Receptors
 from variational.surface import Surface
 
 pytestmark = pytest.mark.mpi
@@ -44,7 +42,6 @@ def block(comm: MPI.Comm = MPI.COMM_WORLD) -> Problem:
 
 
 def deform(problem: Problem, F: np.ndarray) -> None:
-    """Impose x = F X."""
     problem.w.interpolate(lambda x: (F - np.eye(2)) @ x[:2])
 
 
@@ -87,7 +84,7 @@ def test_cauchy_stress(problem, F):
     """All nine components of both solids; 1e-9 of the largest is what central differences leave ((h a)^2 / 24)."""
     deform(problem, F)
     gradient = kinematics.deformation_gradient(ufl.grad(problem.u))
-    expressions = {tags: stress.cauchy(law, gradient) for tags, law in problem.laws.items()}
+    expressions = {tags: kinematics.cauchy(law, gradient) for tags, law in problem.laws.items()}
     found = Cellwise(problem.mesh, problem.cell_tags, expressions, np.array([[0.3, 0.3]])).evaluate()[:, 0]
     for tag in SOLIDS:
         cells = problem.cell_tags.find(tag)
@@ -100,7 +97,7 @@ def test_no_stress_unloaded(problem):
     """At F = I every component vanishes, to roundoff of a shear modulus of 1e5 Pa times 15."""
     deform(problem, np.eye(2))
     gradient = kinematics.deformation_gradient(ufl.grad(problem.u))
-    expressions = {tags: stress.cauchy(law, gradient) for tags, law in problem.laws.items()}
+    expressions = {tags: kinematics.cauchy(law, gradient) for tags, law in problem.laws.items()}
     found = Cellwise(problem.mesh, problem.cell_tags, expressions, np.array([[0.3, 0.3]])).evaluate()
     assert np.abs(found).max() < 1e-9
 
@@ -110,7 +107,7 @@ def test_uniaxial_strain_of_ogden():
     mesh = dolfinx.mesh.create_unit_square(MPI.COMM_SELF, 1, 1)
     F = ufl.as_matrix([[1.0, 0.0], [0.0, fem.Constant(mesh, 0.9)]])
     solid = Ogden(1.0, -14.53, 0.475)
-    sigma = stress.cauchy(solid, ufl.variable(F))
+    sigma = kinematics.cauchy(solid, ufl.variable(F))
     compiled = fem.Expression(ufl.as_vector([sigma[0, 0], sigma[2, 2]]), np.array([[0.3, 0.3]]))
     xx, zz = compat.evaluate_on_cells(compiled, mesh, np.array([0], dtype=np.int32))[0]
     assert zz == pytest.approx(xx, rel=ROUNDOFF)

@@ -11,6 +11,7 @@ from fingerpad.reduced.cylinders import tip_radius
 from fingerpad.results.over_time import HARMONICS, over_time, spectrum
 from fingerpad.scene import Scene, from_data
 from fingerpad.scene.waveform import Waveform
+from tests.measures import contact_state
 from variational.attraction.cylinder import Cylinder
 from variational.state import ContactState
 
@@ -27,12 +28,8 @@ def wave(kind: str, offset: float = 0.0) -> Waveform:
 def states(samples, friction) -> list[ContactState]:
     """Return states of a friction force (N/m) that is a function of the voltage alone."""
     return [
-        ContactState(
-            f_ext=1.0, voltage=u, f_t=friction(u), mu_app=0.5, f_contact=2.0, f_electrostatic=1.0, ridges_in_contact=1,
-            contact_length=1e-3, step=k, time=7.0 + t,
-        )
-        for k, (t, u) in enumerate(samples)
-    ]  # fmt: skip
+        contact_state(voltage=u, f_t=friction(u), mu_app=0.5, step=k, time=7.0 + t) for k, (t, u) in enumerate(samples)
+    ]
 
 
 def by_quadrature(values: np.ndarray) -> np.ndarray:
@@ -81,7 +78,7 @@ def test_friction_of_a_charged_cylinder(offset):
 
     @cache
     def of(amount: float) -> float:
-        return 0.25 * ridge.under_load(4.0, amount).f_contact
+        return 0.25 * ridge.under_loads([4.0], amount)[0].f_contact
 
     def friction(voltage: float) -> float:
         return of(round(abs(voltage), 9))

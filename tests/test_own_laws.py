@@ -1,15 +1,32 @@
-"""Limits of friction by other functions than arithmetic."""
+"""Laws of one's own in runs, in the reduced models and in the rule of thumb; limits of friction, and closures."""
 
 from dataclasses import dataclass
 
 import numpy as np
 import pytest
 import ufl
+from mpi4py import MPI
 
 import fingerpad as fp
-from fingerpad.scene import SceneError
-from tests.small_finger import small
-from variational.contact.friction import Friction
+from fingerpad.model import options
+from fingerpad.model.simulation import Simulation
+from fingerpad.reduced import cylinders
+from fingerpad.runs import full
+from fingerpad.runs.context import RunContext
+from fingerpad.scene import Scene, SceneError, from_data, remarks
+from geometry import tags
+from tests.measures import rows_of
+from tests.runs import followed
+from tests.small_finger import NINE, small
+from tests.test_laws import DERJAGUIN, OWN, Held, Mine
+from variational.contact.friction import CONE_ROUNDOFF, Coulomb, Derjaguin, Friction
+from variational.materials.neo_hooke import NeoHooke
+from variational.materials.ogden import Ogden
+from variational.roughness.bam import BearingArea
+from variational.roughness.closure import AirGap, check
+from variational.solvers.coupling import Coupling
+
+SMALL = NINE | {"f_ext": 1.0, "voltage": 100.0, "slide_length": 1e-3, "output": {"errors": False, "receptors": False}}
 
 
 # -- limits ----------------------------------------------------------------------------------------------------
@@ -27,12 +44,11 @@ class Cap(Friction):
 
 @dataclass(frozen=True)
 class Tanh(Friction):
-    """Of NumPy alone."""
-
     def limit(self, p):
         return 1e3 * np.tanh(p / 1e3)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("f_ext", "ratio"), [(200.0, 1.11), (2000.0, 1.02)])
 def test_limit_with_other_functions_than_arithmetic(f_ext, ratio):
     """A cap that bears all along the contact: its strength is per reference area, which docs/laws.md compares."""
@@ -41,7 +57,168 @@ def test_limit_with_other_functions_than_arithmetic(f_ext, ratio):
     assert slip.f_t / (1e3 * slip.contact_length) == pytest.approx(ratio, abs=0.01)
 
 
+@pytest.mark.slow
 def test_limit_that_the_weak_form_cannot_take_is_refused():
     scene = small(output={"receptors": False, "errors": False})
     with pytest.raises(SceneError, match="the limit of the law Tanh cannot be put into the weak form"):
         fp.run(scene.replace(friction=Tanh()))
+
+
+# -- laws of one's own in the reduced models, and in the rule of thumb -----------------------------------------------
+def test_cylinders_take_any_friction_law():
+    """f_T is the limit at each state's mean pressure over its length. Tolerance: roundoff."""
+    for law in (DERJAGUIN, OWN["friction"], Coulomb(0.25)):
+        slip = cylinders.solve(Scene(friction=law)).full_slip
+        length = slip.contact_length
+        assert slip.f_t == pytest.approx(law.limit(slip.f_contact / length) * length, rel=1e-14)
+        assert slip.mu_app == pytest.approx(slip.f_t / 75.0, rel=1e-14)
+
+
+def test_cylinders_take_any_closure():
+    """Each ridge is Maugis's cylinder at the closure's own gap."""
+    found = cylinders.solve(Scene(roughness=Held()))
+    assert found.record["full_slip_d_eq"] == 2e-6
+    assert found.full_slip.f_electrostatic != cylinders.solve(Scene()).full_slip.f_electrostatic
+
+
+def test_cylinders_know_the_default_fingers_lengths_alone():
+    scene = Scene(materials={"stratum_corneum": NeoHooke(1e5)})
+    with pytest.raises(SceneError, match="materials is not that of the default finger, whose contact length is known"):
+        cylinders.solve(scene)
+    given = cylinders.given(1.5e-3, 15)
+    own, default = (cylinders.solve(one, given).full_slip.f_electrostatic for one in (scene, Scene()))
+    assert own != default
+
+
+def test_modulus_of_the_skin_is_the_given_materials():
+    """The same solid given as a key and as an object has the same modulus. Tolerance: roundoff."""
+    own = Scene(materials={"stratum_corneum": Ogden(86.76e3, -14.53, 0.48)})
+    assert remarks.skin_modulus(own) == pytest.approx(remarks.skin_modulus(Scene()), rel=1e-12)
+
+
+def test_rule_of_thumb_takes_a_law():
+    """More friction rolls the finger further, by the coefficient at a ridge's pressure."""
+    plain, rough = (options.by_rule(Scene(friction=law)) for law in (Coulomb(0.25), Derjaguin(0.25, 2e4)))
+    assert rough.mesh.touching_half_arc > plain.mesh.touching_half_arc
+
+
+def test_cylinders_take_no_mesh(tmp_path):
+    (tmp_path / "mine.msh").touch()
+    with pytest.raises(SceneError, match="geometry.file"):
+        cylinders.solve(Scene(geometry={"file": tmp_path / "mine.msh"}))
+
+
+# -- closures --------------------------------------------------------------------------------------------------------
+class Shape(Held):
+    def __call__(self, p_c):
+        return AirGap(np.array([1e-6, 1e-6]))
+
+
+class Telling(Held):
+    def state(self, p_c, voltage):
+        return repr(p_c)
+
+
+class Plain(Held):
+    def __call__(self, p_c):
+        return np.full_like(p_c, 1e-6)
+
+
+class Failing(Held):
+    def __call__(self, p_c):
+        raise KeyError("no such pressure")
+
+
+class Speechless(Held):
+    def state(self, p_c, voltage):
+        return None
+
+
+@pytest.mark.parametrize(
+    ("closure", "sentence"),
+    [
+        (Shape(), r"closure Shape returns air gaps of shape \(2,\) for pressures of shape"),
+        (Plain(), "closure Plain returns ndarray; it must return an AirGap"),
+        (Failing(), "closure Failing cannot be evaluated: .*no such pressure"),
+        (Speechless(), "closure Speechless returns None as a ridge's state; it must be text"),
+        (lambda p_c: p_c, "it must be a Closure, with p_c in and an AirGap out"),
+        (Held(0.0), "an air gap of 0 m at a pressure of 0 Pa; it must be finite and greater than 0"),
+    ],
+)
+def test_what_is_no_closure_is_refused(closure, sentence):
+    with pytest.raises(ValueError, match=sentence):
+        check(closure)
+    with pytest.raises(ValueError, match=sentence):
+        Coupling(None, None, closure)
+
+
+def test_closures_of_the_package_are_closures():
+    check(BearingArea(0.5e-6))
+    check(Held())
+    assert Held().state(1e4, 200.0) == ""
+
+
+@pytest.mark.slow
+def test_notes_are_of_the_pressures_that_the_closure_gets(tmp_path):
+    """Held air gaps make the forces the same whatever the length of Eq. 4 is; below them the skin is longer."""
+    history = [{"name": "press", "f_ext": 1.0}, {"name": "charge", "voltage": 100.0}]
+    data = {key: value for key, value in SMALL.items() if isinstance(value, dict)} | {"history": history}
+    told = {}
+    for length in ("pressure", "gap"):
+        scene = from_data(data | {"contact": {"length": length}}).replace(roughness=Telling())
+        full.run(scene, RunContext(tmp_path / length, MPI.COMM_SELF))
+        rows = [row for row in rows_of(tmp_path / length, "ridges") if float(row["p_c"]) > 0]
+        told[length] = np.array([[float(row["p_c"]), float(row["note"])] for row in rows])
+    np.testing.assert_array_equal(told["pressure"][:, 0], told["pressure"][:, 1])
+    np.testing.assert_array_equal(told["gap"][:, 0], told["pressure"][:, 0])
+    assert (told["gap"][:, 1] < 0.98 * told["gap"][:, 0]).all()
+
+
+@pytest.fixture(scope="module")
+def slid() -> Simulation:
+    """A small finger with a closure, a dermis and a friction law of one's own, pressed, charged and slid."""
+    scene = from_data(SMALL | OWN)
+    simulation = followed(scene)
+    return simulation
+
+
+@pytest.mark.slow
+@pytest.mark.mpi
+def test_finger_of_own_laws_reaches_full_slip(slid):
+    """f_T is the sum of the limits of its points. Tolerance: forces left at nodes, roundoff of the limit."""
+    state, limit = slid.states[-1], float(slid.finger.ridge_loads().f_limit.sum())
+    assert state.all_slip
+    assert state.f_t == pytest.approx(limit, abs=slid.finger.force_error + CONE_ROUNDOFF * limit)
+    assert state.f_contact - state.f_electrostatic == pytest.approx(1.0, abs=slid.finger.force_error)
+
+
+@pytest.mark.slow
+@pytest.mark.mpi
+def test_friction_of_own_law_is_below_coulombs(slid):
+    """It levels off with the pressure."""
+    loads = slid.finger.ridge_loads()
+    assert 0 < loads.f_limit.sum() < 0.95 * 0.4 * loads.f_contact.sum()
+
+
+@pytest.mark.slow
+@pytest.mark.mpi
+def test_air_gaps_are_the_closures(slid):
+    assert (slid.finger.coupling.d_eq == 2e-6).all()
+
+
+@pytest.mark.slow
+@pytest.mark.mpi
+def test_dermis_is_the_given_material(slid):
+    group = next(group for group in slid.finger.problem.laws if tags.DERMIS in group)
+    assert group == (tags.DERMIS,)
+    assert isinstance(slid.finger.problem.laws[group], Mine)
+
+
+@pytest.mark.slow
+@pytest.mark.mpi
+def test_energies_of_own_laws_balance(slid):
+    """What friction spends is positive, and steps that do not jump release little of it."""
+    sliding = [state.record for state in slid.states if state.load == "slide" and not state.record.jump]
+    spent = sum(record.dissipation for record in sliding)
+    assert spent > 0
+    assert sum(abs(record.energy_released) for record in sliding) < 0.1 * spent

@@ -13,7 +13,7 @@ from mpi4py import MPI
 import fingerpad as fp
 from fingerpad.cli import main
 from fingerpad.model.options import plan
-from fingerpad.report.parameters import again
+from fingerpad.report.page import again
 from fingerpad.results.folder import full_scene
 from fingerpad.scene import as_kept, from_data, load, override
 from geometry import fingertip
@@ -21,6 +21,7 @@ from geometry.parameters import Fingertip, MeshSize
 from tests.measures import rows_of
 from tests.test_meshfile import write
 
+pytestmark = pytest.mark.slow
 FINGER = Fingertip(ridge_count=13)
 SIZE = {"contact": 100e-6, "receptor": 200e-6, "interface": 200e-6, "growth": 0.5, "coarsest": 1e-3}
 OUTPUT = {"errors": False, "receptors": False}

@@ -1,15 +1,20 @@
 """How far a run is and what time is left of it, in a terminal, in a file, and in quiet."""
 
+import os
+import subprocess
+import sys
 from dataclasses import fields
+from pathlib import Path
 
 import pytest
 from mpi4py import MPI
 
 from fingerpad.cli import main
-from fingerpad.results.console import Console
-from fingerpad.results.pace import Pace, between
+from fingerpad.results import terminal
+from fingerpad.results.terminal import Console, Pace, between
 from fingerpad.runs.batch import times_left
-from variational.state import ContactState, StepRecord
+from tests.measures import contact_state
+from variational.state import StepRecord
 
 PRESS = '[[history]]\nname = "press"\nbone_height = -50e-6\n\n[output]\nerrors = false\nreceptors = false\n'
 MESH = "\n[mesh]\ncontact = 40e-6\nreceptor = 80e-6\ninterface = 150e-6\ngrowth = 0.8\n"
@@ -96,12 +101,8 @@ def test_step_shows_the_time_left_of_the_path(capsys, monkeypatch):
     console = Console(MPI.COMM_SELF)
     console.expect(1)
     work = {field.name: 0 for field in fields(StepRecord)}
-    conditions = {"f_ext": 1.0, "voltage": 0.0, "f_contact": 1.0, "f_electrostatic": 0.0, "f_t": 0.0, "mu_app": 0.0}
-    conditions |= {"bone_x": -0.0, "bone_height": -1e-12, "f_t": -1e-17, "mu_app": -1e-17}  # zeros have no sign
-    console.step(
-        ContactState(**conditions, load="press", contact_length=1e-3, ridges_in_contact=1, record=StepRecord(**work)),
-        0.5,
-    )
+    zeros = {"bone_x": -0.0, "bone_height": -1e-12, "f_t": -1e-17, "mu_app": -1e-17}  # have no sign
+    console.step(contact_state(**zeros, load="press", record=StepRecord(**work)), 0.5)
     console.close()
     out = capsys.readouterr().out
     assert out.endswith("  20 to 60 s\n") and "-0" not in out
@@ -114,3 +115,67 @@ def test_run_in_quiet_prints_the_result_alone(tmp_path, write, capsys):
     said = capsys.readouterr().out
     assert said.count("ridges in contact") == 1
     assert not any(words in said for words in ("path left", "meshing the finger", "Report: "))
+
+
+# -- whether a person watches the output -----------------------------------------------------------------------------
+ROOT = Path(__file__).resolve().parents[1]
+
+
+class Screen:
+    def __init__(self, terminal: bool) -> None:
+        self.terminal = terminal
+
+    def isatty(self) -> bool:
+        return self.terminal
+
+
+@pytest.fixture
+def bare(monkeypatch):
+    for name in (*terminal._RANKS, "NO_COLOR"):
+        monkeypatch.delenv(name, raising=False)
+    monkeypatch.setenv("TERM", "xterm")
+    return monkeypatch
+
+
+@pytest.mark.parametrize(("name", "value"), [("NO_COLOR", "1"), ("TERM", "dumb"), ("PMIX_RANK", "1")])
+def test_nobody_watches(bare, name, value):
+    """Nor the ranks beside rank 0, whose output goes to the same terminal."""
+    bare.setattr("os.readlink", lambda path: "/dev/pts/3")
+    bare.setenv(name, value)
+    assert not terminal.watched(Screen(True))
+
+
+@pytest.mark.parametrize(("output", "watches"), [("/dev/pts/3", True), ("/tmp/log", False), ("pipe:[17]", False)])
+def test_the_launchers_output_counts(bare, output, watches):
+    """mpirun prints through a terminal of its own whatever its output goes to."""
+    bare.setenv("OMPI_COMM_WORLD_RANK", "0")
+    bare.setattr("os.readlink", lambda path: output)
+    assert terminal.watched(Screen(True)) == watches
+
+
+def test_closed_output_costs_nothing(tmp_path):
+    """After ``>&-``: the command does its work, and no file that it opens takes the number of the output."""
+    code = "import os, sys; from fingerpad.__main__ import main; sys.argv[1:] = ['params', 'f_ext']; code = main()\n"
+    code += f"open({str(tmp_path / 'found')!r}, 'w').write(f'{{code}} {{os.readlink(\"/proc/self/fd/1\")}}')"
+    done = subprocess.run(
+        [sys.executable, "-P", "-c", code],
+        env={**os.environ, "PYTHONPATH": str(ROOT)},
+        preexec_fn=lambda: [os.close(number) for number in range(3)],
+    )
+    assert (done.returncode, (tmp_path / "found").read_text()) == (0, "0 /dev/null")
+
+
+@pytest.mark.parametrize("error", [BrokenPipeError(), SystemExit(1)])
+def test_run_goes_on_where_nobody_reads(monkeypatch, error):
+    """After ``| head``: the steps are in the folder of results; rich raises SystemExit, or nothing of its own."""
+
+    console, printed = Console(MPI.COMM_SELF, bar=False), []
+
+    def broken(text, **options):
+        printed.append(text)
+        raise error
+
+    monkeypatch.setattr(console._progress.console, "print", broken)
+    for text in ("first", "second"):
+        console.show(text)
+    assert printed == ["first"]

@@ -1,5 +1,6 @@
 """The harness of the studies: numbers that are kept, and the pages that are drawn from them."""
 
+import json
 import math
 import shutil
 
@@ -37,24 +38,24 @@ class History:
         self.commits, self.brought = commits, next(iter(commits))
 
     def git(self, command, *words):
-        """Answer as git does."""
         return "\n".join({"log": [self.brought], "rev-list": self.commits}[command]).encode()
 
     def files(self, commit, paths):
-        """Return the files of a commit in folders or at paths."""
         found = self.commits["new" if commit == "HEAD" else commit]
         return {path: text for path, text in found.items() if path.startswith(tuple(paths))}
 
 
 @pytest.fixture
 def since(monkeypatch, tmp_path):
-    def since(page, made, **commits):
+    def since(page, made, pair=None, **commits):
         history = History(**commits)
+        (tmp_path / "same.json").write_text(json.dumps([pair] if pair else []), encoding="utf-8")
         monkeypatch.setattr(pages, "git", history.git)
         monkeypatch.setattr(pages, "files", history.files)
         monkeypatch.setattr(pages, "source", {"old": "01", "new": "02"}.__getitem__)
         harness.keep(page, {}, made, tmp_path)
-        return pages.stale(page, tmp_path)[1]
+        words, found = pages.stale(page, tmp_path)
+        return found if pair is None else (words.rpartition("; ")[2], found)
 
     return since
 
@@ -71,6 +72,17 @@ def test_page_is_older_where_its_code_computes_something_else(since):
     assert since("paper", MADE, old=OLD | drawing[0], new=OLD | drawing[1]) == []
     assert since("chart", MADE, old=OLD, new=NEW | {"variational/new.py": b"x"}) == []  # imported by none of the others
     assert since("chart", MADE, old=OLD, new={}) == ["benchmarks/chart.py", "variational/x.py"]
+
+
+def test_page_of_code_that_computes_the_same_within_a_tolerance(since):
+    """A pair of commits is accepted and its tolerance is named; changes of other files count all the same."""
+    pair, now = {"before": "old", "now": "new", "within": 1e-12}, NEW | {"variational/x.py": b"x = 2"}
+    assert since("errors", MADE, pair, old=OLD, new=now) == (
+        "the packages compute the same within 1e-12 (same.json)", [],
+    )  # fmt: skip
+    assert since("chart", MADE, pair, old=OLD, new=NEW | CHANGED)[1] == ["benchmarks/chart.py"]
+    words, found = since("errors", MADE, pair | {"before": "new"}, old=OLD, new=now)
+    assert "within" not in words and found == ["variational/x.py"]
 
 
 def test_results_differ_by_their_numbers_alone():

@@ -9,7 +9,7 @@ import pytest
 from benchmarks.harness import DOCS, Made, keep, kept
 from benchmarks.limits import Limit
 from benchmarks.paper import __main__ as command
-from benchmarks.paper import fields, friction, page
+from benchmarks.paper import fields, friction
 from benchmarks.paper.statement import BUILT, HOLDS, NOT
 from fingerpad.scene import Scene
 
@@ -97,7 +97,7 @@ def test_missing_runs_are_named(tmp_path, capsys):
     numbers = command.collect(tmp_path / "runs")
     assert [s["figure"] for s in numbers["statements"]] == ["4, Eq. 14", "5, Eq. 15"]
     keep("paper", numbers, MADE, tmp_path)
-    assert "**Not run yet:** Fig. 2, Figs. 6 to 8" in page.draw(tmp_path).read_text(encoding="utf-8")
+    assert "**Not run yet:** Fig. 2, Figs. 6 to 8" in command.draw(tmp_path).read_text(encoding="utf-8")
     assert "missing: Fig. 2, run" in capsys.readouterr().out
 
 
@@ -117,4 +117,4 @@ def test_page_in_git_is_of_its_numbers(tmp_path):
     for found, told in zip(again, [s for s in numbers["statements"] if s["figure"] in of_grid], strict=True):
         assert asdict(found) | {"numbers": None} == told | {"numbers": None}
         assert found.numbers == pytest.approx(told["numbers"], rel=1e-9)
-    assert page.draw(tmp_path).read_text(encoding="utf-8").count("| **") == len(numbers["statements"])
+    assert command.draw(tmp_path).read_text(encoding="utf-8").count("| **") == len(numbers["statements"])

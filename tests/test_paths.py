@@ -29,8 +29,6 @@ H_0, EPS_0 = 0.514e-6, 8.854e-12
 
 @dataclass
 class State:
-    """What a step left."""
-
     load: str
     voltage: float
     d_eq: float
@@ -185,7 +183,6 @@ class FlatRidge:
 
     @property
     def folds(self) -> tuple[float, float]:
-        """Voltages at which the ridge jumps off and on."""
         return float(np.sqrt(self.off.fun)), float(np.sqrt(-self.on.fun))
 
     def d_eq(self, voltage: float, near: bool) -> float:

@@ -1,17 +1,21 @@
 """Options of PETSc that it refuses or does not know end a run before it starts, with one sentence."""
 
+import importlib.util
+import json
+import re
+
 import pytest
 from mpi4py import MPI
 from petsc4py import PETSc
 
-from fingerpad.results import petsc_options
-from fingerpad.results.petsc_options import OptionError
+from fingerpad.results import provenance as module
+from fingerpad.results.provenance import OptionError, check_options, provenance
 
 
 @pytest.fixture
 def given():
     """Return a function that gives options as a command line does; they are gone afterwards."""
-    petsc_options.check()  # PETSc's help lists each kind of options once a process
+    check_options()  # PETSc's help lists each kind of options once a process
     options, before = PETSc.Options(), PETSc.Options().getAll()
 
     def give(text: str) -> None:
@@ -39,7 +43,7 @@ def given():
 def test_values_that_petsc_refuses(given, text, named):
     given(text)
     with pytest.raises(OptionError) as refusal:
-        petsc_options.check(MPI.COMM_WORLD)
+        check_options(MPI.COMM_WORLD)
     assert str(refusal.value).startswith(f"PETSc refuses {named}: ")
     assert len(str(refusal.value)) < 300 and "\n" not in str(refusal.value)
 
@@ -55,28 +59,56 @@ def test_values_that_petsc_refuses(given, text, named):
 def test_misspelt(given, text, nearest):
     given(text)
     with pytest.raises(OptionError) as refusal:
-        petsc_options.check()
+        check_options()
     assert text in str(refusal.value) and "; the nearest known one is -fingerpad_" in str(refusal.value)
-    if nearest in petsc_options._KNOWN:  # PETSc's help lists it once a process, maybe in another test
+    if nearest in module._KNOWN:  # PETSc's help lists it once a process, maybe in another test
         assert str(refusal.value).endswith(nearest)
 
 
 def test_what_petsc_reads_is_allowed(given, capfd):
     """Monitors print nothing of the trial."""
     given("-fingerpad_snes_monitor -fingerpad_snes_converged_reason -fingerpad_mat_mumps_icntl_14 50")
-    petsc_options.check()
+    check_options()
     assert capfd.readouterr() == ("", "")
 
 
 def test_what_two_equations_do_not_have_is_left_to_the_first_solve(given):
     """A multigrid of two equations may have no coarser level; the options' names are judged when all is solved."""
     given("-fingerpad_pc_type gamg -fingerpad_mg_levels_9_ksp_typo cg")
-    petsc_options.check(element="P2-P1")
+    check_options(element="P2-P1")
     with pytest.raises(OptionError, match="mg_levels_9_ksp_typo"):
-        petsc_options.refuse_unread()
+        module.refuse_unread()
 
 
 def test_options_of_others_are_none_of_ours(given):
     given("-other_snes_type nonsense")
-    petsc_options.check()
-    assert petsc_options.in_use()["-other_snes_type"] == "nonsense"
+    check_options()
+    assert module.in_use()["-other_snes_type"] == "nonsense"
+
+
+# -- what else of the environment a summary holds --------------------------------------------------------------------
+PETSC_ALONE = importlib.util.find_spec("dolfinx_solver") is not None
+
+
+def test_versions():
+    versions = provenance()["versions"]
+    names = "fingerpad source dolfinx basix ffcx ufl petsc mumps gmsh numpy scipy python"
+    assert set(versions) == set(names.split())
+    linked = PETSC_ALONE and versions.pop("mumps") is None  # into PETSc's own file, which names no version of it
+    assert linked == PETSC_ALONE
+    assert all(re.match(r"\d+\.\d+", version) for name, version in versions.items() if name != "source")
+
+
+def test_nothing_else_of_the_environment(monkeypatch):
+    monkeypatch.setenv("MY_TOKEN", "secret")
+    assert "secret" not in json.dumps(provenance())
+
+
+def test_options():
+    """The solver's, and those that PETSc does not read."""
+    PETSC, name = PETSc.Options(), "fingerpad_ksp_rtol"
+    PETSC.setValue(name, "1e-3")
+    try:
+        assert provenance()["petsc_options"][f"-{name}"] == "1e-3"
+    finally:
+        PETSC.delValue(name)

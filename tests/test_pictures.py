@@ -1,22 +1,32 @@
 """Pictures of synthetic states: files that hold a picture, and axes that say what they show in which unit."""
 
+import re
+import shutil
 from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.colors import LogNorm
 from matplotlib.image import imread
 from matplotlib.tri import Triangulation
 
+import fingerpad as fp
 from fingerpad.results import style
+from fingerpad.results.curves import SurfaceProfile, history, saw_teeth, surface
 from fingerpad.results.finger_picture import finger
-from fingerpad.results.history_picture import history
-from fingerpad.results.skin_picture import SurfaceProfile, saw_teeth, surface
 from geometry import tags
-from variational.state import ContactState, Errors
+from tests.runs import no_pictures
+from tests.small_finger import small
+from variational.state import ContactState, Errors, StepRecord
 
-TITLE = style.conditions(75.0, 200.0, 0.25)
+LOADED = ContactState(
+    f_ext=75.0, voltage=200.0, f_t=0.0, mu_app=0.5, f_contact=150.0, f_electrostatic=75.0, ridges_in_contact=17,
+    contact_length=1.5e-3,
+)  # fmt: skip
+RECORD = StepRecord(*[0.0] * 7, *[0] * 4, jump=False)
+TITLE = style.conditions([LOADED], 0.25)
 BREAK = np.full(1, np.nan)
 
 
@@ -47,18 +57,18 @@ def profile(title: str, shift: float, sign: float) -> SurfaceProfile:
             np.tile(BREAK, (7, 1)),
         ]
     arrays = np.concatenate(columns, axis=1)
-    return SurfaceProfile(title, *arrays, f_ext=75.0, voltage=200.0, bone_x=shift, contact_length=1.5e-3)
+    return SurfaceProfile(title, replace(LOADED, bone_x=shift), *arrays)
 
 
-def steps(f_ext: list[float]) -> list[dict]:
+def steps(f_ext: list[float]) -> list[ContactState]:
     """Return four steps of pressing and charging, and eight of sliding, two of them jumps."""
     x = np.concatenate([np.zeros(4), np.linspace(0.2e-3, 1.6e-3, 8)])
     rows = []
     for k, (bone_x, load) in enumerate(zip(x, f_ext, strict=True)):
         length, ridges = 1.5e-3 - 0.1 * bone_x, 17 - (k > 6) - (k > 8)
-        row = {"bone_x": bone_x, "f_t": 35 * np.tanh(1e3 * bone_x), "f_ext": load, "contact_length": length}
-        row["mu_app"] = row["f_t"] / load
-        rows.append(row | {"ridges_in_contact": ridges, "jump": k in (7, 9)})
+        f_t, record = 35 * np.tanh(1e3 * bone_x), replace(RECORD, jump=k in (7, 9))
+        state = replace(LOADED, bone_x=bone_x, f_t=f_t, f_ext=load, mu_app=f_t / load, contact_length=length)
+        rows.append(replace(state, ridges_in_contact=ridges, record=record))
     return rows
 
 
@@ -114,7 +124,7 @@ def test_surface(tmp_path):
     for title, state in zip(titles, states, strict=True):
         assert state.title in title
         assert "75 N/m" in title and "200 V" in title and "1.5 mm" in title and "50 kPa" in title
-        assert f"$x$ = {state.bone_x * 1e3:g} mm" in title
+        assert f"$x$ = {state.state.bone_x * 1e3:g} mm" in title
     pressure = next(line for line in figure.axes[0].lines if line.get_label().startswith("contact pressure"))
     assert np.nanmax(pressure.get_ydata()) == pytest.approx(100.0)
     assert np.isnan(pressure.get_ydata()).sum() == 17  # lines break between ridges
@@ -145,7 +155,7 @@ def test_note_on_a_mesh_too_coarse_for_the_pressure(tooth, noted):
 @pytest.mark.parametrize("f_ext", [[20.0, 50.0] + 10 * [75.0], list(range(70, 82))], ids=["constant", "varying"])
 def test_history(tmp_path, f_ext):
     """It starts with the charged normal state, the last before sliding, and marks both jumps."""
-    figure = history(tmp_path / "history.png", steps(f_ext), "Sliding: " + TITLE, mu_0=0.25)
+    figure = history(tmp_path / "history.png", steps(f_ext)[3:], "Sliding: " + TITLE, mu_0=0.25)
     assert_picture(tmp_path / "history.png", figure)
     assert any("mu_{app}" in label for label in labels(figure))
     assert any("ridges in\ncontact" in label for label in labels(figure))
@@ -161,7 +171,8 @@ def test_history(tmp_path, f_ext):
 def test_limit_without_attraction_has_the_sign_of_friction(signs, lines):
     """A finger that slides to the left has a negative friction force."""
     rows = steps(12 * [75.0])
-    turned = [row | {key: sign * row[key] for key in ("bone_x", "f_t", "mu_app")} for sign in signs for row in rows]
+    keys = ("bone_x", "f_t", "mu_app")
+    turned = [replace(row, **{key: sign * getattr(row, key) for key in keys}) for sign in signs for row in rows]
     force = history(None, turned, TITLE, mu_0=0.25).axes[0]
     dashed = {
         line.get_ydata()[0] / 75.0 for line in force.lines if line.get_linestyle() == "--" and len(line.get_ydata())
@@ -172,9 +183,8 @@ def test_limit_without_attraction_has_the_sign_of_friction(signs, lines):
 def test_history_shows_estimated_errors(tmp_path):
     """Full slip has an error bar in both panels, normal contact in that of the contact length; none without errors."""
     rows, error = steps(12 * [75.0]), Errors(f_t=1.0, contact_length=2e-5)
-    common = {"f_ext": 75.0, "voltage": 200.0, "mu_app": 0.5, "f_contact": 150.0, "f_electrostatic": 75.0}
     states = {
-        name: ContactState(**common, bone_x=x, f_t=f_t, contact_length=1.4e-3, ridges_in_contact=16, error=error)
+        name: replace(LOADED, bone_x=x, f_t=f_t, contact_length=1.4e-3, error=error)
         for name, x, f_t in (("charged", 0.0, 0.0), ("full_slip", 1.4e-3, 35.0))
     }
     named = history(None, rows, TITLE, named=states)
@@ -195,6 +205,55 @@ def test_surface_without_contact(tmp_path):
     """No pressure anywhere is a state too."""
     touching = profile("above the screen", 0.0, 0.0)
     nothing = 0 * touching.p
-    state = replace(touching, y=touching.y + 1e-6, p=nothing, t=nothing, p_el=nothing, f_ext=0.0, contact_length=0.0)
+    state = replace(touching, y=touching.y + 1e-6, p=nothing, t=nothing, p_el=nothing)
+    state = replace(state, state=replace(LOADED, bone_x=0.0, f_ext=0.0, contact_length=0.0))
     surface(tmp_path / "surface.png", [state], TITLE)
     assert (tmp_path / "surface.png").stat().st_size > 10_000
+
+
+# -- pictures of a result that was read from its folder --------------------------------------------------------------
+KINDS = ("history", "surface", "finger")
+
+
+@pytest.fixture(scope="module", params=[{}, {"accuracy": {"mu_app": 0.2}}], ids=["plain", "refined"])
+def ran(request, tmp_path_factory) -> fp.Result:
+    """A run on one mesh, and one whose named states are on a finer mesh than its path."""
+    with no_pictures():
+        return fp.run(small(**request.param), out=tmp_path_factory.mktemp("run") / "out")
+
+
+def pixels(figure) -> bytes:
+    canvas = FigureCanvasAgg(figure)
+    canvas.draw()
+    return bytes(canvas.buffer_rgba())
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("kind", KINDS)
+def test_picture_is_that_of_the_run(ran, kind):
+    assert pixels(fp.Result.load(ran.folder).plot(kind)) == pixels(ran.plot(kind))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("kind", "missing"), [("surface", "surface.npz"), ("finger", "finger_*.npz")])
+def test_picture_whose_arrays_are_gone_is_refused(ran, tmp_path, kind, missing):
+    bare = shutil.copytree(ran.folder, tmp_path / "bare", ignore=shutil.ignore_patterns("*.npz", "*.bp"))
+    read = fp.Result.load(bare)
+    assert read.plot("history").axes
+    with pytest.raises(ValueError, match=re.escape(f"its folder has no {missing}")):
+        read.plot(kind)
+
+
+@pytest.mark.slow
+def test_folder_is_kept_and_a_damaged_file_is_none(ran, tmp_path, monkeypatch):
+    """Where the program goes to another folder; and where a file was cut short."""
+    shutil.copytree(ran.folder, tmp_path / "a", ignore=shutil.ignore_patterns("*.bp"))
+    (tmp_path / "b").mkdir()
+    monkeypatch.chdir(tmp_path)
+    read = fp.Result.load("a")
+    monkeypatch.chdir(tmp_path / "b")
+    assert read.plot("surface").axes
+    whole = (tmp_path / "a" / "surface.npz").read_bytes()
+    (tmp_path / "a" / "surface.npz").write_bytes(whole[: len(whole) // 2])
+    with pytest.raises(ValueError, match=r"its folder has no surface\.npz"):
+        read.plot("surface")

@@ -145,19 +145,18 @@ def test_fine_facets_are_about_the_crests():
     assert (np.abs(grooves).min(), np.abs(grooves).max()) == pytest.approx((0.4, 0.5), abs=0.5 * UM / WAVE)
 
 
-def test_merkel_sites_are_in_the_epidermis(profiles):
-    """One a ridge, 20 um above the intermediate ridge's tip and below the SC. Tolerance: roundoff of centimetres."""
-    s = np.array(profiles.ridges) * WAVE
-    depth = np.full(55, 1) * (HALF_DEPTH + 880 * UM)
-    assert_allclose(profiles.merkel_sites(), profiles.point(s, depth), rtol=0, atol=1e-15)
-    assert (profiles.sc_ve(s) < depth).all()
-    assert (depth < profiles.ve_d(s)).all()
+@pytest.mark.parametrize(
+    ("sites", "places", "deep", "above", "below"),
+    [("merkel_sites", [0.0], 880, "sc_ve", "ve_d"), ("meissner_sites", [-0.25, 0.25], 470, "ve_d", "d_sub")],
+)
+def test_sites_are_in_their_layers(profiles, sites, places, deep, above, below):
+    """Merkel: one a ridge, 20 um above the intermediate ridge's tip and below the SC.
 
-
-def test_meissner_sites_are_in_the_papillae(profiles):
-    """Two a ridge, 20 um below the tops of the papillae and above the subcutis. Tolerance: roundoff of centimetres."""
-    s = ((np.array(profiles.ridges)[:, None] + [-0.25, 0.25]) * WAVE).ravel()
-    depth = np.full(110, HALF_DEPTH + 470 * UM)
-    assert_allclose(profiles.meissner_sites(), profiles.point(s, depth), rtol=0, atol=1e-15)
-    assert (profiles.ve_d(s) < depth).all()
-    assert (depth < profiles.d_sub(s)).all()
+    Meissner: two a ridge, 20 um below the tops of the papillae and above the subcutis. Tolerance: roundoff of
+    centimetres.
+    """
+    s = ((np.array(profiles.ridges)[:, None] + places) * WAVE).ravel()
+    depth = np.full(55 * len(places), HALF_DEPTH + deep * UM)
+    assert_allclose(getattr(profiles, sites)(), profiles.point(s, depth), rtol=0, atol=1e-15)
+    assert (getattr(profiles, above)(s) < depth).all()
+    assert (depth < getattr(profiles, below)(s)).all()

@@ -1,6 +1,5 @@
 """Outputs: one entry, of a user or of the package, is in text, tables, files, sweeps and reports, and read back."""
 
-import csv
 import json
 import math
 from pathlib import Path
@@ -14,8 +13,10 @@ from fingerpad.report.write import write
 from fingerpad.results import quantities
 from fingerpad.scene import from_data
 from geometry.units import in_si
+from tests.measures import rows_of
 from tests.test_dataset import SCENE
 
+pytestmark = pytest.mark.slow
 P_MEAN = fp.Output(
     "p_mean", "kPa", lambda state: state.f_contact / state.contact_length, words="mean pressure p_m", digits=2
 )
@@ -24,7 +25,6 @@ MERKEL = fp.Output("merkel_max", "J/m^3", lambda state: state.sites.merkel.max()
 
 @pytest.fixture(scope="module")
 def result(tmp_path_factory):
-    """A run of seconds with two outputs of its own."""
     folder = tmp_path_factory.mktemp("run")
     return fp.run(from_data(SCENE), out=folder, comm=MPI.COMM_SELF, outputs=[P_MEAN, MERKEL])
 
@@ -48,8 +48,7 @@ def test_output_is_printed_in_its_unit(result):
 
 
 def test_output_is_in_the_tables_in_si(result):
-    with (result.folder / "steps.csv").open(encoding="utf-8", newline="") as file:
-        assert [float(row["p_mean"]) for row in csv.DictReader(file)] == values_of(result)
+    assert [float(row["p_mean"]) for row in rows_of(result.folder, "steps")] == values_of(result)
     summary = json.loads((result.folder / "summary.json").read_text(encoding="utf-8"))
     assert summary["states"]["charged"]["p_mean"] == result.charged.p_mean
     most = max(state.p_mean for state in result.steps if state.load == "nudge")
@@ -84,8 +83,7 @@ def test_output_of_a_sweep(tmp_path):
     found = fp.sweep(fp.Scene(), tmp_path, model="cylinders", voltage=[0, 200], outputs=[P_MEAN])
     values = [each.full_slip.f_contact / each.full_slip.contact_length for each in found]
     assert found.array("p_mean").tolist() == values
-    with (tmp_path / "table.csv").open(encoding="utf-8", newline="") as file:
-        assert [float(row["full_slip_p_mean"]) for row in csv.DictReader(file)] == values
+    assert [float(row["full_slip_p_mean"]) for row in rows_of(tmp_path, "table")] == values
     assert found.to_xarray()["state_p_mean"].sel(state="full_slip").values.tolist() == values
     cell = f"{1e-3 * values[1]:.2f}"
     assert str(found).splitlines()[3].split()[-1] == cell

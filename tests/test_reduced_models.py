@@ -1,6 +1,5 @@
 """The registry of models: a model of one's own is one class and one line, and works wherever the others do."""
 
-import csv
 import json
 
 import pytest
@@ -8,9 +7,10 @@ import pytest
 import fingerpad as fp
 from fingerpad.cli import main
 from fingerpad.reduced import models
-from fingerpad.reduced.model import Model, at_rest, at_slip
+from fingerpad.reduced.model import Model, reduced_state
 from fingerpad.results.result import Result
 from fingerpad.scene import Scene, SceneError
+from tests.measures import rows_of
 
 LENGTH = 1e-3  # m, of every contact of the toy
 
@@ -21,10 +21,9 @@ class Block(Model):
     name, words = "block", "A rigid block on the screen"
 
     def solve(self, scene, context) -> Result:
-        """Return normal contact and full slip."""
         contact = {"f_contact": scene.f_ext, "f_electrostatic": 0.0, "contact_length": LENGTH, "ridges_in_contact": 1}
         contact["bone_height"] = -1e-5 * scene.f_ext
-        return Result(scene, self.name, None, at_rest(scene, contact), at_slip(scene, contact))
+        return Result(scene, self.name, None, *(reduced_state(scene, contact, slips) for slips in (False, True)))
 
 
 @pytest.fixture(autouse=True)
@@ -60,8 +59,7 @@ def test_sweep(tmp_path):
     table = fp.sweep(Scene(), tmp_path, model="block", friction=[0.2, 0.3])
     assert table.array("mu_app") == pytest.approx([0.2, 0.3], rel=1e-12)
     assert json.loads((tmp_path / "sweep.json").read_text())["model"] == "block"
-    with (tmp_path / "table.csv").open(encoding="utf-8", newline="") as file:
-        assert [row["friction"] for row in csv.DictReader(file)] == ["0.2", "0.3"]
+    assert [row["friction"] for row in rows_of(tmp_path, "table")] == ["0.2", "0.3"]
     assert "--model block" in (tmp_path / "report.html").read_text(encoding="utf-8")
 
 

@@ -12,7 +12,6 @@ from geometry.bodies import block
 from geometry.mesh import load
 from geometry.parameters import Fingertip, MeshSize
 from geometry.profiles import GeometryError, Profiles
-from geometry.sizing import check
 from tests.test_profiles import MM
 
 # -- refusals ------------------------------------------------------------------------------------------
@@ -94,10 +93,6 @@ def test_fingertip_is_refused(given, message):
         sizing.check_shape(Profiles(Fingertip(**given)))
 
 
-def test_default_is_accepted(profiles):
-    sizing.check_shape(profiles)
-
-
 def test_limits_that_are_named_can_be_followed():
     """They are rounded to the side that is accepted."""
     small = {
@@ -115,25 +110,14 @@ def test_limits_that_are_named_can_be_followed():
     sizing.check_shape(Profiles(Fingertip(nail_thickness=least)))
 
 
-@pytest.mark.parametrize(
-    "wavelength",
-    [
-        483e-6,
-    ],
-)
-def test_most_ridges_that_are_named_fit(wavelength):
+def test_most_ridges_that_are_named_fit():
     """The message gives a number that is accepted, and the next odd one is not."""
     with pytest.raises(GeometryError) as refusal:
-        sizing.check_shape(Profiles(Fingertip(ridge_count=101, ridge_wavelength=wavelength)))
+        sizing.check_shape(Profiles(Fingertip(ridge_count=101)))
     most = int(str(refusal.value).split()[-2])
-    sizing.check_shape(Profiles(Fingertip(ridge_count=most, ridge_wavelength=wavelength)))
+    sizing.check_shape(Profiles(Fingertip(ridge_count=most)))
     with pytest.raises(GeometryError):
-        sizing.check_shape(Profiles(Fingertip(ridge_count=most + 2, ridge_wavelength=wavelength)))
-
-
-def test_contact_size_is_refused():
-    with pytest.raises(GeometryError, match="contact size 0.00013 m is too large for a ridge of 0.000483 m"):
-        check(Fingertip(), MeshSize(contact=130e-6))
+        sizing.check_shape(Profiles(Fingertip(ridge_count=most + 2)))
 
 
 @pytest.mark.mpi

@@ -21,6 +21,7 @@ from fingerpad.scene import Scene
 from tests.browser import SIZES, asked
 from tests.small_finger import small
 
+pytestmark = pytest.mark.slow
 FEW = "contacts of few facets"
 STEPS = """
 const seen = [];

@@ -11,10 +11,9 @@ from petsc4py import PETSc
 
 from fingerpad.accuracy.solves import StateRecorder
 from fingerpad.model import report
-from fingerpad.model.stability import FullSlip
+from fingerpad.model.checks import FullSlip
 from fingerpad.model.state import force_error
 from fingerpad.results import drawing, writing
-from fingerpad.results.drawing import Profile
 from fingerpad.results.states import RESULTS, named
 from fingerpad.scene import from_data
 from tests.measures import rows_of
@@ -23,7 +22,9 @@ from tests.small_finger import NINE
 from variational.contact.friction import CONE_ROUNDOFF
 from variational.solvers.iteration import PREFIX
 from variational.solvers.newton import Solver
+from variational.state import Skin
 
+pytestmark = pytest.mark.slow
 MU_0 = 0.25
 LEAN = NINE | {"output": {"errors": False, "receptors": False}}
 PRESS, SLIDE = {"name": "press", "f_ext": 1.0}, {"name": "slide", "bone_x": 1e-3, "until_full_slip": True}
@@ -38,19 +39,18 @@ def kept_titles(monkeypatch: pytest.MonkeyPatch) -> dict[str, str]:
 
     def surface(path, states, title):
         found[Path(path).stem] = title
-        found.update({state.title: drawing.skin_picture._surface_title("A", state) for state in states})
+        found.update({state.title: drawing.curves._surface_title("A", state) for state in states})
 
-    def history(path, rows, title, mu_0, named):
+    def history(path, states, title, mu_0, named):
         found[Path(path).stem] = title
 
-    for module, function in (("finger", finger), ("skin", surface), ("history", history)):
-        monkeypatch.setattr(getattr(drawing, f"{module}_picture"), function.__name__, function)
+    for module, function in (("finger_picture", finger), ("curves", surface), ("curves", history)):
+        monkeypatch.setattr(getattr(drawing, module), function.__name__, function)
     return found
 
 
 @pytest.fixture
 def titles(monkeypatch) -> dict[str, str]:
-    """Titles of a run's pictures."""
     return kept_titles(monkeypatch)
 
 
@@ -276,9 +276,9 @@ def test_headline_states_are_shown_on_the_final_mesh(refined):
 
 def test_profile_is_sorted_along_each_ridge():
     """Two ridges, the second one's facets first: a line each, with a break between."""
-    profile = Profile(ridge=np.array([1, 0]), values=np.ones((7, 2, 2)), d_eq=np.array([1e-6, 2e-6]))
-    profile.values[0] = [[3e-3, 2e-3], [1e-3, 0.0]]
-    state = SimpleNamespace(f_ext=1.0, voltage=0.0, bone_x=0.0, contact_length=1e-3, ridges=None)
-    found = drawing._along(profile, "full slip", state, "")
-    assert found.x[[0, 1, 3, 4]] == pytest.approx([0.0, 1e-3, 2e-3, 3e-3]) and np.isnan(found.x[[2, 5]]).all()
-    assert found.d_eq[[0, 3]] == pytest.approx([1e-6, 2e-6])
+    x = np.array([[3e-3, 2e-3], [1e-3, 0.0]])
+    skin = Skin(np.array([1, 0]), x, *np.ones((4, 2, 2)))
+    state = SimpleNamespace(ridges=SimpleNamespace(number=np.array([0, 1]), d_eq=np.array([1e-6, 2e-6])))
+    found = drawing.sorted_along(skin, state)
+    assert found["x"][[0, 1, 3, 4]] == pytest.approx([0.0, 1e-3, 2e-3, 3e-3]) and np.isnan(found["x"][[2, 5]]).all()
+    assert found["d_eq"][[0, 3]] == pytest.approx([1e-6, 2e-6])

@@ -1,12 +1,8 @@
 """A run that is cut short goes on from its checkpoint, and computes what a run never stopped does."""
 
-import csv
-import os
 import random
 import shutil
 import signal
-import subprocess
-import sys
 from pathlib import Path
 
 import numpy as np
@@ -14,19 +10,19 @@ import pytest
 from mpi4py import MPI
 
 import fingerpad as fp
-from fingerpad.cli import run as command
 from fingerpad.model.simulation import Simulation
 from fingerpad.results.checkpoint import Checkpoint, CheckpointError
 from fingerpad.results.drawing import Drawing
 from fingerpad.results.writing import Writer
 from fingerpad.runs.batch import key, sweep
 from fingerpad.scene import SceneError
+from tests.test_ending import tables
 from tests.test_history import Own
 from variational.problem import Problem
 from variational.solvers.coupling import Coupling
 
+pytestmark = pytest.mark.slow
 ROOT = Path(__file__).resolve().parents[1]
-TABLES = ("steps", "ridges", "coupling")
 PRESS, CHARGE = {"name": "press", "f_ext": 2.0}, {"name": "charge", "voltage": 100.0}
 SLIDE = {"name": "slide", "bone_x": 0.5e-3, "until_full_slip": True}
 HISTORIES = {
@@ -51,18 +47,8 @@ def scene(history="charged at rest", **more) -> fp.Scene:
     return small.replace(history=loads, **changes).replace(**more)
 
 
-def tables(folder: Path) -> dict[str, list[dict[str, str]]]:
-    """Return all tables as text, without the time that steps took."""
-    found = {}
-    for name in TABLES:
-        with (folder / f"{name}.csv").open(encoding="utf-8", newline="") as file:
-            found[name] = [{k: v for k, v in row.items() if "seconds" not in k} for row in csv.DictReader(file)]
-    return found
-
-
 @pytest.fixture(autouse=True)
 def bare(monkeypatch):
-    """Nothing but tables and the summary is written."""
     monkeypatch.setattr(Drawing, "write", lambda *args: None)
     monkeypatch.setattr(Writer, "dataset", lambda self, result: "")
     monkeypatch.setattr("fingerpad.report.write.attempt", lambda folder: None)
@@ -92,7 +78,6 @@ def killed_at(monkeypatch):
 LONG = [pytest.param(name, marks=pytest.mark.long) for name in list(HISTORIES)[2:]]
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("history", [*list(HISTORIES)[:2], *LONG])
 def test_goes_on_to_the_last_bit(history, tmp_path, killed_at):
     """Killed twice on the way; the solves of earlier runs are not done again."""
@@ -117,80 +102,6 @@ def test_goes_on_to_the_last_bit(history, tmp_path, killed_at):
     assert not (cut / "checkpoint").exists()
 
 
-WRAPPER = """
-import os, sys, random
-kind, number = sys.argv.pop(1), int(sys.argv.pop(1))
-from tests.test_history import Own
-from variational.problem import Problem
-from variational.solvers.coupling import Coupling
-from fingerpad.results import checkpoint, files
-def kill_at(owner, name, do=lambda *args: None):
-    plain, count = getattr(owner, name), [0]
-    def call(*args, **more):
-        count[0] += 1
-        if count[0] == number:
-            do(*args)
-            os.kill(os.getpid(), 9)
-        return plain(*args, **more)
-    setattr(owner, name, call)
-if kind == "solve":
-    kill_at(Coupling, "solve")
-elif kind == "part":
-    kill_at(checkpoint.np, "savez", lambda stream, *rest: stream.write(b"PK half of it"))
-elif kind == "row":
-    kill_at(files.Table, "write")
-from fingerpad.results.drawing import Drawing
-Drawing.write = lambda *args: None
-from fingerpad.cli import main
-sys.exit(main(sys.argv[1:]))
-"""
-
-
-def process(kind: str, number: int, *words: str) -> int:
-    """Run a command that kills itself at a solve, in writing a part of the checkpoint, or at a row of a table."""
-    done = subprocess.run(
-        [sys.executable, "-c", WRAPPER, kind, str(number), *words],
-        env={**os.environ, "PYTHONPATH": str(ROOT)}, capture_output=True, text=True, check=False, timeout=600,
-    )  # fmt: skip
-    assert done.returncode in (0, -signal.SIGKILL), done.stderr[-2000:]
-    return done.returncode
-
-
-MOMENTS = [("solve", 9), ("part", 3), ("row", 40), *(("solve", n) for n in random.Random(1).sample(range(2, 36), 7))]
-
-
-@pytest.fixture(scope="module")
-def undisturbed(tmp_path_factory):
-    """Return a file of a scene with an error estimate, and the tables of its run."""
-    folder = tmp_path_factory.mktemp("undisturbed")
-    file = folder / "scene.toml"
-    text = (ROOT / "demos" / "scenes" / "small_finger.toml").read_text(encoding="utf-8")
-    file.write_text(text.replace("contact = 20e-6", "contact = 40e-6"), encoding="utf-8")
-    assert process("", 0, "run", str(file), "--quiet", "--out", str(folder / "run")) == 0
-    return file, tables(folder / "run"), (folder / "run" / "summary.json").read_text(encoding="utf-8")
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize(
-    ("kind", "number"), [MOMENTS[0], *(pytest.param(*m, marks=pytest.mark.long) for m in MOMENTS[1:])]
-)
-def test_kill_9(undisturbed, tmp_path, kind, number):
-    """At a solve of the path or of the error estimate, in writing a part, between two rows."""
-    file, whole, summary = undisturbed
-    out = tmp_path / "run"
-    assert process(kind, number, "run", str(file), "--quiet", "--out", str(out)) == -signal.SIGKILL
-    resumed = (out / "checkpoint").exists()
-    words = ["--resume", str(out)] if resumed else [str(file), "--out", str(out)]
-    assert process("", 0, "run", "--quiet", *words) == 0
-    assert tables(out) == whole
-
-    def lines(text):
-        return [line for line in text.splitlines() if not any(word in line for word in ("seconds", "memory"))]
-
-    assert lines((out / "summary.json").read_text(encoding="utf-8")) == lines(summary)
-
-
-@pytest.mark.slow
 @pytest.mark.mpi
 def test_on_another_number_of_ranks(tmp_path, killed_at):
     """Begun on one rank and finished on all; to 1e-8 the numbers of one rank."""
@@ -245,7 +156,6 @@ def refused(match: str, folder: Path, **more) -> None:
         fp.run(scene(**more), out=folder, resume=True)
 
 
-@pytest.mark.slow
 def test_refusals(cut_short, tmp_path_factory, capsys):
     """Of nothing to go on from, another scene, a damaged or foreign checkpoint; each in one sentence."""
     refused("has no checkpoint to go on from: its run has not come to one", tmp_path_factory.mktemp("empty"))
@@ -272,27 +182,6 @@ def test_refusals(cut_short, tmp_path_factory, capsys):
     refused("its run has reached its end", cut_short)
 
 
-def test_refused_options(tmp_path):
-    with pytest.raises(SceneError, match="only a full run in a folder can go on"):
-        fp.run(resume=True)
-    with pytest.raises(SceneError, match="only a full run in a folder can go on"):
-        fp.run(out=tmp_path, model="cylinders", resume=True)
-    for words in (["scene.toml"], ["--set", "voltage=1"], ["--model", "cylinders"], ["--out", "x"], ["--force", "1 N"]):
-        with pytest.raises(SceneError, match="and --resume are given"):
-            command.main([*words, "--resume", str(tmp_path)])
-    with pytest.raises(SceneError, match=r"has no scene.json of a run, and so no run to go on with"):
-        command.main(["--resume", str(tmp_path)])
-    for kept, match in (
-        ('{"model": "cylinders"}', "only a full one can go on"),
-        ('{"friction": {"law": "__main__:Mine"}}', "known to the program that made it alone; put it into a module"),
-        ('{"mesh": ' * 100_000 + "0" + "}" * 100_000, "has no scene.json of a run"),
-    ):
-        (tmp_path / "scene.json").write_text(kept, encoding="utf-8")
-        with pytest.raises(SceneError, match=match):
-            command.main(["--resume", str(tmp_path)])
-
-
-@pytest.mark.slow
 def test_numbers_do_not_depend_on_the_folder(tmp_path, monkeypatch):
     """To the last bit on one rank: the solver forgets at the same places. Without a folder nothing is kept."""
     inside = fp.run(scene(), out=tmp_path)
@@ -306,7 +195,6 @@ def test_numbers_do_not_depend_on_the_folder(tmp_path, monkeypatch):
     assert str(rows[0]) == str(rows[1])
 
 
-@pytest.mark.slow
 def test_checkpoint_of_another_mesh(cut_short, monkeypatch):
     """As by another version of gmsh: the places are compared, not trusted."""
     read = Checkpoint.read
@@ -322,7 +210,6 @@ def test_checkpoint_of_another_mesh(cut_short, monkeypatch):
         fp.run(scene(), out=cut_short, resume=True)
 
 
-@pytest.mark.slow
 def test_full_disk_under_the_checkpoint(tmp_path, monkeypatch):
     """What is there stays whole, and the run goes on from it when there is room."""
     write = Checkpoint.write

@@ -34,7 +34,6 @@ def test_first_key_that_differs_is_named(other, words):
 
 
 def flat(scene):
-    """Return what a rank gives of a scene."""
     kept = []
     _refuse_different(scene, SimpleNamespace(allgather=lambda mine: kept.append(mine) or [mine]))
     return kept[0]

@@ -1,13 +1,17 @@
 """Scenes: defaults are the paper's, and what is given wins."""
 
 import json
+import tomllib
 from pathlib import Path
 
+import jsonschema
 import pytest
 
-from fingerpad.model.feasibility import check
-from fingerpad.scene import Load, Scene, SceneError
+from fingerpad.cli import main
+from fingerpad.model.options import check
+from fingerpad.scene import Load, Scene, SceneError, from_data
 from fingerpad.scene import scene as scenes
+from fingerpad.scene.keys import DIALECT, schema
 from fingerpad.scene.reading import model_of
 from variational.contact.augmented import AugmentedLagrangian
 from variational.contact.nitsche import Nitsche
@@ -57,11 +61,6 @@ def test_file_and_overrides(write):
     assert (scene.mesh.contact, scene.mesh.receptor) == (8e-6, 30e-6)
 
 
-def test_part_of_a_layer_keeps_the_rest(write):
-    dermis = scenes.load(write("[materials.dermis]\nshear_modulus = 3e3\n")).materials.dermis
-    assert (dermis.shear_modulus, dermis.alpha, dermis.poisson) == (3e3, -14.53, 0.48)
-
-
 def test_no_force_where_the_skin_is_held(write):
     """Attraction or a prescribed height keeps the bone in place without a force."""
     path = write(
@@ -73,9 +72,11 @@ def test_no_force_where_the_skin_is_held(write):
 
 @pytest.mark.parametrize("path", sorted(SCENES.glob("*.toml")), ids=lambda path: path.stem)
 def test_scenes_that_come_along(path):
+    """They can be run, and are valid by the schema."""
     scene = scenes.load(path)
     check(scene)
     assert scene.loads()
+    CHECK.validate(tomllib.loads(path.read_text(encoding="utf-8")))
 
 
 @pytest.mark.parametrize("name", [None, "coarse.toml", "voltage_while_sliding.toml"])
@@ -134,3 +135,57 @@ def test_friendly_names(write):
     names = ["charge while sliding", "Größe – 200 V", "压", "a.b", "3"]
     path = write("\n".join(f'[[history]]\nname = "{name}"\nf_ext = 5' for name in names))
     assert [load.name for load in scenes.load(path).loads()] == names
+
+
+# -- the JSON Schema -------------------------------------------------------------------------------------------------
+FILE = Path(__file__).parents[1] / "docs" / "scene.schema.json"
+CHECK = jsonschema.Draft202012Validator(schema(Scene))
+WRONG = [
+    {"f_exts": 50.0},
+    {"mesh": {"contacts": 1e-5}},
+    {"mesh": {"contact": 10.0}},
+    {"friction": "0.2"},
+    {"contact": {"formulation": "nitche"}},
+    {"history": [{"f_ext": 1.0}]},
+    {"numerics": {"quadrature_points": 2.5}},
+]
+RIGHT = [
+    {},
+    {"f_ext": "50 N/m", "mesh": {"contact": "10 µm"}},
+    {"history": [{"name": "press", "bone_height": -1e-4}, {"name": "charge", "voltage": 0}]},
+    {"materials": {"dermis": {"shear_modulus": "3 kPa"}}},
+    {"geometry": {"ridge_profile": [1.0, -0.2]}},
+]
+
+
+def test_file_is_the_generated_one(capsys):
+    """If not: fingerpad params --schema > docs/scene.schema.json."""
+    assert main(["params", "--schema"]) == 0
+    assert FILE.read_text(encoding="utf-8") == capsys.readouterr().out
+
+
+def test_schema_is_of_its_dialect():
+    assert schema(Scene)["$schema"] == DIALECT
+    jsonschema.Draft202012Validator.check_schema(schema(Scene))
+
+
+@pytest.mark.parametrize("data", RIGHT, ids=json.dumps)
+def test_what_the_program_takes_is_valid(data):
+    from_data(data)
+    CHECK.validate(data)
+
+
+@pytest.mark.parametrize("data", WRONG, ids=json.dumps)
+def test_slip_is_refused_by_both(data):
+    with pytest.raises(SceneError):
+        from_data(data)
+    assert list(CHECK.iter_errors(data))
+
+
+def test_every_key_has_a_description():
+    """Editors show it beside the key; tables have that of their model."""
+    found = schema(Scene)
+    parts = [found, *found["$defs"].values(), *found["$defs"]["Contact"]["anyOf"]]
+    keys = [item for part in parts for item in part.get("properties", {}).items()]
+    bare = [key for key, value in keys if not {"description", "$ref"} & {*value}]
+    assert bare == []

@@ -15,8 +15,9 @@ from fingerpad.results.checkpoint import Checkpoint
 from fingerpad.scene import from_data
 from tests.pages import alike, blocks, printed
 from tests.runs import no_pictures
-from variational.roughness.selfaffine import SelfAffine
+from variational.roughness.spectrum import SelfAffine
 
+pytestmark = pytest.mark.slow
 ROOT = Path(__file__).resolve().parents[1]
 PAGES = [ROOT / "README.md", ROOT / "demos" / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
 SHOWN = sorted(

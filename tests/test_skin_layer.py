@@ -19,7 +19,6 @@ SLIDE = [Control(20e-6 * k, -40e-6) for k in (1, 2, 3)]
 
 @pytest.fixture(scope="module")
 def body():
-    """A ridge of some hundred cells."""
     return load(MPI.COMM_WORLD, ridge(20e-6))
 
 

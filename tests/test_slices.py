@@ -9,13 +9,13 @@ import pytest
 from numpy.testing import assert_allclose
 
 from fingerpad.results.finger_picture import footprint
-from fingerpad.scene import Scene, SceneError, override
-from fingerpad.scene.slices import Slices
+from fingerpad.scene import Scene, SceneError
+from fingerpad.scene.parameters import Slices
 from fingerpad.slices.errors import MESH
 from fingerpad.slices.finger import WholeFinger
-from fingerpad.slices.profile import cylinder, profile
-from fingerpad.slices.total import BeyondTrace, at_force, at_indentation
+from fingerpad.slices.total import BeyondTrace, Profile, at_force, at_indentation, profile
 from fingerpad.slices.trace import Trace, TraceError, gross_width, trace
+from tests.measures import contact_state
 from variational.state import ContactState, RidgeStates
 
 R_X, R_Z = 14e-3, 28e-3  # m
@@ -47,7 +47,8 @@ def kept(voltage: float, model: str = "full") -> Trace:
 
 def test_long_cylinder_is_the_cross_section_times_its_length():
     length, depth = 20e-3, 0.7e-3
-    total, one = at_indentation(cylinder(length), foundation(), depth, 12), foundation().at(np.array([depth]))
+    straight = Profile((0.0, length), np.zeros_like, np.ones_like, straight=True)
+    total, one = at_indentation(straight, foundation(), depth, 12), foundation().at(np.array([depth]))
     assert total.totals["f_ext"] == pytest.approx(length * one["f_ext"][0], rel=EXACT)
     assert total.totals["gross_area"] == pytest.approx(length * one["gross_width"][0], rel=EXACT)
     assert total.totals["f_ext"] / total.centre == pytest.approx(length, rel=EXACT)
@@ -139,27 +140,19 @@ def test_points_of_a_trace_are_its_states():
 def test_states_that_go_back_are_left_out():
     """Behind a jump the bone may come up again: the trace stays monotonic."""
     states = [
-        ContactState(
-            f_ext=force, voltage=0.0, f_t=0.0, mu_app=0.0, f_contact=force, f_electrostatic=0.0, ridges_in_contact=1,
-            contact_length=1e-4, bone_height=-depth,
-        )
+        contact_state(f_ext=force, contact_length=1e-4, bone_height=-depth)
         for force, depth in ((3.0, 3e-4), (1.0, 1e-4), (2.0, 2e-4), (4.0, 2.9e-4), (5.0, 4e-4), (5.0, 5e-4))
-    ]  # fmt: skip
+    ]
     assert trace(states, 5e-4).columns["f_ext"].tolist() == [1.0, 2.0, 3.0, 5.0]
 
 
 def test_gross_width_is_between_the_outer_edges():
     """Of ridges -1 to 2, of which one in the middle does not touch: three wavelengths and a mean contact."""
-    state = kept_state(ridges_in_contact=3, contact_length=3e-4)
+    state = contact_state(ridges_in_contact=3, contact_length=3e-4)
     assert gross_width(state, 5e-4) == pytest.approx(2 * 5e-4 + 1e-4)
     number, length = np.array([-2, -1, 0, 1, 2]), np.array([0, 1e-4, 0, 1e-4, 1e-4])
-    several = kept_state(ridges_in_contact=3, contact_length=3e-4, ridges=RidgeStates(number, length, *[length] * 5))
+    several = contact_state(ridges_in_contact=3, contact_length=3e-4, ridges=RidgeStates(number, length, *[length] * 5))
     assert gross_width(several, 5e-4) == pytest.approx(3 * 5e-4 + 1e-4)
-
-
-def kept_state(**values) -> ContactState:
-    given = {"f_ext": 1.0, "voltage": 0.0, "f_t": 0.0, "mu_app": 0.0, "f_contact": 1.0, "f_electrostatic": 0.0}
-    return ContactState(**given | values)
 
 
 # -- results -------------------------------------------------------------------------------------------
@@ -192,8 +185,6 @@ def test_finger_under_another_force_is_read_from_its_traces():
         finger.under(-1.0)
     with pytest.raises(SceneError, match="the force is 0.0001 N, under which the centre of the finger bears"):
         finger.under(1e-4)
-    with pytest.raises(SceneError, match="read from a file without traces; run the scene again"):
-        WholeFinger(finger.states, "kept runs").under(0.2)
 
 
 def test_footprint_has_a_panel_for_each_state(tmp_path):
@@ -273,9 +264,3 @@ def test_forces_are_refused(force, words):
 def test_force_as_text():
     for force in ("500 mN", 0.5, np.float64(0.5), pint.UnitRegistry()("500 mN")):
         assert Scene(force=force).force == 0.5
-
-
-def test_default_table_changes_no_parameters():
-    """Runs kept by their parameters are found again; another table is one of them."""
-    assert "slices" not in Scene().parameters()
-    assert Scene(slices=dict([override("radius=0.02")])).parameters()["slices"]["radius"] == 0.02

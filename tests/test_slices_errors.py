@@ -13,14 +13,14 @@ from fingerpad.report.run_page import page
 from fingerpad.results.dataset import _finger as finger
 from fingerpad.results.states import STATES
 from fingerpad.runs.sweep_columns import row
-from fingerpad.scene.slices import Slices
-from fingerpad.slices import errors, solid
+from fingerpad.scene.parameters import Slices
+from fingerpad.slices import errors
 from fingerpad.slices.estimate import estimate
 from fingerpad.slices.finger import WholeFinger
-from fingerpad.slices.profile import cylinder, profile
-from fingerpad.slices.total import at_force
+from fingerpad.slices.total import Profile, at_force, profile
 from fingerpad.slices.trace import NAMES, Trace, TraceError, trace
-from tests.test_slices import foundation, kept, kept_state, whole
+from tests.measures import contact_state
+from tests.test_slices import foundation, kept, whole
 from variational.state import Errors
 
 KEPT = Path(__file__).parents[1] / "docs"
@@ -60,7 +60,7 @@ def test_gross_width_is_no_less_than_the_ridges_below_the_first_point():
 def test_repeated_states_are_one_point():
     """Full slip under a constant force repeats itself up to the solvers' tolerances: no slope is made from those."""
     states = [
-        kept_state(f_ext=force, bone_height=-depth, contact_length=depth, ridges_in_contact=1)
+        contact_state(f_ext=force, bone_height=-depth, contact_length=depth, ridges_in_contact=1)
         for force, depth in ((1.0, 1e-4), (1 + 1e-15, 1e-4 + 1e-11), (2.0, 2e-4), (4.0, 4e-4), (4 + 1e-14, 4.00001e-4))
     ]
     of = trace(states, 5e-4)
@@ -72,7 +72,7 @@ def test_repeated_states_are_one_point():
 
 # -- discretisation, interpolation, estimate -------------------------------------------------------------
 def test_discretisation_is_that_of_the_section():
-    state = kept_state(f_t=40.0, error=Errors(f_t=0.4), ridges_in_contact=1, contact_length=1e-3)
+    state = contact_state(f_t=40.0, error=Errors(f_t=0.4), ridges_in_contact=1, contact_length=1e-3)
     assert errors.discretisation(state) == {"f_t": pytest.approx(0.01)}
     assert errors.discretisation(None) == {}
 
@@ -132,22 +132,14 @@ def test_coarser_traces_leave_points_out():
     three = Trace(depth[:3], {name: depth[:3] for name in NAMES})
     assert three.halves()[0].depth.tolist() == [1.0, 2.5] and three.later().depth.tolist() == [1.5, 2.5]
     two = Trace(depth[:2], {name: depth[:2] for name in NAMES})
-    assert errors.interpolation(FINGER, two, at_force(cylinder(1.0), two, 1.2, 4), 4) == {}, "not known"
+    straight = Profile((0.0, 1.0), np.zeros_like, np.ones_like, straight=True)
+    assert errors.interpolation(FINGER, two, at_force(straight, two, 1.2, 4), 4) == {}, "not known"
 
 
 def test_friction_is_exact_without_attraction():
     """Coulomb's law over the force at hand, however few points the trace has; its areas are not."""
     found = errors.interpolation(FINGER, kept(0.0), at_force(FINGER, kept(0.0), 0.3, 48), 48)
     assert found["f_t"] < 1e-6 < 1e-3 < found["gross_area"] and found["indentation"] > 1e-4
-
-
-def test_file_of_an_earlier_version_has_its_discretisation():
-    """Absolute errors without their parts: those of the mesh alone."""
-    kept_file = json.loads(json.dumps(whole().to_dict()))
-    state = kept_file["states"]["full_slip"]
-    state["error"], more = {"f_t": 0.01 * state["f_t"]}, state.pop("carried")
-    again = WholeFinger.from_dict(kept_file, Slices(count=8))
-    assert more and again.carried == {"full_slip": {errors.MESH: {"f_t": pytest.approx(0.01)}}}
 
 
 def test_estimate_of_a_run_covers_the_traces_of_the_full_model():
@@ -205,18 +197,18 @@ def test_error_of_slices_covers_the_kept_finger_in_three_dimensions():
         near = [force, *([np.sqrt(force * forces[k + 1])] if k + 1 < len(SOLID) else [])]
         near += [np.sqrt(force * forces[k - 1])] if k else []
         for at in near:
-            low, high = solid.known(at)["gross_area"]
+            low, high = errors.known_at(at)["gross_area"]
             assert low <= error <= high
 
 
 def test_error_of_slices_at_the_force_at_hand():
     """Friction from 0.1 to 1 N; gross area at other forces, of the smooth finger alone; nothing beyond all."""
-    assert solid.known(0.5)["f_t"] == solid.known(0.1)["f_t"] == solid.known(1.0)["f_t"] == (-0.007, 0.002)
-    assert solid.known(0.5)["gross_area"] == (0.001, 0.07)
-    assert solid.known(0.05)["gross_area"][1] > 0.13
-    assert set(solid.known(0.05)) == {"gross_area"} == set(solid.known(1.2))
-    assert solid.known(0.01) == solid.known(2.0) == {}
-    low, high, none = solid.remarks([0.6, 0.05, 2.0, 0.5])
+    assert errors.known_at(0.5)["f_t"] == errors.known_at(0.1)["f_t"] == errors.known_at(1.0)["f_t"] == (-0.007, 0.002)
+    assert errors.known_at(0.5)["gross_area"] == (0.001, 0.07)
+    assert errors.known_at(0.05)["gross_area"][1] > 0.13
+    assert set(errors.known_at(0.05)) == {"gross_area"} == set(errors.known_at(1.2))
+    assert errors.known_at(0.01) == errors.known_at(2.0) == {}
+    low, high, none = errors.remarks([0.6, 0.05, 2.0, 0.5])
     assert low.startswith("Error of the sum of slices at 0.6, 0.5 N, beside a finger of 20 × 14 × 28 mm in three dim")
     assert "friction −0.7 to +0.2 %" in low and "not known" not in low
     assert "gross area +13 to +30.1 %; friction, attraction, ridge area, indentation not known." in high

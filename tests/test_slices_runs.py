@@ -24,6 +24,7 @@ from tests.runs import no_pictures
 from tests.small_finger import small
 from variational.state import Errors
 
+pytestmark = pytest.mark.slow
 SMALL = {"output": {"receptors": False, "errors": False}, "slices": {"radius": 6e-3, "length": 8e-3}}
 FORCE = 2e-3  # N
 
@@ -39,7 +40,6 @@ def traced(tmp_path_factory) -> fp.Result:
 
 @pytest.fixture(scope="module")
 def ran() -> fp.Result:
-    """The small finger under its f_ext."""
     return fp.run(small(**SMALL))
 
 
@@ -89,10 +89,9 @@ def test_named_states_are_the_section_at_the_centre(traced):
     assert not traced.steps and traced.scene.force == FORCE
 
 
-@pytest.mark.parametrize(("constant", "factor"), [("_MARGIN", 0.55)])
-def test_trace_that_was_too_short_is_made_again(tmp_path, monkeypatch, constant, factor):
+def test_trace_that_was_too_short_is_made_again(tmp_path, monkeypatch):
     """To a larger force, in a folder beside; the same command takes both from there, and another force is refused."""
-    monkeypatch.setattr(traces, constant, factor * getattr(traces, constant))
+    monkeypatch.setattr(traces, "_MARGIN", 0.55 * traces._MARGIN)
     found, scene, out = [], small(**SMALL).replace(force=FORCE), tmp_path / "out"
     with no_pictures():
         found.append(fp.run(scene, out=out))

@@ -12,6 +12,8 @@ from benchmarks.stability.plan import Case
 from variational.solvers.equations import Control
 from variational.solvers.newton import Solver
 
+pytestmark = pytest.mark.slow
+
 # A press of half an newton a metre on facets of 60 um: two seconds a run.
 TINY = Case(contact_size=60e-6, force=0.5, voltage=50.0, element="P1", slide=0.0)
 IRRECOVERABLE = replace(TINY, parameter=1.5e24)
@@ -19,7 +21,6 @@ IRRECOVERABLE = replace(TINY, parameter=1.5e24)
 
 @pytest.fixture(scope="module")
 def panel() -> plan.Panel:
-    """Two voltages and two contact sizes."""
     x = plan.Axis("voltage", "voltage (V)", (0.0, 50.0))
     y = plan.Axis("contact_size", "contact size (µm)", (60e-6, 80e-6), 1e-6)
     return plan.Panel("penalty", TINY, x, y)
@@ -27,7 +28,6 @@ def panel() -> plan.Panel:
 
 @pytest.fixture(scope="module")
 def tiny(panel, tmp_path_factory) -> Runs:
-    """The panel's runs, and one that fails."""
     runs = Runs(tmp_path_factory.mktemp("stability") / "runs.jsonl")
     assert run_all([*panel.cases(), IRRECOVERABLE], runs, jobs=2, limit=300, hours=1) == 0
     return runs

@@ -8,6 +8,7 @@ import pytest
 
 from fingerpad.results import states
 from fingerpad.scene import Load
+from tests.measures import contact_state
 from variational.state import ContactState
 
 STEADY, LEAST = 1e-6, 1e-9
@@ -24,22 +25,12 @@ class History:
 
     def _row(self, load: str, number: int, all_slip: bool, f_t: float) -> None:
         state = ContactState(
-            step=len(self.rows) + 1,
-            load=load,
-            load_number=number,
-            f_ext=self.f_ext,
-            voltage=self.voltage,
-            bone_x=self.x,
-            bone_height=-1e-5,
-            f_t=f_t,
-            mu_app=f_t / self.f_ext if self.f_ext else 0.0,
-            f_contact=self.f_ext + self._attraction,
-            f_electrostatic=self._attraction,
-            ridges_in_contact=3 if self.f_ext > 0 else 0,
-            contact_length=1e-4 * self.f_ext,
-            slipping=float(all_slip),
-            all_slip=all_slip,
-        )
+            step=len(self.rows) + 1, load=load, load_number=number, f_ext=self.f_ext, voltage=self.voltage,
+            bone_x=self.x, bone_height=-1e-5, f_t=f_t, mu_app=f_t / self.f_ext if self.f_ext else 0.0,
+            f_contact=self.f_ext + self._attraction, f_electrostatic=self._attraction,
+            ridges_in_contact=3 if self.f_ext > 0 else 0, contact_length=1e-4 * self.f_ext,
+            slipping=float(all_slip), all_slip=all_slip,
+        )  # fmt: skip
         began, held = states.full_slip(self.rows, state, STEADY, LEAST)
         self.rows.append(replace(state, slip_began=began, slip_held=held))
 
@@ -83,14 +74,9 @@ def pressed() -> History:
     return history
 
 
-def test_press_alone(pressed):
-    """No voltage and no sliding: its end is both, and there is no full slip."""
-    assert pressed.names() == {"uncharged": ("press", 0.0, 0.0), "charged": ("press", 0.0, 0.0)}
-    assert states.partial_slip(pressed.rows) is None
-
-
 def test_press_charge_slide(pressed):
-    """Full slip is the first of its states, which slides on by 0.2 mm."""
+    """Full slip is the first of its states, which slides on by 0.2 mm; before there is none, partial or full."""
+    assert states.partial_slip(pressed.rows) is None
     pressed.still("charge", voltage=80.0)
     pressed.slide("slide", 0.4e-3)
     assert pressed.names() == {
@@ -112,27 +98,6 @@ def test_full_slip_is_no_partial_slip(pressed):
     assert states.partial_slip(rows) == partial
 
 
-def test_way_through_the_air_is_no_slide(pressed):
-    """Pressed, lifted, moved over by 1 mm, pressed and charged: normal contact is that of the second place."""
-    pressed.still("lift", f_ext=0.0)
-    pressed.slide("over", 1e-3)
-    pressed.still("again", f_ext=2.0)
-    pressed.still("charge", voltage=80.0)
-    pressed.slide("slide", 1.4e-3)
-    assert pressed.names() == {
-        "uncharged": ("again", 0.0, 1.0),
-        "charged": ("charge", 80.0, 1.0),
-        "full_slip": ("slide", 80.0, 1.1),
-    }
-
-
-@pytest.mark.parametrize(("end", "held"), [(0.25e-3, False), (0.3e-3, True)])
-def test_full_slip_counts_once_it_was_held(pressed, end, held):
-    """0.15 mm of further sliding are too little, 0.2 mm are enough."""
-    pressed.slide("slide", end)
-    assert ("full_slip" in pressed.names()) is held
-
-
 def test_sign_of_the_voltage_is_no_other_state(pressed):
     """A negative voltage is one, and full slip goes on where the voltage changes its sign alone."""
     pressed.still("charge", voltage=-80.0)
@@ -143,44 +108,40 @@ def test_sign_of_the_voltage_is_no_other_state(pressed):
     assert pressed.names()["full_slip"] == ("slide", -80.0, 0.1)
 
 
-def test_slide_charge_slide(pressed):
-    """The last of two full slips, at its own voltage; normal contact is the uncharged one before both."""
-    pressed.slide("slide", 0.4e-3)
-    pressed.still("charge", voltage=80.0)
-    pressed.slide("slide on", 0.8e-3)
-    assert pressed.names()["full_slip"] == ("slide on", 80.0, 0.5)
-    assert pressed.names()["charged"] == ("press", 0.0, 0.0)
-
-
-def test_there_and_back(pressed):
-    """A bone that comes back to x = 0 makes no normal contact, and its full slip is one the other way."""
-    pressed.slide("there", 0.4e-3)
-    pressed.slide("back", 0.0)
-    assert pressed.rows[-1].bone_x == 0.0
-    assert pressed.names()["charged"] == ("press", 0.0, 0.0)
-    assert pressed.names()["full_slip"] == ("back", 0.0, 0.3)
-    assert states.named(pressed.rows)["full_slip"].f_t < 0
-
-
 PRESSED = {"uncharged": ("press", 0.0, 0.0), "charged": ("press", 0.0, 0.0)}
 ALTERNATING = (80.0, 0.0, 80.0, 0.0)
+
+
+CHARGE = ("charge", {"voltage": 80.0})
+AIR = [("lift", {"f_ext": 0.0}), ("over", 1e-3), ("again", {"f_ext": 2.0}), CHARGE, ("slide", 1.4e-3)]
+AFTER = {"uncharged": ("again", 0.0, 1.0), "charged": ("charge", 80.0, 1.0), "full_slip": ("slide", 80.0, 1.1)}
 
 
 @pytest.mark.parametrize(
     ("way", "named"),
     [
-        ([("slide", 0.4e-3), ("charge", {"voltage": 80.0}), ("on", 0.55e-3)], {"full_slip": ("slide", 0.0, 0.1)}),
+        ([], {}),
+        ([("slide", 0.25e-3)], {}),
+        ([("slide", 0.3e-3)], {"full_slip": ("slide", 0.0, 0.1)}),
+        ([("slide", 0.4e-3), CHARGE, ("on", 0.8e-3)], {"full_slip": ("on", 80.0, 0.5)}),
+        ([("slide", 0.4e-3), CHARGE, ("on", 0.55e-3)], {"full_slip": ("slide", 0.0, 0.1)}),
+        ([("there", 0.4e-3), ("back", 0.0)], {"full_slip": ("back", 0.0, 0.3)}),
         ([("there", 0.1e-3), ("back", -0.3e-3)], {"full_slip": ("back", 0.0, 0.0)}),
         ([("slide", 0.4e-3), ("lift", {"f_ext": 0.5})], {"full_slip": ("slide", 0.0, 0.1)}),
         ([(f"part {k}", 0.3e-3 * k, u) for k, u in enumerate(ALTERNATING, start=1)], {}),
         ([(f"to {u:g}", {"voltage": u}) for u in (80.0, 0.0, 80.0)], {"charged": ("to 80", 80.0, 0.0)}),
+        (AIR, AFTER),
     ],
-    ids=["ends in the middle of a slip", "at x = 0 on the way back", "lift", "charged by turns in sliding", "at rest"],
-)
+    ids=[
+        "press alone", "0.15 mm of further sliding", "0.2 mm", "two full slips", "ends in the middle of a slip",
+        "there and back", "at x = 0 on the way back", "lift", "charged by turns in sliding", "at rest",
+        "through the air",
+    ],
+)  # fmt: skip
 def test_named_states_of_a_way(pressed, way, named):
     """A full slip that was not held leaves the one before; it keeps its load where unloading sticks.
 
-    The bone has moved, wherever it is now; uncharged is what was before the first voltage.
+    The bone has moved, wherever it is now; a way in the air is no slide. Uncharged is before the first voltage.
     """
     for name, end, *voltage in way:
         if isinstance(end, dict):
@@ -189,7 +150,7 @@ def test_named_states_of_a_way(pressed, way, named):
             pressed.slide(name, end, *voltage)
     assert pressed.names() == PRESSED | named
     slip = states.named(pressed.rows).get("full_slip")
-    assert slip is None or slip.f_ext == 2.0
+    assert slip is None or (slip.f_ext == 2.0 and (slip.f_t < 0) == (slip.load == "back"))
 
 
 @pytest.mark.parametrize("touches", [False, True], ids=["presses there", "touches as it moves"])
@@ -223,11 +184,9 @@ def test_charging_while_it_slides(pressed):
 
 def test_all_points_slip_without_friction_before_the_bone_moves():
     """Without friction every state is on its cone; full slip begins with the sliding."""
-    forces = {"f_ext": 1.0, "voltage": 0.0, "f_t": 0.0, "mu_app": 0.0, "f_contact": 1.0, "f_electrostatic": 0.0}
     rows: list[ContactState] = []
     for step, x in enumerate((0.0, 0.0, 0.1e-3, 0.2e-3, 0.3e-3), start=1):
-        touching = {"all_slip": True, "ridges_in_contact": 3, "contact_length": 1e-3}
-        state = ContactState(step=step, bone_x=x, **forces, **touching)
+        state = contact_state(step=step, bone_x=x, all_slip=True)
         began, held = states.full_slip(rows, state, STEADY, LEAST)
         rows.append(replace(state, slip_began=began, slip_held=held))
     assert [row.slip_began for row in rows] == [0, 0, 3, 3, 3]

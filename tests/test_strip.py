@@ -2,7 +2,6 @@
 
 from functools import partial
 
-import gmsh
 import numpy as np
 import pytest
 import ufl
@@ -23,7 +22,6 @@ SIZE = MeshSize(contact=20 * UM, interface=60 * UM)
 
 @pytest.fixture(scope="module", params=[1, 3])
 def body(request):
-    """A strip with its number of ridges."""
     return request.param, load(MPI.COMM_WORLD, partial(strip.build, Fingertip(), SIZE, request.param, HEIGHT))
 
 
@@ -153,9 +151,3 @@ def test_least_height_that_is_named_is_the_least():
     with pytest.raises(GeometryError) as refusal:
         strip.check(Fingertip(), SIZE, 1, 100 * UM)
     strip.check(Fingertip(), SIZE, 1, float(str(refusal.value).split()[-2]) + UM)
-
-
-def test_refusal_leaves_no_session():
-    with pytest.raises(GeometryError):
-        load(MPI.COMM_WORLD, partial(strip.build, Fingertip(), SIZE, 2))
-    assert not gmsh.isInitialized()

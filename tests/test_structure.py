@@ -1,8 +1,14 @@
 """The structure of the product that CONTRIBUTING promises: no import circle, no long module, few levels."""
 
+import re
+import subprocess
+import sys
+from pathlib import Path
+
 import pytest
 
 from benchmarks import structure
+from fingerpad.cli import _BESIDE, COMMANDS
 
 FILES = {name: path for folder in structure.PRODUCT for name, path in structure.modules(folder).items()}
 
@@ -30,3 +36,33 @@ def test_levels_and_circles_of_a_graph(graph, circles, height):
     """The modules of a circle have one level."""
     assert [group for group in structure.circles(graph) if len(group) > 1] == circles
     assert max(structure.levels(graph).values()) == height
+
+
+# -- what make check runs --------------------------------------------------------------------------------------------
+ROOT = Path(__file__).parents[1]
+SLOW = re.compile(r"^pytestmark = .*\bslow\b", re.MULTILINE)
+QUICK = [file.stem for file in (ROOT / "tests").glob("test_*.py") if not SLOW.search(file.read_text(encoding="utf-8"))]
+
+
+def test_each_module_is_imported_by_a_quick_test():
+    """In a process of its own: what the files of the quick tests import, and what that imports.
+
+    The program imports a command where it is given, and what draws where a picture is asked for; test_command does.
+    Reports, their pictures and processes of sweeps are of whole runs, which make check leaves out: test_report.
+    """
+    packages = ("geometry", "variational", "fingerpad")
+    files = [file.relative_to(ROOT) for package in packages for file in (ROOT / package).rglob("*.py")]
+    names = {".".join(file.with_suffix("").parts) for file in files if file.stem != "__main__"}
+    imports = [
+        *(f"tests.{name}" for name in QUICK),
+        *(f"fingerpad.cli.{_BESIDE.get(name, name)}" for name in COMMANDS),
+        *(
+            "fingerpad.report.run_page",
+            "fingerpad.report.sweep_page",
+            "fingerpad.results.drawing",
+            "fingerpad.runs.batch",
+        ),
+    ]
+    code = "\n".join(["import sys", *(f"import {name}" for name in imports), "print(*sys.modules)"])
+    done = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, check=True)
+    assert sorted({name.removesuffix(".__init__") for name in names} - set(done.stdout.split())) == []

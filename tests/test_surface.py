@@ -40,7 +40,6 @@ def strip() -> TaggedMesh:
 
 
 def make(body) -> Surface:
-    """Return the touching surface of a body."""
     return Surface(body.mesh, body.facet_tags, {j: tags.ridge(j) for j in body.ridges()})
 
 

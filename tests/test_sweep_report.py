@@ -11,11 +11,12 @@ import pytest
 
 from fingerpad.cli import main
 from fingerpad.cli import sweep as cli_sweep
-from fingerpad.report import parameters
+from fingerpad.report.page import option_of
 from fingerpad.report.write import NAME, write
 from fingerpad.runs.sweep import sweep
 from fingerpad.scene import Scene, SceneError, from_data, override
 from tests.browser import SIZES, asked
+from tests.measures import rows_of
 
 
 @pytest.fixture(scope="module")
@@ -23,8 +24,7 @@ def table(tmp_path_factory) -> Path:
     """The folder of a sweep in which one of six points failed."""
     place = tmp_path_factory.mktemp("sweep")
     sweep(Scene(), place, model="cylinders", voltage=[0, 100, 200], f_ext=[25, 75])
-    with (place / "table.csv").open(encoding="utf-8", newline="") as file:
-        rows = list(csv.DictReader(file))
+    rows = rows_of(place, "table")
     rows[-1] = {key: value if key in ("voltage", "f_ext") else "" for key, value in rows[-1].items()}
     rows[-1]["failure"] = "no equilibrium at part 0.31 of <slide>"
     with (place / "table.csv").open("w", encoding="utf-8", newline="") as file:
@@ -58,7 +58,7 @@ def test_failed_points_are_listed_with_their_reason(table):
     "value", [0.3, 5, True, "penalty", "5", "true", "a b'c.msh", "[x].csv", [True, "a"], [1.0, -0.1]]
 )
 def test_option_is_read_as_its_value(value):
-    flag, option = shlex.split(parameters.option_of("key", value))
+    flag, option = shlex.split(option_of("key", value))
     assert flag == "--set" and override(option) == ("key", value)
 
 

@@ -1,18 +1,13 @@
 """Height maps: trends, distribution, spectrum, fit, synthesis, files, and the roughness that a small map misses."""
 
 import importlib
-import subprocess
-import sys
 
 import numpy as np
 import pytest
 
 from variational.roughness.bam import BearingArea
-from variational.roughness.heightfile import scan
-from variational.roughness.missing import filled
-from variational.roughness.selfaffine import SelfAffine, prefactor
-from variational.roughness.spectrum import power_spectrum, roughness_table
-from variational.roughness.topography import HeightMap, distribution, polynomials
+from variational.roughness.spectrum import SelfAffine, power_spectrum, prefactor, roughness_table
+from variational.roughness.topography import HeightMap, distribution, filled, polynomials
 
 UM = 1e-6
 SHAPE, SIZE = (256, 256), (800 * UM, 800 * UM)
@@ -285,24 +280,3 @@ def test_fit_of_a_surface_made_by_surface_topography(other):
     assert fit.hurst == pytest.approx(0.75, abs=0.04)
     assert fit.wavelength == pytest.approx(100 * UM, rel=0.15)
     assert fit.h_rms(plateau=True) == pytest.approx(3.1 * UM, rel=0.1)
-
-
-def test_instrument_files(other, tmp_path):
-    """A file in micrometres comes out in metres, to the rounding of the factor."""
-    m = wave()
-    kept = other.Topography(m.heights / UM, tuple(v / UM for v in m.size), unit="µm")
-    kept.to_netcdf(str(tmp_path / "map.nc"))
-    found = scan(tmp_path / "map.nc").map
-    np.testing.assert_allclose(found.heights, m.heights, rtol=0, atol=1e-12 * UM)
-    assert found.size == pytest.approx(m.size, rel=1e-12, abs=0)
-    (tmp_path / "words.vk4").write_text("no map")
-    with pytest.raises(ValueError, match="no format that SurfaceTopography reads"):
-        scan(tmp_path / "words.vk4")
-
-
-def test_imports_without_dolfinx():
-    code = (
-        "import sys; import variational.roughness.spectrum, variational.roughness.heightfile; "
-        "sys.exit(any(m in sys.modules for m in ('dolfinx', 'petsc4py', 'mpi4py', 'ufl', 'SurfaceTopography')))"
-    )
-    assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0

@@ -12,7 +12,7 @@ from geometry.mesh import load
 from tests.measures import straightened
 from tests.test_contact import MU_F, over
 from variational.solvers.continuation import Continuation, StepFailed, Target
-from variational.solvers.failure import NotConverged
+from variational.solvers.outcome import NotConverged
 from variational.solvers.transfer import interpolate, restore, take_snapshot
 
 pytestmark = pytest.mark.mpi

@@ -13,6 +13,8 @@ from tests.small_finger import NINE
 from variational.solvers import iteration
 from variational.solvers.continuation import StepFailed
 
+pytestmark = pytest.mark.slow
+
 
 def slid(away: float, f_ext: float, voltage: float, tolerance: float) -> Simulation:
     """Carry the bone sideways over the screen (m), press, charge and slide to full slip."""
@@ -36,7 +38,6 @@ def highest_floor(made: Simulation) -> float:
 
 
 def held(made: Simulation) -> bool:
-    """Return whether full slip was reached and held."""
     return made.states[-1].slip_held
 
 

@@ -9,6 +9,7 @@ from benchmarks.verification.__main__ import AREAS
 from benchmarks.verification.adhesion import maugis_force, maugis_ratio
 from benchmarks.verification.case import Row
 
+pytestmark = pytest.mark.slow
 CASES = [case for cases in AREAS.values() for case in cases]
 
 

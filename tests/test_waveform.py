@@ -13,7 +13,6 @@ TABLE = "time (s),voltage (V)\n"
 
 
 def wave(duration: float = 1.0, **keys) -> Waveform:
-    """Return the waveform of a scene with it."""
     return from_data({"history": [PRESS, {"name": "wave", "duration": duration, "voltage": keys}]}).history[1].wave
 
 

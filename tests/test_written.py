@@ -12,10 +12,11 @@ import fingerpad as fp
 from fingerpad.results.result import Result
 from fingerpad.scene import Scene, SceneError, load
 from fingerpad.scene.law_code import digest
-from fingerpad.scene.laws import used
+from fingerpad.scene.remarks import used
 from tests.small_finger import small
 from variational.roughness.bam import BearingArea
 
+pytestmark = pytest.mark.slow
 MINE = """
 from dataclasses import dataclass
 import fingerpad as fp
@@ -101,7 +102,6 @@ def test_no_code_beside_a_scene_is_imported(place):
 
 
 # -- every way of a run ----------------------------------------------------------------------------------------
-@pytest.mark.slow
 def test_law_works_from_the_command_line(place):
     """A run, the run of its scene.json, and a report; the model is light, and friction that of the law."""
     done = command(place, "run", place / "scene.toml", "--model", "cylinders", "--out", place / "one")
@@ -127,7 +127,6 @@ def test_results_are_read_where_the_law_is_not(place):
     assert fp.run(read.scene.replace(friction=0.2), model="cylinders").full_slip is not None
 
 
-@pytest.mark.slow
 def test_sweep_in_processes_takes_a_law(place):
     """Its processes import the law; one of this program alone is refused before any of them starts."""
     scene = small(friction=Scene.load(place / "scene.toml").friction, **COARSE)
@@ -140,7 +139,6 @@ def test_sweep_in_processes_takes_a_law(place):
         fp.sweep(scene.replace(friction=_local()), place / "other", voltage=[0.0, 1.0])
 
 
-@pytest.mark.slow
 def test_changed_law_is_not_resumed(place):
     scene = small(friction=Scene.load(place / "scene.toml").friction, voltage=0.0, **COARSE)
     fp.run(scene, out=place / "run")

@@ -11,6 +11,7 @@ import numpy as np
 from dolfinx import fem
 from numpy.typing import NDArray
 
+from variational.contact.formulation import SurfaceState
 from variational.materials.material import Material
 from variational.problem import Interface, Problem
 from variational.quantities import Observer
@@ -19,8 +20,10 @@ from variational.solvers.continuation import Attempt, Continuation, Target
 from variational.solvers.coupling import Coupling
 from variational.solvers.equations import Equations
 from variational.solvers.newton import Solver
+from variational.state import Skin
 from variational.surface import Surface
 
+Array = NDArray[np.float64]
 Facets = NDArray[np.int32]
 
 
@@ -118,3 +121,28 @@ class Body:
         self.observer = Observer(self.problem, mirror is not None)
         self.coupling = Coupling(self.solver, self.observer, closure, coupling_tolerance, coupling_cap, by_gap)
         self.continuation = Continuation(self.coupling, on_accept, touch_depth, step_scale)
+
+
+class Points:
+    """Brings the skin to every rank, ridge by ridge and from left to right, whatever ranks hold it."""
+
+    def __init__(self, made: Body) -> None:
+        self._surface = surface = made.surface
+        unloaded = made.continuation.surface_state
+        x, y, ridge = self._gather(unloaded.x, unloaded.y, np.broadcast_to(surface.ridge[:, None], unloaded.x.shape))
+        self._flip = x[:, 0] > x[:, -1]
+        middle = ((z[:, 0] + z[:, -1]) / 2 for z in (y, x))
+        self._order = np.lexsort((*middle, ridge[:, 0]))
+        self._ridge = np.array(surface.ridge_numbers)[ridge[self._order, 0].astype(int)]
+
+    def _gather(self, *mine: Array) -> Array:
+        stacked = np.stack([np.asarray(values, dtype=np.float64) for values in mine])
+        return np.concatenate(self._surface.mesh.comm.allgather(stacked), axis=1)
+
+    def gather(self, state: SurfaceState) -> Skin:
+        """Return the skin in a state; collective."""
+        stretch = np.hypot(state.area_x, state.area_y)  # current per reference area
+        pull = np.broadcast_to(state.p_el, state.x.shape)
+        values = self._gather(state.x, state.y, state.p_n / stretch, state.t_t / stretch, pull)
+        values[:, self._flip] = values[:, self._flip, ::-1]
+        return Skin(self._ridge, *values[:, self._order])

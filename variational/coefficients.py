@@ -7,9 +7,29 @@ UFL coefficients in the place of the numbers.
 import copy
 from collections.abc import Mapping
 from dataclasses import MISSING, field, fields, is_dataclass
+from importlib import import_module
 from typing import Any, ClassVar, Self
 
 import numpy as np
+
+
+class Lazy:
+    """A module by its name, imported when something of it is first used.
+
+    A law is a value: its numbers, their units and their ranges. Scenes, folders and reports hold laws where UFL may be
+    missing; only what writes a weak form needs it.
+    """
+
+    def __init__(self, name: str) -> None:
+        self._name = name
+
+    def __getattr__(self, attribute: str) -> Any:
+        """Return an attribute of the module."""
+        return getattr(import_module(self._name), attribute)
+
+
+ufl: Any = Lazy("ufl")
+kinematics: Any = Lazy("variational.kinematics")
 
 OF_SCENE = {"of scene": True}
 """Metadata of a field that a scene gives by itself, such as the thickness of its insulators; no key of the law."""

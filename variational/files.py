@@ -8,6 +8,9 @@ import tempfile
 from collections.abc import Iterator
 from pathlib import Path
 
+MOST_OF_TEXT = 1e6
+"""Largest size (bytes) of a scene or of a table of a user; the longest scene that comes along has 1000."""
+
 
 def read(path: str | Path, most: float = 500e6) -> bytes:
     """Return the content of an ordinary file, without ever waiting for a pipe or for a device that has no end.

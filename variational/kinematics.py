@@ -1,7 +1,20 @@
-"""Kinematics of finite strain; the dimension is that of what is given."""
+r"""Kinematics of finite strain, whose dimension is that of what is given, and stresses of a solid in plane strain.
+
+.. math:: \sigma = \frac1J P F^T, \qquad P = \frac{\partial W}{\partial F}
+
+The in-plane part is differentiated from the energy density, which depends only on the plane's F; sigma_zz, the reaction
+of the constraint lambda_3 = 1, is the solid's own (:mod:`variational.materials.material`). The stress of the volumetric
+part is p I, p positive in tension: an element may have a better p than the one of the F at hand
+(:mod:`variational.element`).
+"""
+
+from typing import TYPE_CHECKING
 
 import ufl
-from ufl.classes import Label
+from ufl.classes import Label, Variable
+
+if TYPE_CHECKING:
+    from variational.materials.material import Material
 
 # What laws are differentiated by. A label's number is part of a kernel's name: with the next free one, as UFL gives
 # them out from 0 on, the stresses of each body in a process would be compiled anew.
@@ -34,3 +47,20 @@ def cofactor(F):
 def current_height(mesh, u):
     """Return the height of a material point above the screen (m), its last coordinate."""
     return ufl.SpatialCoordinate(mesh)[len(u) - 1] + u[len(u) - 1]
+
+
+def first_piola_kirchhoff(solid: "Material", F, p=None):
+    """Return the first Piola-Kirchhoff stress P = dW/dF (Pa), shape (2, 2); by default the pressure p is that of F."""
+    F = Variable(F, GRADIENT)
+    H = displacement_gradient(F)
+    p = solid.pressure(H) if p is None else p
+    return ufl.diff(solid.distortion(H), F) + p * cofactor(F)
+
+
+def cauchy(solid: "Material", F, p=None):
+    """Return the Cauchy stress (Pa), shape (3, 3), z normal to the plane; by default the pressure p is that of F."""
+    p = solid.pressure(displacement_gradient(F)) if p is None else p
+    sigma = first_piola_kirchhoff(solid, F, p) * F.T / ufl.det(F)
+    return ufl.as_tensor(
+        [[sigma[0, 0], sigma[0, 1], 0], [sigma[1, 0], sigma[1, 1], 0], [0, 0, solid.distortion_zz(F) + p]]
+    )

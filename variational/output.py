@@ -1,4 +1,4 @@
-"""Fields for ParaView, and what a picture needs of them on rank 0.
+"""What is evaluated inside of the body: fields for ParaView, pictures on rank 0, energy densities at receptor sites.
 
 ParaView shows the deformed body with *Warp By Vector* on ``displacement.bp``. Stress and energy density jump from
 layer to layer; they are sampled in the corners of each cell by itself and stay discontinuous.
@@ -14,20 +14,72 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import basix
+import dolfinx
 import numpy as np
 import ufl
-from dolfinx import fem
+from dolfinx import fem, geometry
 from dolfinx.io import VTXWriter
+from mpi4py import MPI
 from numpy.typing import NDArray
 
-from variational import compat, kinematics
-from variational.cellwise import Cellwise, owned_cells
-from variational.materials import stress
+from variational import compat, jit, kinematics
+from variational.reference import reference_places
 
 if TYPE_CHECKING:
     from variational.problem import Problem
 
 Array = NDArray[np.float64]
+_ON_LINE = 1e-9  # m from x = 0, within which a vertex is its own image
+_ROUNDOFF = 1e-8  # of a barycentric coordinate: a site on a facet belongs to both cells
+_BEYOND = 1e-3  # of the body's size: what a curved edge may be beyond its nodes
+
+
+def owned_cells(mesh: dolfinx.mesh.Mesh) -> NDArray[np.int32]:
+    """Return the numbers of this rank's own cells."""
+    return np.arange(mesh.topology.index_map(mesh.topology.dim).size_local, dtype=np.int32)
+
+
+class Cellwise:
+    """An expression for each solid, on the cells with its tags only, evaluated at reference points of own cells.
+
+    Attributes:
+        shape: shape of the expressions' values.
+    """
+
+    def __init__(
+        self,
+        mesh: dolfinx.mesh.Mesh,
+        cell_tags: dolfinx.mesh.MeshTags,
+        expressions: Mapping[tuple[int, ...], Any],
+        points: Array,
+    ) -> None:
+        """Compile the expressions.
+
+        Args:
+            mesh: the body (m).
+            cell_tags: tags of its cells.
+            expressions: UFL expressions of one shape, by the tags of the cells on which they hold.
+            points: reference points of a cell, shape (points, 2), the same on every rank.
+        """
+        self.mesh, self._points = mesh, len(points)
+        self.shape = next(iter(expressions.values())).ufl_shape
+        self._compiled = [fem.Expression(e, points, jit_options=jit.OPTIONS) for e in expressions.values()]
+        self._group = np.full(len(owned_cells(mesh)), -1)
+        for k, tags in enumerate(expressions):
+            for tag in tags:
+                cells = cell_tags.find(tag)
+                self._group[cells[cells < len(self._group)]] = k
+
+    def evaluate(self, cells: NDArray[np.int32] | None = None) -> Array:
+        """Return values on own cells, by default all, shape (cells, points, components); NaN without expression."""
+        if cells is None:
+            cells = owned_cells(self.mesh)
+        values = np.full((len(cells), self._points, int(np.prod(self.shape, dtype=int))), np.nan)
+        for k, compiled in enumerate(self._compiled):
+            mine = self._group[cells] == k
+            found = compat.evaluate_on_cells(compiled, self.mesh, np.ascontiguousarray(cells[mine]))
+            values[mine] = found.reshape((int(mine.sum()), *values.shape[1:]))
+        return values
 
 
 class Fields:
@@ -49,7 +101,7 @@ class Fields:
             folder.mkdir(parents=True, exist_ok=True)
         mesh.comm.barrier()
         F = kinematics.deformation_gradient(ufl.grad(problem.u))
-        stresses = {tags: stress.cauchy(law, F, problem.pressures[tags]) for tags, law in problem.laws.items()}
+        stresses = {tags: kinematics.cauchy(law, F, problem.pressures[tags]) for tags, law in problem.laws.items()}
         self.stress, self._sample_stress = _sampled(problem, "stress", stresses)
         self.sed, self._sample_sed = _sampled(problem, "sed", problem.densities)
         self._problem, self.displacement = problem, fem.Function(problem.V, name="displacement")
@@ -111,24 +163,13 @@ def _sampled(
     return fem.Function(space, name=name), Cellwise(problem.mesh, problem.cell_tags, expressions, points)
 
 
-class MeanDensity:
-    """Means of the strain energy density over cells."""
-
-    def __init__(self, problem: "Problem") -> None:
-        """Compile the densities at the quadrature points of a cell."""
-        # Degree 2 integrates the linear solid's energy at P2 exactly.
-        points, weights = basix.make_quadrature(basix.CellType.triangle, 2)
-        self._sample = Cellwise(problem.mesh, problem.cell_tags, problem.densities, np.asarray(points))
-        self._weights = np.asarray(weights) / np.sum(weights)
-
-    def evaluate(self) -> Array:
-        """Return the mean over each own cell (J/m^3), shape (own cells,)."""
-        return np.asarray(self._weights @ self._sample.evaluate()[:, :, 0].T)
-
-
 def sed_per_cell(problem: "Problem") -> tuple[NDArray[np.int32], Array]:
     """Return the cells of this rank and the mean strain energy density of each (J/m^3 of reference volume)."""
-    return owned_cells(problem.mesh), MeanDensity(problem).evaluate()
+    # Degree 2 integrates the linear solid's energy at P2 exactly.
+    points, weights = basix.make_quadrature(basix.CellType.triangle, 2)
+    sample = Cellwise(problem.mesh, problem.cell_tags, problem.densities, np.asarray(points))
+    means = (np.asarray(weights) / np.sum(weights)) @ sample.evaluate()[:, :, 0].T
+    return owned_cells(problem.mesh), np.asarray(means)
 
 
 @dataclass(frozen=True)
@@ -146,25 +187,145 @@ class Snapshot:
     tag: NDArray[np.int32]
     """Tag of each cell, zero where it has none, shape (cells,)."""
 
+    def whole(self) -> "Snapshot":
+        """Return the body whose half at x >= 0 this is, one body along the line of symmetry."""
+        on_line = np.abs(self.x[:, 0]) < _ON_LINE
+        image = np.where(on_line, np.arange(len(on_line)), len(on_line) + np.cumsum(~on_line) - 1)
+        flip = np.array([-1.0, 1.0])
+        return Snapshot(
+            np.concatenate([self.x, flip * self.x[~on_line]]),
+            np.concatenate([self.u, flip * self.u[~on_line]]),
+            np.concatenate([self.triangles, image[self.triangles][:, ::-1]]),
+            np.concatenate([self.sed, self.sed]),
+            np.concatenate([self.tag, self.tag]),
+        )
+
+
+class Nodes:
+    """Brings values to every rank, numbered as the mesh was before it was distributed.
+
+    Attributes:
+        coordinates: nodes of the unloaded mesh (m), shape (nodes, 2).
+        triangles: nodes of each cell, shape (cells, 3).
+    """
+
+    def __init__(self, problem: "Problem") -> None:
+        mesh = problem.mesh
+        self._comm, cells = mesh.comm, np.arange(mesh.topology.index_map(2).size_local)
+        # The first three degrees of freedom of a Lagrange triangle are its vertices, in the geometry's order.
+        self._dofs = problem.V.dofmap.list[cells][:, :3]
+        nodes = compat.cell_geometry(mesh)[cells][:, :3]
+        names = self._together(np.asarray(mesh.geometry.input_global_indices)[nodes])
+        self._sort = np.argsort(self._together(np.asarray(mesh.topology.original_cell_index)[cells]))
+        _, self._first, corners = np.unique(names[self._sort].ravel(), return_index=True, return_inverse=True)
+        self.triangles = corners.reshape(-1, 3)
+        self.coordinates = self._pick(mesh.geometry.x[nodes][:, :, :2])
+
+    def _together(self, mine: NDArray[Any]) -> NDArray[Any]:
+        return np.concatenate(self._comm.allgather(mine))
+
+    def by_cell(self, mine: NDArray[Any]) -> NDArray[Any]:
+        """Return one value a cell of those of own cells, on every rank; collective."""
+        return np.asarray(self._together(mine)[self._sort])
+
+    def _pick(self, mine: Array) -> Array:
+        """Return one value a node of values by cell and corner, shape (cells, 3, 2)."""
+        return np.asarray(self.by_cell(mine).reshape(-1, 2)[self._first])
+
+    def gather(self, problem: "Problem") -> Array:
+        """Return the displacement of all nodes (m), shape (nodes, 2); collective."""
+        return self._pick(problem.displacement()[self._dofs])
+
 
 def gather_mesh(problem: "Problem") -> Snapshot | None:
     """Bring the current state to rank 0, None on the others; numbered as the mesh was before it was distributed."""
-    mesh = problem.mesh
-    cells, sed = sed_per_cell(problem)
-    nodes = compat.cell_geometry(mesh)[cells][:, :3]
-    # The first three degrees of freedom of a Lagrange triangle are its vertices, in the geometry's order.
-    u = problem.displacement()[problem.V.dofmap.list[cells][:, :3]]
+    nodes, (cells, sed) = Nodes(problem), sed_per_cell(problem)
     tag = np.zeros(len(cells), dtype=np.int32)
     own = problem.cell_tags.indices < len(cells)
     tag[problem.cell_tags.indices[own]] = problem.cell_tags.values[own]
-    names = np.asarray(mesh.geometry.input_global_indices)[nodes]
-    order = np.asarray(mesh.topology.original_cell_index)[cells]
-    parts = mesh.comm.gather((mesh.geometry.x[nodes][:, :, :2], u, names, sed, tag, order))
-    if parts is None:
-        return None
-    x, u, names, sed, tag, order = (np.concatenate(arrays) for arrays in zip(*parts, strict=True))
-    sort = np.argsort(order)
-    _, first, vertices = np.unique(names[sort].ravel(), return_index=True, return_inverse=True)
-    return Snapshot(
-        x[sort].reshape(-1, 2)[first], u[sort].reshape(-1, 2)[first], vertices.reshape(-1, 3), sed[sort], tag[sort]
-    )
+    found = Snapshot(nodes.coordinates, nodes.gather(problem), nodes.triangles, nodes.by_cell(sed), nodes.by_cell(tag))
+    return found if problem.mesh.comm.rank == 0 else None
+
+
+class Receptors:
+    """Strain energy density at sites in the body: material points, given in the reference configuration.
+
+    They are each evaluated by the ranks that own its cells.
+
+    A site on a facet has the mean over all its cells, since a strain jumps there: so neither the numbering nor the
+    number of ranks matters, and a site on the axis of a mirrored mesh does not belong to one half.
+
+    Attributes:
+        sites: reference positions (m), shape (n, 2).
+    """
+
+    def __init__(self, problem: "Problem", sites: Array) -> None:
+        """Find the sites' cells.
+
+        Args:
+            problem: whose current state is evaluated.
+            sites: reference positions (m), shape (n, 2), the same on every rank; n >= 1.
+
+        Raises:
+            ValueError: there is no site, or one lies outside the mesh; on every rank.
+        """
+        self.sites = np.array(sites, dtype=float).reshape(-1, 2)
+        if len(self.sites) == 0:
+            raise ValueError("no receptor site is given")
+        self._mesh = mesh = problem.mesh
+        self._cells, site, points = _find(mesh, self.sites)
+        comm = mesh.comm
+        self._site = np.concatenate(comm.allgather(site))  # of each pair of a site and one of its cells, rank by rank
+        self._first = sum(comm.allgather(len(site))[: comm.rank])  # pair of this rank
+        self._count = np.bincount(self._site, minlength=len(self.sites))
+        nowhere = np.flatnonzero(self._count == 0)
+        if len(nowhere):
+            x, y = self.sites[nowhere[0]]
+            raise ValueError(f"receptor site {nowhere[0]} at x = {x:.6g} m, y = {y:.6g} m lies outside the mesh")
+        # One kernel for all ranks: it evaluates every pair's reference point, of which each cell needs one.
+        points = np.concatenate(comm.allgather(points))
+        self._density = Cellwise(mesh, problem.cell_tags, problem.densities, points)
+        self._displacement = fem.Expression(problem.u, points, jit_options=jit.OPTIONS)
+
+    def sed(self) -> Array:
+        """Return the strain energy density (J/m^3 of reference volume) at the sites, shape (n,), on every rank."""
+        return self._mean(self._density.evaluate(self._cells))[:, 0]
+
+    def positions(self) -> Array:
+        """Return the sites' current positions (m), shape (n, 2), on every rank."""
+        u = compat.evaluate_on_cells(self._displacement, self._mesh, self._cells)
+        return self.sites + self._mean(u.reshape(len(self._cells), len(self._site), 2))
+
+    def _mean(self, values: Array) -> Array:
+        """Pick each own pair's value from those at all pairs' points, (own, pairs, k); each site's mean, (n, k)."""
+        own = np.arange(len(self._cells))
+        total = np.zeros((len(self._site), values.shape[2]))
+        total[self._first + own] = values[own, self._first + own]
+        self._mesh.comm.Allreduce(MPI.IN_PLACE, total)
+        mean = np.zeros((len(self.sites), total.shape[1]))
+        np.add.at(mean, self._site, total)
+        return mean / self._count[:, None]
+
+
+def _find(mesh: dolfinx.mesh.Mesh, sites: Array) -> tuple[NDArray[np.int32], NDArray[np.int64], Array]:
+    """Find sites among this rank's own cells.
+
+    Returns:
+        For each pair of a site and one of its cells the cell's number and the site's, both (pairs,), and the reference
+        coordinates there, (pairs, 2).
+    """
+    cells = owned_cells(mesh)
+    cell, numbers, points = [], [], []
+    if len(cells):
+        extent = float(np.ptp(mesh.geometry.x, axis=0).max())
+        tree = geometry.bb_tree(mesh, 2, entities=cells, padding=_BEYOND * extent)
+        candidates = geometry.compute_collisions_points(tree, np.column_stack([sites, np.zeros(len(sites))]))
+        nodes = mesh.geometry.x[compat.cell_geometry(mesh)][:, :, :2]
+        for k, site in enumerate(sites):
+            near = candidates.links(k)
+            places = reference_places(nodes[near], np.broadcast_to(site, (len(near), 2)))
+            inside = np.minimum(places.min(axis=1), 1 - places.sum(axis=1)) >= -_ROUNDOFF
+            cell.extend(near[inside])
+            numbers.extend([k] * int(inside.sum()))
+            points.extend(places[inside])
+    return np.array(cell, dtype=np.int32), np.array(numbers, dtype=np.int64), np.array(points).reshape(-1, 2)

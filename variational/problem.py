@@ -33,10 +33,8 @@ from variational import jit, kinematics
 from variational.attraction import electroadhesion
 from variational.contact.formulation import Contact, Formulation, Skin
 from variational.contact.friction import Friction, law_of
-from variational.element import ELEMENTS, Centroid
+from variational.element import ELEMENTS, Centroid, LayerwisePressure
 from variational.history import History, SkinField
-from variational.materials import stress
-from variational.pressure import LayerwisePressure
 
 if TYPE_CHECKING:
     from variational.materials.material import Material
@@ -249,7 +247,7 @@ class Problem:
                 "Nitsche's method takes one"
             )
         behind_all = found.pop()
-        return stress.first_piola_kirchhoff(self.laws[behind_all], F, self.pressures[behind_all])
+        return kinematics.first_piola_kirchhoff(self.laws[behind_all], F, self.pressures[behind_all])
 
     def _skin_stiffness(self, solids: Mapping[int, "Material"], cellwise: fem.FunctionSpace) -> fem.Function:
         """Return the constrained modulus behind the touching skin over the facets' lengths (Pa/m), cell by cell."""

@@ -1,6 +1,6 @@
 """What a tribologist looks at, reduced over the surface and all ranks."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -30,6 +30,16 @@ class RidgeLoads:
     f_attraction_x: Array
     length: Array
     """Current length in contact, p_n > 0 (m); its ends are located inside facets."""
+
+    def whole(self) -> "RidgeLoads":
+        """Return the resultants of all ridges of a body whose half at x >= 0 these are of, ridge 0's from its half."""
+
+        def both(name: str) -> Array:
+            v = getattr(self, name)
+            sign = -1.0 if name in ("f_friction", "f_attraction_x") else 1.0
+            return np.concatenate([sign * v[:0:-1], [v[0] + sign * v[0]], v[1:]])
+
+        return RidgeLoads(**{field.name: both(field.name) for field in fields(RidgeLoads)})
 
     @property
     def p_c(self) -> Array:

@@ -4,17 +4,25 @@ environment/run python3 -m benchmarks.measured [--jobs 2] [--draw]
 
 Most numbers are those of docs/paper.json and docs/models.json (make paper, benchmarks.models), to be made again after
 them. Eight runs of an uncharged press are made here, some ten seconds each. Writes docs/measured.json, and from it
-docs/measured.md and its picture.
+docs/measured.md and its picture. A finding of the kind ``simulated`` was computed by its source and does not count.
 """
 
 import argparse
+import csv
 import sys
+from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
-from benchmarks.harness import keep, kept, made, main, run
-from benchmarks.measured import page, rows, scenes
-from benchmarks.runs import Run
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from benchmarks.harness import cells, keep, kept, made, main, page, picture, run
+from benchmarks.measured import fingers, rows, rules
+from benchmarks.measured.rules import BUILT, HIT
+from benchmarks.runs import VOLTAGES, Run
+from fingerpad.results import style
 from fingerpad.scene import Scene
 
 _LIMIT = 600.0  # s of processor time for one run
@@ -44,11 +52,101 @@ def numbers(runs: dict[str, Any], docs: Path) -> dict[str, Any]:
 
 def compute(args: argparse.Namespace) -> None:
     """Run what is missing and keep the numbers."""
-    wanted = scenes.scenes()
+    wanted = fingers.scenes()
     summaries = run(wanted, args, _LIMIT)
     runs = {name: pressed(scene, args.out) for name, scene in wanted.items()}
     keep("measured", numbers(runs, args.docs), made(summaries.values()), args.docs)
 
 
+# -- page ------------------------------------------------------------------------------------------------------
+class Row(NamedTuple):
+    """A measured finding with its verdict, and its row on the page."""
+
+    key: str
+    kind: str
+    numbers: Mapping[str, float]
+    verdict: str
+    line: str
+
+
+def judged(docs: Path) -> list[Row]:
+    """Return the rows of the page from the kept numbers of a folder."""
+    found, judged = kept("measured", docs).numbers["rows"], []
+    sources = {source["key"]: source for source in _read("sources")}
+    for text in _read("rows"):
+        source, (numbers, verdict) = sources[text["source"]], found[text["key"]].values()
+        verdict = BUILT if text["built"] and verdict == HIT else verdict
+        because = f": {text['why']}" if verdict != HIT and text["why"] else ""
+        by = f"[{source['words']}]({source['link']}); people: {source['people']}; {source['read']}"
+        ours = text["ours"].format(**numbers).replace("%", " %")
+        line = cells(text["measured"], by, ours, text["fitted"], f"**{verdict}**{because}")
+        judged.append(Row(text["key"], text["kind"], numbers, verdict, line))
+    return judged
+
+
+def _read(name: str) -> list[dict[str, str]]:
+    with (Path(__file__).parent / f"{name}.csv").open(encoding="utf-8", newline="") as file:
+        return list(csv.DictReader(file))
+
+
+def draw(docs: Path) -> Path:
+    """Write docs/measured.md and its picture from docs/measured.json."""
+    picture(docs / "measured.png", (10, 3.6), lambda figure: _paint(figure, kept("measured", docs).numbers))
+    every = judged(docs)
+    names = {"judged": every, "found": [row.verdict for row in every if row.kind != "simulated"]}
+    return page(docs, "measured", "make measured", globals() | names)
+
+
+# -- picture -------------------------------------------------------------------------------------------------
+def _paint(figure: Figure, numbers: Mapping[str, Any]) -> None:
+    voltage, force, pressure = figure.subplots(1, 3)
+    _over_voltage(voltage, numbers["curves"])
+    _over_depth(force, *(np.array(numbers["curves"][name]) for name in ("depth", "force")))
+    _over_width(pressure, numbers["runs"]["dry 20"])
+
+
+def _over_voltage(ax: Axes, curves: Mapping[str, list[float]]) -> None:
+    u, words = np.array(VOLTAGES[1:]), dict(zip(rows.DRAWN, ("friction", "contact length"), strict=True))
+    for k, (force, name) in enumerate((f, name) for f in rows.DRAWN_FORCES for name in rows.DRAWN):
+        values = np.array(curves[f"{name} {force:g}"])
+        rise = (values[1:] - values[0]) / (values[VOLTAGES.index(100.0)] - values[0])
+        look = {"color": style.CATEGORIES[k], "marker": style.MARKERS[k], "ms": 5}
+        ax.loglog(u, rise, **look, label=f"{words[name]}, {force:g} N/m")
+    ax.loglog(u, (u / 100) ** 2, color="black", ls="--", zorder=0, label="U², measured")
+    ax.set(xlabel="voltage (V)", ylabel="rise over 0 V / rise at 100 V (–)", title="A  full slip")
+    ax.set_xticks(u, [f"{each:g}" for each in u])
+    ax.minorticks_off()
+    ax.legend(fontsize=8)
+
+
+def _over_depth(ax: Axes, depth: rows.Array, force: rows.Array) -> None:
+    ax.plot(1e3 * depth, force, "o", color=style.BLUE, label="this model, 0 V")
+    exponent = rules.of_largest(rules.power, depth, force).parameter
+    _fitted(ax, rules.exponential, (depth, force), 1.0, ("--", "black", "exponential, measured"))
+    _fitted(ax, rules.power, (depth, force), 1.0, (":", style.VERMILION, f"power law, {exponent:.2f}"))
+    ax.set(xlabel="depth (mm)", ylabel="force of the whole finger (N)", title="B  pressed")
+    ax.legend(fontsize=8)
+
+
+def _over_width(ax: Axes, run: Mapping[str, Any]) -> None:
+    points = np.array(run["place"]), np.array(run["pressure"])
+    ax.plot(1e3 * points[0], points[1] / 1e3, "o", color=style.BLUE, label="ridges of this model")
+    _fitted(ax, rules.paraboloid, points, 1e-3, ("--", "black", "paraboloid, measured"))
+    _fitted(ax, rules.ellipse, points, 1e-3, (":", style.VERMILION, "half an ellipse"))
+    ax.set(xlabel="x (mm)", ylabel="force over area of a ridge (kPa)", title="C  75 N/m, 0 V")
+    ax.set_ylim(0, 1.55e-3 * points[1].max())
+    ax.legend(fontsize=8, loc="upper center")
+
+
+def _fitted(
+    ax: Axes, form: rules.Form, points: tuple[rows.Array, rows.Array], unit: float, look: tuple[str, str, str]
+) -> None:
+    """Draw a form that is fitted by the largest value; ``look`` is line, colour and label."""
+    x, y = points
+    parameter = rules.of_largest(form, x, y).parameter
+    fine, factor = np.linspace(x.min(), x.max(), 201), rules.scale(form(x, parameter), y)
+    ax.plot(1e3 * fine, unit * factor * form(fine, parameter), look[0], color=look[1], label=look[2])
+
+
 if __name__ == "__main__":
-    sys.exit(main(__doc__, compute, page.draw))
+    sys.exit(main(__doc__, compute, draw))

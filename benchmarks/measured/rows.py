@@ -1,7 +1,7 @@
 """Our numbers beside measured ones, and a verdict each; all words are in ``rows.csv`` and ``sources.csv``.
 
 What is compared is the quantity that was measured. The apparent area is the gross area of the whole finger, a sum of
-slices (:mod:`benchmarks.measured.finger`). The real area is the contact length of the ridges, of the paper's page
+slices (:mod:`benchmarks.measured.fingers`). The real area is the contact length of the ridges, of the paper's page
 (docs/paper.json: default mesh). Attraction is of docs/models.json, at a contact size of 10 µm. The stated error is the
 difference of the two meshes. Whole fingers of the finer mesh have its contact lengths and counts of ridges, over the
 indentations of the coarser one. Of trends the other mesh has a count.
@@ -14,8 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from benchmarks import models
-from benchmarks.measured import finger, forms, scenes
-from benchmarks.measured.verdict import (
+from benchmarks.measured import fingers, rules
+from benchmarks.measured.rules import (
     CHANGED,
     EXPONENT,
     HIT,
@@ -29,7 +29,7 @@ from benchmarks.measured.verdict import (
 )
 from benchmarks.runs import FORCES, VOLTAGES
 from fingerpad.scene import Scene
-from fingerpad.scene.laws import coefficient
+from fingerpad.scene.remarks import coefficient
 
 Array = NDArray[np.float64]
 Numbers = dict[str, float]
@@ -48,9 +48,9 @@ class Grid(NamedTuple):
     """Contact size of 10 µm: the same, and ``f_electrostatic``."""
     gaps: tuple[float, float]
     """Least and largest air gap (m) of all runs with a voltage."""
-    full_finger: finger.Sums
+    full_finger: fingers.Sums
     """The whole finger in newtons, from the full model at a contact size of 10 µm."""
-    fine_finger: finger.Sums
+    fine_finger: fingers.Sums
     """The same with the contact lengths and counts of ridges of the default mesh."""
 
 
@@ -62,7 +62,7 @@ def grid(paper: Mapping[str, Any], known: Mapping[str, Any]) -> Grid:
     """Return the grid from the numbers of docs/paper.json and docs/models.json."""
     fine = {name: np.array(values) for name, values in paper["grid"].items()}
     low, high = fine["gaps_range"]
-    return Grid(fine, _of(known), (float(low), float(high)), finger.sums(known), finger.sums(known, fine))
+    return Grid(fine, _of(known), (float(low), float(high)), fingers.sums(known), fingers.sums(known, fine))
 
 
 def _of(known: Mapping[str, Any]) -> dict[str, Array]:
@@ -122,7 +122,7 @@ def _falls(change: Array) -> NDArray[np.bool_]:
 
 
 def _area_load(g: Grid) -> Row:
-    def grow(sums: finger.Sums) -> NDArray[np.bool_]:
+    def grow(sums: fingers.Sums) -> NDArray[np.bool_]:
         areas = [np.diff(np.log(sums[f"charged_0_{name}"])) for name in ("gross_area", "contact_area")]
         return np.asarray((areas[0] >= np.log1p(CHANGED)) & (areas[1] > 0))
 
@@ -132,10 +132,10 @@ def _area_load(g: Grid) -> Row:
 
 def _force_depth(g: Grid) -> Row:
     """Judge an exponential beside a power law, by the misfit of each force and by that of the largest."""
-    depth, force = g.full_finger["charged_0_depth"], np.array(finger.NEWTONS)
+    depth, force = g.full_finger["charged_0_depth"], np.array(fingers.NEWTONS)
     fits = {
-        form: [fit(form, depth, force) for fit in (forms.of_each, forms.of_largest)]
-        for form in (forms.exponential, forms.power)
+        form: [fit(form, depth, force) for fit in (rules.of_each, rules.of_largest)]
+        for form in (rules.exponential, rules.power)
     }
     (each, largest), (other_each, other_largest) = ([fit.misfit for fit in fits[form]] for form in fits)
     numbers = {"each": each, "largest": largest, "other_each": other_each, "other_largest": other_largest}
@@ -144,13 +144,13 @@ def _force_depth(g: Grid) -> Row:
 
 def _area_power(g: Grid) -> Row:
     """Judge a power law beside a straight line, at the forces of the source; the exponent is that of all forces."""
-    force, area = np.array(finger.NEWTONS), g.full_finger["charged_0_gross_area"]
+    force, area = np.array(fingers.NEWTONS), g.full_finger["charged_0_gross_area"]
     theirs = force >= 0.5
-    misfit, other = (forms.of_each(form, force[theirs], area[theirs]).misfit for form in (forms.power, forms.line))
-    whole = [forms.of_each(forms.power, force, f["charged_0_gross_area"]) for f in (g.full_finger, g.fine_finger)]
+    misfit, other = (rules.of_each(form, force[theirs], area[theirs]).misfit for form in (rules.power, rules.line))
+    whole = [rules.of_each(rules.power, force, f["charged_0_gross_area"]) for f in (g.full_finger, g.fine_finger)]
     exponent = whole[0].parameter
     numbers = {"misfit": misfit, "line": other, "exponent": exponent, "all": whole[0].misfit}
-    numbers |= {"all_line": forms.of_each(forms.line, force, area).misfit}
+    numbers |= {"all_line": rules.of_each(rules.line, force, area).misfit}
     return numbers | {"error": abs(whole[1].parameter - exponent)}, by_form((misfit,), (other,))
 
 
@@ -200,17 +200,17 @@ def _gap_sliding(g: Grid) -> Row:
 def _pressure(runs: Mapping[str, Any]) -> Row:
     """Judge a paraboloid beside half an ellipse, over the largest pressure."""
     fits = {}
-    for size in scenes.SIZES:
-        place, pressure = (np.array(runs[scenes.name("dry", size)][key]) for key in ("place", "pressure"))
-        fits[size] = [forms.of_largest(form, place, pressure).misfit for form in (forms.paraboloid, forms.ellipse)]
+    for size in fingers.SIZES:
+        place, pressure = (np.array(runs[fingers.name("dry", size)][key]) for key in ("place", "pressure"))
+        fits[size] = [rules.of_largest(form, place, pressure).misfit for form in (rules.paraboloid, rules.ellipse)]
     (coarse, _), (fine, other) = fits.values()
     numbers = {"misfit": fine, "error": abs(fine - coarse), "other": other}
-    return numbers | {"ridges": runs[scenes.name("dry", scenes.SIZES[-1])]["ridges"]}, by_form((fine,), (other,))
+    return numbers | {"ridges": runs[fingers.name("dry", fingers.SIZES[-1])]["ridges"]}, by_form((fine,), (other,))
 
 
 def _change(runs: Mapping[str, Any], kind: str, value: Callable[[Mapping[str, Any]], float]) -> tuple[float, float]:
     """Return a kind's relative change from the dry finger on the finer mesh, and its error."""
-    pairs = ([value(runs[scenes.name(each, size)]) for each in (kind, "dry")] for size in scenes.SIZES)
+    pairs = ([value(runs[fingers.name(each, size)]) for each in (kind, "dry")] for size in fingers.SIZES)
     coarse, fine = (mine / dry - 1 for mine, dry in pairs)
     return fine, abs(fine - coarse)
 
@@ -226,18 +226,18 @@ def _gross(run: Mapping[str, Any]) -> float:
 
 def _softer(runs: Mapping[str, Any]) -> Row:
     """Judge either area at each softening of the stratum corneum."""
-    real, gross = ([_change(runs, f"soft {s:g}", of) for s in scenes.SOFTER] for of in (_length, _gross))
+    real, gross = ([_change(runs, f"soft {s:g}", of) for s in fingers.SOFTER] for of in (_length, _gross))
     holds = [change >= STRIKING for change, _ in real] + [abs(change) <= SIMILAR for change, _ in gross]
     (less, less_error), (more, error) = real
     numbers = {"less": less, "less_error": less_error, "more": more, "error": error}
-    numbers |= {"gross": max(change for change, _ in gross), "least": scenes.SOFTER[0], "most": scenes.SOFTER[-1]}
+    numbers |= {"gross": max(change for change, _ in gross), "least": fingers.SOFTER[0], "most": fingers.SOFTER[-1]}
     return numbers, by_share(sum(holds) / len(holds))
 
 
 def _modulus(runs: Mapping[str, Any]) -> Row:
     """Judge a softening of the stratum corneum beside as large a change of friction."""
-    (soft, error), (rough, _) = (_change(runs, kind, _length) for kind in (f"soft {scenes.SOFTER[-1]:g}", "rough"))
-    numbers = {"soft": soft, "rough": rough, "error": error, "most": scenes.SOFTER[-1], "friction": scenes.ROUGHER}
+    (soft, error), (rough, _) = (_change(runs, kind, _length) for kind in (f"soft {fingers.SOFTER[-1]:g}", "rough"))
+    numbers = {"soft": soft, "rough": rough, "error": error, "most": fingers.SOFTER[-1], "friction": fingers.ROUGHER}
     return numbers, by_share(float(abs(soft) > abs(rough)))
 
 
@@ -292,4 +292,4 @@ def curves(g: Grid) -> dict[str, list[float]]:
     shown = {
         f"{name} {f:g}": g.fine[f"full_slip_{name}"][FORCES.index(f)].tolist() for name in DRAWN for f in DRAWN_FORCES
     }
-    return shown | {"depth": g.full_finger["charged_0_depth"].tolist(), "force": list(finger.NEWTONS)}
+    return shown | {"depth": g.full_finger["charged_0_depth"].tolist(), "force": list(fingers.NEWTONS)}

@@ -14,12 +14,16 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
+from benchmarks import newtons
 from benchmarks.errors import known
-from benchmarks.harness import keep, kept, made, parser, run
-from benchmarks.paper import energy, fields, friction, page, scenes
-from benchmarks.paper.statement import Statement
-from benchmarks.runs import Run
+from benchmarks.harness import keep, kept, made, page, parser, picture, run
+from benchmarks.paper import energy, fields, friction, scenes
+from benchmarks.paper.statement import BUILT, HOLDS, IN_PART, NOT, Statement
+from benchmarks.runs import FORCES, VOLTAGES, Run
 from fingerpad.runs.batch import result
+from fingerpad.slices import errors
 
 _LIMIT = 3600.0  # s of processor time for one run; the sine takes longest
 
@@ -59,6 +63,42 @@ def collect(out: Path) -> dict[str, Any]:
     return numbers
 
 
+def _sites(statements: Sequence[Statement]) -> list[tuple[str, int, float, float, float]]:
+    """Return the sites of Fig. 9B: their words, the paper's number, and place, ridge and ratio of SED here."""
+    named = [(*name.rpartition(" ")[::2], ratio) for s in statements for name, ratio in s.numbers.items()]
+    there = [(kind, float(ridge), ratio) for kind, ridge, ratio in named if kind in scenes.NAMED]
+    start = next((ridge for kind, ridge, _ in there if kind == "highest"), 0.0)
+    return [
+        (kind + " at 0 V" * (kind == "highest"), scenes.NAMED[kind], ridge - start, ridge, ratio)
+        for kind, ridge, ratio in there
+    ]
+
+
+def draw(docs: Path) -> Path:
+    """Draw the page and its picture from docs/paper.json, and Fig. 6 in newtons from docs/newtons.json."""
+    numbers, sums = kept("paper", docs).numbers, (docs / "newtons.json").exists()
+    statements = [Statement(**s) for s in numbers["statements"]]
+    names: dict[str, Any] = {
+        "statements": statements,
+        "count": [[s.verdict for s in statements].count(verdict) for verdict in (HOLDS, BUILT, IN_PART, NOT)],
+        "runs": len(FORCES) * len(VOLTAGES),
+        "slices": errors.percent(errors.known_at(newtons.COMPARED)["f_t"]),
+        "limit": next((s.numbers["mu_app"] for s in statements if "mu_app" in s.numbers), None),
+        "because": lambda s: f": {s.why}" if s.verdict != HOLDS and s.why else "",
+        "missing": numbers.get("missing"),
+        "sites": _sites(statements),
+        "grid": {key: np.array(values) for key, values in numbers.get("grid", {}).items()},
+        "middle": None,
+    }
+    if names["grid"]:
+        picture(docs / "paper_friction.png", (10, 4), lambda figure: friction.paint(figure, names["grid"]))
+    if sums:
+        found = kept("newtons", docs).numbers
+        newtons.picture(found, docs)
+        names |= newtons.compared(found)
+    return page(docs, "paper", "make paper", globals() | names, *["newtons"] * sums)
+
+
 def main(given: Sequence[str] | None = None) -> int:
     """Run what is missing, keep its numbers and draw the page."""
     args, missing = parser(__doc__).parse_args(given), list[str]()
@@ -83,7 +123,7 @@ def main(given: Sequence[str] | None = None) -> int:
         elif (args.docs / "paper.json").exists():
             numbers["minutes"] = kept("paper", args.docs).numbers.get("minutes")
         keep("paper", numbers, made(summaries.values()), args.docs)
-    print(page.draw(args.docs))
+    print(draw(args.docs))
     return 1 if missing else 0
 
 

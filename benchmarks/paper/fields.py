@@ -6,7 +6,7 @@ from numpy.typing import NDArray
 from benchmarks.paper.statement import HALF, Statement, statement
 from benchmarks.runs import Array, Run
 from fingerpad.scene import Scene
-from fingerpad.scene.laws import coefficient
+from fingerpad.scene.remarks import coefficient
 from variational.roughness.bam import BearingArea
 
 Which = NDArray[np.bool_]

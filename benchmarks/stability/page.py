@@ -11,7 +11,7 @@ from matplotlib.colors import LogNorm, to_hex, to_rgb
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch, Rectangle
 
-from benchmarks.harness import kept, page, picture, prose, table
+from benchmarks.harness import kept, page, picture, table
 from benchmarks.stability import plan, scenes
 from benchmarks.stability.plan import DEFAULT, Axis, Case, Named, Panel
 from fingerpad.results.style import MAGNITUDE, ORANGE, SKY, VERMILION
@@ -56,27 +56,6 @@ def named_table(named: Named, rows: Rows) -> str:
     return table(columns, lines)
 
 
-def counts_table(charts: Mapping[str, Iterable[Panel]], rows: Rows) -> str:
-    """Return how many runs of each chart and formulation ended how."""
-    lines = []
-    for title, panel in ((title, panel) for title, panels in charts.items() for panel in panels):
-        count = Counter(rows[case]["status"] if case in rows else "not run" for case in panel.cases())
-        lines.append([title, panel.title, count.total(), *(count[status] for status in (*NAMES, "not run"))])
-    return table(["varied", "formulation or element", "runs", *NAMES.values(), "not run"], lines)
-
-
-def scenes_table(runs: Iterable[Row]) -> str:
-    """Return random scenes, one a row, with what became of each by each formulation; the last row counts full slips."""
-    found = {(row["number"], row["formulation"]): row for row in runs}
-    lines: list[list[Any]] = []
-    for number in range(scenes.COUNT):
-        data = scenes.drawn(number)
-        lines.append([number, data["f_ext"], data["voltage"], data["friction"], data["materials"]["exponent"]])
-        lines[-1] += [_scene_cell(found.get((number, name))) for name in scenes.FORMULATIONS]
-    lines.append(["full slip", None, None, None, None, *(full_slips(runs, name) for name in scenes.FORMULATIONS)])
-    return table(["scene", "f_ext (N/m)", "U (V)", "friction", "exponent", *scenes.FORMULATIONS], lines)
-
-
 def full_slips(runs: Iterable[Row], formulation: str) -> str:
     """Return how many of the random scenes that were run a formulation leads to full slip, on whatever elements."""
     ends = [row["full_slip"] for row in runs if row["formulation"] == formulation]
@@ -89,12 +68,6 @@ def dearer(runs: Iterable[Row], formulation: str) -> float:
     work = {(row["formulation"], row["number"]): row["factorisations"] for row in runs if row["full_slip"]}
     both = [number for name, number in work if name == formulation and ("penalty", number) in work]
     return sum(work[formulation, k] for k in both) / max(sum(work["penalty", k] for k in both), 1)
-
-
-def _random_part(text: str, random: Mapping[str, Any]) -> str:
-    ratios = {name: dearer(random["runs"], name) for name in scenes.FORMULATIONS[1:]}
-    said = text.format(made=random["made"], limit=scenes.LIMIT, **ratios)
-    return f"{said}\n\n{scenes_table(random['runs'])}"
 
 
 def _scene_cell(row: Row | None) -> str:
@@ -183,25 +156,23 @@ def paint(figure: Figure, rows: Rows) -> None:
 # -- page ----------------------------------------------------------------------------------------------------
 def draw(docs: Path) -> Path:
     """Write docs/stability.md and docs/stability.png from docs/stability.json."""
-    found = kept("stability", docs)
-    numbers = found.numbers
-    rows = {Case(**row["case"]): row for row in numbers["runs"]}
-    charts = plan.charts()
-    ends = Counter(rows[c]["status"] for c in charts["Voltage and force"][0].cases() if c in rows)
-    random = numbers["random"]
-    text, followed = prose("stability"), ends["converged"] + ends["continuation"]
-    slips = {name: full_slips(random["runs"], name) for name in scenes.FORMULATIONS}
-    total, continued = ends.total(), ends["continuation"]
-    finding = text["finding"].format(followed=followed, total=total, continued=continued, **slips)
-    symbols = ", ".join(f"{SYMBOLS[s]} {NAMES[s]}" for s in NAMES)
-    body = [
-        picture(docs / "stability.png", (17, 9), lambda figure: paint(figure, rows), text["caption"]),
-        f"## The default and its neighbours\n\n{text['default']}\n\n{named_table(plan.neighbours(), rows)}",
-        f"## How many runs ended how\n\n{counts_table(charts, rows)}",
-        f"## Random scenes of the whole finger\n\n{_random_part(text['random'], random)}",
-        "## Known failures, reproduced",
-        *(f"### {n.capitalize()}\n\n{text[n]}\n\n{named_table(each, rows)}" for n, each in plan.named().items()),
+    numbers, charts = kept("stability", docs).numbers, plan.charts()
+    rows, random = {Case(**row["case"]): row for row in numbers["runs"]}, numbers["random"]["runs"]
+    picture(docs / "stability.png", (17, 9), lambda figure: paint(figure, rows))
+    counts = [
+        (title, panel.title, Counter(rows[case]["status"] if case in rows else "not run" for case in panel.cases()))
+        for title, panels in charts.items()
+        for panel in panels
     ]
-    how = text["how"].format(solves=numbers["solves"], minutes=numbers["seconds"] / 60, symbols=symbols.capitalize())
-    title, command = "Where the solver converges", "environment/run python3 -m benchmarks.stability"
-    return page(docs / "stability.md", title, finding, how, body, command, found.made, ["stability"])
+    ends = {(row["number"], row["formulation"]): row for row in random}
+    names = {
+        "counts": counts,
+        "ends": counts[0][2],
+        "named": {n: named_table(each, rows) for n, each in ({"neighbours": plan.neighbours()} | plan.named()).items()},
+        "slips": {name: full_slips(random, name) for name in scenes.FORMULATIONS},
+        "drawn": [
+            (k, scenes.drawn(k), [_scene_cell(ends.get((k, name))) for name in scenes.FORMULATIONS])
+            for k in range(scenes.COUNT)
+        ],
+    }
+    return page(docs, "stability", "environment/run python3 -m benchmarks.stability", globals() | names)

@@ -36,9 +36,9 @@ from variational.problem import Interface
 from variational.roughness.bam import BearingArea
 from variational.solvers.continuation import Attempt, Continuation, StepFailed, Target
 from variational.solvers.coupling import Coupling
-from variational.solvers.failure import NotConverged
 from variational.solvers.iteration import EXACT, StopRule
 from variational.solvers.newton import Solver
+from variational.solvers.outcome import NotConverged
 
 _H_0 = 0.514e-6  # m
 _SKIN = {tags.STRATUM_CORNEUM: 86.76e3, tags.VIABLE_EPIDERMIS: 61.75e3, tags.DERMIS: 2.55e3}  # Pa

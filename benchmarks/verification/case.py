@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from benchmarks.harness import kept, page, prose, table
+from benchmarks.harness import cell, cells, kept, page
 
 
 @dataclass(frozen=True)
@@ -68,7 +68,6 @@ def order_row(quantity: str, observed: float, expected: float, tolerance: float,
 
 # -- page ----------------------------------------------------------------------------------------------------
 Results = Mapping[str, Sequence[tuple[Case, Sequence[Row]]]]
-_HEAD = ["case and source of the answer", "quantity", "known answer", "computed", "error", "tolerance", "mesh", "order"]
 
 
 def numbers(results: Results) -> dict[str, Any]:
@@ -80,36 +79,21 @@ def numbers(results: Results) -> dict[str, Any]:
     return {area: [record(*found) for found in cases] for area, cases in results.items()}
 
 
-def _lines(name: str, reference: str, rows: Sequence[Row]) -> list[list[str]]:
-    return [
-        [
-            f"{name}; {reference}" if k == 0 else "",
-            row.quantity,
-            f"{row.reference:.6g}",
-            f"{row.computed:.6g}",
-            f"{'' if row.holds else '**!** '}{row.error:.2g}{'' if row.absolute else ' (rel.)'}",
-            f"{row.tolerance:.2g}: {row.why}",
-            row.mesh,
-            "–" if row.order is None else f"{row.order:.2f}",
-        ]
-        for k, row in enumerate(rows)
-    ]
+def _line(case: str, row: Row) -> str:
+    """Return a row of a table; ``case`` is empty but in the first of a case."""
+    error = f"{'' if row.holds else '**!** '}{row.error:.2g}{'' if row.absolute else ' (rel.)'}"
+    found = (f"{row.reference:.6g}", f"{row.computed:.6g}", error, f"{row.tolerance:.2g}: {row.why}", row.mesh)
+    return cells(case, row.quantity, *found, cell(row.order, ".2f"))
 
 
 def draw(docs: Path) -> Path:
     """Write docs/verification.md from docs/verification.json."""
-    found = kept("verification", docs)
-    areas = {
-        area: [(case["name"], case["reference"], [Row(**row) for row in case["rows"]]) for case in cases]
-        for area, cases in found.numbers.items()
-    }
-    rows = [row for cases in areas.values() for *_, some in cases for row in some]
-    held, count = sum(row.holds for row in rows), sum(map(len, areas.values()))
-    text = prose("verification")
-    finding = text["finding"].format(held=held, n=len(rows), count=count)
-    body = [
-        f"## {area}\n\n{table(_HEAD, [line for case in cases for line in _lines(*case)])}"
-        for area, cases in areas.items()
-    ]
-    path, names = docs / "verification.md", ["verification"]
-    return page(path, "Verification", finding, text["how"], body, "make verify", found.made, names)
+    rows, areas = list[Row](), dict[str, list[str]]()
+    for area, cases in kept("verification", docs).numbers.items():
+        areas[area] = []
+        for case in cases:
+            some = [Row(**row) for row in case["rows"]]
+            names = [f"{case['name']}; {case['reference']}", *[""] * (len(some) - 1)]
+            areas[area] += map(_line, names, some)
+            rows += some
+    return page(docs, "verification", "make verify", {"rows": rows, "areas": areas})

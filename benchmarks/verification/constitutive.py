@@ -19,8 +19,7 @@ from numpy.typing import NDArray
 from scipy.optimize import brentq
 
 from benchmarks.verification.case import Case, Row, worst
-from variational import compat, jit
-from variational.materials import stress
+from variational import compat, jit, kinematics
 from variational.materials.material import Material
 from variational.materials.ogden import Ogden
 
@@ -86,8 +85,8 @@ class Points:
         self._F, self._parameters = field(2, 2), [field() for _ in solid.names()]
         made = solid.with_values(dict(zip(solid.names(), self._parameters, strict=True)))
         F = ufl.variable(self._F)
-        P = stress.first_piola_kirchhoff(made, F)
-        parts: list[Any] = [made.density(F), P, stress.cauchy(made, F), ufl.diff(P, F)]
+        P = kinematics.first_piola_kirchhoff(made, F)
+        parts: list[Any] = [made.density(F), P, kinematics.cauchy(made, F), ufl.diff(P, F)]
         entries = [part[index] if index else part for part in parts for index in np.ndindex(part.ufl_shape)]
         self._compiled = fem.Expression(ufl.as_vector(entries), np.array([[1 / 3, 1 / 3]]), jit_options=jit.OPTIONS)
 

@@ -23,7 +23,6 @@ from benchmarks.verification.case import Case, Row, order, order_row
 from geometry import tags
 from geometry.bodies import block
 from variational import compat, jit, kinematics
-from variational.materials import stress
 from variational.materials.ogden import Ogden
 from variational.problem import Problem
 
@@ -65,7 +64,11 @@ def loads(problem: Problem):
     marked = dolfinx.mesh.meshtags(mesh, 1, facets, np.ones(len(facets), dtype=np.int32))
     dS = ufl.Measure("dS", mesh, subdomain_data=marked, metadata=rule)
     (law,) = problem.laws.values()
-    P, v, N = stress.first_piola_kirchhoff(law, strained(problem)), ufl.TestFunction(problem.V), ufl.FacetNormal(mesh)
+    P, v, N = (
+        kinematics.first_piola_kirchhoff(law, strained(problem)),
+        ufl.TestFunction(problem.V),
+        ufl.FacetNormal(mesh),
+    )
     return -ufl.dot(ufl.div(P), v) * ufl.dx(mesh, metadata=rule) + ufl.dot(ufl.jump(P, N), ufl.avg(v)) * dS(1)
 
 

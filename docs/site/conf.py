@@ -46,7 +46,7 @@ napoleon_use_rtype = False
 # Types of other libraries and of variables in signatures have no page here.
 nitpick_ignore_regex = [
     ("py:.*", r"(?!(geometry|variational|fingerpad)\.).*"),
-    ("py:.*", r"fingerpad\.(runs\.processes\.(Key|Result)|scene\.(load_names\.load_name|Scene\.replace|load))"),
+    ("py:.*", r"fingerpad\.(runs\.processes\.(Key|Result)|scene\.(loads\.load_name|Scene\.replace|load))"),
 ]
 
 html_theme = "furo"

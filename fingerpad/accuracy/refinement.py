@@ -18,25 +18,21 @@ another number of ridges touches is noted; it appears as a large share.
 
 The result is the *estimated discretisation error*: the estimate with its factors of safety, which in whole runs
 covers the known errors of nine of ten numbers (``docs/accuracy.md``). It is of the mesh, over the screen as it is. The
-effect of a penalty is reported beside it (:mod:`fingerpad.accuracy.rigid_screen`).
+effect of a penalty is reported beside it (:mod:`fingerpad.richardson`).
 
 Not estimated: the effect on normal contact of a friction history that is the first mesh's.
 """
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import fields, replace
 from typing import TYPE_CHECKING, Any
 
-from mpi4py import MPI
-
-from fingerpad.accuracy.rigid_screen import rigid
-from fingerpad.accuracy.solves import Solve, Solves, quantities, words
-from fingerpad.model.options import FingerModel
+from fingerpad.accuracy.solves import Solve, Solves, quantities
 from fingerpad.results.interrupt import Interrupted
-from fingerpad.results.quantities import QUANTITIES
+from fingerpad.results.quantities import QUANTITIES, Output
 from fingerpad.results.states import WORDS
-from fingerpad.richardson import MeshParameter, errors, plus_minus, to_refine
+from fingerpad.richardson import MeshParameter, errors, plus_minus, rigid, to_refine
 from geometry.profiles import GeometryError
 from variational.element import ELEMENTS
 from variational.solvers.continuation import StepFailed
@@ -64,27 +60,18 @@ class Refinement:
         to_come: solves that are still to come, the one that starts now among them; more where they are not enough.
     """
 
-    def __init__(
-        self,
-        model: FingerModel,
-        path: Solve,
-        comm: MPI.Comm,
-        show: Callable[[str], None],
-        pause: Callable[[], None],
-    ) -> None:
+    def __init__(self, solves: Solves) -> None:
         """Choose the mesh parameters.
 
         Args:
-            model: of the path.
-            path: its states.
-            comm: communicator of the meshes.
-            show: prints a line.
-            pause: called between solves; may raise to stop.
+            solves: the path's alone.
 
         Raises:
             StepFailed: the path has no state in which a quantity asked for is known.
         """
-        self.model, self.asked, self._show = model, model.asked, show
+        self.solves, self._show, (path,) = solves, solves.show, solves.found
+        self.model = model = solves.model
+        self.asked = model.asked
         for name in {"mu_app", "f_t"} & set(self.asked) if "full_slip" not in path.states else ():
             raise StepFailed(
                 f"accuracy.{name} is {self.asked[name]:g}, which full slip decides, and that was not reached"
@@ -96,7 +83,6 @@ class Refinement:
             )
         if self.asked and not path.states:
             raise StepFailed("accuracy is given and the history has neither normal contact nor full slip")
-        self.solves = Solves(model, path, comm, show, pause)
         self.base = self._stepped = path
         self.failure, self.notes = "", list[str]()
         self._met = not self.asked
@@ -148,8 +134,11 @@ class Refinement:
             self._note(f"the effect of the penalty could not be estimated: {error}")
             return
         self.penalty = rigid(self.base.values(), found.values())
-        changes = {name: _scaled(name, value) for name, value in self.penalty.items() if "_sed_" not in name}
-        listed = [f"{_in_words(name)} by {value:.2g} {unit}".rstrip() for name, (value, unit) in changes.items()]
+        listed = []
+        for name, value in self.penalty.items():
+            if "_sed_" not in name:
+                quantity, words = _named(name)
+                listed.append(f"{words} by {value * quantity.scale:.2g} {quantity.unit}".rstrip())
         self._show(f"penalty: a rigid screen would change {', '.join(listed)}")
 
     def _note(self, text: str) -> None:
@@ -208,7 +197,7 @@ class Refinement:
         for name in sorted(coarse.states.keys() & finer.states.keys()):
             before, now = (s.states[name].state.ridges_in_contact for s in (coarse, finer))
             if before != now:
-                self.notes.append(f"halving {key}: {now} ridges in contact at {words(name)} instead of {before}")
+                self.notes.append(f"halving {key}: {now} ridges in contact at {WORDS[name]} instead of {before}")
 
     def _on_mesh(self, refinements: Mapping[str, int]) -> Solve:
         """Return the states in use on the scene's mesh with sizes halved so often."""
@@ -224,10 +213,10 @@ class Refinement:
         for name, error in found.items():
             if "_sed_" in name:
                 continue
-            (value, unit), (spread, _) = _scaled(name, values[name]), _scaled(name, error)
-            limit = f", {_scaled(name, allowed[name])[0]:.2g} allowed" if name in allowed else ""
-            number = f"{plus_minus(value, spread)} {unit}".rstrip()
-            self._show(f"{_in_words(name)}: {number} (estimated discretisation error){limit}")
+            quantity, words = _named(name)
+            limit = f", {allowed[name] * quantity.scale:.2g} allowed" if name in allowed else ""
+            number = f"{plus_minus(values[name] * quantity.scale, error * quantity.scale)} {quantity.unit}".rstrip()
+            self._show(f"{words}: {number} (estimated discretisation error){limit}")
 
     def summary(self) -> dict[str, Any]:
         """Return how errors were found, ready for JSON; collective."""
@@ -278,17 +267,8 @@ def errors_of(name: str, changes: Mapping[str, float]) -> Errors:
     return Errors(**{k: v for key, v in changes.items() if (k := key.removeprefix(f"{name}_")) in known and k != key})
 
 
-def _in_words(key: str) -> str:
-    """Return a key such as ``full_slip_mu_app`` in words: quantity and state."""
-    name = next((name for name in WORDS if key.startswith(f"{name}_")), None)
-    if name is None:
-        return key
-    quantity = key.removeprefix(f"{name}_")
-    words = QUANTITIES[quantity].words if quantity in QUANTITIES else quantity
-    return f"{words} at {WORDS[name]}"
-
-
-def _scaled(key: str, value: float) -> tuple[float, str]:
-    """Return the value of a key such as ``full_slip_contact_length`` (in SI) in the unit of tables, and this unit."""
-    known = [q for name, q in QUANTITIES.items() if key == name or key.endswith(f"_{name}")]
-    return (value * known[0].scale, known[0].unit) if known else (value, "")
+def _named(key: str) -> tuple[Output, str]:
+    """Return the quantity of a key such as ``full_slip_mu_app``, and the key in words: quantity and state."""
+    state = next(name for name in WORDS if key.startswith(f"{name}_"))
+    quantity = QUANTITIES[key.removeprefix(f"{state}_")]
+    return quantity, f"{quantity.words} at {WORDS[state]}"

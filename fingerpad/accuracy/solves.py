@@ -10,7 +10,6 @@ import numpy as np
 from mpi4py import MPI
 from numpy.typing import ArrayLike, NDArray
 
-from fingerpad.accuracy.rigid_screen import over_stiffer
 from fingerpad.model.options import FingerModel
 from fingerpad.model.record import Viewer
 from fingerpad.model.simulation import RestartRequired, Simulation
@@ -19,7 +18,7 @@ from fingerpad.results.states import WORDS, before_sliding
 from fingerpad.scene import Load
 from geometry.parameters import MeshSize
 from variational.contact.formulation import Formulation
-from variational.receptors import Receptors
+from variational.output import Receptors
 from variational.solvers.continuation import StepFailed
 from variational.solvers.transfer import StateSnapshot, take_snapshot
 from variational.state import ContactState
@@ -28,11 +27,6 @@ if TYPE_CHECKING:
     from fingerpad.model.finger import Step
 
 Array = NDArray[np.float64]
-
-
-def words(name: str) -> str:
-    """Return a state's name in words."""
-    return WORDS.get(name, name)
 
 
 @dataclass(frozen=True)
@@ -141,6 +135,13 @@ class StateRecorder:
         return Solve(self.states, f.size, f.unknowns, f.solver.counts.factorisations, seconds, self.views)
 
 
+def over_stiffer(snapshot: StateSnapshot) -> StateSnapshot:
+    """Return a state whose springs, of twice the stiffness, bear the same friction."""
+    halved = {j: {**ridge.history, "anchor": ridge.history["anchor"] / 2} for j, ridge in snapshot.skin.items()}
+    skin = {j: replace(ridge, history=halved[j]) for j, ridge in snapshot.skin.items()}
+    return replace(snapshot, skin=skin)
+
+
 def solve_again(model: FingerModel, states: Mapping[str, State], comm: MPI.Comm, views: bool = False) -> Solve:
     """Solve for states of a finger on a model's mesh; collective.
 
@@ -156,7 +157,7 @@ def solve_again(model: FingerModel, states: Mapping[str, State], comm: MPI.Comm,
     simulation = Simulation(model, comm)
     recorder, finger = StateRecorder(simulation), simulation.finger
     for name, state in states.items():
-        simulation.re_equilibrate(state.snapshot, words(name), state.direction)
+        simulation.re_equilibrate(state.snapshot, WORDS[name], state.direction)
         recorder.keep(name)
         if views:
             recorder.views[name] = Viewer(finger).view(simulation.present(finger.ridge_loads()))
@@ -168,6 +169,8 @@ class Solves:
     """All solves of a path's states, the path's first.
 
     Attributes:
+        model: of the path.
+        show: prints a line.
         found: the solves, in order.
         restart: what a path with other steps turned out to need, if anything.
     """
@@ -189,8 +192,8 @@ class Solves:
             show: prints a line.
             pause: called before each solve; may raise to stop.
         """
-        self._model = model
-        self._comm, self._show, self._pause = comm, show, pause
+        self.model, self.show = model, show
+        self._comm, self._pause = comm, pause
         self.found = [path]
         self.restart: RestartRequired | None = None
 
@@ -205,7 +208,7 @@ class Solves:
             GeometryError: the mesh needs too much memory.
             StepFailed: a state was not found.
         """
-        return self._again(self._model.changed(mesh=mesh), states)
+        return self._again(self.model.changed(mesh=mesh), states)
 
     def over_stiffer_screen(self, base: Solve, contact: Formulation) -> Solve:
         """Return states over a screen of twice the stiffness; collective.
@@ -217,7 +220,7 @@ class Solves:
         Raises:
             StepFailed: a state was not found.
         """
-        model = self._model.changed(mesh=base.mesh, contact=contact)
+        model = self.model.changed(mesh=base.mesh, contact=contact)
         states = {name: replace(s, snapshot=over_stiffer(s.snapshot)) for name, s in base.states.items()}
         return self._again(model, states)
 
@@ -234,9 +237,9 @@ class Solves:
         Raises:
             StepFailed: the path was lost, or needs more of the model (:attr:`restart`).
         """
-        numerics = self._model.numerics.model_copy(update={"step_scale": step_scale})
-        loads = loads_to_normal_contact(self._model.loads)
-        model = self._model.changed(mesh=self.found[0].mesh, loads=loads, numerics=numerics)
+        numerics = self.model.numerics.model_copy(update={"step_scale": step_scale})
+        loads = loads_to_normal_contact(self.model.loads)
+        model = self.model.changed(mesh=self.found[0].mesh, loads=loads, numerics=numerics)
         self._pause()
         recorder: StateRecorder | None = None
 
@@ -248,7 +251,7 @@ class Solves:
         recorder = StateRecorder(simulation)
         restart = simulation.run()
         if restart is not None:
-            more = self._model.changed(mesh=restart.model.mesh, options=restart.model.options)
+            more = self.model.changed(mesh=restart.model.mesh, options=restart.model.options)
             self.restart = replace(restart, model=more)
             raise StepFailed(restart.reason)
         return self._keep(recorder.solve())
@@ -256,7 +259,7 @@ class Solves:
     def _keep(self, solve: Solve) -> Solve:
         self.found.append(solve)
         m = solve.mesh
-        self._show(
+        self.show(
             f"states on another mesh: facets {m.contact * 1e6:.4g} µm, growth {m.growth:.3g}, "
             f"junctions {m.interface * 1e6:.4g} µm, receptors {m.receptor * 1e6:.4g} µm: "
             f"{solve.unknowns} unknowns, {solve.factorisations} factorisations"

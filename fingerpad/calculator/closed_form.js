@@ -2,7 +2,7 @@
  *   BearingArea             variational/roughness/bam.py
  *   Cylinder, RidgeState    variational/attraction/cylinder.py
  *   fitted, given, solve    fingerpad/reduced/cylinders.py
- *   refuse                  fingerpad/scene/materials.py and contradictions.py
+ *   refuse                  fingerpad/scene/materials.py
  *   pchip, trace, whole     fingerpad/slices/trace.py, total.py and traces.py
  * The numbers of the default finger come from Python (fingerpad/calculator/fields.py). tests/test_calculator.py compares
  * the answers of both. Equations are those of Forsbach et al. 2023. SI units, forces per metre of finger. */

@@ -21,15 +21,13 @@ from fingerpad.reduced.model import STATES
 from fingerpad.results.quantities import PER_LENGTH
 from fingerpad.results.states import WORDS
 from fingerpad.scene import Scene
-from fingerpad.scene.contradictions import LARGEST_GAP
 from fingerpad.scene.law_keys import keys_of
-from fingerpad.scene.laws import skin_modulus
-from fingerpad.scene.materials import BEARING_AREA
-from fingerpad.scene.remarks import LEAKAGE
+from fingerpad.scene.materials import BEARING_AREA, LARGEST_GAP
+from fingerpad.scene.remarks import LEAKAGE, skin_modulus
 from fingerpad.slices import traces
 from geometry.parameters import Fingertip, MeshSize
 from geometry.units import Range
-from variational.attraction.insulator import VACUUM_PERMITTIVITY
+from variational.attraction.electroadhesion import VACUUM_PERMITTIVITY
 from variational.contact.friction import Coulomb
 
 _TABLE = (20.0, 50.0, 75.0, 100.0, 150.0), (0.0, 50.0, 100.0, 150.0, 200.0)  # N/m, V

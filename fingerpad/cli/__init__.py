@@ -1,7 +1,7 @@
-"""The command ``fingerpad``: one module a subcommand, imported when it is called.
+"""The command ``fingerpad``: a module a subcommand, imported when it is called.
 
-Each module has a function ``main(argv) -> int``. It returns the exit code: 0, 1 for a run that failed, 2 for a refusal,
-128 and the number of the signal for a run that was stopped.
+Each module has a function ``main(argv) -> int``; a second command in it has a function of its name. They return the
+exit code: 0, 1 for a run that failed, 2 for a refusal, 128 and the number of the signal for a run that was stopped.
 """
 
 import errno
@@ -30,6 +30,8 @@ COMMANDS = {
     "topography": "roughness of a scene from a measured height map",
     "params": "every key of a scene: unit, default, range and meaning",
 }
+_BESIDE = {"compare-data": "compare", "calculator": "report", "microscale": "roughness", "topography": "roughness"}
+"""Modules of the commands that have none of their own name."""
 _COLLECTIVE = ("run", "compare")  # use all ranks; the others are answered by rank 0
 
 
@@ -96,8 +98,9 @@ def _call(words: list[str]) -> int:
         raise SceneError(f"{clip(name) or 'an empty text'} is not a command; {instead}")
     if terminal.rank() and name not in _COLLECTIVE:
         return 0
+    own = importlib.import_module(f"fingerpad.cli.{_BESIDE.get(name, name)}")
     try:
-        return int(importlib.import_module(f"fingerpad.cli.{name.replace('-', '_')}").main(words[1:]))
+        return int(getattr(own, name.replace("-", "_") if name in _BESIDE else "main")(words[1:]))
     except SystemExit as stop:  # of --help
         return int(stop.code or 0)
 

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any, NamedTuple, NoReturn
 
 from fingerpad.cli import COMMANDS, ranges
-from fingerpad.model.feasibility import check
+from fingerpad.model.options import check
 from fingerpad.results import terminal
 from fingerpad.scene import Scene, from_data, load, override
 from fingerpad.scene.keys import every

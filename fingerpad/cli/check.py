@@ -6,18 +6,16 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from fingerpad.cli.arguments import Parser, echo, scene_of
-from fingerpad.model.feasibility import by_rule, memory, refuse_mesh, unknowns
-from fingerpad.model.options import FingerModel, ModelOptions, plan
+from fingerpad.model.options import FingerModel, ModelOptions, by_rule, memory, plan, refuse_mesh, unknowns
 from fingerpad.reduced.cylinder_errors import outside, where
 from fingerpad.results.files import check_folder
-from fingerpad.results.pace import about
+from fingerpad.results.terminal import about
 from fingerpad.scene import Load, Scene, SceneError
-from fingerpad.scene.laws import used
-from fingerpad.scene.remarks import leakage, remarks
+from fingerpad.scene.remarks import leakage, remarks, used
 from geometry.profiles import GeometryError
 
 if TYPE_CHECKING:
-    from fingerpad.cli.section import Section
+    from fingerpad.cli.mesh import Section
 
 _EXAMPLES = """
     fingerpad check scene.toml --out results/check
@@ -57,9 +55,9 @@ def _mesh(scene: Scene, needed: ModelOptions) -> "Section | None":
     """
     if scene.geometry.file is None and importlib.util.find_spec("gmsh") is None:
         return None
-    from fingerpad.cli import section
+    from fingerpad.cli import mesh as meshes
 
-    found = section.section(scene, needed)
+    found = meshes.section(scene, needed)
     if scene.geometry.file is None:
         try:
             refuse_mesh(len(found.points), len(found.triangles), FingerModel(by_rule(scene), needed))
@@ -147,8 +145,8 @@ def _picture(scene: Scene, folder: Path, mesh: "Section | None") -> str:
     """Draw the mesh; return what was drawn, or why nothing was."""
     if mesh is None or importlib.util.find_spec("matplotlib") is None:
         return f"The mesh is not drawn, since {'gmsh' if mesh is None else 'matplotlib'} is not installed."
-    from fingerpad.cli import section
+    from fingerpad.cli import mesh as meshes
 
     folder.mkdir(parents=True, exist_ok=True)
-    section.draw(folder / "mesh.png", mesh, by_rule(scene))
+    meshes.draw(folder / "mesh.png", mesh, by_rule(scene))
     return f"Mesh drawn: {folder / 'mesh.png'}"

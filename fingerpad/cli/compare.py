@@ -1,9 +1,14 @@
-"""``fingerpad compare``: results and cost of several models of one scene side by side, the cheapest first."""
+"""Results side by side: ``fingerpad compare`` of several models, ``fingerpad compare-data`` with measured tables."""
 
 import math
-from collections.abc import Sequence
+import os
+from collections.abc import Iterator, Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
+from fingerpad.cli import output
 from fingerpad.cli.arguments import Parser, echo, path, positive, quantity, scene_of
 from fingerpad.ctrl_c import raises
 from fingerpad.reduced import cylinders
@@ -11,24 +16,42 @@ from fingerpad.reduced.cylinders import Cylinders
 from fingerpad.reduced.model import STATES, Model
 from fingerpad.reduced.models import MODELS
 from fingerpad.results.files import below, check_folder
-from fingerpad.results.quantities import PLUS_MINUS, QUANTITIES, cell
+from fingerpad.results.quantities import PLUS_MINUS, QUANTITIES, Output, cell
 from fingerpad.results.result import Result
-from fingerpad.results.states import called
+from fingerpad.results.states import WORDS, called
 from fingerpad.runs.context import RunContext
 from fingerpad.runs.solve import solved
 from fingerpad.scene import Scene
-from fingerpad.scene.messages import SceneError
+from fingerpad.scene.messages import SceneError, clip
 from variational.state import RESULTS
 
-_EXAMPLES = """
+if TYPE_CHECKING:
+    import pandas as pd
+    from matplotlib.axes import Axes
+
+    from fingerpad.measurements.computed import Computed
+
+_MODELS = """
     fingerpad compare --set voltage=100
     fingerpad compare scene.toml --model cylinders full --out results/compare
 """
+_DATA = """
+    fingerpad compare-data mine.csv --sweep results/sweep --out mine.png --csv compared.csv
+    fingerpad compare-data data/measured/ayyildiz2018.csv --run results/mine
+    fingerpad compare-data lab.csv --column "Fn=force (N)" --column "CoF=friction (1)" --run results/mine
+"""
+_UNITS = {"m": "mm", "m^2": "mm²", "1": ""}  # of the screen, where they are not those of files
+_ABOUT = ("table", "state", "quantity", "unit", "force_unit")  # of a row in a file, which has rows of every table
+_VALUES = ("force", "voltage", "measured", "spread", "computed", "error", "difference", "relative_difference")
+_COLUMNS = tuple(Output(key, "") for key in (*_ABOUT, *_VALUES))
+_NAMED = 4  # curves in the legend of a picture
+_DRAWN = 201  # places of a curve
 
 
+# -- models --------------------------------------------------------------------------------------------
 def main(argv: Sequence[str]) -> int:
     """Compare models; return the exit code."""
-    parser = Parser("compare", _EXAMPLES)
+    parser = Parser("compare", _MODELS)
     parser.add_scene()
     parser.add_out("results", "folder of the full run", quiet="table")
     parser.add_argument(
@@ -106,3 +129,126 @@ def table(results: Sequence[Result]) -> str:
     if any(state.error.known() for result in results for state in result.named.values()):
         notes.insert(0, PLUS_MINUS)
     return "\n".join(lines + notes + shared)
+
+
+# -- measurements --------------------------------------------------------------------------------------
+def compare_data(argv: Sequence[str]) -> int:
+    """Compare tables of measurements with results; return the exit code."""
+    parser = Parser("compare-data", _DATA)
+    parser.add_argument("tables", nargs="+", type=path, metavar="TABLE", help="CSV with names and units in its header")
+    parser.add_argument(
+        "--column",
+        action="append",
+        default=[],
+        metavar="HEAD=NAME",
+        help="a column of the tables by the name and unit it has here, as 'Fn=force (N)'; 'Fn=' leaves it out",
+    )
+    parser.add_argument("--state", metavar="STATE", help="uncharged, charged or full slip, if the tables name none")
+    words = "folders of runs, or the folder of a sweep over force, voltage or both"
+    where = {"dest": "results", "metavar": "DIR", "help": words}
+    parser.add_argument("--run", "--sweep", nargs="+", type=path, required=True, **where)
+    output.add_files(parser, _COLUMNS, "picture of measured and computed values", "--out")
+    args = parser.read(argv)
+    from fingerpad.measurements import compare, computed, table  # pandas
+
+    measured = [table.read(file, _mapping(args.column), args.state) for file in args.tables]
+    known = [computed.computed(args.results, each) for each in measured]
+    compared = [compare.beside(*pair) for pair in zip(measured, known, strict=True)]
+    echo("\n\n".join("\n".join(_lines(each)) for each in compared))
+    rows = [row for each in compared for row in _rows(each)]
+    output.write_files(args, _COLUMNS, rows, lambda file, _: _draw(file, compared, known))
+    return 0
+
+
+def _mapping(given: Sequence[str]) -> dict[str, str]:
+    """Return the names of columns by their heads."""
+    found = {}
+    for text in given:
+        head, equals, name = text.rpartition("=")
+        if not equals:
+            raise SceneError(f"--column is {clip(repr(text))}; it must be HEAD=NAME, such as 'Fn=force (N)'")
+        found[head] = name
+    return found
+
+
+def _rows(compared: "pd.DataFrame") -> list[dict[str, str | float | None]]:
+    """Return the rows by name, in SI units; None for what is missing."""
+    about = {key: compared.attrs[key] for key in _ABOUT}
+    about["table"] = os.path.join(os.curdir, about["table"])  # ./=a.csv: a cell =a.csv would be a formula
+    about["state"] = WORDS[about["state"]]
+    values = compared.astype(object).where(compared.notna(), None)
+    return [about | row for row in values.to_dict("records")]
+
+
+def _lines(compared: "pd.DataFrame") -> Iterator[str]:
+    """Yield table and misfit as text."""
+    about, found, errors = compared.attrs, compared.attrs["misfit"], compared.error.notna().any()
+    unit = _UNITS.get(about["unit"], about["unit"])
+    named = ("measured", "spread", "computed", *(["error"] if errors else []), "difference")
+    columns = [
+        Output("force", about["force_unit"]),
+        Output("voltage", "V", digits=1),
+        *(Output(key, unit, words="±" if key == "error" else key, digits=4) for key in named),
+        Output("relative_difference", "%", words="relative", digits=1),
+    ]
+    yield f"{about['quantity']} at {WORDS[about['state']]}: {clip(about['source'], 200)}"
+    more = [f"{name} {about[name]}" for name in ("doi", "url", "people") if name in about]
+    yield from [clip("; ".join(more), 200)] if more else []
+    yield output.text(columns, _rows(compared))
+    if about["ignored"]:
+        yield f"Columns not read: {clip(', '.join(about['ignored']), 200)}."
+    if errors:
+        yield "±: estimated discretisation error of the computed value, of the mesh alone."
+    count, mean = found["rows"], found["ratio"]
+    rows = f"(geometric mean of {count})"
+    yield f"Misfit: computed over measured {mean:.3g} {rows}, at most a factor of {found['factor']:.3g}."
+    if count > 1:
+        factor = f"at most a factor of {found['shape_factor']:.3g}"
+        yield f"Shape alone, computed values scaled by one factor ({1 / mean:.3g}): {factor}."
+    if spreads := found["spreads"]:
+        which = "" if spreads == count else " rows that have a spread"
+        plus = " plus the error of the computed value" if errors else ""
+        yield f"Within the spread{plus}: {found['within']} of {spreads}{which}."
+    total, none = len(compared), int(compared.computed.isna().sum())
+    if none:
+        yield f"Not compared, since no value is computed there: {none} of {total} rows."
+    if zero := total - count - none:
+        yield f"Not compared, since the computed value is 0 there: {zero} of {total} rows."
+
+
+def _draw(file: Path, compared: Sequence["pd.DataFrame"], known: Sequence["Computed"]) -> None:
+    """Draw each table over the computed values, in a panel of its own."""
+    with output.panels(file, "Measured points and computed lines", len(compared)) as (_, panels):
+        for each in zip(panels, compared, known, strict=True):
+            _panel(*each)
+
+
+def _panel(ax: "Axes", rows: "pd.DataFrame", known: "Computed") -> None:
+    from fingerpad.measurements.computed import CLOSE
+    from fingerpad.results import style
+
+    about, points = rows.attrs, known.points
+    unit = _UNITS.get(about["unit"], about["unit"])
+    scale = Output("", unit).scale
+    over_voltage = rows.voltage.nunique() > rows.force.nunique()
+    x, other, name = ("voltage", "force", about["force_unit"]) if over_voltage else ("force", "voltage", "V")
+    axis = np.union1d(points[x], np.linspace(points[x].min(), points[x].max(), _DRAWN))
+    for k, (held, mine) in enumerate(rows.groupby(other)):
+        colour, label = style.CATEGORIES[k % len(style.CATEGORIES)], f"{held:g} {name}"
+        level = np.full(len(axis), held)
+        curve, error = (scale * values for values in known.at(*((level, axis) if over_voltage else (axis, level))))
+        output.curve(ax, k, axis, curve, f"computed, {label}" if k < _NAMED else "_")
+        ax.fill_between(axis, curve - error, curve + error, color=colour, alpha=0.2, lw=0)
+        at = points[np.isclose(points[other], held, rtol=CLOSE if over_voltage else 1e-6, atol=0.0)]
+        ax.errorbar(at[x], scale * at.value, scale * at.error, fmt=".", ms=9, capsize=2, color=colour)
+        spread = None if rows.spread.isna().all() else scale * mine.spread
+        look: dict[str, Any] = {"fmt": style.MARKERS[k % len(style.MARKERS)], "color": colour, "mfc": "white"}
+        look["label"] = f"measured, {label}" if k < _NAMED else "_"
+        ax.errorbar(mine[x], scale * mine.measured, spread, ms=7, capsize=3, **look)
+    force = "force (N)" if about["force_unit"] == "N" else "force per length (N/m)"
+    ax.set(xlabel="voltage (V)" if over_voltage else force)
+    ax.set(ylabel=f"{about['quantity']} ({unit or '–'})", title=style.plain(clip(about["source"], 40)))
+    ax.set_ylim(bottom=0)
+    if math.isclose(*ax.get_xlim(), rel_tol=0.05):  # a single force, but for roundoff
+        ax.set_xlim(0, 2 * rows[x].mean())
+    ax.legend()

@@ -5,7 +5,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from fingerpad.cli import tables
+from fingerpad.cli import output
 from fingerpad.cli.arguments import Parser, echo, scene_of, several
 from fingerpad.model.cautions import on_states
 from fingerpad.reduced import cylinder_errors, cylinders
@@ -14,10 +14,9 @@ from fingerpad.results.result import Result
 from fingerpad.runs.context import RunContext
 from fingerpad.runs.solve import solved
 from fingerpad.scene import Scene
-from fingerpad.scene.laws import coefficient, used
 from fingerpad.scene.messages import SceneError
-from fingerpad.scene.remarks import LEAKAGE, remarks
-from fingerpad.slices import solid
+from fingerpad.scene.remarks import LEAKAGE, coefficient, remarks, used
+from fingerpad.slices import errors
 
 _SECTION = ("f_ext", "voltage", "mu_app", "f_t", "f_electrostatic", "contact_length", "ridges_in_contact")
 _COLUMNS = tuple(QUANTITIES[key] for key in _SECTION)
@@ -41,7 +40,7 @@ def main(argv: Sequence[str]) -> int:
     parser = Parser("estimate", _EXAMPLES)
     parser.add_scene()
     parser.add_ranges("force", "f_ext", "voltage")
-    tables.add_files(parser, _COLUMNS, "picture: one curve a force")
+    output.add_files(parser, _COLUMNS, "picture: one curve a force")
     args = parser.read(argv)
     if args.force is not None and args.f_ext is not None:
         raise SceneError("--force is given and --f-ext too; give newtons on the whole finger or N/m at its centre")
@@ -55,7 +54,7 @@ def main(argv: Sequence[str]) -> int:
     echo(f"{of} at full slip by a closed form, every ridge in contact the same charged cylinder.")
     mu_0 = coefficient(scene)
     echo(f"Friction coefficient {mu_0:g}.\n" if mu_0 is not None else f"Friction {used(scene)['friction']}.\n")
-    echo(tables.text(columns, rows))
+    echo(output.text(columns, rows))
     if key == "f_ext":
         echo("\nµ_app is friction over force, at full slip; L_R is the length of skin on the screen.")
     else:
@@ -64,10 +63,10 @@ def main(argv: Sequence[str]) -> int:
     states = [row["state"] for row in rows if "state" in row]
     limits = (f"{text[0].upper()}{text[1:]}." for text in on_states(states, scene.closure()))
     said = (*([LEAKAGE] if any(voltages) else []), *(f"{text}." for text in remarks(scene)), *limits)
-    notes = [PER_LENGTH] if key == "f_ext" else solid.remarks(forces)
+    notes = [PER_LENGTH] if key == "f_ext" else errors.remarks(forces)
     for note in (*notes, *_known(scene, rows), *said, *lost):
         echo(note)
-    tables.write_files(args, columns, rows, draw)
+    output.write_files(args, columns, rows, draw)
     return 0
 
 
@@ -129,9 +128,6 @@ def _known(scene: Scene, rows: Sequence[Mapping[str, Any]]) -> list[str]:
 
 def draw(file: Path, rows: Sequence[Mapping[str, Any]]) -> None:
     """Draw friction over voltage, one curve a force; over force where there is one voltage."""
-    from fingerpad.cli import plot
-    from fingerpad.results import style
-
     key = "force" if "force" in rows[0] else "f_ext"
     forces, voltages = (list(dict.fromkeys(row[each] for row in rows)) for each in (key, "voltage"))
     over, each = ("voltage", key) if len(voltages) > 1 or len(forces) == 1 else (key, "voltage")
@@ -142,11 +138,13 @@ def draw(file: Path, rows: Sequence[Mapping[str, Any]]) -> None:
         "force": "force on the whole finger $F_{ext}$ (N)",
     }
     of = " of the whole finger" if key == "force" else ""
-    with plot.panels(file, f"Friction{of} at full slip, closed form") as (_, (ax,)):
+    with output.panels(file, f"Friction{of} at full slip, closed form") as (_, (ax,)):
+        from fingerpad.results import style
+
         for k, value in enumerate(voltages if each == "voltage" else forces):
             points = [row for row in rows if row[each] == value and "mu_app" in row]
             colour = style.voltage(value, max(voltages, key=abs)) if each == "voltage" else None
             x, mu = ([point[key] for point in points] for key in (over, "mu_app"))
-            plot.curve(ax, k, x, mu, label[each].format(value), colour)
+            output.curve(ax, k, x, mu, label[each].format(value), colour)
         ax.set(xlabel=axis[over], ylabel=r"apparent friction coefficient $\mu_{app}$ (–)")
         ax.legend(title={"f_ext": "$f_{ext}$", "force": "$F_{ext}$", "voltage": "U"}[each])

@@ -7,9 +7,8 @@ from typing import Any
 
 from fingerpad.cli.arguments import Parser, echo
 from fingerpad.scene import Scene
-from fingerpad.scene.keys import Key, every
+from fingerpad.scene.keys import Key, every, schema
 from fingerpad.scene.messages import SceneError, clip
-from fingerpad.scene.schema import schema
 
 _WIDTH = 120
 _EXAMPLES = """
@@ -46,7 +45,7 @@ def main(argv: Sequence[str]) -> int:
     form.add_argument("--schema", action="store_true", help="as a JSON Schema for editors: docs/scene.schema.json")
     args = parser.read(argv)
     if args.schema:
-        echo(json.dumps(schema(), indent=1, ensure_ascii=False))
+        echo(json.dumps(schema(Scene), indent=1, ensure_ascii=False))
         return 0
     found = [key for key in every(Scene) if args.filter.lower() in key.name.lower()]
     if not found:

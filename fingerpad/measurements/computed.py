@@ -13,8 +13,8 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from fingerpad.measurements.table import Measured
-from fingerpad.report.source import Table
-from fingerpad.report.source import read as content
+from fingerpad.report.sweep_page import Table
+from fingerpad.report.write import read as content
 from fingerpad.results.result import Result
 from fingerpad.results.states import WORDS, before_sliding
 from fingerpad.runs.sweep_results import Sweep
@@ -215,7 +215,7 @@ def _of_sweep(sweep: Table, table: Measured) -> pd.DataFrame:
     try:
         taken = {name: rows[key] if key in rows else fixed[key] for name, key in keys.items()}
         taken |= {"value": rows[column], "error": rows.get(f"{column}_error", math.nan)}
-        points = pd.DataFrame(taken).replace("", math.nan).astype(float)
+        points = pd.DataFrame(taken).astype(float)
     except (ValueError, TypeError) as error:
         raise SceneError(f"the table of {_place(sweep)} cannot be read: {error}") from None
     points["voltage"] = 0.0 if table.state == "uncharged" else points.voltage.abs()

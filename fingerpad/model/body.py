@@ -24,10 +24,9 @@ from numpy.typing import NDArray
 
 import fingerpad.startup  # noqa: F401
 from fingerpad.model import cautions
-from fingerpad.model.gather import Nodes, Points
 from fingerpad.model.state import contact_state, force_error, refuse_strained, steady, step_record
 from fingerpad.results.states import full_slip
-from fingerpad.scene.contradictions import refuse_thickness
+from fingerpad.scene.materials import refuse_thickness
 from fingerpad.startup import MPI
 from geometry.mesh import TaggedMesh, load
 from geometry.meshfile import file
@@ -40,6 +39,7 @@ from variational.contact.penalty import Penalty
 from variational.element import ELEMENTS
 from variational.energy import EnergyBook
 from variational.materials.material import Material
+from variational.output import Nodes
 from variational.problem import Interface
 from variational.roughness.closure import Closure, check
 from variational.solvers.continuation import Attempt, StepFailed, Target
@@ -140,8 +140,8 @@ class Body:
             tolerance=_TOLERANCE, on_accept=self._accepted, touch_depth=touch_depth, step_scale=step_scale,
         )  # fmt: skip
         self.problem, self._made = made.problem, made
-        self._nodes = Nodes(made)
-        self._points = Points(made)
+        self._nodes = Nodes(self.problem)
+        self._points = setup.Points(made)
         self.coordinates, self.triangles = self._nodes.coordinates, self._nodes.triangles
         path = made.continuation
         self._book = EnergyBook(self.problem, path.surface_state, made.solver.bone, made.solver.reaction, self._d_eq)

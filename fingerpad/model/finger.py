@@ -10,8 +10,7 @@ from mpi4py import MPI
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
-from fingerpad.model import symmetry
-from fingerpad.model.feasibility import refuse_mesh, refuse_sizes
+from fingerpad.model.options import refuse_mesh, refuse_sizes
 from fingerpad.model.state import contact_state, force_error, refuse_unbalanced
 from geometry import fingertip, mesh, meshfile, tags
 from geometry.profiles import Profiles
@@ -70,7 +69,7 @@ class Finger:
         self._tolerance = model.numerics.tolerance
         self.problem, self.solver, self.observer = made.problem, made.solver, made.observer
         self.coupling, self.continuation = made.coupling, made.continuation
-        self.ridges = symmetry.names(made.surface.ridge_numbers) if half else made.surface.ridge_numbers
+        self.ridges = mirrored(made.surface.ridge_numbers) if half else made.surface.ridge_numbers
         shortest = float(np.min(comm.allgather(made.surface.length.min(initial=np.inf))))
         self.contact_size = model.mesh.contact if model.mesh_file is None else shortest
         self.unknowns = self.solver.layout.global_size
@@ -101,7 +100,7 @@ class Finger:
             by_gap: see :meth:`variational.quantities.Observer.ridge_loads`.
         """
         loads = self.observer.ridge_loads(self.continuation.surface_state, by_gap)
-        return loads if self.options.both_halves else symmetry.loads(loads)
+        return loads if self.options.both_halves else loads.whole()
 
     def check_balance(self, loads: RidgeLoads, load: str) -> float:
         """Return the largest force left at a node, over the solver's force scale.
@@ -129,12 +128,22 @@ class Finger:
         """
         d_eq = self.coupling.d_eq
         if not self.options.both_halves:
-            d_eq = np.array(symmetry.values(list(d_eq)))
+            d_eq = both_sides(d_eq)
         p_c = self.ridge_loads(by_gap=True).p_c if self.coupling.by_gap else loads.p_c  # the closure's own
         notes = [self.closure.state(float(p), self.voltage) if self.closure else "" for p in p_c]
         more = {"load": load, "load_number": number, "mesh_contact": self.contact_size}
         state = contact_state(self.continuation, loads, self.ridges, d_eq, notes, **more)
         return Step(state, attempt or Attempt())
+
+
+def mirrored(half: list[int]) -> list[int]:
+    """Return the numbers of all ridges from those of ridge 0 and on; ridge -j is the image of ridge j."""
+    return [-j for j in half[:0:-1]] + half
+
+
+def both_sides(half: Array) -> Array:
+    """Return one value a ridge that the mirror does not change."""
+    return np.concatenate([half[:0:-1], half])
 
 
 def assembled(
@@ -196,7 +205,7 @@ class HalfFinger:
 
     The whole finger's mesh is the half's and its mirror image (:mod:`geometry.reflection`), so that the state that is
     put on it is one of equilibrium, and symmetric to roundoff. Whether it is stable is examined on the whole finger,
-    where it may turn over to one side (:mod:`fingerpad.model.stability`).
+    where it may turn over to one side (:mod:`fingerpad.model.checks`).
     """
 
     def __init__(
@@ -261,7 +270,7 @@ class HalfFinger:
         half, whole = self._body.coupling, self._finger.coupling
         solver = whole.solver
         solver.new_load(replace(half.solver.control), float(half.solver.problem.voltage.value))
-        d_eq, whole.gain = (np.array(symmetry.values(list(values))) for values in (half.d_eq, half.gain))
+        d_eq, whole.gain = map(both_sides, (half.d_eq, half.gain))
         whole.set_air_gaps(d_eq)
         w = self._flip * self._together(half.solver.problem.w.x.array.reshape(-1, 2)[self._own])[self._nodes]
         solver.take(w, half.solver.bone, self._together(half.solver.pressure)[self._pressures])

@@ -11,20 +11,19 @@ import numpy as np
 from mpi4py import MPI
 from numpy.typing import NDArray
 
-from fingerpad.model import symmetry
 from fingerpad.results import states
-from fingerpad.results.drawing import Drawing, End, Profile, View
+from fingerpad.results.drawing import Drawing, View
 from fingerpad.scene import Load
-from variational.output import Snapshot, gather_mesh
-from variational.receptors import Receptors
-from variational.state import ContactState, Sites
+from variational.output import Receptors, Snapshot, gather_mesh
+from variational.state import ContactState, Sites, Skin
 
 if TYPE_CHECKING:
+    from fingerpad.model.checks import Checked
     from fingerpad.model.finger import Finger, Step
-    from fingerpad.model.stability import Checked
 
 Array = NDArray[np.float64]
 _PROFILE = ("x", "y", "p_n", "t_t", "p_el", "area_x", "area_y")
+_HORIZONTAL = ("x", "t_t", "area_x")  # the other way round in the mirror
 
 
 class Viewer:
@@ -41,10 +40,10 @@ class Viewer:
 
     def view(self, step: "Step") -> View:
         """Return all that is shown of the present state, that of the step; collective."""
-        profile, (snapshot, merkel) = self.profile(step), self.picture()
-        return View(replace(step.state, sites=self.sites()), self._finger.size, profile, snapshot, merkel)
+        state, skin = replace(step.state, sites=self.sites()), self.skin(step)
+        return View(state, self._finger.size.contact, skin, *self.picture())
 
-    def profile(self, step: "Step") -> Profile | None:
+    def skin(self, step: "Step") -> Skin | None:
         """Return the skin of a step, the present one, on rank 0, None elsewhere; collective."""
         surface, skin = self._finger.problem.surface, self._finger.continuation.surface_state
         values = surface.gather(np.stack([getattr(skin, name) for name in _PROFILE]))
@@ -53,15 +52,18 @@ class Viewer:
             return None
         where = ridge[0, :, 0].astype(int)
         if not self._finger.options.both_halves:
-            values, where = symmetry.profile(_PROFILE, values, where)
-        return Profile(where, values, step.state.d_eq)
+            values, where = _both_sides(values, where)
+        assert step.state.ridges is not None
+        x, y, p_n, t_t, p_el, area_x, area_y = values
+        stretch = np.hypot(area_x, area_y)
+        return Skin(step.state.ridges.number[where], x, y, p_n / stretch, t_t / stretch, p_el)
 
     def picture(self) -> tuple[Snapshot | None, Array | None]:
         """Return the present state of the whole finger, and where the Merkel sites are if wanted; collective."""
         snapshot, ridges = gather_mesh(self._finger.problem), np.array(self._finger.profiles.ridges)
         merkel = self._sites.positions()[: len(ridges)] if self._sites else None
         if not self._finger.options.both_halves:
-            snapshot = symmetry.snapshot(snapshot) if snapshot else None
+            snapshot = snapshot.whole() if snapshot else None
             if merkel is not None:
                 merkel[ridges < 0, 0] *= -1
         return snapshot, merkel
@@ -75,12 +77,24 @@ class Viewer:
         return Sites(np.array(names), sed[: len(names)], left, right)
 
 
+def _both_sides(half: Array, ridge: NDArray[np.int64]) -> tuple[Array, NDArray[np.int64]]:
+    """Return the skin of both sides of that at x >= 0, and the place of each facet's ridge among all.
+
+    Args:
+        half: the columns of a profile, shape (columns, facets, points).
+        ridge: number of each facet's ridge, shape (facets,).
+    """
+    signs = np.array([-1.0 if name in _HORIZONTAL else 1.0 for name in _PROFILE])[:, None, None]
+    last = int(ridge.max())
+    return np.concatenate([half, signs * half], axis=1), np.concatenate([last + ridge, last - ridge])
+
+
 class PathRecord:
     """Keeps accepted states.
 
     Attributes:
         states: in order, on every rank.
-        profiles: the skin by step, on rank 0.
+        skins: the skin by step, on rank 0.
         ends: the finger at the end of each load, by load, on rank 0.
     """
 
@@ -93,8 +107,8 @@ class PathRecord:
         """
         self._comm, self._checks = comm, checks
         self.states: list[ContactState] = []
-        self.profiles: dict[int, Profile] = {}
-        self.ends: dict[str, End] = {}
+        self.skins: dict[int, Skin] = {}
+        self.ends: dict[str, View] = {}
 
     def prune(self, loads: Sequence[str]) -> None:
         """Drop the skin of steps that nothing will show, whatever follows; rank 0 alone has one.
@@ -106,7 +120,7 @@ class PathRecord:
         shown = [*states.named(rows, loads).values(), *(end.state for end in self.ends.values()), last]
         shown += [row for row in (states.partial_slip(rows), states.nearest_to_half(rows)) if row]
         steps = {state.step for state in shown} | {last.slip_began}
-        self.profiles = {step: profile for step, profile in self.profiles.items() if step in steps}
+        self.skins = {step: skin for step, skin in self.skins.items() if step in steps}
 
     def named(self, final: Mapping[str, View], loads: Sequence[str]) -> dict[str, ContactState]:
         """Return the named states with their stability and, on every rank, their skin; collective.
@@ -117,9 +131,7 @@ class PathRecord:
         """
         found = {}
         for name, state in states.named(self.states, loads).items():
-            profile = final[name].profile if name in final else self.profiles.get(state.step)
-            numbers = np.arange(0) if state.ridges is None else state.ridges.number
-            skin = self._comm.bcast(None if profile is None else profile.skin(numbers))
+            skin = self._comm.bcast(final[name].skin if name in final else self.skins.get(state.step))
             # A full slip counts because it was held; the row of its first step is of before that.
             found[name] = replace(state, skin=skin, slip_held=state.slip_held or name == "full_slip")
             check = self._check(state)
@@ -155,9 +167,9 @@ class PathRecord:
         """
         if not self.states or self._comm.rank != 0:
             return None
-        whole = Drawing(mu_0, self.states, self.profiles, self.ends, final, size, named)
+        whole = Drawing(mu_0, self.states, self.skins, self.ends, final, size, named)
         shown = whole.steps_along()
-        return replace(whole, profiles={step: p for step, p in self.profiles.items() if step in shown})
+        return replace(whole, skins={step: skin for step, skin in self.skins.items() if step in shown})
 
     def totals(self) -> dict[str, Any]:
         """Return sums and largest values over all states, ready for JSON."""

@@ -1,25 +1,75 @@
-"""A path while it is followed: each accepted state kept, printed and written at once."""
+"""A path while it is followed: each accepted state kept, printed and written at once, and the time that it takes."""
 
 import json
 import logging
-from collections.abc import Mapping, Sequence
+import time
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
-from fingerpad.model.cost import Clock
+from mpi4py import MPI
+
 from fingerpad.model.options import Omission
 from fingerpad.model.record import PathRecord, Viewer
 from fingerpad.results import states
-from fingerpad.results.console import Console
-from fingerpad.results.drawing import End, View
+from fingerpad.results.answer import Cost
+from fingerpad.results.drawing import View
 from fingerpad.results.quantities import Output, valued
+from fingerpad.results.terminal import Console
 from fingerpad.results.writing import Writer, ridge_rows, site_rows
 from variational.solvers import checkpoint
+from variational.solvers.outcome import Counts, memory_mb
 from variational.state import ContactState
 
 if TYPE_CHECKING:
     from fingerpad.model.finger import Step
     from fingerpad.model.simulation import Simulation
+
+
+class Clock:
+    """Wall and processor time since the run began.
+
+    Attributes:
+        seconds: wall time of the set-up and of the output (s), by these names.
+    """
+
+    def __init__(self, comm: MPI.Comm) -> None:
+        """Start."""
+        self._comm = comm
+        self._wall, self._processor = time.perf_counter(), time.process_time()
+        self.seconds = {"setup": 0.0, "output": 0.0}
+
+    @contextmanager
+    def phase(self, name: str) -> Iterator[None]:
+        """Count the time inside as that of a phase, ``setup`` or ``output``."""
+        start = time.perf_counter()
+        yield
+        self.seconds[name] += time.perf_counter() - start
+
+    def earlier(self, wall: float, processor: float) -> None:
+        """Add the time (s) that the run took before it was cut short, all ranks' processor time together."""
+        self._wall -= wall
+        self._processor -= processor / self._comm.size
+
+    def present(self) -> tuple[float, float]:
+        """Return wall time and processor time of all ranks since the start (s); collective."""
+        return time.perf_counter() - self._wall, self.processor_seconds()
+
+    def processor_seconds(self) -> float:
+        """Return the processor time (s) of all ranks since the start; collective."""
+        return float(self._comm.allreduce(time.process_time() - self._processor))
+
+    def cost(self, counts: Counts, unknowns: int) -> Cost:
+        """Return the cost of a run, the same on every rank; collective.
+
+        Args:
+            counts: iterations of the path's solver.
+            unknowns: of the final mesh.
+        """
+        memory, (wall, processor) = self._comm.allreduce(memory_mb()), self.present()
+        found = Cost(processor, wall, counts.newton, counts.factorisations, unknowns, memory, self._comm.size)
+        return self._comm.bcast(found)
 
 
 class Report:
@@ -78,9 +128,9 @@ class Report:
             state = replace(step.state, record=record, sites=self._viewer.sites(), changes=tuple(step.attempt.changes))
             state = valued(state, self._outputs)
             self.record.states.append(state)
-            profile = self._viewer.profile(step)
-            if profile is not None:
-                self.record.profiles[state.step] = profile
+            skin = self._viewer.skin(step)
+            if skin is not None:
+                self.record.skins[state.step] = skin
             self._writer.row("steps", state.row())
             self._tables("", {"step": state.step}, state, state.mesh_contact)
             for iteration, change in enumerate(state.changes):
@@ -89,7 +139,7 @@ class Report:
             if self._simulation.finger.problem.mesh.comm.rank == 0:
                 self._log(step, state)
 
-    def _tables(self, end: str, first: Mapping[str, Any], state: ContactState, size: float) -> None:
+    def _tables(self, end: str, first: Mapping[str, Any], state: ContactState, size: float | None) -> None:
         """Write the rows of ridges in contact and of receptor sites of a state."""
         for name, rows in (("ridges", ridge_rows(state)), ("receptors", site_rows(state))):
             for row in rows:
@@ -121,14 +171,14 @@ class Report:
         self._writer.fields(state.step, state.load)
         snapshot, merkel = self._viewer.picture()
         if snapshot is not None:
-            self.record.ends[state.load] = End(state, snapshot, merkel)
+            self.record.ends[state.load] = View(state, None, None, snapshot, merkel)
 
     def kept(self) -> dict[str, Any]:
         """Return what another process needs to go on with all tables and pictures, whole on rank 0."""
         self.record.prune(self._loads)
         return {
             "states": self.record.states,
-            "profiles": self.record.profiles,
+            "skins": self.record.skins,
             "ends": self._ends,
             "logged": self._logged,
             "tables": self._writer.kept(),
@@ -148,7 +198,7 @@ class Report:
         self.record.states, self._logged = kept["states"], kept["logged"]
         self._ends, self._written = kept["ends"], kept["ends"][-1][0] if kept["ends"] else 0
         if finger.problem.mesh.comm.rank == 0:
-            self.record.profiles = kept["profiles"]
+            self.record.skins = kept["skins"]
         by_step = {state.step: state for state in self.record.states}
         now = finger.solver.x.array_r.copy()
         mine = checkpoint.order(finger.continuation, dict(places))
@@ -170,8 +220,8 @@ class Report:
     def final(self, views: Mapping[str, View]) -> None:
         """Write the tables of states on the mesh that the run ended with, by name."""
         if views:
-            words = "; ".join(f"{states.WORDS[name]}: contact size {v.mesh.contact:g} m" for name, v in views.items())
+            words = "; ".join(f"{states.WORDS[name]}: contact size {v.size:g} m" for name, v in views.items())
             path = "steps.csv, history.png and *.bp are of the path on the starting mesh; %s"
             self._writer.log.info(path, words)
         for state, view in views.items():
-            self._tables("_final", {"of": state}, view.state, view.mesh.contact)
+            self._tables("_final", {"of": state}, view.state, view.size)

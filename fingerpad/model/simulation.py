@@ -3,18 +3,19 @@
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import partial
+from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from mpi4py import MPI
 
-from fingerpad.model.contact_zone import ContactZone, FingerExceeded
+from fingerpad.model.checks import Checked, ContactZone, FingerExceeded, FullSlip, StabilityChecks
 from fingerpad.model.finger import Finger, HalfFinger, Step
-from fingerpad.model.schedule import targets
-from fingerpad.model.stability import Checked, FullSlip, StabilityChecks
 from fingerpad.model.state import refuse_strained, step_record
 from fingerpad.results.states import FIRST_TOUCH, SLIDE_ON
 from fingerpad.scene import Load
+from fingerpad.scene.waveform import Sample, Waveform
 from variational.quantities import RidgeLoads
 from variational.solvers import checkpoint
 from variational.solvers.continuation import Attempt, Continuation, StepFailed
@@ -25,6 +26,9 @@ from variational.state import ContactState
 
 if TYPE_CHECKING:
     from fingerpad.model.options import FingerModel
+    from fingerpad.scene import Load
+
+_BEGIN = 60e-6  # m, with which a slide begins
 
 
 @dataclass(frozen=True)
@@ -257,7 +261,7 @@ class Simulation:
     def _zone_exceeded(self, loads: RidgeLoads) -> RestartRequired | None:
         """Return that more ridges must be able to touch, where they must; collective."""
         wider = self._zone.check(loads)
-        return None if wider is None else RestartRequired(wider.reason, self._model.with_ridges(wider.last))
+        return None if wider is None else RestartRequired(wider[1], self._model.with_ridges(wider[0]))
 
     def _accepted(self, target: Target, part: float, attempt: Attempt) -> bool:
         """Check and report an accepted state; return whether the path must stop here."""
@@ -287,3 +291,36 @@ class Simulation:
         except FingerExceeded as error:
             raise StepFailed(f"step {finger.continuation.steps} ({self._load}): {error}") from error
         return self._restart is not None
+
+
+def targets(load: "Load", x: float, step_scale: float) -> list[Target]:
+    """Return what to reach for a load, one after the other.
+
+    Args:
+        load: the load.
+        x: where the bone is (m).
+        step_scale: see ``numerics.step_scale``.
+    """
+    place = load.place(x)
+    seconds = load.seconds(0.0 if place is None else place - x)
+    if load.wave is None:
+        until = load.until_full_slip
+        return [Target(load.name, load.f_ext, load.bone_height, load.level, place, until, duration=seconds)]
+    samples = load.wave.samples(seconds, step_scale)
+    found = [Target(load.name, voltage=samples[0][1])]
+    for sample, after in pairwise(samples):
+        (before, _), (time, voltage) = sample, after
+        aim = place
+        if place is not None and time < seconds:
+            aim = x + time / seconds * (place - x)
+        begins = len(found) == 1 and aim is not None and abs(aim - x) > step_scale * _BEGIN
+        continues = time > before and not begins  # what jumps, or begins with a long slide, is cut into steps
+        inside = partial(_voltage, load.wave, sample, after) if time > before else None
+        piece = Target(load.name, voltage=voltage, bone_x=aim, voltage_at=inside, continues=continues)
+        found.append(replace(piece, duration=time - before))
+    return found
+
+
+def _voltage(wave: Waveform, before: Sample, after: Sample, part: float) -> float:
+    """Return the voltage (V) at a part of the time between two samples."""
+    return wave.between(before, after, before[0] + part * (after[0] - before[0]))

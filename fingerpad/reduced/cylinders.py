@@ -17,6 +17,7 @@ voltage. ``docs/models.md`` has its errors.
 """
 
 import json
+import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
@@ -28,17 +29,16 @@ from numpy.typing import ArrayLike, NDArray
 
 from fingerpad.model.cautions import on_states
 from fingerpad.reduced import cylinder_errors
-from fingerpad.reduced.model import STATES, Model, Stopwatch, at_rest, at_slip, refuse_others
+from fingerpad.reduced.model import STATES, Model, reduced_state, refuse_others
 from fingerpad.results.answer import Cost
 from fingerpad.results.files import read_object
 from fingerpad.results.folder import difference
 from fingerpad.results.result import Result
 from fingerpad.results.states import WORDS
 from fingerpad.scene import Scene, SceneError
-from fingerpad.scene.laws import skin_modulus, used
 from fingerpad.scene.messages import show
 from fingerpad.scene.reading import DEFAULT_MODEL
-from fingerpad.scene.remarks import leakage, remarks
+from fingerpad.scene.remarks import leakage, remarks, skin_modulus, used
 from geometry.parameters import Fingertip
 from geometry.profiles import Profiles
 from variational.attraction.cylinder import Cylinder, NoEquilibriumError, RidgeState, hertz_modulus
@@ -216,7 +216,7 @@ def solve(scene: Scene, footprint: Footprint | None = None) -> Result:
     Raises:
         SceneError: a scene with a history, another finger than the footprint's, or ridges that do not stay.
     """
-    clock = Stopwatch()
+    start = time.process_time()
     refuse_others(scene, Cylinders.name)
     footprint = footprint or fitted(scene)
     found: dict[str, ContactState] = {}
@@ -239,7 +239,7 @@ def solve(scene: Scene, footprint: Footprint | None = None) -> Result:
         f"{state}_{name}": getattr(ridge, name) for state, ridge in states.items() for name in ("p_c", "d_eq")
     }
     more |= {"laws": used(scene), "model_error": errors}
-    cost = Cost(processor_seconds=clock.seconds())
+    cost = Cost(processor_seconds=time.process_time() - start)
     return Result(
         scene, Cylinders.name, None, found["charged"], found["full_slip"],
         cost=cost, notes=notes, cautions=tuple(cautions), record=more,
@@ -303,7 +303,7 @@ def _solved(
             found = Cylinder(radius, moduli, scene.h_0, closure).under_loads(forces, scene.voltage)
     except NoEquilibriumError as error:
         raise SceneError(f"{WORDS[state]} of the model 'cylinders': {error}") from None
-    made, states = at_rest if state == "charged" else at_slip, []
+    states = []
     for each, count, ridge in zip(f_ext, ridges, found, strict=True):
         n = int(count)
         contact = {
@@ -312,7 +312,8 @@ def _solved(
             "contact_length": n * ridge.length,
             "ridges_in_contact": n,
         }
-        states.append((made(scene.model_copy(update={"f_ext": float(each)}), contact), ridge))
+        under = scene.model_copy(update={"f_ext": float(each)})
+        states.append((reduced_state(under, contact, state == "full_slip"), ridge))
     return states
 
 

@@ -4,13 +4,12 @@ A quantity that is not part of a model is NaN in its states, and a note names it
 method, :meth:`Model.solve`, and a line in :data:`fingerpad.reduced.models.MODELS`.
 """
 
-import time
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from fingerpad.scene.messages import SceneError, show
-from variational.state import ContactState, Errors
+from variational.state import ContactState
 
 if TYPE_CHECKING:
     from fingerpad.results.result import Result
@@ -81,43 +80,21 @@ class Model(ABC):
         return states
 
 
-def at_rest(scene: "Scene", contact: Mapping[str, float], error: Errors | None = None) -> ContactState:
-    """Return normal contact; by symmetry there is no friction.
+def reduced_state(scene: "Scene", contact: Mapping[str, float], slips: bool) -> ContactState:
+    """Return normal contact, in which by symmetry there is no friction, or full slip.
+
+    At full slip f_T is the limit of friction, of the mean pressure over the contact length. Coulomb's is mu_0 times the
+    contact force, however that is spread.
 
     Args:
         scene: whose loads act.
         contact: contact force, attraction, contact length and ridges in contact, and the bone's height if known.
-        error: estimated discretisation errors.
+        slips: whether at full slip.
     """
-    return _state(scene, contact, 0.0, error)
-
-
-def at_slip(scene: "Scene", contact: Mapping[str, float], error: Errors | None = None) -> ContactState:
-    """Return full slip: f_T is the limit of friction, of the mean pressure over the contact length.
-
-    Coulomb's is mu_0 times the contact force, however that is spread.
-
-    Args:
-        scene: whose loads act.
-        contact: contact force, attraction, contact length and ridges in contact, and the bone's height if known.
-        error: estimated discretisation errors.
-    """
-    law = scene.friction_law()
+    values: dict[str, Any] = {**contact, "ridges_in_contact": int(contact["ridges_in_contact"])}
+    law = scene.friction_law() if slips else None
     f_t = 0.0 if law is None else law.resultant(contact["f_contact"], contact["contact_length"])
-    return _state(scene, contact, f_t, error)
-
-
-def _state(scene: "Scene", contact: Mapping[str, float], f_t: float, error: Errors | None) -> ContactState:
-    values: dict[str, Any] = {name: value for name, value in contact.items() if name != "ridges_in_contact"}
-    return ContactState(
-        f_ext=scene.f_ext,
-        voltage=scene.voltage,
-        f_t=f_t,
-        mu_app=f_t / scene.f_ext,
-        ridges_in_contact=int(contact["ridges_in_contact"]),
-        error=error or Errors(),
-        **values,
-    )
+    return ContactState(f_ext=scene.f_ext, voltage=scene.voltage, f_t=f_t, mu_app=f_t / scene.f_ext, **values)
 
 
 def refuse_others(scene: "Scene", model: str) -> None:
@@ -136,14 +113,3 @@ def refuse_others(scene: "Scene", model: str) -> None:
             f"history is given; the model '{model}' answers for press, charge and slide alone, so use the model 'full' "
             "or give f_ext and voltage instead"
         )
-
-
-class Stopwatch:
-    """Processor time since it was made."""
-
-    def __init__(self) -> None:
-        self._start = time.process_time()
-
-    def seconds(self) -> float:
-        """Return the time (s)."""
-        return time.process_time() - self._start

@@ -2,7 +2,7 @@
 
 from typing import TYPE_CHECKING
 
-from fingerpad.model import feasibility
+from fingerpad.model.options import check
 from fingerpad.reduced.cylinders import Cylinders
 from fingerpad.reduced.model import Model
 from fingerpad.scene import Scene
@@ -22,8 +22,8 @@ class Full(Model):
     meshes = path = resumes = True
 
     def check(self, scene: Scene) -> None:
-        """Refuse a scene whose finger cannot be built or meshed, see :func:`fingerpad.model.feasibility.check`."""
-        feasibility.check(scene)
+        """Refuse a scene whose finger cannot be built or meshed, see :func:`fingerpad.model.options.check`."""
+        check(scene)
 
     def solve(self, scene: Scene, context: "RunContext") -> "Result":
         """Reach every load, see :func:`fingerpad.runs.full.run`; collective."""

@@ -15,8 +15,8 @@ from matplotlib.tri import Triangulation
 from numpy.typing import NDArray
 
 from fingerpad.report import page as html
+from fingerpad.results.drawing import finger_of, skin_of
 from fingerpad.results.finger_picture import interfaces
-from fingerpad.results.kept_drawing import finger_of, skin_of
 from fingerpad.results.result import Result
 from fingerpad.results.states import WORDS, called, partial_slip
 from variational.state import ContactState

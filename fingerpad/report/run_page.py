@@ -9,10 +9,10 @@ import numpy as np
 
 from fingerpad.reduced.models import MODELS
 from fingerpad.report import page as html
-from fingerpad.report import parameters, trust
+from fingerpad.report import trust
 from fingerpad.report.frames import frames, section
-from fingerpad.report.headline import MARKS, conditions, head
-from fingerpad.results.kept_drawing import arrays_of
+from fingerpad.report.trust import conditions, head
+from fingerpad.results.drawing import arrays_of
 from fingerpad.results.over_time import HARMONICS, NOTE
 from fingerpad.results.quantities import PER_LENGTH, PLUS_MINUS, QUANTITIES, Output
 from fingerpad.results.result import Result
@@ -55,7 +55,7 @@ def page(result: Result) -> str:
         _pictures(result.folder),
         _model(result),
         _solver(result),
-        html.section("parameters", "Parameters", parameters.all_of(_parameters(result))),
+        html.section("parameters", "Parameters", html.all_parameters(_parameters(result))),
         _reproduce(result),
     ]
     there = [name for part in sections for name in _LINKS if f'id="{name}"' in part]
@@ -142,7 +142,7 @@ def _newtons(result: Result) -> str:
 def _trust(result: Result) -> str:
     found = trust.findings(result)
     lines = "".join(
-        f'<li class="{each.verdict}"><b>{MARKS[each.verdict]}</b> <span><strong>{html.text(each.what)}.</strong> '
+        f'<li class="{each.verdict}"><b>{html.MARKS[each.verdict]}</b> <span><strong>{html.text(each.what)}.</strong> '
         f"{html.text(each.words)}</span></li>"
         for each in found
     )
@@ -280,9 +280,9 @@ def _reproduce(result: Result) -> str:
     return html.section(
         "reproduce",
         "How to reproduce and cite",
-        parameters.again(_parameters(result), result.model),
+        html.again(_parameters(result), result.model),
         html.folded("Versions", html.table(("program", "version"), rows)) if rows else "",
-        parameters.cite(str(versions.get("fingerpad", ""))),
+        html.cite(str(versions.get("fingerpad", ""))),
     )
 
 

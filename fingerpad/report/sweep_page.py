@@ -1,23 +1,30 @@
-"""The report of a sweep: friction and contact length over what was varied, every point, and what failed and why."""
+"""The table of a sweep and its report: friction and contact over what was varied, every point, and what failed."""
 
+import csv
 import itertools
 import math
-from collections.abc import Iterable, Mapping
-from typing import TYPE_CHECKING, Any
+from collections.abc import Mapping
+from contextlib import suppress
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import Any
 
 from fingerpad.report import page as html
-from fingerpad.report import parameters
-from fingerpad.results.quantities import PER_LENGTH, QUANTITIES, Output
+from fingerpad.report.page import BAD, CARE, GOOD
+from fingerpad.results.files import read_object
+from fingerpad.results.quantities import PER_LENGTH, Output
+from fingerpad.results.quantities import read as read_outputs
 from fingerpad.results.states import WORDS
-from fingerpad.runs.sweep_columns import LOAD, described, in_time, loads, shown, text
+from fingerpad.runs.sweep_columns import LOAD, head_of, loads, printed, shown, tables
+from fingerpad.scene import SceneError
+from fingerpad.scene.messages import clip
 from fingerpad.scene.reading import DEFAULT_MODEL
-from fingerpad.slices import solid
-
-if TYPE_CHECKING:
-    from fingerpad.report.source import Table
+from fingerpad.slices.errors import remarks
 
 _CHARTS = ("mu_app", "f_t", "contact_length", "contact_area")
-_TOLD = 3  # cautions in the headline
+_MAX_CAUTIONS = 3  # in the headline
+_MAX_VALUES = 6  # of a key in the headline
 _RUBS = 1e-6  # µ_app that is no roundoff
 _IN_TIME = {  # column of a load over time, behind its name
     "mu_app_max": "largest µ_app",
@@ -25,8 +32,99 @@ _IN_TIME = {  # column of a load over time, behind its name
     "f_t_amplitude": "amplitude of f_T (N/m)",
 }
 
+_RESULTS = ("uncharged_", "charged_", "full_slip_", "load_")
 
-def page(table: "Table") -> str:
+
+@dataclass(frozen=True)
+class Table:
+    """The table of a sweep."""
+
+    folder: Path
+    axes: tuple[str, ...]
+    """Keys that are varied."""
+    rows: tuple[dict[str, Any], ...]
+    """By column: numbers, switches and texts; None where a cell is empty."""
+    parameters: dict[str, Any]
+    """Every parameter of the scene that it varies."""
+    model: str = DEFAULT_MODEL
+    version: str = ""
+    """Of the program that made the table; empty where it is not known."""
+    cautions: tuple[str, ...] = ()
+    """Limits of validity that points reach."""
+    notes: tuple[str, ...] = ()
+    """Remarks on the points."""
+    outputs: tuple[Output, ...] = ()
+    """Of the points, computed from a state."""
+
+    @property
+    def whole(self) -> bool:
+        """Whether forces are those on the whole finger."""
+        return "force" in self.axes or "force" in self.parameters
+
+    def forces(self) -> list[float]:
+        """Return the forces on the whole finger (N)."""
+        if "force" in self.axes:
+            return [float(row["force"]) for row in self.rows]
+        return [float(self.parameters["force"])] if self.whole else []
+
+    @property
+    def heads(self) -> dict[str, str]:
+        """Words and units of the keys that are varied."""
+        return {key: head_of(key, "title") for key in self.axes}
+
+    @cached_property
+    def shown(self) -> tuple[str, dict[str, Output]]:
+        """The named state in words and the columns of it that the report shows."""
+        state, columns = shown(self.rows[0], self.whole, self.outputs)
+        return WORDS[state], columns
+
+    def reached(self, row: Mapping[str, Any]) -> bool:
+        """Return whether a point reached that state; not all that did have a coefficient of friction."""
+        return any(row.get(column) is not None for column in self.shown[1])
+
+    def values(self) -> dict[str, list[Any]]:
+        """Return the values of each key that is varied, once each."""
+        return {key: list(dict.fromkeys(row[key] for row in self.rows)) for key in self.axes}
+
+
+def table_of(folder: Path) -> Table:
+    """Return the table of the sweep in a folder.
+
+    Raises:
+        SceneError: it cannot be read.
+    """
+    name = clip(str(folder), 80)
+    try:
+        with (folder / "table.csv").open(encoding="utf-8", newline="") as file:
+            reader = csv.DictReader(file)
+            texts, columns = list(reader), list(reader.fieldnames or ())
+    except (OSError, UnicodeDecodeError, csv.Error) as error:
+        raise SceneError(f"the table of {name} cannot be read: {error}") from None
+    axes = tuple(key for key in columns if not key.startswith(_RESULTS) and key != "failure")
+    if "failure" not in columns or not axes or not texts:
+        raise SceneError(f"table.csv in {name} is not the table of a sweep of fingerpad, or is cut short")
+    if any(None in row or None in row.values() for row in texts):
+        raise SceneError(f"table.csv in {name} is cut short; give the command of the sweep again to write it anew")
+    rows = tuple({key: text if key == "failure" else _value(text) for key, text in row.items()} for row in texts)
+    try:
+        asked = read_object(folder / "sweep.json")
+        more = str(asked["model"]), str(asked.get("version", ""))
+        cautions, notes = (tuple(map(str, asked.get(name, ()))) for name in ("cautions", "notes"))
+        outputs = read_outputs(asked.get("outputs", ()))
+        return Table(folder, axes, rows, dict(asked["parameters"]), *more, cautions, notes, outputs)
+    except (OSError, ValueError, KeyError, TypeError) as error:
+        raise SceneError(f"sweep.json in {name} cannot be read: {error}") from None
+
+
+def _value(text: str) -> Any:
+    """Return what a cell of a table holds: a number, a switch or a text; None where it is empty or not finite."""
+    for kind in (int, float):
+        with suppress(ValueError):
+            return number if math.isfinite(number := kind(text)) else None
+    return {"": None, "True": True, "False": False}.get(text, text)
+
+
+def page(table: Table) -> str:
     """Return the page of a sweep."""
     title = f"fingerpad: sweep over {', '.join(table.axes)}"
     made = (_head, _over_time, _study, _points, _failed, _parameters, _cite)
@@ -34,18 +132,12 @@ def page(table: "Table") -> str:
     return html.page(title, "\n".join(filter(None, parts)), {"sweep": _curves(table)})
 
 
-def _shown(table: "Table") -> tuple[str, dict[str, Output]]:
-    """Return the state in words and the columns of it that the page shows."""
-    state, columns = shown(table.rows[0], table.whole, table.outputs)
-    return WORDS[state], columns
-
-
-def _head(table: "Table") -> str:
-    state, columns = _shown(table)
-    slid = [row for row in table.rows if _reached(row, columns)]
+def _head(table: Table) -> str:
+    state, columns = table.shown
+    slid = [row for row in table.rows if table.reached(row)]
     number = f"No point reached {state}"
     for column, quantity in _drawn(columns).values():  # the coefficient of friction first
-        values = [value for row in slid if (value := _read(row.get(column))) is not None]
+        values = [value for row in slid if (value := row.get(column)) is not None]
         if values:
             low, high = (f"{value * quantity.scale:.3f}" for value in (min(values), max(values)))
             number = f"{_symbol(quantity)} from {low} to {high} {quantity.unit}".rstrip()
@@ -57,32 +149,27 @@ def _head(table: "Table") -> str:
         said += f"; {number.replace('<sub>app</sub>', '_app')} at full slip" if slid else ""
         number = f"µ<sub>app</sub> from {least:z.3f} to {most:z.3f}"
     failed = [row for row in table.rows if row["failure"]]
-    missing = len(table.rows) - len(slid) - sum(1 for row in failed if not _reached(row, columns))
-    kind, mark, words = "holds", "✓ holds", "Every point was computed."
+    missing = len(table.rows) - len(slid) - sum(1 for row in failed if not table.reached(row))
+    kind, words = GOOD, "Every point was computed."
     if failed:
-        kind, mark = "fails", "✗ fails"
-        words = f"{len(failed)} of {len(table.rows)} points failed; the table of failures says why."
+        kind, words = BAD, f"{len(failed)} of {len(table.rows)} points failed; the table of failures says why."
     elif missing or table.cautions:
-        kind, mark = "care", "! care"
         slips = f"{missing} of {len(table.rows)} points have no {state}." if missing else ""
-        limits = f"Limits of validity are reached: {'; '.join(table.cautions[:_TOLD])}" if table.cautions else ""
-        limits += f"; and {len(table.cautions) - _TOLD} more" if len(table.cautions) > _TOLD else ""
-        words = " ".join(filter(None, (slips, f"{limits}." if limits else "")))
-    return (
-        f'<header><p class="kind">fingerpad · report of a sweep · {html.text(table.folder.resolve().name)}</p>'
-        f'<h1>{number}</h1><p class="said">{html.text(said)}</p>'
-        f'<p class="verdict {kind}"><b>{mark}</b> {html.text(words)}</p></header>'
-    )
+        more = len(table.cautions) - _MAX_CAUTIONS
+        limits = [*table.cautions[:_MAX_CAUTIONS], *([f"and {more} more"] if more > 0 else [])]
+        limit = f"Limits of validity are reached: {'; '.join(limits)}." if limits else ""
+        kind, words = CARE, " ".join(filter(None, (slips, limit)))
+    return html.banner("report of a sweep", table.folder, number, said, kind, html.text(words))
 
 
-def _wave(table: "Table") -> tuple[str, float, float] | None:
+def _wave(table: Table) -> tuple[str, float, float] | None:
     """Return the last load with a spectrum in which the finger rubs, and the least and the largest µ_app there."""
     for name in reversed(loads(table.rows[0])):
-        column = f"{LOAD}_{name}"
-        spectrum = [_read(row.get(f"{column}_f_t_amplitude")) for row in table.rows]
-        read = ([_read(row.get(f"{column}_mu_app_{end}")) for row in table.rows] for end in ("min", "max"))
-        least, most = ([value for value in values if value is not None] for values in read)
-        if any(value is not None for value in spectrum) and least and max(map(abs, least + most)) > _RUBS:
+        spectrum, least, most = (
+            [value for row in table.rows if (value := row.get(f"{LOAD}_{name}_{key}")) is not None]
+            for key in ("f_t_amplitude", "mu_app_min", "mu_app_max")
+        )
+        if spectrum and least and max(map(abs, least + most)) > _RUBS:
             return name, min(least), max(most)
     return None
 
@@ -98,39 +185,27 @@ def _symbol(quantity: Output) -> str:
     return html.text(name) + (f"<sub>{html.text(index)}</sub>" if index else "")
 
 
-def _reached(row: Mapping[str, Any], columns: Iterable[str]) -> bool:
-    """Return whether a point reached the state of columns; not all that did have a coefficient of friction."""
-    return any(_read(row.get(column)) is not None for column in columns)
-
-
-def _varied(table: "Table") -> str:
+def _varied(table: Table) -> str:
     words = []
-    for key in table.axes:
-        values = list(dict.fromkeys(row[key] for row in table.rows))
-        shown = ", ".join(_plain(value) for value in values[:6])
-        words.append(f"{_head_of(key)}: {shown}{', …' if len(values) > 6 else ''}")
+    for key, values in table.values().items():
+        shown = ", ".join(map(printed, values[:_MAX_VALUES]))
+        words.append(f"{head_of(key, 'title')}: {shown}{', …' if len(values) > _MAX_VALUES else ''}")
     return "; ".join(words)
 
 
-def _over_time(table: "Table") -> str:
+def _over_time(table: Table) -> str:
     """Return friction and contact in loads over time, which no state at full slip has; nothing without such a load."""
     parts = list[str]()
-    for name in loads(table.rows[0]):
-        shown = in_time(name, table.rows[0])
-        heads = [*(_head_of(key) for key in table.axes), *shown.values()]
-        rows = [
-            [*(_plain(row[key]) for key in table.axes), *(text(column, _read(row[column])) for column in shown)]
-            for row in table.rows
-        ]
-        charts = [html.chart(key, title) for key, (column, title) in _charts(table).items() if column in shown]
-        parts += [html.paragraph(f"In the load {name}:"), *charts, html.table(heads, map(tuple, rows), "numbers")]
-    return html.section("time", "Loads over time", *parts) if parts else ""
+    for name, (heads, *lines) in tables(table.rows, table.heads):
+        drawn = _charts(table).items()
+        charts = [html.chart(key, title) for key, (column, title) in drawn if column.startswith(f"{LOAD}_{name}_")]
+        parts += [html.paragraph(f"In the load {name}:"), *charts, html.table(heads, lines, "numbers")]
+    return html.section("time", "Loads over time", *parts)
 
 
-def _charts(table: "Table") -> dict[str, tuple[str, str]]:
+def _charts(table: Table) -> dict[str, tuple[str, str]]:
     """Return the column and the title of each chart by the name of its place on the page."""
-    drawn = _drawn(_shown(table)[1])
-    found = {f"sweep_{key}": (column, quantity.title) for key, (column, quantity) in drawn.items()}
+    found = {f"sweep_{key}": (column, each.title) for key, (column, each) in _drawn(table.shown[1]).items()}
     for k, name in enumerate(loads(table.rows[0])):
         for key, words in _IN_TIME.items():
             column = f"{LOAD}_{name}_{key}"
@@ -139,45 +214,38 @@ def _charts(table: "Table") -> dict[str, tuple[str, str]]:
     return found
 
 
-def _study(table: "Table") -> str:
-    state, columns = _shown(table)
-    over = f"at {state} over the sweep"
-    charts = [
-        html.chart(place, f"{words} {over}") for place, (column, words) in _charts(table).items() if column in columns
-    ]
+def _study(table: Table) -> str:
+    state, columns = table.shown
+    drawn = [(place, words) for place, (column, words) in _charts(table).items() if column in columns]
     note = "Bars are estimated discretisation errors, where a run has them."
     without = (
         '<noscript><p class="note">The charts need JavaScript; the table below has the same numbers.</p></noscript>'
     )
-    title = f"Friction and contact at {state}"
-    return html.section("study", title, without, *charts, html.paragraph(note, "note"))
+    charts = (html.chart(place, f"{words} at {state} over the sweep") for place, words in drawn)
+    return html.section("study", f"Friction and contact at {state}", without, *charts, html.paragraph(note, "note"))
 
 
-def _points(table: "Table") -> str:
-    state, columns = _shown(table)
+def _points(table: Table) -> str:
+    state, columns = table.shown
     rows = []
     for row in table.rows:
-        cells = []
-        for column, quantity in columns.items():
-            cells.append(quantity.shown(_read(row.get(column)), _read(row.get(f"{column}_error"))))
-        said = "failed" if row["failure"] else "" if _reached(row, columns) else f"no {state}"
-        first, *rest = (_plain(row[key]) for key in table.axes)
-        rows.append((first, *rest, *cells, said))
-    forces = dict.fromkeys(table.forces())
-    notes = solid.remarks(forces) or [PER_LENGTH]
-    heads = [*(_head_of(key) for key in table.axes), *(quantity.title for quantity in columns.values())]
+        cells = (each.shown(row.get(column), row.get(f"{column}_error")) for column, each in columns.items())
+        said = "failed" if row["failure"] else "" if table.reached(row) else f"no {state}"
+        rows.append([*(printed(row[key]) for key in table.axes), *cells, said])
+    heads = [*table.heads.values(), *(quantity.title for quantity in columns.values()), ""]
+    notes = remarks(dict.fromkeys(table.forces())) or [PER_LENGTH]
     return html.section(
         "points",
         "Every point",
-        html.table((*heads, ""), rows, "numbers"),
+        html.table(heads, rows, "numbers"),
         *(html.paragraph(note, "note") for note in notes),
         html.items((*table.notes, *table.cautions)),
     )
 
 
-def _failed(table: "Table") -> str:
+def _failed(table: Table) -> str:
     rows = [
-        (", ".join(f"{key} = {_plain(row[key])}" for key in table.axes), row["failure"])
+        (", ".join(f"{key} = {printed(row[key])}" for key in table.axes), row["failure"])
         for row in table.rows
         if row["failure"]
     ]
@@ -189,82 +257,48 @@ def _failed(table: "Table") -> str:
     )
 
 
-def _parameters(table: "Table") -> str:
-    return html.section("parameters", "Parameters", parameters.all_of(table.parameters, table.axes))
+def _parameters(table: Table) -> str:
+    return html.section("parameters", "Parameters", html.all_parameters(table.parameters, table.axes))
 
 
-def _cite(table: "Table") -> str:
-    given = parameters.changed(table.parameters)
+def _cite(table: Table) -> str:
+    given = html.changed(table.parameters)
     kept = {key: value for key, value in given.items() if not (key in table.axes or "[" in key or value is None)}
-    options = [parameters.option_of(key, value) for key, value in kept.items()]
+    options = [html.option_of(key, value) for key, value in kept.items()]
     options += [f"--model {table.model}"] if table.model != DEFAULT_MODEL else []
-    values = {key: list(dict.fromkeys(row[key] for row in table.rows)) for key in table.axes}
-    if all(_read(value) is not None for each in values.values() for value in each):
-        over = [parameters.option_of(key, ",".join(each), "--over") for key, each in values.items()]
+    values = table.values()
+    if all(type(value) in (int, float) for each in values.values() for value in each):
+        over = [html.option_of(key, ",".join(map(repr, each)), "--over") for key, each in values.items()]
         code = " ".join(["fingerpad sweep", *options, *over, "--out results/again"])
     else:  # --over reads numbers alone
-        lines = [f"{parameters.toml(key)} = [{', '.join(map(_toml, each))}]" for key, each in values.items()]
+        lines = [f"{html.toml(key)} = {html.toml(each)}" for key, each in values.items()]
         command = " ".join(["fingerpad sweep study.toml", *options, "--out results/again"])
         code = "\n".join(["# study.toml", "[sweep]", *lines, "", "# the command", command])
     lists = any("[" in key and key not in table.axes for key in given)
     note = "Loads of its own, and other lists of the scene, are not in this line." if lists else ""
     return html.section(
         "reproduce", "How to reproduce and cite", f"<pre><code>{html.text(code)}</code></pre>",
-        html.paragraph(note, "note") if note else "", parameters.cite(table.version),
+        html.paragraph(note, "note") if note else "", html.cite(table.version),
     )  # fmt: skip
 
 
-def _toml(cell: str) -> str:
-    """Return a value of the table as TOML: a number as it stands, a switch, or a text."""
-    if _read(cell) is not None:
-        return cell
-    return cell.lower() if cell in ("True", "False") else parameters.toml(cell)
-
-
-def _curves(table: "Table") -> dict[str, Any]:
+def _curves(table: Table) -> dict[str, Any]:
     """Return one curve for each value of all axes but the one along x, which is that with most numbers."""
-    charts, scales = _charts(table), {column: quantity.scale for column, quantity in _shown(table)[1].items()}
-    numbers = {key: {row[key] for row in table.rows if _read(row[key]) is not None} for key in table.axes}
+    charts, scales = _charts(table), {column: quantity.scale for column, quantity in table.shown[1].items()}
+    numbers = {key: [each for each in values if type(each) in (int, float)] for key, values in table.values().items()}
     along = max(table.axes, key=lambda key: len(numbers[key]))
     others = [key for key in table.axes if key != along]
+    groups: dict[tuple[Any, ...], list[dict[str, Any]]] = {}
+    for row in table.rows:
+        groups.setdefault(tuple(row[key] for key in others), []).append(row)
     curves = []
-
-    def of(row: dict[str, str]) -> tuple[str, ...]:
-        return tuple(row[key] for key in others)
-
-    rows = sorted(table.rows, key=lambda row: list(dict.fromkeys(map(of, table.rows))).index(of(row)))
-    for values, group in itertools.groupby(rows, key=of):
-        mine = list(group)
-        curve: dict[str, Any] = {
-            "name": ", ".join(f"{key} = {_plain(value)}" for key, value in zip(others, values, strict=True)),
-            "x": [_read(row[along]) if numbers[along] else _plain(row[along]) for row in mine],
-        }
-        for place, (column, _) in charts.items():
-            scale = scales.get(column, 1.0)
-            for end in ("", "_error"):
-                found = [_read(row.get(f"{column}{end}")) for row in mine]
-                curve[f"{place}{end}"] = [None if value is None else value * scale for value in found]
+    for values, rows in groups.items():
+        name = ", ".join(f"{key} = {printed(value)}" for key, value in zip(others, values, strict=True))
+        x = [row[along] if numbers[along] else printed(row[along]) for row in rows]
+        curve: dict[str, Any] = {"name": name, "x": x}
+        for (place, (column, _)), end in itertools.product(charts.items(), ("", "_error")):
+            found = [row.get(f"{column}{end}") for row in rows]
+            curve[f"{place}{end}"] = [None if value is None else value * scales.get(column, 1.0) for value in found]
         curves.append(curve)
     titles = {place: title for place, (_, title) in charts.items()}
-    return {"along": _head_of(along), "curves": curves, "charts": titles}
-
-
-def _head_of(key: str) -> str:
-    quantity = QUANTITIES.get(key)
-    if quantity:
-        return quantity.title
-    meant = described(key)
-    return f"{key} ({meant.unit})" if meant is not None and meant.unit else key
-
-
-def _read(text: str | None) -> float | None:
-    try:
-        value = float(text or "nan")
-    except ValueError:
-        return None
-    return value if math.isfinite(value) else None
-
-
-def _plain(text: str) -> str:
-    value = _read(text)
-    return text if value is None else f"{value:.6g}"
+    return {"along": head_of(along, "title"), "curves": curves, "charts": titles}

@@ -1,12 +1,20 @@
-"""Write the report of a folder and its footprint; what cannot be made costs a line, not the results."""
+"""The report of a folder: what the folder holds, and its page; what cannot be made costs a line, not the results."""
 
+import csv
 import sys
 from pathlib import Path
+from typing import TYPE_CHECKING
 
-from fingerpad.results.files import replace
-from fingerpad.results.result import Result
-from fingerpad.scene import SceneError
+from fingerpad.reduced.models import MODELS
+from fingerpad.results.files import read_object, replace
+from fingerpad.results.result import Result, steps_of
+from fingerpad.results.states import load_results, named
+from fingerpad.scene import SceneError, as_kept
 from fingerpad.scene.messages import clip
+from fingerpad.scene.reading import DEFAULT_MODEL
+
+if TYPE_CHECKING:
+    from fingerpad.report.sweep_page import Table
 
 NAME = "report.html"
 
@@ -24,9 +32,9 @@ def write(folder: Path) -> Path:
         SceneError: the folder holds nothing that a report can be made of, or files that are not of a run, or it cannot
             be written to.
     """
-    from fingerpad.report import run_page, source, sweep_page
+    from fingerpad.report import run_page, sweep_page
 
-    found = source.read(folder)
+    found = read(folder)
     try:
         page = run_page.page(found) if isinstance(found, Result) else sweep_page.page(found)
     except (LookupError, ValueError, TypeError, AttributeError) as error:  # of files that somebody else has written
@@ -60,3 +68,55 @@ def draw_footprint(result: Result) -> None:
         footprint(result.finger, result.folder / "footprint.png")
     except OSError as error:
         print(f"fingerpad: footprint.png was not written: {error.strerror or error}", file=sys.stderr)
+
+
+def read(folder: Path) -> "Result | Table":
+    """Return what is in a folder.
+
+    Raises:
+        SceneError: nothing that a report can be made of, in one sentence.
+    """
+    name = clip(str(folder), 80)
+    if not folder.is_dir():
+        raise SceneError(f"{name} is not a folder; give one that fingerpad run or fingerpad sweep wrote")
+    if (folder / "summary.json").exists():
+        return Result.load(folder)
+    if (folder / "table.csv").exists():
+        from fingerpad.report.sweep_page import table_of
+
+        return table_of(folder)
+    if (folder / "steps.csv").exists():
+        return _unfinished(folder)
+    points = [folder / name for name, model in MODELS.items() if model.meshes and (folder / name).is_dir()]
+    done = sum(1 for place in points for _ in place.glob("*/summary.json"))
+    if done or any(any(place.glob("*/asked.json")) for place in points):
+        raise SceneError(f"the sweep in {name} has not ended ({done} runs are there); give its command again to go on")
+    if (folder / "scene.json").exists():
+        raise SceneError(f"the run in {name} has no accepted step yet; make the report when it has one")
+    raise SceneError(f"{name} holds no results of fingerpad; give a folder that fingerpad run or fingerpad sweep wrote")
+
+
+def _unfinished(folder: Path) -> Result:
+    """Return the steps that a run has written so far."""
+    try:
+        parameters = read_object(folder / "scene.json")
+        scene = as_kept(parameters)
+        steps = steps_of(folder)
+    except (OSError, ValueError, KeyError, TypeError, AttributeError, csv.Error) as error:
+        raise SceneError(f"the unfinished run in {clip(str(folder), 80)} cannot be read: {error}") from None
+    if not steps:
+        raise SceneError(
+            f"the run in {clip(str(folder), 80)} has no accepted step yet; make the report when it has one"
+        )
+    found = named(steps, [load.name for load in scene.loads()])
+    return Result(
+        scene,
+        DEFAULT_MODEL,
+        found.get("uncharged"),
+        found.get("charged"),
+        found.get("full_slip"),
+        steps=steps,
+        loads=tuple(load_results(steps, scene.loads(), lambda k, end: None)),
+        failure=f"the run has not ended, or was killed, after step {steps[-1].step}: these are its steps so far",
+        folder=folder,
+    )

@@ -1,46 +1,34 @@
-"""The pictures of a run from its states and views, each under a title that names the state it shows; on rank 0."""
+"""The pictures of a run from its states and views, each under a title that names the state it shows; on rank 0.
 
+A run draws from what it has in memory, and leaves it as arrays in its folder; a result that was read draws from these.
+"""
+
+import zipfile
+import zlib
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from io import BytesIO
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from types import SimpleNamespace
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from fingerpad.results import finger_picture, history_picture, skin_picture, style
-from fingerpad.results.files import replace
+from fingerpad.results import curves, files, finger_picture, style
+from fingerpad.results.curves import SurfaceProfile
 from fingerpad.results.over_time import without_parts_of_jumps
-from fingerpad.results.skin_picture import SurfaceProfile
-from fingerpad.results.states import WORDS, before_sliding, called, named, partial_slip
-from geometry.parameters import MeshSize
+from fingerpad.results.states import WORDS, before_sliding, by_load, called, named, partial_slip
 from variational.state import ContactState, Skin
 
 if TYPE_CHECKING:
     from variational.output import Snapshot
 
 Array = NDArray[np.float64]
-_PATH, _FINAL = "path on the starting mesh", "final mesh"
-
-
-@dataclass(frozen=True)
-class Profile:
-    """The skin that can touch."""
-
-    ridge: NDArray[np.int64]
-    """Position of each facet's ridge among all, shape (facets,)."""
-    values: Array
-    """Current place (m), pressure, shear and attraction (Pa), and current area, shape (7, facets, points)."""
-    d_eq: Array
-    """Equivalent air gap (m) of each ridge, shape (ridges,)."""
-
-    def skin(self, numbers: NDArray[np.int64]) -> Skin:
-        """Return the same with tractions per current area, for the numbers of the ridges, shape (ridges,)."""
-        x, y, p_n, t_t, p_el, area_x, area_y = self.values
-        stretch = np.hypot(area_x, area_y)
-        return Skin(numbers[self.ridge], x, y, p_n / stretch, t_t / stretch, p_el)
+Along = Skin | Mapping[str, Array]
+"""The skin of a state, or the arrays of its :class:`SurfaceProfile` by name, as a file has them."""
+_ARRAYS = ("x", "y", "p", "t", "p_el", "d_eq", "ridge")
 
 
 @dataclass(frozen=True)
@@ -48,26 +36,13 @@ class View:
     """All that is shown of a state."""
 
     state: ContactState
-    """Without a record of a step."""
-    mesh: MeshSize
-    profile: Profile | None
+    size: float | None
+    """Contact size (m) of its mesh, where the title has it."""
+    skin: Along | None
     """None on ranks other than 0, as the next."""
     snapshot: "Snapshot | None"
     merkel: Array | None
     """Current places (m) of the Merkel sites, shape (sites, 2), None where they are not wanted."""
-
-
-Along = Profile | Mapping[str, Array]
-"""The skin of a state, or the arrays of its :class:`SurfaceProfile` by name, as a file has them."""
-
-
-class End(NamedTuple):
-    """The finger at the end of a load."""
-
-    state: ContactState
-    snapshot: "Snapshot"
-    sites: Array | None
-    """Current places (m) of the Merkel sites, shape (sites, 2); None where there are none."""
 
 
 @dataclass(frozen=True)
@@ -77,10 +52,10 @@ class Drawing:
     mu_0: float | None
     """Friction coefficient; None where the law of friction is not Coulomb's."""
     states: Sequence[ContactState]
-    profiles: Mapping[int, Along]
-    """The skin by step."""
-    ends: Mapping[str, End]
-    """By load."""
+    skins: Mapping[int, Along]
+    """By step."""
+    ends: Mapping[str, View]
+    """The finger at the end of a load, by load."""
     finer: Mapping[str, View]
     """Normal contact and full slip on another mesh than the path's, by names of :mod:`fingerpad.results.states`."""
     starting_size: float | None
@@ -96,20 +71,16 @@ class Drawing:
             each_load: also those of the end of each load.
         """
         for load, end in self.ends.items() if each_load else ():
-            words = load.replace(" ", "_")
-            _keep(folder / f"finger_{words}.npz", end.state, end.snapshot, end.sites)
-            self._end(folder / f"finger_{words}.png", load)
-            if end.state.step in self.profiles and end.state.ridges_in_contact > 0:
-                along = _along(self.profiles[end.state.step], f"After {load}", end.state, self._path_note())
-                self._surface(folder / f"surface_{words}", {"end": along}, [end.state])
+            self._put_finger(folder / f"finger_{_file(load)}", f"After {load}", end)
+            if end.state.step in self.skins and end.state.ridges_in_contact > 0:
+                along = self._along(self.skins[end.state.step], f"After {load}", end.state)
+                self._put_skin(folder / f"surface_{_file(load)}", {"end": along})
         for name, view in self.finer.items():
             if view.snapshot is not None:
-                words = WORDS[name].replace(" ", "_")
-                _keep(folder / f"finger_{words}.npz", view.state, view.snapshot, view.merkel)
-                self._final(folder / f"finger_{words}.png", name)
-        if shown := self._shown():
-            self._surface(folder / "surface", self._named_skin(), [state for _, state, _ in shown.values()])
-        if self._slides():
+                self._put_finger(folder / f"finger_{_file(WORDS[name])}", _title(name, view.state), view)
+        if self._shown():
+            self._put_skin(folder / "surface", self._named_skin())
+        if self._sliding():
             self.figure("history", folder / "history.png")
         if self._timed():
             self.figure("time", folder / "time.png")
@@ -129,97 +100,56 @@ class Drawing:
         if kind == "finger":
             return self._last_finger(path)
         if kind == "surface":
-            profiles = self._named_skin()
-            if not profiles:
+            skins = self._named_skin()
+            if not skins:
                 raise ValueError("the run has no state with skin on the screen to draw")
-            return self._skin(path, profiles, [state for _, state, _ in self._shown().values()])
+            return self._skin(path, skins)
         if kind == "time":
-            return self._over_time(path)
-        if not self._slides():
-            raise ValueError("the run has no history of sliding; the bone never moved sideways with skin on the screen")
-        shown = [state.row() for state in self.states[len(before_sliding(self.states)) - 1 :]]
-        conditions = _joined(style.conditions_of(shown, self.mu_0), self._path_note())
-        return history_picture.history(path, shown, conditions, self.mu_0, self.named)
-
-    def _skin(
-        self, path: Path | None, profiles: Mapping[str, SurfaceProfile], states: Sequence[ContactState]
-    ) -> Figure:
-        conditions = style.conditions_of([state.row() for state in states], self.mu_0)
-        return skin_picture.surface(path, list(profiles.values()), conditions)
-
-    def _surface(self, path: Path, profiles: Mapping[str, SurfaceProfile], states: Sequence[ContactState]) -> None:
-        """Write the picture of the skin in some states and its arrays; ``path`` has no suffix."""
-        arrays: dict[str, Any] = {
-            f"{name}_{field}": value
-            for name, profile in profiles.items()
-            for field, value in vars(profile).items()
-            if isinstance(value, np.ndarray)
-        }
-        _put(path.with_name(f"{path.name}.npz"), arrays)
-        self._skin(path.with_name(f"{path.name}.png"), profiles, states)
-
-    def _slides(self) -> bool:
-        return len(before_sliding(self.states)) not in (0, len(self.states))
-
-    def _timed(self) -> list[ContactState]:
-        """Return the states from the last one at time 0 on; none where no load takes time."""
-        first = sum(state.time == 0 for state in self.states)
-        if not (self.states and self.states[-1].time > 0):
-            return []
-        return without_parts_of_jumps(self.states[max(first - 1, 0) :])
-
-    def _over_time(self, path: Path | None) -> Figure:
-        states = self._timed()
+            states = self._timed()
+            if not states:
+                raise ValueError("the run has no load over time; give one a speed, a duration or a waveform")
+            return curves.over_time(path, states, self._title(style.conditions(states, self.mu_0)))
+        states = self._sliding()
         if not states:
-            raise ValueError("the run has no load over time; give one a speed, a duration or a waveform")
-        conditions = style.conditions_of([state.row() for state in states], self.mu_0)
-        return history_picture.over_time(path, states, _joined(conditions, self._path_note()))
+            raise ValueError("the run has no history of sliding; the bone never moved sideways with skin on the screen")
+        return curves.history(path, states, self._title(style.conditions(states, self.mu_0)), self.mu_0, self.named)
 
-    def _path_note(self) -> str:
-        return "" if self.starting_size is None else _note(_PATH, self.starting_size)
+    def _title(self, words: str, view: View | None = None) -> str:
+        """Return words with a line for the mesh below, where an accuracy was asked for."""
+        note = self._note(view)
+        return f"{words}\n{note}" if note else words
 
-    def _last_finger(self, path: Path | None) -> Figure:
-        final = next((name for name in ("full_slip", "charged") if name in self.finer), None)
-        if final is not None and self.finer[final].snapshot is not None:
-            return self._final(path, final)
-        if not self.ends:
-            raise ValueError(
-                "the result has no finger to draw: no load was reached, or its folder has no finger_*.npz that can be "
-                "read"
-            )
-        return self._end(path, list(self.ends)[-1])
+    def _note(self, view: View | None = None) -> str:
+        """Return what mesh it is, the final one of a view or the path's; empty where no accuracy was asked for."""
+        if view is not None and view.size is not None:
+            return f"final mesh, contact size {view.size * 1e6:.3g} µm"
+        size = self.starting_size
+        return "" if size is None else f"path on the starting mesh, contact size {size * 1e6:.3g} µm"
 
-    def _end(self, path: Path | None, load: str) -> Figure:
-        end = self.ends[load]
-        return self._finger(
-            path, f"After {load}", *end, self._path_note(), _places(self.profiles.get(end.state.step), end.state)
-        )
+    # -- skin ----------------------------------------------------------------------------------------
+    def _skin(self, path: Path | None, skins: Mapping[str, SurfaceProfile]) -> Figure:
+        conditions = style.conditions([skin.state for skin in skins.values()], self.mu_0)
+        return curves.surface(path, list(skins.values()), conditions)
 
-    def _final(self, path: Path | None, name: str) -> Figure:
-        view = self.finer[name]
-        assert view.snapshot is not None
-        title, note = _title(name, view.state), _note(_FINAL, view.mesh.contact)
-        ridges = _places(view.profile, view.state)
-        return self._finger(path, title, view.state, view.snapshot, view.merkel, note, ridges)
+    def _put_skin(self, path: Path, skins: Mapping[str, SurfaceProfile]) -> None:
+        """Write the picture of the skin in some states and its arrays; ``path`` has no suffix."""
+        arrays = {f"{name}_{array}": getattr(skin, array) for name, skin in skins.items() for array in _ARRAYS}
+        _put(path.with_name(f"{path.name}.npz"), arrays)
+        self._skin(path.with_name(f"{path.name}.png"), skins)
 
-    def _finger(
-        self,
-        path: Path | None,
-        title: str,
-        state: ContactState,
-        snapshot: "Snapshot",
-        sites: Array | None,
-        note: str,
-        ridges: Mapping[int, float],
-    ) -> Figure:
-        conditions = style.conditions(state.f_ext, state.voltage, self.mu_0, state.bone_x)
-        snapshots = [end.snapshot for end in self.ends.values()]
-        snapshots += [view.snapshot for view in self.finer.values() if view.snapshot is not None]
-        highest = max(map(finger_picture.highest_density, snapshots))
-        words = _joined(f"{style.plain(title)}: {conditions}", note)
-        return finger_picture.finger(path, snapshot, sites, words, ridges, highest)
+    def _along(self, skin: Along, title: str, state: ContactState, view: View | None = None) -> SurfaceProfile:
+        return SurfaceProfile(title, state, **sorted_along(skin, state), note=self._note(view))
 
-    def _shown(self) -> "dict[str, tuple[str, ContactState, View | None]]":
+    def _named_skin(self) -> dict[str, SurfaceProfile]:
+        found = {}
+        for name, (title, state, view) in self._shown().items():
+            skin = self.skins.get(state.step) if view is None else view.skin
+            if skin is None:
+                raise ValueError("the result has no skin to draw: its folder has no surface.npz that can be read")
+            found[name] = self._along(skin, title, state, view)
+        return found
+
+    def _shown(self) -> dict[str, tuple[str, ContactState, View | None]]:
         """Return the states along whose skin is drawn: title, state, and its view on the final mesh if there is one."""
         found, partial = named(self.states), partial_slip(self.states)
         shown = {"charged": (_title("charged", found["charged"]), found["charged"])} if "charged" in found else {}
@@ -227,9 +157,9 @@ class Drawing:
             shown["partial"] = ("Partial slip", partial)
         if "full_slip" in found:
             shown["full_slip"] = _title("full_slip", found["full_slip"]), found["full_slip"]
-        elif self._slides():
+        elif self._sliding():
             shown["full_slip"] = "Last state", self.states[-1]
-        final = {name: view for name, view in self.finer.items() if view.profile is not None}
+        final = {name: view for name, view in self.finer.items() if view.skin is not None}
         return {
             name: (title, final[name].state if name in final else state, final.get(name))
             for name, (title, state) in shown.items()
@@ -240,79 +170,162 @@ class Drawing:
         states = [state for _, state, _ in self._shown().values()] + [end.state for end in self.ends.values()]
         return [state.step for state in states]
 
-    def _named_skin(self) -> dict[str, SurfaceProfile]:
-        profiles = {}
-        for name, (title, state, view) in self._shown().items():
-            if view is not None and view.profile is not None:
-                profiles[name] = _along(view.profile, title, state, _note(_FINAL, view.mesh.contact))
-            elif state.step not in self.profiles:
-                raise ValueError("the result has no skin to draw: its folder has no surface.npz that can be read")
-            else:
-                profiles[name] = _along(self.profiles[state.step], title, state, self._path_note())
-        return profiles
+    # -- history -------------------------------------------------------------------------------------
+    def _sliding(self) -> Sequence[ContactState]:
+        """Return the states from the last one before sliding on; none where the bone does not slide."""
+        still = len(before_sliding(self.states))
+        return () if still in (0, len(self.states)) else self.states[still - 1 :]
 
+    def _timed(self) -> Sequence[ContactState]:
+        """Return the states from the last one at time 0 on; none where no load takes time."""
+        first = sum(state.time == 0 for state in self.states)
+        if not (self.states and self.states[-1].time > 0):
+            return []
+        return without_parts_of_jumps(self.states[max(first - 1, 0) :])
 
-def _keep(path: Path, state: ContactState, snapshot: "Snapshot", sites: Array | None) -> None:
-    shown: dict[str, Any] = {} if sites is None else {"merkel": sites}
-    _put(path, {"bone_x": np.array(state.bone_x), **shown, **vars(snapshot)})
+    # -- finger --------------------------------------------------------------------------------------
+    def _last_finger(self, path: Path | None) -> Figure:
+        final = next((name for name in ("full_slip", "charged") if name in self.finer), None)
+        if final is not None and (view := self.finer[final]).snapshot is not None:
+            return self._finger(path, _title(final, view.state), view)
+        if not self.ends:
+            raise ValueError(
+                "the result has no finger to draw: no load was reached, or its folder has no finger_*.npz that can be "
+                "read"
+            )
+        load = list(self.ends)[-1]
+        return self._finger(path, f"After {load}", self.ends[load])
 
+    def _put_finger(self, path: Path, title: str, view: View) -> None:
+        """Write the picture of a finger and its arrays; ``path`` has no suffix."""
+        sites: dict[str, Any] = {} if view.merkel is None else {"merkel": view.merkel}
+        arrays = {"bone_x": np.array(view.state.bone_x), **sites, **vars(view.snapshot)}
+        _put(path.with_name(f"{path.name}.npz"), arrays)
+        self._finger(path.with_name(f"{path.name}.png"), title, view)
 
-def _put(path: Path, arrays: Mapping[str, Any]) -> None:
-    """Write arrays into a file, which is there as a whole or not at all."""
-    data = BytesIO()
-    np.savez_compressed(data, **arrays)
-    replace(path, data.getvalue())
+    def _finger(self, path: Path | None, title: str, view: View) -> Figure:
+        snapshots = [each.snapshot for each in (*self.ends.values(), *self.finer.values()) if each.snapshot is not None]
+        highest = max(map(finger_picture.highest_density, snapshots))
+        words = f"{style.plain(title)}: {style.conditions([view.state], self.mu_0, place=True)}"
+        skin = self.skins.get(view.state.step) if view.size is None else view.skin
+        ridges = {} if skin is None else _places(sorted_along(skin, view.state))
+        assert view.snapshot is not None
+        return finger_picture.finger(path, view.snapshot, view.merkel, self._title(words, view), ridges, highest)
 
 
 def _title(name: str, state: ContactState) -> str:
     return called(name, state.voltage).capitalize()
 
 
-def _note(mesh: str, contact_size: float) -> str:
-    return f"{mesh}, contact size {contact_size * 1e6:.3g} µm"
+def _file(words: str) -> str:
+    return words.replace(" ", "_")
 
 
-def _joined(title: str, note: str) -> str:
-    return f"{title}\n{note}" if note else title
-
-
-def _numbers(profile: Profile, state: ContactState) -> NDArray[np.int64]:
-    """Return the number of each ridge, 0 at the centre, shape (ridges,)."""
-    count = len(profile.d_eq)
-    return np.arange(count) - count // 2 if state.ridges is None else state.ridges.number
-
-
-def _places(profile: Along | None, state: ContactState) -> dict[int, float]:
+def _places(along: Mapping[str, Array]) -> dict[int, float]:
     """Return the current abscissa (m) of the lowest point of each ridge that can touch, by its number."""
-    if profile is None:
-        return {}
-    along = _arrays(profile, state)
-    lowest = {int(k): np.where(along["ridge"] == k, along["y"], np.inf).argmin() for k in _known(along["ridge"])}
+    ridges = np.unique(along["ridge"][np.isfinite(along["ridge"])])
+    lowest = {int(k): np.where(along["ridge"] == k, along["y"], np.inf).argmin() for k in ridges}
     return {k: float(along["x"][point]) for k, point in lowest.items()}
 
 
-def _known(values: Array) -> Array:
-    return np.unique(values[np.isfinite(values)])
-
-
-def _along(profile: Along, title: str, state: ContactState, note: str) -> SurfaceProfile:
-    """Return the skin sorted along each ridge, a NaN between ridges."""
-    given = {k: getattr(state, k) for k in ("f_ext", "voltage", "bone_x", "contact_length")}
-    return SurfaceProfile(title=title, note=note, **_arrays(profile, state), **given)
-
-
-def _arrays(profile: Along, state: ContactState) -> dict[str, Any]:
-    """Return the arrays of a :class:`SurfaceProfile` by name."""
-    if not isinstance(profile, Profile):
-        return dict(profile)
-    skin = profile.skin(_numbers(profile, state))
-    gap = np.broadcast_to(profile.d_eq[profile.ridge][:, None], skin.x.shape)
-    number = np.broadcast_to(skin.ridge[:, None].astype(float), skin.x.shape)
-    columns: list[list[Any]] = [[] for _ in range(7)]
-    for k in np.unique(profile.ridge):
-        mine = profile.ridge == k
+def sorted_along(skin: Along, state: ContactState) -> dict[str, Any]:
+    """Return the skin of a state as a :class:`SurfaceProfile` has it: sorted along each ridge, a NaN between ridges."""
+    if not isinstance(skin, Skin):
+        return dict(skin)
+    assert state.ridges is not None
+    columns: list[list[Any]] = [[] for _ in _ARRAYS]
+    for number in np.unique(skin.ridge):
+        mine = skin.ridge == number
         order = np.argsort(skin.x[mine], axis=None)
-        for column, part in zip(columns, (skin.x, skin.y, skin.p_n, skin.t_t, skin.p_el, gap, number), strict=True):
-            column += [part[mine].ravel()[order], [np.nan]]
-    along = (np.concatenate(column) for column in columns)
-    return dict(zip(("x", "y", "p", "t", "p_el", "d_eq", "ridge"), along, strict=True))
+        gap = state.ridges.d_eq[state.ridges.number == number]
+        parts = [values[mine].ravel()[order] for values in (skin.x, skin.y, skin.p_n, skin.t_t, skin.p_el)]
+        parts += [np.full(len(order), value) for value in (gap.item(), number)]
+        for column, part in zip(columns, parts, strict=True):
+            column += [part, [np.nan]]
+    return dict(zip(_ARRAYS, map(np.concatenate, columns), strict=True))
+
+
+# -- arrays of a folder ------------------------------------------------------------------------------------
+def _put(path: Path, arrays: Mapping[str, Any]) -> None:
+    """Write arrays into a file, which is there as a whole or not at all."""
+    data = BytesIO()
+    np.savez_compressed(data, **arrays)
+    files.replace(path, data.getvalue())
+
+
+def read(
+    folder: Path,
+    states: Sequence[ContactState],
+    named: Mapping[str, ContactState],
+    mu_0: float | None,
+    starting_size: float | None,
+    final_size: float | None,
+) -> Drawing:
+    """Return what the pictures of a result that was read are drawn from.
+
+    Args:
+        folder: with the arrays of :meth:`Drawing.write`.
+        states: accepted states.
+        named: named states.
+        mu_0: friction coefficient; None where the law of friction is not Coulomb's.
+        starting_size: contact size (m) of the mesh of the path, where an accuracy was asked for.
+        final_size: contact size (m) of the final mesh, where an accuracy was asked for.
+    """
+    skins = dict[int, Any]()
+    ends, finer = dict[str, View](), dict[str, View]()
+    for load, mine in by_load(states):
+        if finger := finger_of(folder / f"finger_{_file(load)}.npz"):
+            ends[load] = _view(mine[-1], None, None, finger)
+        if along := skin_of(folder / f"surface_{_file(load)}.npz", "end"):
+            skins[mine[-1].step] = along
+    drawing = Drawing(mu_0, states, skins, ends, finer, starting_size, named)
+    for name, (_, state, _) in drawing._shown().items():
+        skin = skin_of(folder / "surface.npz", name)
+        finger = finger_of(folder / f"finger_{_file(WORDS.get(name, ''))}.npz")
+        if skin and finger and final_size is not None:
+            there = replace(named[name], bone_x=float(finger.get("bone_x", state.bone_x)))
+            finer[name] = _view(there, final_size, skin, finger)
+        elif skin:
+            skins[state.step] = skin
+    return drawing
+
+
+def _view(state: ContactState, size: float | None, skin: Along | None, finger: dict[str, Any]) -> View:
+    snapshot: Any = SimpleNamespace(**finger)
+    return View(state, size, skin, snapshot, finger.get("merkel"))
+
+
+def finger_of(file: Path) -> dict[str, Any]:
+    """Return the arrays of a finger by name, see :class:`variational.output.Snapshot`; none that are not whole."""
+    found = arrays_of(file)
+    try:
+        points, triangles = len(found["x"]), found["triangles"]
+        whole = found["x"].shape == found["u"].shape == (points, 2) and triangles.shape[1:] == (3,)
+        whole &= found["sed"].shape == found["tag"].shape == (len(triangles),)
+        whole &= triangles.dtype.kind in "iu" and bool(np.all((triangles >= 0) & (triangles < points)))
+        whole &= all(found[name].dtype.kind in "iuf" for name in ("x", "u", "sed", "tag"))
+    except (KeyError, TypeError):
+        whole = False
+    return found if whole else {}
+
+
+def skin_of(file: Path, prefix: str) -> dict[str, Any]:
+    """Return the skin of a state, by the names of :class:`SurfaceProfile`, or nothing.
+
+    Args:
+        file: of one state or several.
+        prefix: of the state.
+    """
+    found = arrays_of(file)
+    skin = {name: found[f"{prefix}_{name}"] for name in _ARRAYS if f"{prefix}_{name}" in found}
+    whole = all(value.ndim == 1 and value.dtype.kind == "f" for value in skin.values())
+    return skin if whole and len(skin) == len(_ARRAYS) and len({len(value) for value in skin.values()}) == 1 else {}
+
+
+def arrays_of(file: Path) -> dict[str, Any]:
+    """Return the arrays of a file by name; none without a file that can be read."""
+    try:
+        with file.open("rb") as stream, np.load(stream, allow_pickle=False) as found:
+            return dict(found)
+    except (OSError, ValueError, EOFError, TypeError, RuntimeError, MemoryError, zipfile.BadZipFile, zlib.error):
+        return {}

@@ -19,13 +19,15 @@ from fingerpad.results.quantities import (
     Output,
     cell,
     checked,
+    head_rows,
+    side_by_side,
     valued,
 )
 from fingerpad.results.quantities import read as read_outputs
 from fingerpad.results.states import STATES, LoadResult, called, load_results
-from fingerpad.scene.laws import coefficient
 from fingerpad.scene.messages import SceneError, clip
 from fingerpad.scene.reading import DEFAULT_MODEL
+from fingerpad.scene.remarks import coefficient
 from fingerpad.scene.scene import as_kept
 from variational.state import CONDITIONS, RESULTS, ContactState, Errors
 
@@ -67,18 +69,16 @@ class Result(Answer):
             from fingerpad.results.finger_picture import footprint  # Matplotlib
 
             return footprint(self.finger, None if path is None else Path(path)) if terminal.rank() == 0 else None
-        if self.drawing is not None:
-            return self.drawing.figure(kind, None if path is None else Path(path))
+        if (drawing := self.drawing) is None and self.steps and self.folder is not None and terminal.rank() == 0:
+            drawing = _drawing(self, self.folder)
+        if drawing is not None:
+            return drawing.figure(kind, None if path is None else Path(path))
         if not self.steps:
             raise ValueError(f"the result of the model {self.model!r} has no steps to draw; those of model='full' have")
         return None  # on the other ranks
 
     def to_xarray(self) -> "xarray.Dataset":
-        """Return steps, loads, ridges, sites and named states as one dataset with units, as ``result.nc`` has it.
-
-        Raises:
-            ImportError: xarray is not installed.
-        """
+        """Return steps, loads, ridges, sites and named states as one dataset with units, as ``result.nc`` has it."""
         return dataset.dataset(self)
 
     def with_outputs(self, outputs: Iterable[Output]) -> "Result":
@@ -159,7 +159,7 @@ class Result(Answer):
             finger=WholeFinger.from_dict(summary["finger"], bare.scene.slices) if "finger" in summary else None,
         )
         used = {*bare.to_dict(), "failure", "interrupted", "notes", "cautions", "outputs", "finger"}
-        used |= {f"{name}_{field.name}_{kind}" for name in STATES for field in fields(Errors) for kind in CHANGES}
+        used |= {f"{name}_{each.name}_{kind}" for name in STATES for each in fields(Errors) for kind in CHANGES}
         record = {key: value for key, value in summary.items() if key not in used}
         if "laws" in parameters:  # objects of Python, of which only the names are kept
             record["parameters"] = parameters
@@ -189,7 +189,7 @@ class Result(Answer):
                 return found  # of no path, or of one without an accepted step
             stable = [load.get("stable") for load in summary.get("loads", ())]
             loads = load_results(found.steps, found.scene.loads(), lambda k, end: (*stable, *[None] * (k + 1))[k])
-            return replace(found, loads=tuple(loads), drawing=_drawing(found, folder))
+            return replace(found, loads=tuple(loads))
         except (OSError, ValueError, KeyError, TypeError, AttributeError, csv.Error) as error:  # JSON of other things
             if isinstance(error, SceneError) and name in str(error):
                 raise
@@ -218,12 +218,12 @@ def steps_of(folder: Path) -> tuple[ContactState, ...]:
 
 def _drawing(result: Result, folder: Path) -> "Drawing":
     """Return what the pictures of a result that was read are drawn from."""
-    from fingerpad.results.kept_drawing import KeptDrawing  # Matplotlib, which reading numbers does not need
+    from fingerpad.results.drawing import read  # Matplotlib
 
-    mu_0 = None if "laws" in result.record.get("parameters", {}) else coefficient(result.scene)
     meshes = (result.record.get("path_mesh"), result.record.get("accuracy", {}).get("mesh"))
     path, final = (mesh["contact"] if mesh and result.scene.accuracy is not None else None for mesh in meshes)
-    return KeptDrawing(mu_0, result.steps, {}, {}, {}, path, result.named, folder.absolute(), final)
+    mu_0 = None if "laws" in result.record.get("parameters", {}) else coefficient(result.scene)
+    return read(folder, result.steps, result.named, mu_0, path, final)
 
 
 def _state(name: str, kept: Mapping[str, Any]) -> ContactState:
@@ -252,20 +252,13 @@ def _text(result: Result) -> str:
     lines = ["Result" if result.finger is None else _SECTION]
     lines[0] += f" (model '{result.model}')" if result.model != DEFAULT_MODEL else ""
     if shown:
-        heads = [called(name, state.voltage).split(" normal") for name, state in shown.items()]
-        rows = [
-            ["", *(head[0] for head in heads)],
-            ["", *(("normal" + head[1]) if head[1:] else "" for head in heads)],
-        ]
+        rows = head_rows([called(name, state.voltage) for name, state in shown.items()])
         values = ((quantity.title, result.cells(key)) for key, quantity in result.printed.items())
         rows += [[title, *each] for title, each in values if set(each) - {"–"}]
         if any(state.stable is not None for state in shown.values()):
             verdicts = {True: "yes", False: "no", None: "–"}
             rows.append(["stable", *(verdicts[state.stable] for state in shown.values())])
-        widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
-        for first, *rest in rows:
-            cells = (cell.rjust(width) for cell, width in zip(rest, widths[1:], strict=True))
-            lines.append("   ".join(["  " + first.ljust(widths[0]), *cells]).rstrip())
+        lines += side_by_side(rows)
     least = result.record.get("force_error") or 0.0
     lines += [f"  {_in_time(load, least)}" for load in result.loads if load.over_time is not None]
     lines += [f"  {note}" for note in _remarks(result)]

@@ -3,11 +3,10 @@
 Categories have Okabe and Ito's colours, magnitudes viridis, voltages a ramp of their own. Importing changes nothing.
 """
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from io import BytesIO
 from pathlib import Path
-from typing import Any
 
 import matplotlib
 from matplotlib.axis import Axis
@@ -15,6 +14,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
 from fingerpad.results.files import replace
+from variational.state import ContactState
 
 BLACK, ORANGE, SKY, GREEN, YELLOW = "#000000", "#E69F00", "#56B4E9", "#009E73", "#F0E442"
 BLUE, VERMILION, PURPLE, GREY = "#0072B2", "#D55E00", "#CC79A7", "#999999"
@@ -76,26 +76,18 @@ def plain(words: str) -> str:
     return words.replace("$", r"\$")
 
 
-def conditions(f_ext: float, voltage: float, mu_0: float | None, bone_x: float | None = None) -> str:
-    """Return f_ext (N/m), U (V), where the bone is sideways (m) and, if known, mu_0 as the words of a title."""
-    return loads([(f_ext, voltage, bone_x)]) + _friction(mu_0)
+def conditions(states: Sequence[ContactState], mu_0: float | None = None, place: bool = False) -> str:
+    """Return the ranges of f_ext (N/m) and U (V) over states as the words of a title.
 
-
-def conditions_of(rows: Sequence[Mapping[str, Any]], mu_0: float | None) -> str:
-    """Return the range of f_ext (N/m) and U (V) over several states, and mu_0 if known, as the words of a title."""
-    return loads([(row["f_ext"], row["voltage"], None) for row in rows]) + _friction(mu_0)
-
-
-def loads(states: Sequence[tuple[float, float, float | None]]) -> str:
-    """Return the ranges of f_ext (N/m), U (V) and, where it is known, the bone's place (m), over several states."""
-    forces, voltages, places = zip(*states, strict=True)
-    words = [f"$f_{{ext}}$ = {_range(forces)} N/m", f"$U$ = {_range(voltages)} V"]
-    known = [_MM * x for x in places if x is not None]
-    return ", ".join([*words, f"bone at $x$ = {_range(known)} mm"] if known else words)
-
-
-def _friction(mu_0: float | None) -> str:
-    return "" if mu_0 is None else f", $\\mu_0$ = {mu_0:.3g}"
+    Args:
+        states: one or several.
+        mu_0: friction coefficient, where it is known.
+        place: whether to add where the bone is sideways.
+    """
+    words = [f"$f_{{ext}}$ = {_range([state.f_ext for state in states])} N/m"]
+    words += [f"$U$ = {_range([state.voltage for state in states])} V"]
+    words += [f"bone at $x$ = {_range([_MM * state.bone_x for state in states])} mm"] if place else []
+    return ", ".join([*words, *([] if mu_0 is None else [f"$\\mu_0$ = {mu_0:.3g}"])])
 
 
 def _range(values: Sequence[float]) -> str:

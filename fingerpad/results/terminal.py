@@ -1,17 +1,40 @@
-"""Who reads what a program prints: one rank of several, and a person or a file.
+"""What a person at a terminal gets of a run: one line a step, a progress bar and the time that is left.
 
 Launchers of MPI give each rank a number in the environment, so that it is there before MPI has started. mpirun prints
 through a terminal of its own, whatever its output goes to: under a launcher, the output of the launcher counts.
 """
 
+import math
 import os
 import re
 import sys
-from typing import TextIO
+import time
+from collections.abc import Callable, Collection
+from typing import TYPE_CHECKING, TextIO
+
+from fingerpad.results.quantities import PER_LENGTH, cell
+from variational.state import ContactState
+
+if TYPE_CHECKING:
+    from mpi4py import MPI
 
 _RANKS = ("OMPI_COMM_WORLD_RANK", "PMIX_RANK", "PMI_RANK", "MV2_COMM_WORLD_RANK", "SLURM_PROCID")
 _SIZES = ("OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "MV2_COMM_WORLD_SIZE")
 _TERMINAL = r"/dev/(pts/\d+|tty\w*|console)"
+_LEGEND = (
+    "f_ext: external force on the bone; U: voltage; bone x, bone y: its place; f_T: friction; µ_app = f_T / f_ext",
+    "f_el: attraction; contact: sum of the lengths in contact; iter.: Newton iterations; fact.: factorisations",
+    "path left: time left of the loads, by the pace so far",
+    PER_LENGTH,
+)
+_HEADER = "step load     f_ext     U  bone x   bone y      f_T   µ_app    f_el ridges  contact  iter. fact.  path left"
+_UNITS = "           (N/m)   (V)    (mm)     (mm)    (N/m)          (N/m)           (mm)"
+_SURE = 0.1  # part done from which on the pace is known
+_SPREAD = 2.0  # factor either way of the time left at the beginning; it shrinks to the next one
+_LEAST_SPREAD = 1.25
+_SLIPS = 0.9  # of a load that ends with full slip: done where friction is at its largest, before it is held
+_ROUNDOFF = 1e-9  # of a load's end
+_SHORT = 1.0  # s, below which no time is printed
 
 
 def rank() -> int:
@@ -54,3 +77,176 @@ def _launcher_is_watched() -> bool:
         return re.fullmatch(_TERMINAL, os.readlink(f"/proc/{os.getppid()}/fd/1")) is not None
     except OSError:
         return False
+
+
+class Pace:
+    """How far a run is along its loads, each of which counts the same."""
+
+    def __init__(self, loads: int = 1, first: int = 0, clock: Callable[[], float] = time.monotonic) -> None:
+        """Start.
+
+        Args:
+            loads: number of loads.
+            first: number of the load from which on the pace is counted, as of a waveform, whose steps take longer than
+                those before; until then the time left is not known.
+            clock: returns the time (s).
+        """
+        self._loads, self._first, self._clock = loads, first, clock
+        self._start = clock() if first == 0 else math.nan
+        self.part = 0.0
+        """Part of the loads that is done."""
+
+    def at(self, done: float, slipped: float = 0.0) -> None:
+        """Take how far the run is.
+
+        Args:
+            done: part of the loads that is done, each load the same part.
+            slipped: part of the present load, where it ends with full slip: friction over its largest value.
+        """
+        number = min(done, 1.0) * self._loads
+        k = min(int(number + _ROUNDOFF), self._loads - 1)
+        part = number - k
+        if part > _ROUNDOFF:  # else the load before has just ended, perhaps with full slip
+            part = max(part, min(slipped, _SLIPS))
+        self.part = (k + part) / self._loads
+        if math.isnan(self._start) and number >= self._first - _ROUNDOFF:
+            self._start = self._clock()
+
+    def left(self) -> str:
+        """Return the time left in words, as a range; that it is not known before a tenth is done."""
+        before = self._first / self._loads
+        done = (self.part - before) / (1 - before)
+        if math.isnan(self._start) or done < _SURE:
+            return "not known"
+        time_left = (self._clock() - self._start) * (1 - done) / done
+        spread = max(_SPREAD ** (1 - done), _LEAST_SPREAD)
+        return between(time_left / spread, time_left * spread)
+
+
+def between(low: float, high: float) -> str:
+    """Return a range of times (s) in words, in the unit in which the longer one is read."""
+    if high < _SHORT:
+        return f"less than {_SHORT:g} s"
+    size, unit = _unit(high)
+    return f"{about(low / size)} to {about(high / size)} {unit}"
+
+
+def in_words(seconds: float) -> str:
+    """Return a time (s) in words, in the unit in which it is read."""
+    size, unit = _unit(seconds)
+    return f"{about(seconds / size)} {unit}"
+
+
+def _unit(seconds: float) -> tuple[float, str]:
+    units = ((3600.0, "hours"), (60.0, "minutes"))
+    return next(((s, u) for s, u in units if seconds >= 2 * s), (1.0, "s"))
+
+
+def about(value: float) -> str:
+    """Return a number of two digits, as it is read."""
+    rounded = float(f"{value:.2g}")
+    return f"{rounded:,.0f}".replace(",", " ") if rounded >= 10 else f"{rounded:g}"
+
+
+class Console:
+    """Prints the lines of a run, or nothing but the progress bar, or nothing."""
+
+    def __init__(self, comm: "MPI.Comm", lines: bool = True, bar: bool = True) -> None:
+        """Start the progress bar, where a person watches.
+
+        Args:
+            comm: communicator of the run.
+            lines: whether to print lines; a program of one's own prints its own.
+            bar: whether to show the bar.
+        """
+        from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn  # not for those who only read
+
+        self._lines = lines and comm.rank == 0
+        self._progress = Progress(
+            TextColumn("{task.description}"),
+            BarColumn(),
+            TextColumn("{task.percentage:3.0f} %"),
+            TimeElapsedColumn(),
+            TextColumn("{task.fields[left]}"),
+            disable=comm.rank != 0 or not (bar and watched()),
+            transient=True,
+        )
+        self._task = self._progress.add_task("starting", total=1.0, left="")
+        self.expect(1)
+        if not self._progress.disable:
+            self._progress.start()
+
+    def show(self, text: str) -> None:
+        """Print a line above the progress bar; the run goes on where nobody reads any more, as after ``| head``."""
+        if self._lines:
+            try:
+                self._progress.console.print(text, highlight=False, soft_wrap=True, markup=False)
+            except (BrokenPipeError, SystemExit):  # the latter is rich's
+                self._lines = False
+
+    def expect(self, loads: int, slipping: Collection[str] = (), mu_0: float = 0.0, first: int = 0) -> None:
+        """Take what a path that starts now is made of.
+
+        Args:
+            loads: number of its loads.
+            slipping: names of the loads that end with full slip.
+            mu_0: friction coefficient.
+            first: number of the load from which on its pace counts, see :class:`Pace`.
+        """
+        self._pace, self._slipping, self._mu_0 = Pace(loads, first), slipping, mu_0
+
+    def phase(self, text: str, part: float | None = None) -> None:
+        """Show what is being done besides steps: in the bar, or as a line where there is none.
+
+        Args:
+            text: what is being done.
+            part: of it that is done; 0 where it begins. Without it, the time left is not known.
+        """
+        if part == 0:
+            self._pace = Pace()
+        if part is not None:
+            self._pace.at(part)
+        left = "" if not part else f"time left: {self._pace.left()}"
+        if self._progress.disable:
+            self.show("; ".join(filter(None, (text, left))))
+        self._progress.update(self._task, completed=self._pace.part, description=text, left=left)
+
+    def head(self) -> None:
+        """Print legend and head of the table of steps."""
+        for line in (*_LEGEND, _HEADER, _UNITS):
+            self.show(line)
+
+    def step(self, s: ContactState, done: float) -> None:
+        """Print an accepted state.
+
+        Args:
+            s: the state, with its record.
+            done: part of the whole history that is done.
+        """
+        assert s.record is not None
+        most = self._mu_0 * s.f_contact if s.load in self._slipping else 0.0
+        self._pace.at(done, abs(s.f_t) / most if most > 0 else 0.0)
+        left, mu = self._pace.left(), cell("mu_app", s.mu_app)
+        self.show(
+            f"{s.step:4d} {s.load[:7]:7s} {s.f_ext:7.3f} {s.voltage:z5.1f} {s.bone_x * 1e3:z7.4f} "
+            f"{s.bone_height * 1e3:z8.5f} {s.f_t:z8.4f} {mu:>7s} {s.f_electrostatic:7.3f} "
+            f"{s.ridges_in_contact:6d} {s.contact_length * 1e3:8.4f} {s.record.newton_iterations:6d} "
+            f"{s.record.factorisations:5d}  {left}{'  jump, ' + _released(s) if s.record.jump else ''}"
+        )
+        loads = f"{s.load}: {s.f_ext:.1f} N/m, {s.voltage:.0f} V, x {s.bone_x * 1e3:.2f} mm"
+        words = loads if math.isnan(s.mu_app) else f"{loads}, µ_app {s.mu_app:z.3f}"
+        self._progress.update(self._task, completed=self._pace.part, description=words, left=f"path left: {left}")
+
+    def close(self) -> None:
+        """Take the progress bar away."""
+        if not self._progress.disable:
+            self._progress.stop()
+
+
+def _released(s: ContactState) -> str:
+    """Return the energy that a jump released in words, or below what it is where its own error hides it."""
+    assert s.record is not None
+    value, error = s.record.energy_released, s.record.released_error
+    if abs(value) <= error:
+        return f"energy released below {max(value, 0.0) + error:.2g} J/m"
+    return f"{value:.2g} ± {error:.1g} J/m released"

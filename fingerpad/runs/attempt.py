@@ -2,34 +2,30 @@
 
 from collections.abc import Sequence
 from contextlib import suppress
-from dataclasses import dataclass, replace
+from dataclasses import asdict, dataclass, replace
 from typing import Any
 
 from fingerpad.accuracy.refinement import Refinement, with_errors
-from fingerpad.accuracy.solves import StateRecorder
+from fingerpad.accuracy.solves import Solves, StateRecorder
 from fingerpad.model import cautions
-from fingerpad.model.cost import Clock
 from fingerpad.model.finger import Step, meshed
 from fingerpad.model.options import FingerModel
-from fingerpad.model.report import Report
+from fingerpad.model.report import Clock, Report
 from fingerpad.model.simulation import RestartRequired, Simulation
 from fingerpad.model.state import broken, force_error
-from fingerpad.results import petsc_options
 from fingerpad.results.checkpoint import Checkpoint, CheckpointError
-from fingerpad.results.console import Console
 from fingerpad.results.interrupt import Interrupt, Interrupted
 from fingerpad.results.over_time import NOTE
-from fingerpad.results.pace import in_words
-from fingerpad.results.provenance import provenance
+from fingerpad.results.provenance import provenance, refuse_unread
 from fingerpad.results.quantities import Output, valued
 from fingerpad.results.result import Result
 from fingerpad.results.states import long_steps
+from fingerpad.results.terminal import Console, in_words
 from fingerpad.results.writing import Writer
 from fingerpad.runs.restarts import Restarts, finer, hint
 from fingerpad.scene import Scene
-from fingerpad.scene.laws import coefficient, used
 from fingerpad.scene.reading import DEFAULT_MODEL
-from fingerpad.scene.remarks import leakage, remarks
+from fingerpad.scene.remarks import coefficient, leakage, remarks, used
 from fingerpad.slices.estimate import with_newtons
 from fingerpad.startup import MPI
 from geometry.profiles import GeometryError
@@ -83,7 +79,7 @@ class Attempt:
         self._steps, self._done = 0, 0.0  # accepted since the last checkpoint; part of the history that is done
 
     def _on_step(self, step: Step, done: float) -> None:
-        petsc_options.refuse_unread()
+        refuse_unread()
         self.report.step(step, done)
         if self._recorder is not None:
             self._recorder.record(step)
@@ -167,7 +163,7 @@ class Attempt:
             if restart is not None or self._recorder is None:
                 return self._affordable(restart)
             path, show = self._recorder.solve(), self._console.show
-            self._refinement = Refinement(self._model, path, self._comm, show, self._before_solve)
+            self._refinement = Refinement(Solves(self._model, path, self._comm, show, self._before_solve))
             return self._affordable(self._refinement.run())
         except StepFailed as error:
             tip = hint(error) if self._model.mesh_file is None else ""
@@ -261,6 +257,6 @@ class Attempt:
         return {
             "unknowns_path": finger.unknowns,
             "path_mesh": None if model.mesh_file else model.mesh.model_dump(),
-            "omitted": [omission.to_dict() for omission in model.omitted],
+            "omitted": [asdict(omission) for omission in model.omitted],
             **{f"seconds_{phase}": value for phase, value in seconds.items()},
         }

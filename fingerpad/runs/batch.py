@@ -2,31 +2,31 @@
 
 A scene's folder is named by a hash of all its parameters: run again, a sweep computes only what has changed, and runs
 that were cut short go on from their checkpoints. The hash does not depend on the program: after a change of the
-mechanics the folder must be deleted.
+mechanics the folder must be deleted. A process is ``python3 -m fingerpad.runs.batch SCENE.json FOLDER LIMIT MODEL``.
 """
 
 import fcntl
 import hashlib
 import json
 import os
+import sys
 import time
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any
 
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
 
-from fingerpad.results.files import below, lock_file, read_object, replace_json
-from fingerpad.results.folder import identity
-from fingerpad.results.pace import between
-from fingerpad.results.terminal import watched
-from fingerpad.runs.processes import End, Pool, run
-from fingerpad.scene import Scene
+from fingerpad.reduced.models import find
+from fingerpad.results.files import below, lock_file, replace_json
+from fingerpad.results.folder import FolderError, identity
+from fingerpad.results.terminal import between, watched
+from fingerpad.runs.context import RunContext
+from fingerpad.runs.processes import End, Pool, limit_processor_time, run
+from fingerpad.runs.solve import OF_THE_MACHINE, Summary, ended, gone_on, summary
+from fingerpad.scene import Scene, SceneError, from_data
 from fingerpad.scene.reading import DEFAULT_MODEL
 
-Summary = dict[str, Any]
 _LIMIT = 900.0  # s of processor time for one scene
-_OF_THE_MACHINE = "MUMPS_OUT_OF_MEMORY"  # a failure that says nothing of the scene
 
 
 def key(scene: Scene) -> str:
@@ -36,28 +36,7 @@ def key(scene: Scene) -> str:
 
 def result(scene: Scene, folder: Path) -> Summary | None:
     """Return the summary of a scene that has been run in a sweep's folder to its end, whatever that was."""
-    return _ended(_summary(folder / key(scene)))
-
-
-def finished(scene: Scene, place: Path) -> Summary | None:
-    """Return the summary of a scene that has been run in a folder of its own to its end; None of another scene's."""
-    summary = _ended(_summary(place))
-    own = json.loads(json.dumps(identity(scene.parameters())))
-    same = summary is not None and identity(summary.get("parameters", {})) == own
-    return summary if same else None
-
-
-def _ended(summary: Summary | None) -> Summary | None:
-    """Return a summary but for one of a run that was stopped, or had too little memory."""
-    again = summary is None or summary.get("interrupted") or _OF_THE_MACHINE in str(summary.get("failure"))
-    return None if again else summary
-
-
-def _summary(place: Path) -> Summary | None:
-    try:
-        return read_object(place / "summary.json")
-    except (OSError, ValueError):  # no file, or one that was damaged
-        return None
+    return ended(summary(folder / key(scene)))
 
 
 def progress(quiet: bool = False) -> Progress:
@@ -116,7 +95,6 @@ def sweep(
     def kept(name: str) -> Summary | None:
         return result(scenes[name], folder)
 
-    found = {name: kept(name) for name in scenes}
     broken: dict[str, Summary] = {}
     took: list[float] = []  # s, of each run
 
@@ -131,27 +109,50 @@ def sweep(
             replace_json(place / "asked.json", scenes[name].parameters())
             start = time.monotonic()
             given = [str(place / "asked.json"), str(place), str(limit), model]
-            end = run("fingerpad.runs.one", given, limit, scenes[name].law_folders())
+            end = run("fingerpad.runs.batch", given, limit, scenes[name].law_folders())
             took.append(time.monotonic() - start)
             return end
 
     def done(name: str, end: End, left: int) -> None:
-        summary = kept(name)
-        if summary is None:
+        found = kept(name)
+        if found is None:
             crashed = f"{end.reason}: {end.message}" if end.reason else "INTERRUPTED"
-            said = (_summary(folder / key(scenes[name])) or {}).get("failure", "")
+            said = (summary(folder / key(scenes[name])) or {}).get("failure", "")
             of_process = end.message if end.code == os.EX_TEMPFAIL else crashed
-            broken[name] = {"failure": said if _OF_THE_MACHINE in said else of_process}
+            broken[name] = {"failure": said if OF_THE_MACHINE in said else of_process}
         if quiet:
             return
-        words = (summary or broken[name]).get("failure") or _said(summary or {})
+        words = (found or broken[name]).get("failure") or _said(found or {})
         rest = f"; {between(*times_left(took, left, jobs))} left" if left and took else ""
         text = f"{name}: {words} ({len(missing) - left} of {len(missing)}{rest})"
         bar.console.print(text, highlight=False, markup=False, soft_wrap=True)
         bar.update(task, advance=1, description=f"scenes{rest.replace(';', ',')}")
 
-    missing = [name for name, summary in found.items() if summary is None]
+    missing = [name for name in scenes if kept(name) is None]
     with progress(quiet) as bar:
         task = bar.add_task("scenes", total=len(missing))
         Pool[str, End](job, jobs).run(missing, done)
     return {name: kept(name) or broken[name] for name in scenes}
+
+
+def main(scene: Path, folder: Path, model: str) -> None:
+    """Run a scene into a folder, from its checkpoint where it has one.
+
+    Args:
+        scene: file of its parameters in JSON.
+        folder: of the results.
+        model: a name of :data:`fingerpad.reduced.models.MODELS`.
+    """
+    asked, way = from_data(json.loads(scene.read_text(encoding="utf-8"))), find(model)
+    try:
+        gone_on(asked, way, RunContext(folder, lines=way.path, bar=way.path, report=False))
+    except FolderError as error:  # another run is at it, or the disk is full: it may be gone the next time
+        print(error, file=sys.stderr)
+        sys.exit(os.EX_TEMPFAIL)
+    except SceneError as error:  # it would be the same the next time
+        replace_json(folder / "summary.json", {"failure": str(error)})
+
+
+if __name__ == "__main__":
+    limit_processor_time(float(sys.argv[3]))
+    main(Path(sys.argv[1]), Path(sys.argv[2]), sys.argv[4])

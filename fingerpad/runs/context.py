@@ -1,7 +1,7 @@
 """What a run has beside its scene: ranks, folder, console, report, and where it goes on."""
 
-from collections.abc import Iterator, Sequence
-from contextlib import AbstractContextManager, contextmanager, nullcontext
+from collections.abc import Sequence
+from contextlib import AbstractContextManager, closing, nullcontext
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -12,7 +12,7 @@ from fingerpad.results.quantities import Output
 from fingerpad.scene import Scene
 
 if TYPE_CHECKING:
-    from fingerpad.results.console import Console
+    from fingerpad.results.terminal import Console
     from fingerpad.startup import MPI
 
 
@@ -48,16 +48,11 @@ class RunContext:
             return Serial()
         return MPI.COMM_WORLD
 
-    @contextmanager
-    def console(self) -> Iterator["Console"]:
-        """Open the console of the run, for a model with MPI; collective."""
-        from fingerpad.results.console import Console
+    def console(self) -> AbstractContextManager["Console"]:
+        """Return the open console of the run, for a model with MPI; collective."""
+        from fingerpad.results.terminal import Console
 
-        console = Console(self.ranks, self.lines, self.bar)  # type: ignore[arg-type]
-        try:
-            yield console
-        finally:
-            console.close()
+        return closing(Console(self.ranks, self.lines, self.bar))  # type: ignore[arg-type]
 
     def place(self, scene: Scene, model: str) -> AbstractContextManager[Folder | None]:
         """Lock the folder for the results of a scene by a model; nothing without a folder; collective.

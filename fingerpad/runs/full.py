@@ -8,31 +8,28 @@ from typing import Any
 
 import fingerpad.startup  # noqa: F401
 from fingerpad.accuracy.solves import State
-from fingerpad.model.cost import Clock
-from fingerpad.model.feasibility import by_rule
-from fingerpad.model.options import FingerModel, plan
-from fingerpad.results import petsc_options
+from fingerpad.model.options import FingerModel, by_rule, plan
+from fingerpad.model.report import Clock
 from fingerpad.results.checkpoint import Checkpoint, CheckpointError
-from fingerpad.results.console import Console
-from fingerpad.results.drawing import Profile
 from fingerpad.results.interrupt import Interrupt, all_together, no_room
-from fingerpad.results.provenance import provenance
+from fingerpad.results.provenance import check_options, provenance
 from fingerpad.results.quantities import Output, checked
 from fingerpad.results.result import Result
+from fingerpad.results.terminal import Console
 from fingerpad.results.writing import Writer
 from fingerpad.runs.attempt import Attempt, Session
 from fingerpad.runs.context import RunContext
 from fingerpad.runs.restarts import Restarts
 from fingerpad.scene import Scene, SceneError
-from fingerpad.scene.laws import coefficient
 from fingerpad.scene.reading import DEFAULT_MODEL
+from fingerpad.scene.remarks import coefficient
 from fingerpad.startup import MPI
 from geometry.parameters import MeshSize
 from geometry.profiles import GeometryError
+from variational.solvers.outcome import Counts
 from variational.solvers.target import Control, Progress
-from variational.solvers.timing import Counts
 from variational.solvers.transfer import SkinState, StateSnapshot
-from variational.state import ContactState, Errors, RidgeStates, StepRecord
+from variational.state import ContactState, Errors, RidgeStates, Skin, StepRecord
 
 
 def run(scene: Scene, context: RunContext) -> Result:
@@ -62,7 +59,7 @@ def run(scene: Scene, context: RunContext) -> Result:
     comm = context.comm or MPI.COMM_WORLD
     outputs = checked(context.outputs)
     all_together(comm)
-    petsc_options.check(comm, scene.numerics.element)
+    check_options(comm, scene.numerics.element)
     try:
         with context.console() as console, context.place(scene, DEFAULT_MODEL) as place:
             checkpoint = None if place is None else _checkpoint(scene, place.folder, outputs)
@@ -77,7 +74,7 @@ def run(scene: Scene, context: RunContext) -> Result:
 
 
 _KEPT = (
-    *(ContactState, RidgeStates, StepRecord, Errors, Profile, Control, Counts, Progress),
+    *(ContactState, RidgeStates, StepRecord, Errors, Skin, Control, Counts, Progress),
     *(State, StateSnapshot, SkinState),
 )
 """Classes of what a checkpoint holds."""

@@ -8,13 +8,13 @@ from fingerpad.model.finger import meshed
 from fingerpad.model.simulation import RestartRequired
 from fingerpad.results.interrupt import Interrupted
 from geometry.profiles import GeometryError
-from variational.solvers.failure import NotConverged
+from variational.solvers.outcome import NotConverged
 
 if TYPE_CHECKING:
-    from fingerpad.model.cost import Clock
     from fingerpad.model.finger import Finger
     from fingerpad.model.options import FingerModel
-    from fingerpad.results.console import Console
+    from fingerpad.model.report import Clock
+    from fingerpad.results.terminal import Console
     from fingerpad.startup import MPI
     from variational.solvers.continuation import StepFailed
     from variational.state import ContactState

@@ -1,18 +1,19 @@
 """Run a scene, or many: what ``import fingerpad`` gives for that."""
 
+import json
 import os
 import signal
 import warnings
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from fingerpad.installed import needed_by, source, version
 from fingerpad.reduced.models import find
 from fingerpad.results import dataset, terminal
-from fingerpad.results.files import below, replace_json
-from fingerpad.results.folder import Serial, on_rank_0
+from fingerpad.results.files import below, read_object, replace_json
+from fingerpad.results.folder import Serial, identity, on_rank_0
 from fingerpad.results.quantities import Output
 from fingerpad.results.quantities import checked as checked_outputs
 from fingerpad.results.result import Result
@@ -25,6 +26,10 @@ from variational.coefficients import LawError
 if TYPE_CHECKING:
     from fingerpad.reduced.model import Model
     from fingerpad.startup import MPI
+
+Summary = dict[str, Any]
+OF_THE_MACHINE = "MUMPS_OUT_OF_MEMORY"
+"""A failure that says nothing of the scene."""
 
 
 def run(
@@ -170,16 +175,15 @@ def _whole(scene: Scene, model: "Model", context: RunContext) -> Result:
             return _solved(each, model, replace(context, folder=None))
         if context.lines and context.ranks.rank == 0:
             print(f"\nTrace of the cross-section, {name.replace('_', ' ')}", flush=True)
-        return _gone_on(each, model, replace(context, folder=context.folder and below(context.folder, name)))
+        return gone_on(each, model, replace(context, folder=context.folder and below(context.folder, name)))
 
     found = traces.whole(scene, model, solve)
     return found if found.interrupted else kept(found, context)
 
 
-def _gone_on(scene: Scene, model: "Model", context: RunContext) -> Result:
+def gone_on(scene: Scene, model: "Model", context: RunContext) -> Result:
     """Return the result of a scene that its folder may have, whole or in part; collective."""
     from fingerpad.results.checkpoint import CheckpointError
-    from fingerpad.runs.batch import finished
 
     folder = context.folder
     if folder is None:
@@ -187,9 +191,30 @@ def _gone_on(scene: Scene, model: "Model", context: RunContext) -> Result:
     if on_rank_0(context.ranks, lambda: finished(scene, folder) is not None):
         return Result.load(folder)
     try:
-        return solved(scene, model, replace(context, resume=True))
+        return solved(scene, model, replace(context, resume=model.resumes))
     except CheckpointError:  # nothing to go on from
         return solved(scene, model, replace(context, resume=False))
+
+
+def finished(scene: Scene, place: Path) -> Summary | None:
+    """Return the summary of a scene that has been run in a folder of its own to its end; None of another scene's."""
+    found = ended(summary(place))
+    own = json.loads(json.dumps(identity(scene.parameters())))
+    return found if found is not None and identity(found.get("parameters", {})) == own else None
+
+
+def ended(found: Summary | None) -> Summary | None:
+    """Return a summary but for one of a run that was stopped, or had too little memory."""
+    again = found is None or found.get("interrupted") or OF_THE_MACHINE in str(found.get("failure"))
+    return None if again else found
+
+
+def summary(place: Path) -> Summary | None:
+    """Return the summary in a folder; None without one, or with one that was damaged."""
+    try:
+        return read_object(place / "summary.json")
+    except (OSError, ValueError):
+        return None
 
 
 def kept(result: Result, context: RunContext) -> Result:

@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from numbers import Integral
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -78,17 +78,16 @@ def sweep(
     checked_outputs(outputs)
     _refuse_axes(axes)
     scene = scene.resolved()
-    scenes = _scenes(scene, axes)
+    scenes = [_with(scene, point) for point in _points(axes)]
     values = _values(scenes, axes)
     for each in scenes if way.meshes else ():
         each.refuse_laws_of_program("the processes of a sweep")
     folder = Path(out)
     _claim(folder)
-    points = [_Point(*each) for each in zip(scenes, _points(values), strict=True)]
     if way.meshes:
-        found = _in_processes(points, folder, jobs, way, quiet)
+        found = _in_processes(scenes, _points(values), folder, jobs, way, quiet)
     else:
-        found = [_here(point, way) for point in points]
+        found = [_here(each, way) for each in scenes]
     done = Sweep(values, tuple(each.with_outputs(outputs) for each in found), folder)
     for name in FILES[:-1]:  # else that of an earlier sweep may stay beside this one's
         (folder / name).unlink(missing_ok=True)
@@ -127,11 +126,6 @@ def _claim(folder: Path) -> None:
 def _points(axes: Mapping[str, Sequence[Any]]) -> list[dict[str, Any]]:
     """Return the values of each point by key, the last axis fastest."""
     return [dict(zip(axes, point, strict=True)) for point in itertools.product(*axes.values())]
-
-
-def _scenes(scene: Scene, axes: Mapping[str, Sequence[Any]]) -> list[Scene]:
-    """Return the scenes of all points, checked."""
-    return [_with(scene, point) for point in _points(axes)]
 
 
 def _refuse_axes(axes: Mapping[str, Sequence[Any]]) -> None:
@@ -183,43 +177,36 @@ def _at(scene: Scene, key: str) -> Any:
     return value
 
 
-class _Point(NamedTuple):
-    """A point of a sweep."""
-
-    scene: Scene
-    values: Mapping[str, Any]
-    """Of the axes by key."""
-
-    def failed(self, model: str, why: str) -> Result:
-        """Return a result without any number."""
-        return Result(self.scene, model, None, None, None, failure=why)
+def _failed(scene: Scene, model: "Model", why: str) -> Result:
+    """Return a result without any number."""
+    return Result(scene, model.name, None, None, None, failure=why)
 
 
-def _here(point: _Point, model: "Model") -> Result:
+def _here(scene: Scene, model: "Model") -> Result:
     try:
-        return solved(point.scene, model, RunContext())
+        return solved(scene, model, RunContext())
     except SceneError as error:
-        return point.failed(model.name, str(error))
+        return _failed(scene, model, str(error))
 
 
-def _in_processes(points: Sequence[_Point], folder: Path, jobs: int, model: "Model", quiet: bool) -> list[Result]:
+def _in_processes(
+    scenes: Sequence[Scene], points: Sequence[Mapping[str, Any]], folder: Path, jobs: int, model: "Model", quiet: bool
+) -> list[Result]:
     """Return the results of points, those that can be run in processes of their own, kept by their parameters."""
     from fingerpad.runs import batch
 
     place = below(folder, model.name)
-    results, keys, named = dict[str, Result](), list[str](), dict[str, _Point]()
-    for point in points:
-        keys.append(batch.key(point.scene))
-        words = ", ".join(f"{key} {show(value)}" for key, value in point.values.items())
+    keys, results, named = [batch.key(scene) for scene in scenes], dict[str, Result](), dict[str, Scene]()
+    for key, scene, point in zip(keys, scenes, points, strict=True):
+        words = ", ".join(f"{name} {show(value)}" for name, value in point.items())
         try:
-            model.check(point.scene)
-            named[f"{words} ({keys[-1]})"] = point
+            model.check(scene)
+            named[f"{words} ({key})"] = scene
         except SceneError as error:
-            results[keys[-1]] = point.failed(model.name, str(error))
-    scenes = {name: point.scene for name, point in named.items()}
-    found = batch.sweep(scenes, place, jobs, _LIMIT, model.name, quiet)
-    for name, point in named.items():
-        summary, key = found[name], batch.key(point.scene)
+            results[key] = _failed(scene, model, str(error))
+    found = batch.sweep(named, place, jobs, _LIMIT, model.name, quiet)
+    for name, scene in named.items():
+        summary, key = found[name], batch.key(scene)
         lost = set(summary) == {"failure"}
-        results[key] = point.failed(model.name, summary["failure"]) if lost else Result.load(place / key)
+        results[key] = _failed(scene, model, summary["failure"]) if lost else Result.load(place / key)
     return [results[key] for key in keys]

@@ -7,7 +7,7 @@ frequency of that. Under a force on the whole finger there are columns of that a
 
 import math
 import re
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from fingerpad.results.quantities import FINGER, FRICTION, QUANTITIES, SWEPT, Output, cell
@@ -131,7 +131,7 @@ def text(column: str, value: float | None) -> str:
     return f"{value:.4g}" if key is None else cell(key, value)
 
 
-def tables(rows: list[dict[str, Any]], axes: Mapping[str, str]) -> Iterator[tuple[str, list[list[str]]]]:
+def tables(rows: Sequence[Mapping[str, Any]], axes: Mapping[str, str]) -> Iterator[tuple[str, list[list[str]]]]:
     """Yield the name of each load over time, and its table with heads, a line a point.
 
     Args:
@@ -153,6 +153,19 @@ def printed(value: Any) -> str:
     if isinstance(value, bool):
         return str(value).lower()
     return f"{value:g}" if isinstance(value, int | float) else str(value)
+
+
+def head_of(key: str, kind: str = "head") -> str:
+    """Return what a table calls a key of a scene, with its unit.
+
+    Args:
+        key: a dotted key.
+        kind: ``"head"``, by the symbol of a quantity, or ``"title"``, by its words.
+    """
+    if key in QUANTITIES:
+        return str(getattr(QUANTITIES[key], kind))
+    meant = described(key)
+    return f"{key} ({meant.unit})" if meant is not None and meant.unit else key
 
 
 def described(key: str) -> Key | None:

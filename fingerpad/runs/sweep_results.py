@@ -1,6 +1,7 @@
 """Results over a grid of values: as a sequence, as arrays, as a table and as text."""
 
 import csv
+import io
 import itertools
 import json
 import re
@@ -15,10 +16,10 @@ from numpy.typing import NDArray
 
 from fingerpad.results import dataset
 from fingerpad.results.files import replace
-from fingerpad.results.quantities import FINGER, PER_LENGTH, QUANTITIES, Output
+from fingerpad.results.quantities import FINGER, PER_LENGTH, Output
 from fingerpad.results.states import STATES, WORDS
-from fingerpad.runs.sweep_columns import described, newtons_of, printed, row, shown, tables
-from fingerpad.slices import solid
+from fingerpad.runs.sweep_columns import described, head_of, newtons_of, printed, row, shown, tables
+from fingerpad.slices.errors import remarks
 from variational.state import CONDITIONS, RESULTS
 
 if TYPE_CHECKING:
@@ -146,18 +147,18 @@ class Sweep:
         rows = self.rows()
         columns = list(dict.fromkeys(key for row in rows for key in row))
         columns.sort(key="failure".__eq__)  # last
-        lines = _Lines()
-        table = csv.DictWriter(lines, columns)
+        text = io.StringIO()
+        table = csv.DictWriter(text, columns)
         table.writeheader()
         table.writerows(rows)
-        replace(Path(path), "".join(lines))
+        replace(Path(path), text.getvalue())
 
     def __str__(self) -> str:
         """Return full slip over the axes, and loads over time, as tables with units; ± estimated discretisation errors.
 
         The last column is friction of the whole finger, where it is known.
         """
-        rows, axes = self.rows(), {key: _head(key) for key in self.axes}
+        rows, axes = self.rows(), {key: head_of(key) for key in self.axes}
         state, columns = shown((column for each in rows for column in each), self.whole, self.outputs)
         newtons = not self.whole and any(result.finger is not None for result in self.results)
         table = [[*axes.values(), *(each.head for each in columns.values()), *(["F_T (N)"] if newtons else [])]]
@@ -173,7 +174,7 @@ class Sweep:
         lines = [f"{'Whole finger, at' if self.whole else 'At'} {WORDS[state]}", *_aligned(table)]
         for name, over_time in tables(rows, axes):
             lines += [f"Over time, in the load {name}", *_aligned(over_time)]
-        notes = solid.remarks(self._forces()) if self.whole else [PER_LENGTH]
+        notes = remarks(self._forces()) if self.whole else [PER_LENGTH]
         return "\n".join([*lines, *notes, *(f"! {caution}" for caution in self.cautions()), *self.notes])
 
     __repr__ = __str__
@@ -189,21 +190,6 @@ def _aligned(table: Sequence[Sequence[str]]) -> list[str]:
 def _alike(caution: str) -> str:
     """Return a caution without its numbers, which differ from point to point."""
     return re.sub(r"[-+]?\d[\d.]*(e[-+]?\d+)?(, (?=\d))?", "", caution)
-
-
-class _Lines(list[str]):
-    """Takes the lines of a table."""
-
-    def write(self, line: str) -> None:
-        """Add a line."""
-        self.append(line)
-
-
-def _head(key: str) -> str:
-    if key in QUANTITIES:
-        return QUANTITIES[key].head
-    meant = described(key)
-    return key if meant is None or not meant.unit else f"{key} ({meant.unit})"
 
 
 def _dataset(sweep: Sweep) -> "xarray.Dataset":

@@ -6,17 +6,18 @@ the scene reference, ``docs/scene.md``.
 
 import re
 from collections.abc import Mapping
+from numbers import Real
 from typing import Annotated, Any, Literal
 
+import numpy as np
 from pydantic import ConfigDict, ValidationError
 
 from fingerpad.scene.law_keys import Kind, LawKey, fail, inside, whole
 from fingerpad.scene.messages import show
-from fingerpad.scene.table import Finite, Part
 from geometry import tags
 from geometry.parameters import Fingertip
-from geometry.units import within
-from variational.attraction.insulator import insulator_thickness
+from geometry.units import Finite, Table, within
+from variational.attraction.electroadhesion import insulator_thickness
 from variational.contact.friction import Coulomb, Derjaguin, Friction
 from variational.materials.material import Material
 from variational.materials.neo_hooke import NeoHooke
@@ -37,6 +38,8 @@ CLOSURES = Kind(closure.Closure, "a Closure", _named(BearingArea), closure.check
 LAYERS = {name.replace(" ", "_"): tag for name, tag in tags.LAYERS.items()}
 """Tag of each layer by its key in the scene."""
 
+_MAX_DIFFERENCE = 1e-6  # relative difference of thicknesses that are the same
+LARGEST_GAP = 1.0  # m, with which the attraction is as good as none
 Permittivity = Annotated[Finite, within(1.0, 1e7)]
 
 
@@ -55,7 +58,7 @@ _EPIDERMIS, _CORNEUM = Ogden(61.75e3, -14.53), Ogden(86.76e3, -14.53)
 _NAIL, _NAIL_BED = SaintVenant(170e6), SaintVenant(1e6)
 
 
-class Materials(Part):
+class Materials(Table):
     """Materials of the layers (Table 2). A table that gives some keys of a layer keeps the others' defaults."""
 
     model_config = ConfigDict(validate_default=True)
@@ -77,7 +80,7 @@ class Materials(Part):
     """Material of the nail bed."""
 
 
-class Electric(Part):
+class Electric(Table):
     """Insulators between finger and electrode (Table 3)."""
 
     eps_sc: Permittivity = 1650.0
@@ -96,7 +99,7 @@ class Electric(Part):
 Length = Annotated[Finite, within(1e-10, 0.1, "m")]
 
 
-class Topography(Part):
+class Topography(Table):
     """A measured height map, from which the roughness is taken; see :mod:`variational.roughness.heightfile`."""
 
     file: str
@@ -154,12 +157,21 @@ class RoughnessKey(LawKey):
         return super().completed(table, law)
 
     def check(self, law: Any) -> None:
-        """Refuse a floor of the pressure that is no floor."""
+        """Refuse a floor of the pressure that is no floor, or holds the gap of an unloaded ridge at over a metre."""
         super().check(law)
-        if isinstance(law, BearingArea) and law.p_floor >= law.full_pressure:
+        if not isinstance(law, BearingArea):
+            return
+        if law.p_floor >= law.full_pressure:
             raise ValueError(
                 f"p_floor is {show(law.p_floor)}; it must be below the pressure at zero separation, "
                 f"{law.full_pressure:.4g} Pa"
+            )
+        with np.errstate(all="ignore"):  # infinite where the surfaces no longer see each other
+            gap = float(law(law.p_floor).d_eq)
+        if not gap < LARGEST_GAP:
+            raise ValueError(
+                f"p_floor is {show(law.p_floor)}, where the air gap would be held at {gap:.3g} m; "
+                f"it must be below {LARGEST_GAP:g} m: take a larger p_floor, or a smaller gamma or h_rms"
             )
 
 
@@ -172,3 +184,21 @@ def _insulators(data: Mapping[str, Any]) -> dict[str, Any]:
 BEARING_AREA = BearingArea(Electric().h_0(Fingertip().sc_thickness))
 ROUGHNESS = RoughnessKey(CLOSURES, BEARING_AREA, of_scene=_insulators)
 FRICTION = LawKey(FRICTION_LAWS, Coulomb(0.25), number="mu_f")
+
+
+def refuse_thickness(closure: Any, h_0: float) -> None:
+    """Refuse a closure of another insulator than the one whose voltage attracts.
+
+    Args:
+        closure: a closure; one without a number ``h_0`` has no insulator of its own.
+        h_0: effective insulator thickness of the attraction (m).
+
+    Raises:
+        ValueError: the two differ by more than roundoff.
+    """
+    own = getattr(closure, "h_0", h_0)
+    if isinstance(own, Real) and abs(float(own) - h_0) > _MAX_DIFFERENCE * h_0:
+        raise ValueError(
+            f"the closure {type(closure).__name__} has h_0 = {float(own):.7g} m, and the attraction has an effective "
+            f"insulator thickness h_0 of {h_0:.7g} m; the two must be the same"
+        )

@@ -1,12 +1,15 @@
-"""Messages about an impossible scene: the dotted key, the value given, and what is allowed.
+"""Messages about an impossible scene, also of the first error of a validation: dotted key, value, what is allowed.
 
 A message has one sentence and at most :data:`MOST` characters, whatever a user wrote. Texts of the user are shortened
 where they are quoted, and their control characters are written out.
 """
 
 import re
-from collections.abc import Iterable
-from typing import Any
+from collections.abc import Iterable, Iterator, Sequence
+from difflib import SequenceMatcher
+from typing import Any, get_args
+
+from pydantic import BaseModel, ValidationError
 
 MOST = 280  # characters of a message; with the name of the program before it less than 300
 _MAX_VALUE = 60  # of a value that is quoted
@@ -15,6 +18,27 @@ MOST_KEY = 40  # of a key
 LAW = "law"  # kind of the errors of a law, whose context has the text and the place
 NUMBER, WAVE = "a number", "a waveform"
 """What a voltage can be: parts of the place of an error that are no keys."""
+
+_MAX_LIST = 150  # characters of a list of keys
+_MIN_LIKENESS = 0.6  # likeness, from 0 to 1, at which a key of the same table may have been meant,
+_ELSEWHERE = 0.85  # or one of another table
+_TYPES = {
+    "float_type": "a number",
+    "int_type": "a whole number",
+    "int_from_float": "a whole number",
+    "bool_type": "true or false",
+    "string_type": "text",
+    "tuple_type": "a list",
+    "model_type": "a table of keys",
+    "model_attributes_type": "a table of keys",
+    "finite_number": "a finite number",
+}
+_BOUNDS = {
+    "greater_than": ("gt", "greater than"),
+    "greater_than_equal": ("ge", "at least"),
+    "less_than": ("lt", "less than"),
+    "less_than_equal": ("le", "at most"),
+}
 
 
 class SceneError(ValueError):
@@ -69,3 +93,119 @@ def qualify(message: str, prefix: str, names: Iterable[str]) -> str:
         for name in names:
             parts[k] = re.sub(rf"(?<![\w.]){name}\b", prefix + name, parts[k])
     return "".join(parts)
+
+
+# -- errors --------------------------------------------------------------------------------------------
+def first_error(error: ValidationError, root: type[BaseModel], keys: Iterable[str]) -> str:
+    """Return the first error of a validation of ``root`` as a message.
+
+    Args:
+        error: of the validation.
+        root: model.
+        keys: names of all its keys, of which one may have been meant by an unknown key.
+    """
+    from geometry.units import NO_QUANTITY, OUT_OF_RANGE
+
+    first = error.errors(include_url=False)[0]
+    kind, context = first["type"], first.get("ctx", {})
+    loc = tuple(part for part in (*first["loc"], *context.get("at", ())) if part not in (NUMBER, WAVE))
+    if loc[:2] == ("contact", "law"):  # whose formulation's keys stand in the table itself
+        loc = ("contact", *("formulation" if part == "law" else part for part in loc[2:]))
+    key, value = key_of(loc), context.get("value", first["input"])
+    given = show(value)
+    if kind == LAW:
+        text = context["text"]  # of a whole law it is a sentence, which may begin with one of its keys
+        if "keys" not in context:
+            return f"{key} {text}"
+        return f"{key}.{text}" if re.split(r"\W", text)[0] in context["keys"] else f"{key}: {text}"
+    if kind == OUT_OF_RANGE:
+        return f"{key} {context['range'].words(context['number'], context['slip'], _default(root, loc))}"
+    if kind == "extra_forbidden":
+        of = f" with the law {context['of']}" if "of" in context else ""
+        own = context.get("keys") or tuple(getattr(_model_at(root, loc[:-1]), "model_fields", ()))
+        return f"{key} is not a key of {key_of(loc[:-1]) or 'a scene'}{of}; {_instead(loc, own, keys)}"
+    if kind == "missing":
+        return f"{key} is missing; it must be given"
+    if kind == "value_error":
+        model = _model_at(root, loc)
+        if model is None:
+            return f"{key} is {given}; {context['error']}"
+        return qualify(str(context["error"]), f"{key}." if key else "", model.model_fields)
+    if kind in _BOUNDS:
+        name, words = _BOUNDS[kind]
+        return f"{key} is {given}; it must be {words} {show(context[name])}"
+    if kind == "literal_error":
+        return f"{key} is {given}; it must be {context['expected']}"
+    if kind == "too_short":
+        return f"{key} is empty; it must have at least one entry"
+    if kind == "too_long":
+        return f"{key} has too many entries; it must have at most {context['max_length']}"
+    if kind == NO_QUANTITY and key == "f_ext" and _newtons(value):
+        return f"{key} is {given}; it must be in N/m; a force on the whole finger is the key force"
+    if kind in ("int_type", "int_from_float") and isinstance(value, float):
+        given = repr(value)  # 5.0, which show writes as 5
+    if kind in _TYPES:
+        return f"{key or 'a scene'} is {given}; it must be {_TYPES[kind]}"
+    return f"{key or 'a scene'} is {given}; {first['msg']}"
+
+
+def _newtons(text: str) -> bool:
+    from geometry.units import to_si
+
+    try:
+        to_si(text, "N")
+    except ValueError:
+        return False
+    return True
+
+
+def _default(root: type[BaseModel], loc: Iterable[int | str]) -> float | None:
+    """Return the number that a key has by default, None where it has none."""
+    value: Any = root.model_construct()
+    for part in loc:
+        value = getattr(value, part, None) if isinstance(part, str) else None
+    return value if isinstance(value, int | float) else None
+
+
+def _model_at(model: type[BaseModel], loc: Iterable[int | str]) -> type[BaseModel] | None:
+    """Return the model at a place in another one, None where there is a value."""
+    found: type[BaseModel] | None = model
+    for part in loc:
+        if isinstance(part, str) and found is not None:
+            found = next(_models_in(found.model_fields[part].annotation), None)
+    return found
+
+
+def _models_in(annotation: Any) -> Iterator[type[BaseModel]]:
+    """Yield the models in an annotation such as ``tuple[Model, ...] | None``."""
+    if isinstance(annotation, type) and issubclass(annotation, BaseModel):
+        yield annotation
+    for part in get_args(annotation):
+        yield from _models_in(part)
+
+
+# -- unknown keys --------------------------------------------------------------------------------------
+def _instead(loc: tuple[int | str, ...], own: Sequence[str], every: Iterable[str]) -> str:
+    """Return what may have been meant by an unknown key: the nearest key of all tables, or those of its own.
+
+    Args:
+        loc: place of the key.
+        own: keys that its table has.
+        every: names of the keys of all tables.
+    """
+    table, name = key_of(loc[:-1]), str(loc[-1])
+    wanted = clip(name, MOST_KEY).lower().replace("-", "_")
+    keys = [(table, key, _MIN_LIKENESS) for key in own]
+    names = [name.replace("[]", "[0]").split(".") for name in every]
+    tables = dict.fromkeys((".".join(name[:depth]), name[depth]) for name in names for depth in range(len(name)))
+    keys += [(at, key, _ELSEWHERE) for at, key in tables if (at, key) != (table, wanted)]
+    near = [
+        (likeness, -k)
+        for k, (_, key, least) in enumerate(keys)
+        if (likeness := SequenceMatcher(None, wanted, key.lower()).ratio()) >= least
+    ]
+    if near:
+        where, key, _ = keys[-max(near)[1]]
+        return f"did you mean {where}{'.' * bool(where)}{key}?"
+    known = ", ".join(own)
+    return f"keys are {known if len(known) <= _MAX_LIST else known[:_MAX_LIST].rpartition(',')[0] + ' and others'}"

@@ -1,31 +1,20 @@
-"""The tables of a scene: loads, accuracy, contact, output and numerics, with units and the ranges that make sense.
+"""The tables of a scene: accuracy, contact, output, numerics and slices, with units and the ranges that make sense.
 
-:mod:`fingerpad.scene.materials` has the others. The docstring of a key is its text in the scene reference,
-``docs/scene.md``.
+:mod:`fingerpad.scene.materials` and :mod:`fingerpad.scene.loads` have the others. The docstring of a key is its text in
+the scene reference, ``docs/scene.md``.
 """
 
 import hashlib
-import math
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
-from pydantic import (
-    AfterValidator,
-    Discriminator,
-    Field,
-    SerializerFunctionWrapHandler,
-    Tag,
-    model_serializer,
-    model_validator,
-)
+from pydantic import Field, SerializerFunctionWrapHandler, model_serializer, model_validator
 
 from fingerpad.scene.law_keys import Kind, LawKey, fail, keys_of, reading_results
-from fingerpad.scene.load_names import load_name
-from fingerpad.scene.messages import NUMBER, WAVE, show
-from fingerpad.scene.table import Finite, Part, Switch
-from fingerpad.scene.waveform import Volts, Waveform
+from fingerpad.scene.messages import SceneError, clip, show
 from geometry.parameters import Fingertip
-from geometry.units import within
+from geometry.units import Finite, Switch, Table, within
 from variational import files
 from variational.contact.augmented import AugmentedLagrangian
 from variational.contact.formulation import Formulation
@@ -36,141 +25,16 @@ FORMULATIONS: dict[str, type[Formulation]] = {"penalty": Penalty, "nitsche": Nit
 """Contact formulations by their names, key ``contact.formulation``: a new one is an entry here."""
 CONTACT = LawKey(Kind(Formulation, "a Formulation", FORMULATIONS), Penalty(), flat="formulation")
 Asked = Annotated[Finite, within(1e-6, 0.5)]
-Way = Annotated[Finite, within(1e-9, 0.1, "m", zero=True, sides=2)]
-_OVER_TIME = ("bone_x_by", "speed", "duration")  # keys that runs made before they were there do not have
+MOST_PLACES = 1000  # along the axis of a finger
+# A finger of the default's width bears some 0.53 N where its centre bears 75 N/m; forces grow as F^0.77.
+LINE, POINT, POWER, WIDTH = 75.0, 0.53, 0.77, 20e-3
+Place = Annotated[Finite, within(1e-9, 0.1, "m", zero=True, sides=2)]
+Height = Annotated[Finite, within(1e-9, 0.1, "m", zero=True)]
+Scale = Annotated[Finite, within(0.1, 10)]
+Many = Field(min_length=1, max_length=MOST_PLACES)
 
 
-def _kind(voltage: Any) -> str:
-    return WAVE if isinstance(voltage, dict | Waveform) else NUMBER
-
-
-Voltage = Annotated[Annotated[Volts, Tag(NUMBER)] | Annotated[Waveform, Tag(WAVE)], Discriminator(_kind)]
-
-
-class Load(Part):
-    """A load to reach from the present one; omitted values stay as they are."""
-
-    name: Annotated[str, AfterValidator(load_name)]
-    """Name of the load, also of the load's pictures; see :mod:`fingerpad.scene.load_names`."""
-    f_ext: Annotated[Finite, within(1e-3, 5e3, "N/m", zero=True)] | None = None
-    """External normal force on the bone (N/m). Zero is allowed only under voltage, which then holds the skin on the
-    screen."""
-    bone_height: Way | None = None
-    """Change of the bone's height from the unloaded position (m), negative when pressed."""
-    voltage: Voltage | None = None
-    """Instantaneous voltage U (V), or a waveform. The attraction goes with its square: the sign changes no force."""
-    bone_x: Way | None = None
-    """Horizontal position of the bone (m), zero when unloaded."""
-    bone_x_by: Way | None = None
-    """The same as a move (m) from where the bone is when the load begins."""
-    speed: Annotated[Finite, within(1e-6, 100.0, "m/s")] | None = None
-    """Speed (m/s) of the bone on its way, which makes it a load over time. The model is quasi-static: the speed only
-    sets how long the way takes."""
-    duration: Annotated[Finite, within(1e-6, 1e5, "s")] | None = None
-    """Time (s) that the load takes, in place of a speed. The bone moves evenly in time; of a force its root changes
-    evenly, and of a voltage its square, as the attraction does."""
-    until_full_slip: Switch = False
-    """Whether the load stops at full slip: where every point in contact slips one way, and forces stay the same over a
-    further 0.2 mm, which may end beyond bone_x. Only with bone_x or bone_x_by."""
-
-    @model_validator(mode="after")
-    def _consistent(self) -> "Load":
-        if self.f_ext is not None and self.bone_height is not None:
-            raise ValueError(
-                f"f_ext is {show(self.f_ext)} and bone_height is {show(self.bone_height)}; "
-                "at most one of the two can be prescribed"
-            )
-        if not any(v is not None for v in (self.f_ext, self.bone_height, self.voltage, self.bone_x, self.bone_x_by)):
-            raise ValueError(
-                f"name is {show(self.name)} and nothing else is given; "
-                "it must come with at least one of f_ext, bone_height, voltage, bone_x and bone_x_by"
-            )
-        if self.until_full_slip:
-            self._refuse_unfinished()
-        self._refuse_time()
-        return self
-
-    def _refuse_unfinished(self) -> None:
-        """Refuse what a load that stops at full slip may not have reached."""
-        for name in ("f_ext", "bone_height", "voltage"):
-            if getattr(self, name) is not None:
-                given = "a waveform" if self.wave is not None and name == "voltage" else show(getattr(self, name))
-                raise ValueError(
-                    f"{name} is {given} and until_full_slip is true, which may stop before that is "
-                    f"reached; {name} must come in a load of its own"
-                )
-
-    def _refuse_time(self) -> None:
-        """Refuse a way that is given twice, and times that are missing or contradict each other."""
-        if self.bone_x is not None and self.bone_x_by is not None:
-            raise ValueError(
-                f"bone_x is {show(self.bone_x)} and bone_x_by is {show(self.bone_x_by)}; give the place or the move"
-            )
-        if self.speed is not None and self.bone_x is None and self.bone_x_by is None:
-            raise ValueError(f"speed is {show(self.speed)} and the bone does not move; give bone_x or bone_x_by too")
-        if self.speed is not None and self.duration is not None:
-            raise ValueError(
-                f"speed is {show(self.speed)} and duration is {show(self.duration)}; one follows from the other, so "
-                "give one"
-            )
-        if self.wave is None:
-            return
-        for name in ("f_ext", "bone_height"):
-            if getattr(self, name) is not None:
-                raise ValueError(
-                    f"{name} is {show(getattr(self, name))} and voltage is a waveform; {name} must come in a load of "
-                    "its own, before it"
-                )
-        if self.speed is None and self.duration is None and self.wave.end == math.inf:
-            raise ValueError(f"voltage is a {self.wave.waveform} and the load takes no time; give a speed or duration")
-
-    @property
-    def wave(self) -> Waveform | None:
-        """The voltage over time; None where it is a number or stays."""
-        return self.voltage if isinstance(self.voltage, Waveform) else None
-
-    @property
-    def level(self) -> float | None:
-        """The voltage (V) to go to; None where it is over time or stays."""
-        return None if isinstance(self.voltage, Waveform) else self.voltage
-
-    @property
-    def moves(self) -> bool:
-        """Whether the load may take the bone away from where it was unloaded."""
-        return bool(self.bone_x or self.bone_x_by)
-
-    @property
-    def pace(self) -> str:
-        """Speed or duration in words; empty without."""
-        if self.speed is not None:
-            return f"at {1e3 * self.speed:g} mm/s"
-        return "" if self.duration is None else f"in {self.duration:g} s"
-
-    @property
-    def takes_time(self) -> bool:
-        """Whether it is a load over time."""
-        return self.speed is not None or self.duration is not None or self.wave is not None
-
-    def place(self, x: float) -> float | None:
-        """Return where the load takes the bone (m) from a place x (m); None where it stays."""
-        return self.bone_x if self.bone_x_by is None else x + self.bone_x_by
-
-    def seconds(self, way: float) -> float:
-        """Return how long the load takes (s) for a way of the bone (m); 0 where it is none over time."""
-        if self.speed is not None:
-            return abs(way) / self.speed
-        if self.duration is None:
-            return 0.0 if self.wave is None else self.wave.end
-        return self.duration
-
-    @model_serializer(mode="wrap")
-    def _without_time(self, write: SerializerFunctionWrapHandler) -> dict[str, Any]:
-        """Leave out what is not given of the keys of loads over time: runs made before they were there are found."""
-        found: dict[str, Any] = write(self)
-        return {name: value for name, value in found.items() if name not in _OVER_TIME or value is not None}
-
-
-class Accuracy(Part):
+class Accuracy(Table):
     """Largest relative discretisation errors allowed.
 
     See :mod:`fingerpad.richardson` and :mod:`fingerpad.accuracy.refinement`. Friction is that of full slip, lengths and
@@ -197,6 +61,28 @@ class Accuracy(Part):
     def tolerances(self) -> dict[str, float]:
         """Return what is asked for, by quantity."""
         return {name: value for name in type(self).model_fields if (value := getattr(self, name)) is not None}
+
+    def refuse(self, receptors: bool, friction: Any) -> None:
+        """Refuse an accuracy of receptor sites that are not there, and of friction that is zero.
+
+        Args:
+            receptors: whether there are receptor sites.
+            friction: coefficient or law of friction, a key of the scene.
+
+        Raises:
+            ValueError: the keys, their values and the remedy.
+        """
+        for name in ("mu_app", "f_t") if friction == 0 else ():
+            if (asked := getattr(self, name)) is not None:
+                raise ValueError(
+                    f"accuracy.{name} is {show(asked)} and friction is 0, with which the quantity is zero and has no "
+                    "relative accuracy; leave out one of the two"
+                )
+        if self.sed is not None and not receptors:
+            raise ValueError(
+                f"accuracy.sed is {show(self.sed)} and output.receptors is false, without which there are no "
+                "sites; leave out one of the two"
+            )
 
 
 class Geometry(Fingertip):
@@ -229,7 +115,30 @@ class Geometry(Fingertip):
         return data | {"file": str(Path(file).absolute()), "file_sha256": found}
 
 
-class Contact(Part):
+def refuse_beside_mesh(data: Mapping[str, Any]) -> None:
+    """Refuse keys of a scene beside ``geometry.file`` that a run on that mesh does not read.
+
+    Args:
+        data: nested tables, as they were given.
+
+    Raises:
+        SceneError: the first of them.
+    """
+    shape = data.get("geometry")
+    if not isinstance(shape, Mapping) or shape.get("file") is None:
+        return
+    sizes = data.get("mesh")
+    given = [f"geometry.{key}" for key in shape if key not in ("file", "file_sha256", "sc_thickness")]
+    given += [f"mesh.{key}" for key in sizes] if isinstance(sizes, Mapping) else []
+    given += ["accuracy"] if data.get("accuracy") is not None else []
+    if given:
+        raise SceneError(
+            f"{clip(given[0])} is given and geometry.file too, whose mesh has its own shape and sizes and cannot be "
+            "refined; leave one of the two out"
+        )
+
+
+class Contact(Table):
     """Discretisation of contact and friction, and the definition of the contact length.
 
     A formulation reads its own keys only; keys of another formulation are refused.
@@ -286,7 +195,7 @@ class Contact(Part):
         raise AttributeError(f"contact has no {name}")
 
 
-class Output(Part):
+class Output(Table):
     """Optional outputs; an output that is switched off is not computed."""
 
     receptors: Switch = True
@@ -299,7 +208,7 @@ class Output(Part):
     """Whether the finger and its skin are drawn at the end of each load. A load over time has one end."""
 
 
-class Numerics(Part):
+class Numerics(Table):
     """Discretisation and tolerances."""
 
     element: Literal["P1", "P2", "P2 reduced", "P2-P1", "P3"] = "P2"
@@ -318,7 +227,7 @@ class Numerics(Part):
     step_scale: Annotated[Finite, within(1e-3, 10.0)] = 1.0
     """Factor on the largest steps of force, voltage and displacement."""
     memory: Annotated[Finite, within(1e8, 1e15, "B")] = 16e9
-    """Most memory (bytes) of all ranks together, by :mod:`fingerpad.model.feasibility`. A larger scene
+    """Most memory (bytes) of all ranks together, by :mod:`fingerpad.model.options`. A larger scene
     is refused before meshing. The default fits a machine of 24 GB."""
 
     @model_validator(mode="after")
@@ -328,3 +237,66 @@ class Numerics(Part):
                 f"quadrature_points is {self.quadrature_points}; it must be at least 3 for element {show(self.element)}"
             )
         return self
+
+
+class Slices(Table):
+    """Shape of the finger along its axis z, cut in slices (:mod:`fingerpad.slices`); no part of the cross-section.
+
+    Without a table of heights the finger's lower side is a parabola of radius ``radius``.
+    """
+
+    radius: Annotated[Finite, within(1e-3, 1, "m")] = 28e-3
+    """Radius R_z of the lower side along the axis. *Assumption*: 28 mm is that of an ellipse with semi-axes of 14 mm
+    along the finger and 7 mm in height; likely values are 15 to 40 mm. Range: the end of a finger to a straight one."""
+    length: Annotated[Finite, within(1e-3, 0.2, "m")] = 28e-3
+    """Length of the finger pad, centred on z = 0. *Assumption*: the last phalanx. A contact that is longer is
+    refused."""
+    tilt: Annotated[Finite, within(1e-6, 0.5, zero=True, sides=2)] = 0.0
+    """Slope θ of the bone's axis to the screen (rad): a slice at z > 0 is indented by θ z less. Range: up to 29
+    degrees, beyond which a finger touches with its tip."""
+    z: Annotated[tuple[Place, ...], Many] | None = None
+    """Places along the axis of the tables ``height`` and ``width``, growing. The finger ends at the first and the
+    last."""
+    height: Annotated[tuple[Height, ...], Many] | None = None
+    """Height s of the lower side above its lowest point, at the places ``z``, in place of the parabola. Heights that
+    are all 0 make a straight finger, which may touch up to its ends."""
+    width: Annotated[tuple[Scale, ...], Many] | None = None
+    """Width of the slices at the places ``z``, over that of the scene's cross-section: a slice is the cross-section
+    on this scale. *Assumption*: 1 everywhere. Range: a tenth to ten times."""
+    count: Annotated[int, Field(strict=True, ge=4, le=MOST_PLACES)] = 48
+    """Number of slices in each stretch of contact, the points of a Gauss rule. Half the default changes forces by less
+    than 0.01 % and areas by less than 0.3 % on a smooth trace (``docs/newtons.md``), and by more where ridges jump."""
+
+    @model_validator(mode="after")
+    def _consistent(self) -> "Slices":
+        tables = {name: values for name in ("height", "width") if (values := getattr(self, name)) is not None}
+        if self.z is None:
+            for name in tables:
+                raise ValueError(f"{name} is given without z; give the places along the axis of its values")
+            return self
+        if not tables:
+            raise ValueError("z is given without height or width; give one of the two, with a value for each place")
+        if len(self.z) < 2:
+            raise ValueError(f"z is {show(list(self.z))}; it must have two places at least, the ends of the finger")
+        if any(after <= before for before, after in zip(self.z, self.z[1:], strict=False)):
+            raise ValueError(f"z is {show(list(self.z))}; it must grow from each place to the next")
+        for name, values in tables.items():
+            if len(values) != len(self.z):
+                raise ValueError(f"{name} has {len(values)} values and z has {len(self.z)}; each place needs one value")
+        if self.height is not None:
+            for name in {"radius", "length"} & self.model_fields_set:
+                raise ValueError(
+                    f"{name} is {show(getattr(self, name))} and height is given too; leave out one of them"
+                )
+        return self
+
+
+def centre_force(force: float, width: float) -> float:
+    """Return about the force at the centre of a finger (N/m): of one of the default's shape, on another scale.
+
+    Args:
+        force: on the whole finger (N).
+        width: of the finger (m).
+    """
+    scale = width / WIDTH
+    return LINE * scale * (force / (POINT * scale**2)) ** POWER

@@ -14,7 +14,6 @@ from pydantic import BaseModel
 
 from fingerpad.scene.law_keys import table
 from fingerpad.scene.messages import SceneError, clip, key_of, show
-from fingerpad.scene.table import MOST_BYTES
 from variational import files
 from variational.coefficients import Law
 from variational.roughness.closure import Closure
@@ -42,7 +41,7 @@ def read(path: Path) -> dict[str, Any]:
     """
     name = f"scene file {clip(str(path), _PATH)}"
     try:
-        raw = files.read(path, MOST_BYTES)
+        raw = files.read(path, files.MOST_OF_TEXT)
     except OSError as error:
         raise SceneError(f"{name} cannot be read: {error.strerror or error}") from None
     try:
@@ -106,7 +105,7 @@ def _kept(path: Path) -> dict[str, Any]:
     """Return what a ``scene.json`` holds."""
     name = f"scene file {clip(str(path), _PATH)}"
     try:
-        data = json.loads(files.read(path, MOST_BYTES))
+        data = json.loads(files.read(path, files.MOST_OF_TEXT))
     except OSError as error:
         raise SceneError(f"{name} cannot be read: {error.strerror or error}") from None
     except (ValueError, RecursionError) as error:

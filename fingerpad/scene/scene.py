@@ -10,26 +10,26 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 from pydantic import Field, ValidationError, model_validator
 
-from fingerpad.scene.contradictions import (
-    DEFAULT_HISTORY,
-    refuse_beside_force,
-    refuse_beside_mesh,
-    refuse_contradictions,
-    refuse_thickness,
-)
 from fingerpad.scene.keys import every
 from fingerpad.scene.law_code import digest, folder_of, imported
 from fingerpad.scene.law_keys import Kept, kept
-from fingerpad.scene.materials import BEARING_AREA, FRICTION, LAYERS, ROUGHNESS, Electric, Materials
-from fingerpad.scene.messages import SceneError, show
-from fingerpad.scene.parameters import Accuracy, Contact, Geometry, Load, Numerics, Output
+from fingerpad.scene.loads import DEFAULT_HISTORY, Load, refuse_contradictions
+from fingerpad.scene.materials import BEARING_AREA, FRICTION, LAYERS, ROUGHNESS, Electric, Materials, refuse_thickness
+from fingerpad.scene.messages import SceneError, first_error, show
+from fingerpad.scene.parameters import (
+    Accuracy,
+    Contact,
+    Geometry,
+    Numerics,
+    Output,
+    Slices,
+    centre_force,
+    refuse_beside_mesh,
+)
 from fingerpad.scene.reading import plain, put_all, read_scene
-from fingerpad.scene.refusals import first_error
-from fingerpad.scene.slices import Slices, centre_force
-from fingerpad.scene.table import Finite, Part
 from fingerpad.scene.waveform import Volts
 from geometry.parameters import MeshSize
-from geometry.units import computed, within
+from geometry.units import Finite, Table, computed, within
 from variational.contact.friction import Friction, law_of
 from variational.roughness.closure import Closure
 
@@ -37,7 +37,7 @@ if TYPE_CHECKING:
     from variational.materials.material import Material
 
 
-class Scene(Part):
+class Scene(Table):
     """Everything a run needs; SI units, forces per out-of-plane length.
 
     ``Scene(f_ext="50 N/m", mesh={"contact": 10e-6})`` is the scene of the same keys in a TOML file: the same values,
@@ -95,11 +95,28 @@ class Scene(Part):
     @model_validator(mode="after")
     def _consistent(self) -> "Scene":
         given = {name: getattr(self, name) for name in DEFAULT_HISTORY if name in self.model_fields_set}
-        refuse_beside_force(self.force, given, self.history, self.geometry.file)
-        scale = self.numerics.step_scale
-        refuse_contradictions(self.accuracy, self.output, self.friction, self.roughness, self.history, given, scale)
+        if self.force is not None:
+            self._refuse_beside_force()
+        if self.accuracy is not None:
+            self.accuracy.refuse(self.output.receptors, self.friction)
+        if self.history is not None:
+            refuse_contradictions(self.history, given, self.accuracy is not None, self.numerics.step_scale)
         refuse_thickness(self.roughness, self.h_0)
         return self
+
+    def _refuse_beside_force(self) -> None:
+        """Refuse what a force on the whole finger has no use for: another force, loads or a mesh of one's own."""
+        if "f_ext" in self.model_fields_set:
+            raise ValueError(
+                f"force is {show(self.force)} N and f_ext is {show(self.f_ext)} N/m; give one of the two: newtons on "
+                "the whole finger, or newtons per metre at its centre"
+            )
+        if self.history is not None or self.geometry.file is not None:
+            what = "history is given" if self.history else f"geometry.file is {show(self.geometry.file)}"
+            raise ValueError(
+                f"force is {show(self.force)} N and {what}; a force on the whole finger is that of press, charge and "
+                "slide of the scene's own geometry, so leave one of the two out"
+            )
 
     def replace(self, **changes: Any) -> "Scene":
         """Return a checked copy with some values changed.
@@ -204,14 +221,6 @@ class Scene(Part):
         unused: dict[str, Any] = {name: True for name in (("history",) if self.history is None else DEFAULT_HISTORY)}
         unused |= {"accuracy": True} if self.accuracy is None else {}
         unused["force" if self.force is None else "f_ext"] = True
-        if self.output == Output():  # not a word of it, so that runs made before it was a key are found
-            unused["output"] = True
-        elif self.output.each_load:
-            unused["output"] = {"each_load"}
-        if self.slices == Slices():  # as the output
-            unused["slices"] = True
-        default = Numerics()  # keys at their defaults, as the output
-        unused["numerics"] = {n for n in ("step_scale", "memory") if getattr(self.numerics, n) == getattr(default, n)}
         found = self.model_dump(mode="json", exclude=unused)
         if self.geometry.file is not None:  # whose mesh has its own shape and sizes
             del found["mesh"]

@@ -22,8 +22,7 @@ from typing import Annotated, Any, Literal
 from pydantic import BeforeValidator, Field, model_validator
 
 from fingerpad.scene.messages import clip, show
-from fingerpad.scene.table import MOST_BYTES, Finite, Part
-from geometry.units import Range, within
+from geometry.units import Finite, Range, Table, within
 from variational import files
 
 SAMPLES = 24
@@ -55,7 +54,7 @@ _LISTED = BeforeValidator(lambda value: tuple(value) if isinstance(value, list) 
 _WAVES = ("amplitude", "frequency")
 
 
-class Waveform(Part):
+class Waveform(Table):
     """A voltage over time, in place of a number; see :mod:`fingerpad.scene.waveform`."""
 
     waveform: Literal["sine", "square", "triangle", "file"]
@@ -290,7 +289,7 @@ def _table(file: str) -> dict[str, Any]:
     """
     name = f"file is {show(file)}"
     try:
-        lines = list(csv.reader(files.read(file, MOST_BYTES).decode("utf-8-sig").splitlines(), strict=True))
+        lines = list(csv.reader(files.read(file, files.MOST_OF_TEXT).decode("utf-8-sig").splitlines(), strict=True))
     except OSError as error:
         raise ValueError(f"{name}, which cannot be read: {show(error.strerror or str(error))}") from None
     except (ValueError, csv.Error) as error:

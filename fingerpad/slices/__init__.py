@@ -21,9 +21,9 @@ taken from one trace of sliding. A ridge that came down in the press may stay do
 it comes in sliding, has less friction (``docs/newtons.md``).
 
 What is left out: shear between slices, the end cap of the finger, and the flow of soft tissue along the axis, which in
-a slice goes sideways alone. Fingers in three dimensions are the measure of that: :mod:`fingerpad.slices.solid` has what
-is known at a force. This is the error of the model. The errors of the cross-section's mesh and of the points of its
-trace are other ones (:mod:`fingerpad.slices.errors`), and are stated apart.
+a slice goes sideways alone. Fingers in three dimensions are the measure of that: :mod:`fingerpad.slices.errors` has
+what is known at a force. This is the error of the model. The errors of the cross-section's mesh and of the points of
+its trace are stated apart.
 
 Everything here is NumPy and SciPy; only :mod:`fingerpad.slices.traces` orders runs of finite elements.
 """

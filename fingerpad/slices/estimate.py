@@ -15,12 +15,11 @@ import numpy as np
 
 from fingerpad.reduced import cylinders
 from fingerpad.scene import Scene
-from fingerpad.scene.laws import coefficient
 from fingerpad.scene.messages import SceneError
+from fingerpad.scene.remarks import coefficient
 from fingerpad.slices import errors
 from fingerpad.slices.finger import WholeFinger, in_order
-from fingerpad.slices.profile import profile
-from fingerpad.slices.total import at_force, at_indentation, deepest
+from fingerpad.slices.total import at_force, at_indentation, deepest, profile
 from fingerpad.slices.trace import LEAST, Trace, TraceError, columns, trace
 from variational.state import ContactState
 

@@ -7,13 +7,12 @@ from typing import Any
 
 import numpy as np
 
-from fingerpad.results.quantities import FINGER, FRICTION
+from fingerpad.results.quantities import FINGER, FRICTION, head_rows, side_by_side
 from fingerpad.results.states import STATES, WORDS, called
 from fingerpad.scene import Scene, SceneError
-from fingerpad.scene.slices import Slices
-from fingerpad.slices import errors, solid
-from fingerpad.slices.profile import profile
-from fingerpad.slices.total import Total, at_force
+from fingerpad.scene.parameters import Slices
+from fingerpad.slices import errors
+from fingerpad.slices.total import Total, at_force, profile
 from fingerpad.slices.trace import NAMES, Trace
 
 _ROUNDOFF = 1e-9
@@ -31,7 +30,7 @@ class WholeFinger:
     """Relative errors by state, part and quantity that no trace gives: of the cross-section's mesh, and of a run's
     estimate (:mod:`fingerpad.slices.errors`)."""
     traces: Mapping[str, Trace] = field(default_factory=dict)
-    """Of the cross-section by state, from which :meth:`under` reads other forces; none of an earlier version's file."""
+    """Of the cross-section by state, from which :meth:`under` reads other forces."""
     shape: Slices = Slices()
     """The finger along its axis."""
 
@@ -60,12 +59,10 @@ class WholeFinger:
                 the force that it was made for, and down to its first point at the centre of the finger.
 
         Raises:
-            SceneError: no force, or one that a trace does not reach; a file of an earlier version, without traces.
+            SceneError: no force, or one that a trace does not reach.
         """
         value, finger = Scene(force=force).force, profile(self.shape)
         assert value is not None
-        if not self.traces:
-            raise SceneError("the whole finger was read from a file without traces; run the scene again")
         states = {name: at_force(finger, self.traces[name], value, self.shape.count) for name in self.states}
         for name, total in states.items():
             first = finger.centre_scale * float(self.traces[name].columns["f_ext"][0])
@@ -87,7 +84,7 @@ class WholeFinger:
 
     def to_dict(self) -> dict[str, Any]:
         """Return all values, ready for JSON; SI units."""
-        about = {"source": self.source, "model_error": " ".join(solid.remarks([self.f_ext]))}
+        about = {"source": self.source, "model_error": " ".join(errors.remarks([self.f_ext]))}
         found: dict[str, Any] = {"f_ext": self.f_ext, **about, "states": {}}
         for name, total in self.states.items():
             arrays = {key: values.tolist() for key, values in total.slices().items()}
@@ -111,16 +108,11 @@ class WholeFinger:
         for name, state in data["states"].items():
             arrays = {key: np.array(values) for key, values in state["slices"].items()}
             columns = {key: arrays[key] for key in NAMES}
-            centre = state["centre"] if "centre" in state else data["f_ext"] / state["effective_width"]
             places = arrays["z"], arrays["thickness"], arrays["indentation"]
-            states[name] = Total(state["indentation"], *places, centre, columns)
-            if "trace" in state:
-                points = {key: np.array(values) for key, values in state["trace"].items()}
-                traces[name] = Trace(points.pop("indentation"), points)
-        carried = {}
-        for name, state in data["states"].items():  # files of earlier versions have absolute errors alone
-            old = {key: value / states[name].values[key] for key, value in state["error"].items() if value}
-            carried[name] = state.get("carried", {errors.MESH: old})
+            states[name] = Total(state["indentation"], *places, state["centre"], columns)
+            points = {key: np.array(values) for key, values in state["trace"].items()}
+            traces[name] = Trace(points.pop("indentation"), points)
+        carried = {name: state["carried"] for name, state in data["states"].items()}
         return cls(states, data["source"], carried, traces, shape)
 
     def rows(self) -> Iterator[list[str]]:
@@ -144,19 +136,12 @@ class WholeFinger:
         parts = dict.fromkeys(part for each in self.carried.values() for part, known in each.items() if known)
         known = [f"±: estimated error, by {', '.join([*parts, *[errors.POINTS] * bool(self.traces)])}."]
         known *= any(map(any, (each.values() for each in self.error.values())))
-        return [*known, *solid.remarks([self.f_ext]), f"Slices: {self.source}."]
+        return [*known, *errors.remarks([self.f_ext]), f"Slices: {self.source}."]
 
     def __str__(self) -> str:
         """Return the text *Whole finger* at the end of a run: the states side by side."""
-        heads = [head.split(" normal") for head in self.heads()]
-        rows = [["", *(head[0] for head in heads)], ["", *("normal" + head[1] if head[1:] else "" for head in heads)]]
-        rows += list(self.rows())
-        widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
-        lines = ["Whole finger, as a sum of slices"]
-        for first, *rest in rows:
-            cells = (cell.rjust(width) for cell, width in zip(rest, widths[1:], strict=True))
-            lines.append("   ".join(["  " + first.ljust(widths[0]), *cells]).rstrip())
-        return "\n".join([*lines, *(f"  {remark}" for remark in self.remarks())])
+        lines = side_by_side([*head_rows(self.heads()), *self.rows()])
+        return "\n".join(["Whole finger, as a sum of slices", *lines, *(f"  {each}" for each in self.remarks())])
 
 
 def in_order(states: Mapping[str, Total]) -> dict[str, Total]:

@@ -17,11 +17,10 @@ from fingerpad.results.result import Result
 from fingerpad.results.states import WORDS
 from fingerpad.scene import Scene
 from fingerpad.scene.messages import SceneError
-from fingerpad.scene.slices import LINE, POINT, POWER
+from fingerpad.scene.parameters import LINE, POINT, POWER
 from fingerpad.slices import errors
 from fingerpad.slices.finger import WholeFinger, in_order
-from fingerpad.slices.profile import Profile, profile
-from fingerpad.slices.total import BeyondTrace, Total, at_force
+from fingerpad.slices.total import BeyondTrace, Profile, Total, at_force, profile
 from fingerpad.slices.trace import Trace, TraceError, trace
 from geometry.units import computed
 from variational.state import ContactState, Errors

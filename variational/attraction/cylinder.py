@@ -33,7 +33,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from variational.attraction.insulator import VACUUM_PERMITTIVITY
+from variational.attraction.electroadhesion import VACUUM_PERMITTIVITY
 from variational.roughness.closure import Closure
 
 Array = NDArray[np.floating[Any]]
@@ -97,18 +97,6 @@ class Cylinder:
     closure: Closure
     """The microscale."""
 
-    def under_load(self, f: float, voltage: float) -> RidgeState:
-        """Return the state under an external force.
-
-        Args:
-            f: force per length (N/m), positive.
-            voltage: (V).
-
-        Raises:
-            NoEquilibriumError: no branch in contact, or the attraction is beyond what a finger can bear.
-        """
-        return self.under_loads([f], voltage)[0]
-
     def under_loads(self, f: ArrayLike, voltage: float) -> list[RidgeState]:
         """Return the state under each of several external forces.
 
@@ -117,12 +105,13 @@ class Cylinder:
             voltage: (V).
 
         Raises:
-            NoEquilibriumError: as :meth:`under_load`, of the first force that is refused.
+            NoEquilibriumError: no branch in contact, or the attraction is beyond what a finger can bear, under the
+                first force that is refused.
         """
         return self._states(np.asarray(f, dtype=float), voltage)
 
     def over_length(self, length: float, f: float, voltage: float) -> RidgeState:
-        """Return the state in which a contact of given length (m) bears an external force; as :meth:`under_load`.
+        """Return the state in which a contact of given length (m) bears an external force; see :meth:`under_loads`.
 
         Raises:
             NoEquilibriumError: no branch in contact.

@@ -21,9 +21,14 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
-import ufl
+from variational.coefficients import ufl
 
-from variational.attraction.insulator import VACUUM_PERMITTIVITY
+VACUUM_PERMITTIVITY = 8.854e-12  # F/m, Table 3
+
+
+def insulator_thickness(d_sc: float, eps_sc: float, d_i: float, eps_i: float) -> float:
+    """Return h_0 (m), the effective insulator thickness of stratum corneum and screen coating."""
+    return d_sc / eps_sc + d_i / eps_i
 
 
 def attraction(y, d_eq, voltage, h_0):

@@ -12,7 +12,15 @@ With the traction itself for :math:`\lambda` these are Signorini's conditions an
 virtual work of the contact on the skin is :math:`\int p_n v_y + t_t v_x \,dS`. A point is in contact where the
 augmented gap :math:`\hat g = y - \lambda_n / \gamma_n` is negative.
 
-The history variable of friction is the anchor s, see :mod:`~variational.contact.return_mapping`.
+Friction on the screen is by return mapping (Forsbach et al. 2023, Eqs. 6 and 7),
+
+.. math:: t^{tr} = \lambda_t - \gamma_t (u_x - s_n), \qquad
+          t_t = t^{tr} \min\left(1, t_{max} / |t^{tr}|\right), \qquad s_{n+1} = u_x + (t_t - \lambda_t) / \gamma_t
+
+per reference area (Simo and Laursen 1992, doi 10.1016/0045-7949(92)90540-G, for :math:`\lambda_t = 0`). Its one history
+variable is the anchor s: the place of a sticking point where the spring would be slack, and where :math:`\lambda_t` is
+its traction, the place itself. A point without contact carries its anchor along. Where a point slips, the derivative
+of the virtual work with respect to the pressure makes the tangent unsymmetric.
 """
 
 from abc import ABC, abstractmethod
@@ -24,12 +32,36 @@ import numpy as np
 from numpy.typing import NDArray
 
 from variational.coefficients import LawError, refuse_not_positive, said
-from variational.contact import return_mapping
 
 if TYPE_CHECKING:
     from variational.contact.friction import Friction
 
 Array = NDArray[np.float64]
+
+
+def traction(u_x, anchor, limit, gamma_t, guess=0.0, lambda_t=0.0):
+    """Return the tangential traction on the skin (Pa of reference area).
+
+    Args:
+        u_x: tangential displacement (m).
+        anchor: accepted anchor s_n (m).
+        limit: largest friction under the pressure at hand (Pa of reference area).
+        gamma_t: tangential stiffness (Pa/m).
+        guess: a point that slipped sits on the cone to roundoff when its next step starts; a positive number well
+            above roundoff lets it count as sticking then, a negative one as slipping. A point without contact
+            is on its cone too.
+        lambda_t: traction at the anchor (Pa of reference area).
+    """
+    import ufl
+
+    trial = lambda_t - gamma_t * (u_x - anchor)
+    slipping = ufl.conditional(ufl.gt(trial, 0.0), limit, -limit)
+    return ufl.conditional(ufl.ge(abs(trial), (1 + guess) * limit), slipping, trial)
+
+
+def new_anchor(u_x, t_t, gamma_t, lambda_t=0.0):
+    """Return the anchor that a step leaves when it is accepted (m)."""
+    return u_x + (t_t - lambda_t) / gamma_t
 
 
 def pressure(gap, gamma_n):
@@ -92,7 +124,7 @@ class Contact:
             skin: what touches.
             springs: what the trial tractions are made of.
             friction: its law, with numbers that UFL can read; None without friction.
-            guess: as in :func:`variational.contact.return_mapping.traction`.
+            guess: as in :func:`traction`.
             ease: part of the tangential stiffness that acts.
         """
         import ufl
@@ -104,8 +136,8 @@ class Contact:
             self.t_t, self.new_anchor = ufl.zero(), skin.u[0]
         else:
             limit = _limit(friction, self.p_n)
-            self.t_t = return_mapping.traction(skin.u[0], skin.anchor, limit, ease * s.gamma_t, guess, s.lambda_t)
-            self.new_anchor = return_mapping.new_anchor(skin.u[0], self.t_t, s.gamma_t, s.lambda_t)
+            self.t_t = traction(skin.u[0], skin.anchor, limit, ease * s.gamma_t, guess, s.lambda_t)
+            self.new_anchor = new_anchor(skin.u[0], self.t_t, s.gamma_t, s.lambda_t)
         self.traction = ufl.as_vector([self.t_t, self.p_n])
 
 
@@ -183,7 +215,7 @@ class Formulation(ABC):
         """Return the contact over a screen of twice the stiffness; None where the screen is rigid already.
 
         With one, the effect of a rigid screen is estimated beside the error of the mesh
-        (:mod:`fingerpad.accuracy.rigid_screen`).
+        (:mod:`fingerpad.richardson`).
         """
         return None
 

@@ -2,7 +2,7 @@ r"""Laws of friction: the largest tangential traction t_max under a contact pres
 
 .. math:: |t_t| \le t_{max}(p_n), \qquad t_{max}(0) = 0
 
-A point sticks below the limit and slips on it, against the motion (:mod:`~variational.contact.return_mapping`);
+A point sticks below the limit and slips on it, against the motion (:mod:`~variational.contact.formulation`);
 tractions are per reference area. Without pressure there is no friction, and no jump of it: a limit that began with a
 step would move Newton's method from one equilibrium to another with every point that touches.
 

@@ -27,8 +27,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from variational.coefficients import Law, said
-from variational.lazy import kinematics, ufl
+from variational.coefficients import Law, kinematics, said, ufl
 
 _NATURAL = 1e-8  # of the shear modulus: stress of the unloaded solid that is roundoff
 MODULUS = 1.0, 1e12, "Pa"

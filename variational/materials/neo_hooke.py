@@ -11,8 +11,7 @@ deformation, :math:`\bar F = J^{-1/3} F` (Flory 1961, doi 10.1039/TF9615700829).
 from dataclasses import dataclass
 from functools import cached_property
 
-from variational.coefficients import parameter
-from variational.lazy import ufl
+from variational.coefficients import parameter, ufl
 from variational.materials.material import MODULUS, POISSON, Material, bulk_modulus
 
 

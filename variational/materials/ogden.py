@@ -19,8 +19,7 @@ series is used below ``SERIES_BELOW`` and the closed form above.
 from dataclasses import dataclass, field
 from functools import cached_property
 
-from variational.coefficients import OF_SCENE, parameter
-from variational.lazy import kinematics, ufl
+from variational.coefficients import OF_SCENE, kinematics, parameter, ufl
 from variational.materials.material import MODULUS, POISSON, Material, bulk_modulus
 
 SERIES_BELOW = 0.01

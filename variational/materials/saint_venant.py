@@ -11,8 +11,7 @@ of F^T F and I would lose six digits, and nodal forces of 1e-11 N/m with them.
 from dataclasses import dataclass
 from functools import cached_property
 
-from variational.coefficients import parameter
-from variational.lazy import ufl
+from variational.coefficients import parameter, ufl
 from variational.materials.material import MODULUS, POISSON, Material
 
 

@@ -21,8 +21,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from variational import files
-from variational.roughness.missing import filled, mark
-from variational.roughness.topography import HeightMap
+from variational.roughness.topography import HeightMap, filled, mark
 
 Array = NDArray[np.float64]
 UNITS = {"m": 1.0, "cm": 1e-2, "mm": 1e-3, "um": 1e-6, "µm": 1e-6, "μm": 1e-6, "nm": 1e-9, "pm": 1e-12}

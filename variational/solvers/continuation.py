@@ -17,10 +17,8 @@ from mpi4py import MPI
 from numpy.typing import NDArray
 from petsc4py import PETSc
 
-from variational.solvers.accepted import AcceptedState
-from variational.solvers.failure import NotConverged
-from variational.solvers.homotopy import relax
-from variational.solvers.onset import return_to_onset
+from variational.solvers.accepted import AcceptedState, relax, return_to_onset
+from variational.solvers.outcome import NotConverged
 from variational.solvers.target import Control, Progress, Target, Way
 
 if TYPE_CHECKING:

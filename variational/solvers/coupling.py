@@ -34,8 +34,8 @@ from numpy.typing import NDArray
 from variational.contact.formulation import SurfaceState
 from variational.quantities import Observer
 from variational.roughness.closure import Closure, air_gaps, check
-from variational.solvers.failure import NotConverged
 from variational.solvers.iteration import EXACT, StopRule
+from variational.solvers.outcome import NotConverged
 from variational.solvers.secant import Secants
 
 if TYPE_CHECKING:

@@ -9,10 +9,9 @@ from mpi4py import MPI
 from numpy.typing import NDArray
 from petsc4py import PETSc
 
-from variational.solvers.failure import OUTSIDE
 from variational.solvers.layout import RigidRimLayout
+from variational.solvers.outcome import OUTSIDE, Timings
 from variational.solvers.target import Control
-from variational.solvers.timing import Timings
 
 if TYPE_CHECKING:
     from variational.problem import Problem

@@ -6,7 +6,7 @@ they would drive open skin deep through the screen, which the tangent of open sk
 halved that would turn elements inside out or send the residual up tenfold. After each step the elements next to the
 screen are brought into balance by themselves (:mod:`~variational.solvers.skin_layer`), which finds the points in
 contact at a fraction of the cost. A factorisation serves as long as the residual falls to two fifths an iteration,
-accelerated by :mod:`~variational.solvers.anderson`; a step it proposes is refused when the residual would rise, and
+accelerated by :mod:`~variational.solvers.tangent`; a step it proposes is refused when the residual would rise, and
 made anew with the tangent of the present iterate. Where the right points are not yet in contact, a kept factorisation
 or a layer in balance may lower the residual and bring the wrong points into contact, the more so the stiffer the
 penalty: without voltage an iteration that cycles starts again without both. (With one it mostly cycles because the skin
@@ -24,11 +24,9 @@ import numpy as np
 from mpi4py import MPI
 from petsc4py import PETSc
 
-from variational.solvers.anderson import Anderson
-from variational.solvers.failure import OUTSIDE
+from variational.solvers.outcome import OUTSIDE, Counts
 from variational.solvers.skin_layer import SkinLayer
-from variational.solvers.tangent import Tangent
-from variational.solvers.timing import Counts
+from variational.solvers.tangent import Anderson, Tangent
 from variational.solvers.transient import EulerShift
 
 if TYPE_CHECKING:

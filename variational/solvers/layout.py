@@ -11,7 +11,7 @@ Displacements are unknowns either by themselves, as the forms are differentiated
 solver keeps them so that a rigid translation adds no digits (:meth:`RigidRimLayout.translate` goes from one to the
 other).
 
-The pressures of a mixed element (:mod:`variational.pressure`) come first among the unknowns of each rank. The map then
+The pressures of a mixed element (:mod:`variational.element`) come first among the unknowns of each rank. The map then
 goes on from the displacement's local unknowns to the pressure's, and forms are added to the matrix block by block.
 """
 
@@ -25,7 +25,7 @@ from numpy.typing import NDArray
 from petsc4py import PETSc
 
 if TYPE_CHECKING:
-    from variational.pressure import LayerwisePressure
+    from variational.element import LayerwisePressure
 
 Array = NDArray[np.float64]
 

@@ -22,10 +22,9 @@ from numpy.typing import NDArray
 from petsc4py import PETSc
 
 from variational.problem import SLIPS, STICKS
-from variational.solvers.failure import OUTSIDE, snes_failure
 from variational.solvers.iteration import EXACT, Iteration, StopRule
+from variational.solvers.outcome import OUTSIDE, Counts, snes_failure
 from variational.solvers.target import Control
-from variational.solvers.timing import Counts
 
 if TYPE_CHECKING:
     from variational.solvers.equations import Equations
@@ -57,7 +56,7 @@ class Solver:
             equations: of a problem.
             force_scale: force per length (N/m) in which residuals are measured.
             tolerance: norm of the nodal forces' imbalance (N/m) at convergence, over ``force_scale``; volume defects
-                count as forces, see :mod:`variational.pressure`.
+                count as forces, see :mod:`variational.element`.
         """
         self.equations, self.problem, self.layout = equations, equations.problem, equations.layout
         self.force_scale, self.counts, self.timings = force_scale, Counts(), equations.timings
@@ -97,7 +96,7 @@ class Solver:
 
     @property
     def pressure(self) -> Array:
-        """This rank's unknowns of a mixed element's pressure (m), see :mod:`variational.pressure`."""
+        """This rank's unknowns of a mixed element's pressure (m), see :mod:`variational.element`."""
         return self.x.array_r[: self.layout.local_size - len(self.layout.displacement_rows)].copy()
 
     def set_displacement(self, u: Array, bone: Array) -> None:

@@ -27,7 +27,7 @@ from numpy.typing import NDArray
 from petsc4py import PETSc
 
 from variational import jit
-from variational.solvers.failure import OUTSIDE
+from variational.solvers.outcome import OUTSIDE
 
 if TYPE_CHECKING:
     from variational.solvers.equations import Equations

@@ -33,7 +33,7 @@ from numpy.typing import NDArray
 from petsc4py import PETSc
 
 from variational.problem import SLIPS
-from variational.solvers.failure import NotConverged, linear_failure
+from variational.solvers.outcome import NotConverged, linear_failure
 
 if TYPE_CHECKING:
     from variational.solvers.newton import Solver

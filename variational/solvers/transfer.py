@@ -14,7 +14,7 @@ not, and comes back point by point. So a node on a ridge is put down to where th
 the ridge's chord, and not up.
 
 **History.** What friction keeps is the elastic slip :math:`s - u_x = t_t / \gamma_t` at Gauss points of the skin
-(:mod:`~variational.contact.return_mapping`). It is interpolated linearly along each ridge, over the place on the
+(:mod:`~variational.contact.formulation`). It is interpolated linearly along each ridge, over the place on the
 ridge's chord, so is the contact pressure, and :math:`s = u_x + (s - u_x)` is made anew with the new :math:`u_x`. So are
 all fields of :mod:`variational.history` on the skin; those of the body are evaluated as the displacement is.
 
@@ -35,9 +35,9 @@ from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from variational import compat
-from variational.cellwise import reference_places
 from variational.contact.formulation import SurfaceState
 from variational.problem import Problem
+from variational.reference import reference_places
 from variational.solvers.coupling import Coupling
 from variational.solvers.target import Control
 

@@ -1,0 +1,80 @@
+"""The fingers of this page: some pressed for it alone, and the whole finger as a sum of slices over the force (N).
+
+The pressed ones are uncharged, with other skin and other friction. The gross area of the whole finger is what a camera
+sees as apparent area. Its traces are those of docs/models.json, by :mod:`benchmarks.newtons`. The default radius along
+the axis scales forces and areas alike; so ratios and shapes are compared, and no absolute force.
+"""
+
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from benchmarks import newtons
+from benchmarks.runs import VOLTAGES, plain
+from fingerpad.scene import Scene
+from fingerpad.scene.parameters import Slices
+from fingerpad.slices.total import at_force
+from fingerpad.slices.trace import trace
+
+FORCE = 75.0  # N/m
+SIZES = (40e-6, 20e-6)  # m, contact sizes; the difference of their numbers is the stated error
+SOFTER = (2.0, 4.0)  # times, by which the stratum corneum is softened; not fitted
+ROUGHER = 1.0  # friction coefficient beside the default of 0.25
+
+
+def name(kind: str, size: float) -> str:
+    """Return the name of a scene by its kind and contact size (m): ``dry 20``, ``soft 4 20``, ``rough 20``."""
+    return f"{kind} {size * 1e6:.0f}"
+
+
+def scenes() -> dict[str, Scene]:
+    """Return the scenes by :func:`name`."""
+    kinds: dict[str, dict[str, Any]] = {"dry": {}, "rough": {"friction": ROUGHER}}
+    for softer in SOFTER:
+        shear = Scene().materials.stratum_corneum.shear_modulus / softer
+        kinds[f"soft {softer:g}"] = {"materials": {"stratum_corneum": {"shear_modulus": shear}}}
+    return {name(kind, size): _pressed(size, more) for size in SIZES for kind, more in kinds.items()}
+
+
+def _pressed(size: float, more: dict[str, Any]) -> Scene:
+    mesh = {"contact": size, "receptor": size, "interface": 120e-6, "growth": 0.5}
+    output = {"receptors": False, "errors": False}
+    return plain({"history": [{"name": "press", "f_ext": FORCE}], "mesh": mesh, "output": output} | more)
+
+
+# -- whole fingers ---------------------------------------------------------------------------------------------
+Array = NDArray[np.float64]
+NEWTONS = (0.05, 0.1, 0.2, 0.3, 0.5, 0.75, 1.0, 1.2)  # N; the traces end at some 1.3 N
+HIGH = 200.0  # V
+STATES = (("charged", 0.0), ("charged", HIGH), ("full_slip", 0.0), ("full_slip", HIGH))
+Sums = Mapping[str, Array]
+"""``gross_area``, ``contact_area`` (m²) and ``depth`` (m) at :data:`NEWTONS`, as ``charged_0_gross_area``."""
+
+
+def sums(known: Mapping[str, Any], fine: Mapping[str, Array] | None = None) -> Sums:
+    """Return the sums of the full model.
+
+    Args:
+        known: numbers of docs/models.json.
+        fine: contact lengths and counts of ridges on another mesh, ``charged_contact_length`` and so on, of shape
+            (forces, voltages), in place of those; indentations are then those of ``known``.
+    """
+    found = dict[str, Array]()
+    for state, voltage in STATES:
+        points = newtons.states(known["scenes"], "full", voltage, state)
+        if fine is not None:
+            at = VOLTAGES.index(voltage)
+            other = (fine[f"{state}_{key}"][:, at] for key in ("contact_length", "ridges_in_contact"))
+            points = [
+                replace(point, contact_length=float(length), ridges_in_contact=int(ridges))
+                for point, length, ridges in zip(points, *other, strict=True)
+            ]
+        traced = trace(points, Scene().geometry.ridge_wavelength)
+        totals = [at_force(newtons.finger(), traced, force, Slices().count) for force in NEWTONS]
+        for name in ("gross_area", "contact_area"):
+            found[f"{state}_{voltage:g}_{name}"] = np.array([total.totals[name] for total in totals])
+        found[f"{state}_{voltage:g}_depth"] = np.array([total.delta for total in totals])
+    return found

@@ -1,0 +1,124 @@
+"""The rules of the verdicts, the same for every row of a kind, and the forms that are fitted to curves.
+
+Their words are in ``benchmarks/prose/measured.md``. A measured form of a curve stands beside another one with as many
+parameters.
+"""
+
+from collections.abc import Callable, Sequence
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import minimize_scalar
+
+HIT, PART, MISS = "hit", "partly", "miss"
+BUILT = "hit by construction"
+"""The model's equations or inputs leave nothing else: such a row tests nothing."""
+EXPONENT = 0.25  # from the measured exponent: what 10 % of scatter makes of a factor of 2 in voltage
+RATIO, VALUE = 1.25, 2.0  # largest factors of a ratio that is hit, and of a number that is met partly
+MISFIT = 0.1  # rms of a fitted curve
+STRIKING, SIMILAR = 0.25, 0.1  # relative changes that count as strikingly higher, and as similar
+CHANGED = 0.03  # relative change from which on a gross area counts as another: half a ridge of 17
+
+
+def by_share(share: float) -> str:
+    """Return the verdict on a statement that holds at a part of the loads: all, half of them or more, or fewer."""
+    return HIT if share == 1 else PART if share >= 0.5 else MISS
+
+
+def by_factor(low: float, high: float, least: float, most: float, allowed: float = 1.0) -> str:
+    """Return the verdict on numbers from ``low`` to ``high`` beside measured ones from ``least`` to ``most``.
+
+    All positive; ``allowed`` is the factor by which a number that is hit can be outside.
+    """
+    beyond = max(least / low, high / most, 1.0)
+    return HIT if beyond <= allowed else PART if beyond <= VALUE else MISS
+
+
+def by_form(misfits: Sequence[float], others: Sequence[float]) -> str:
+    """Return the verdict on a measured form of a curve, beside another form with as many parameters.
+
+    Args:
+        misfits: rms of the fitted form, by each measure of it.
+        others: rms of the other form, in the same order. Where it fits too, the curve cannot show which form it has.
+    """
+    found = by_share(sum(each <= MISFIT for each in misfits) / len(misfits))
+    return PART if found == HIT and all(each <= MISFIT for each in others) else found
+
+
+# -- forms -----------------------------------------------------------------------------------------------------
+Array = NDArray[np.float64]
+Form = Callable[[Array, float], Array]
+"""A curve over x with one parameter, of any scale."""
+
+
+class Fit(NamedTuple):
+    """A form fitted to a curve: its parameter and the rms of what is left."""
+
+    parameter: float
+    misfit: float
+
+
+def exponential(x: Array, b: float) -> Array:
+    """Return exp(b x / x_max) - 1."""
+    return np.asarray(np.expm1(b * x / x.max()))
+
+
+def power(x: Array, n: float) -> Array:
+    """Return (x / x_max)^n."""
+    return np.asarray((x / x.max()) ** n)
+
+
+def line(x: Array, start: float) -> Array:
+    """Return a straight line that begins with a share of its last value."""
+    return np.asarray(start + (1 - start) * x / x.max())
+
+
+def paraboloid(x: Array, a: float) -> Array:
+    """Return 1 - (x / a)², with a half width in units of the largest |x|; 0 outside."""
+    return np.asarray(np.clip(1 - (x / (a * np.abs(x).max())) ** 2, 0, None))
+
+
+def ellipse(x: Array, a: float) -> Array:
+    """Return half an ellipse, Hertz's pressure; arguments as of :func:`paraboloid`."""
+    return np.asarray(np.sqrt(paraboloid(x, a)))
+
+
+_WIDTHS = (1.0, 10.0)
+BOUNDS: dict[Form, tuple[float, float]] = {
+    exponential: (1e-3, 50.0),
+    power: (0.05, 10.0),
+    line: (0.0, 0.99),
+    paraboloid: _WIDTHS,
+    ellipse: _WIDTHS,
+}
+"""Where the parameter of each form is looked for."""
+
+
+def of_each(form: Form, x: Array, y: Array) -> Fit:
+    """Fit a form by logarithms; the misfit is that of each value."""
+
+    def rest(parameter: float) -> float:
+        return float(np.std(np.log(y) - np.log(form(x, parameter))))
+
+    return _least(rest, form)
+
+
+def of_largest(form: Form, x: Array, y: Array) -> Fit:
+    """Fit a form by least squares; the misfit is over the largest value."""
+
+    def rest(parameter: float) -> float:
+        curve = form(x, parameter)
+        return float(np.sqrt(np.mean((y - scale(curve, y) * curve) ** 2)) / y.max())
+
+    return _least(rest, form)
+
+
+def scale(curve: Array, y: Array) -> float:
+    """Return the factor by which a curve is closest to ``y``."""
+    return float(curve @ y / (curve @ curve))
+
+
+def _least(rest: Callable[[float], float], form: Form) -> Fit:
+    found = minimize_scalar(rest, bounds=BOUNDS[form], method="bounded", options={"xatol": 1e-9})
+    return Fit(float(found.x), float(found.fun))

@@ -1,0 +1,251 @@
+"""Roughness: ``fingerpad microscale`` of a ridge over pressure, ``fingerpad topography`` of a height map."""
+
+import argparse
+import math
+import re
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from pydantic import ValidationError
+
+from fingerpad.cli import output, ranges
+from fingerpad.cli.arguments import PICTURE, Parser, echo, path, quantity, scene_of, several
+from fingerpad.model.cautions import on_closure
+from fingerpad.results.quantities import QUANTITIES, Output
+from fingerpad.scene import Scene, from_data, override
+from fingerpad.scene.materials import Topography
+from fingerpad.scene.messages import SceneError, clip, first_error
+from fingerpad.scene.remarks import missing_waves, remarks, ridges_as_roughness
+from variational.roughness.bam import STICKING, BearingArea
+from variational.roughness.heightfile import Found, scan
+from variational.roughness.spectrum import HURST, Fit, power_spectrum, roughness_table
+from variational.roughness.topography import distribution
+
+_PRESSURES = "1e3:1e6:13:log"
+_COLUMNS = (
+    QUANTITIES["voltage"],
+    Output("p_c", "kPa", words="pressure", digits=2),
+    Output("u_bar", "µm", words="separation"),
+    Output("d_eq", "µm", words="air gap"),
+    Output("p_el", "kPa", words="attraction"),
+    Output("p_ext", "kPa", words="external"),
+    Output("area", "%", words="real area"),
+)
+_MICROSCALE = """
+    fingerpad microscale --voltage 100,200 --p 1e3:1e6:50:log --plot micro.png
+    fingerpad microscale --set roughness.h_rms=2e-6 --csv micro.csv
+"""
+_TOPOGRAPHY = """
+    fingerpad topography skin.csv --unit um --size "100 um" "100 um" --plot skin.png
+    fingerpad topography skin.vk4
+"""
+
+
+# -- microscale ----------------------------------------------------------------------------------------
+def microscale(argv: Sequence[str]) -> int:
+    """Print the microscale over pressure; return the exit code."""
+    parser = Parser("microscale", _MICROSCALE)
+    parser.add_scene()
+    parser.add_ranges("voltage")
+    parser.add_argument("--p", metavar="RANGE", default=_PRESSURES, help=f"pressures (Pa); default {_PRESSURES}")
+    output.add_files(parser, _COLUMNS, "picture")
+    args = parser.read(argv)
+    scene = scene_of(args, meshed=False)
+    if args.voltage is None and scene.history is not None:
+        raise SceneError("history is given, whose loads have their own voltages; name those wanted by --voltage")
+    rows = table(scene, several(args, scene, "voltage"), _pressures(args.p))
+    closure = bearing_area(scene)
+    echo(
+        f"A ridge of rms roughness {closure.h_rms * 1e6:.3g} µm, largest wavelength "
+        f"{closure.wavelength * 1e6:.3g} µm; insulators: h_0 = {scene.h_0 * 1e6:.3g} µm.\n"
+    )
+    echo(output.text(_COLUMNS, rows))
+    echo("\npressure: mean contact pressure of the ridge; external: that less the attraction, what the finger presses")
+    echo("with; separation: mean, of skin and screen; air gap: equivalent one; real area: of the nominal area.")
+    echo(f"The air gap stays constant below {closure.p_floor * 1e-3:g} kPa (roughness.p_floor) and above")
+    echo(f"{closure.full_pressure * 1e-3:.4g} kPa, the pressure at zero separation.")
+    echo(_sticking(closure))
+    for text in remarks(scene):
+        echo(f"{text}.")
+    for text in on_closure(closure, [(row["p_c"], 1.0, row["voltage"]) for row in rows], "pressures and voltages"):
+        echo(f"{text[0].upper()}{text[1:]}.")
+    output.write_files(args, _COLUMNS, rows, draw_microscale)
+    return 0
+
+
+def _pressures(text: str) -> list[float]:
+    try:
+        return [quantity(str(value), "Pa") for value in ranges.read("--p", text)]
+    except argparse.ArgumentTypeError as error:
+        raise SceneError(f"--p: {error}") from None
+
+
+def _sticking(closure: BearingArea) -> str:
+    """Return from which voltage on a ridge sticks, in a sentence."""
+    voltage = closure.sticking_voltage()
+    if voltage is None:
+        return "The insulators are thick for this roughness: the model has no voltage from which a ridge would stick."
+    stress = f"{STICKING * 1e-3:g} kPa"
+    return f"From {voltage:.3g} V a ridge would stick: to pull it off takes {stress} or more (a convention)."
+
+
+def bearing_area(scene: Scene) -> BearingArea:
+    """Return the closure of a scene.
+
+    Raises:
+        SceneError: it is another model than the bearing area's, which alone has a separation and a real area.
+    """
+    closure = scene.closure()
+    if not isinstance(closure, BearingArea):
+        raise SceneError(f"roughness is a {type(closure).__name__}; the microscale is that of the law 'BearingArea'")
+    return closure
+
+
+def table(scene: Scene, voltages: Sequence[float], pressures: Sequence[float]) -> list[dict[str, Any]]:
+    """Return a row for each voltage (V) and mean contact pressure (Pa), in SI units.
+
+    Pressures beyond the one at zero mean separation, where the law of repulsion ends, are held there as in a run.
+    """
+    closure = bearing_area(scene)
+    p_c = np.array(pressures)
+    u_bar = closure.separation(np.clip(p_c, closure.p_floor, closure.full_pressure)) + 0.0  # no negative zero
+    d_eq, area = closure(p_c).d_eq, closure.contact_area(u_bar)
+    rows = []
+    for voltage in voltages:
+        p_el = closure.attraction(u_bar, voltage)
+        for k, p in enumerate(pressures):
+            row = {"p_c": p, "u_bar": u_bar[k], "d_eq": d_eq[k], "p_el": p_el[k], "p_ext": p - p_el[k]}
+            rows.append({"voltage": voltage} | {name: float(v) for name, v in row.items()} | {"area": float(area[k])})
+    return rows
+
+
+def draw_microscale(file: Path, rows: Sequence[dict[str, Any]]) -> None:
+    """Draw lengths, attraction and real area over pressure."""
+    voltages = list(dict.fromkeys(row["voltage"] for row in rows))
+    first = [row for row in rows if row["voltage"] == voltages[0]]
+    p = [row["p_c"] * 1e-3 for row in first]
+    with output.panels(file, "Microscale of a ridge: bearing area model", 3) as (_, (gaps, stress, area)):
+        from fingerpad.results import style
+
+        output.curve(gaps, 0, p, [row["d_eq"] * 1e6 for row in first], "equivalent air gap $d_{eq}$")
+        output.curve(gaps, 1, p, [row["u_bar"] * 1e6 for row in first], r"mean separation $\bar u$")
+        gaps.set(ylabel="length (µm)", ylim=(0, None))
+        for k, voltage in enumerate(voltages):
+            found = [row["p_el"] * 1e-3 for row in rows if row["voltage"] == voltage]
+            output.curve(stress, k, p, found, f"{voltage:g} V", style.voltage(voltage, max(voltages, key=abs)))
+        stress.set(ylabel="attraction $p_{el}$ (kPa)", ylim=(0, None))
+        output.curve(area, 0, p, [100 * row["area"] for row in first], "")
+        area.set(ylabel="real area of contact (% of the nominal)", yscale="log")
+        for ax in (gaps, stress, area):
+            ax.set(xlabel="mean contact pressure $p_c$ (kPa)", xscale="log")
+        for ax in (gaps, stress):
+            ax.legend()
+
+
+# -- topography ----------------------------------------------------------------------------------------
+def topography(argv: Sequence[str]) -> int:
+    """Print the table of roughness that a height map gives; return the exit code."""
+    parser = Parser("topography", _TOPOGRAPHY)
+    parser.add_argument("file", type=path, metavar="FILE", help="matrix of heights, or a file of an instrument")
+    parser.add_table("roughness.topography")
+    parser.add_file("--plot", PICTURE, "picture of map, heights and spectrum")
+    args = parser.read(argv)
+    found = _scan(args)
+    flat = found.map.detrended("curvature")
+    try:
+        table = roughness_table(found.map)
+        fit = power_spectrum(flat, window="hann").fit()
+    except ValueError as error:
+        raise SceneError(f"{clip(str(args.file), 80)}: {error}") from None
+    echo("\n".join(_report(args.file, found, table, fit)))
+    if args.plot:
+        draw_map(args.plot, args.file.name, found, fit)
+        echo(f"# Written: {args.plot}")
+    return 0
+
+
+def _scan(args: argparse.Namespace) -> Found:
+    """Return the height map that is asked for.
+
+    Raises:
+        SceneError: it cannot be read.
+    """
+    given: dict[str, Any] = {name: getattr(args, name, None) for name in Topography.model_fields}
+    for name in ("size", "pixel"):
+        if given[name] is not None:
+            given[name] = [override(f"{name}={length}")[1] for length in given[name]]
+    try:
+        return scan(**dict(Topography.model_validate(given | {"file": str(args.file)})))
+    except OSError as error:
+        raise SceneError(f"{clip(str(args.file), 80)} cannot be read: {error.strerror or error}") from None
+    except ValidationError as error:
+        raise SceneError(f"--{first_error(error, Topography, ())}") from None
+    except (ValueError, ImportError) as error:
+        raise SceneError(re.sub(r"'(unit|size|pixel|missing)'", r"--\1", str(error))) from None
+
+
+def _report(file: Path, found: Found, table: dict[str, float], fit: Fit) -> Iterator[str]:
+    """Yield the table of a scene, and as comments what was found."""
+    m, um = found.map, 1e6
+    heights = distribution(m.detrended("curvature"))
+    (lx, ly), missing = m.size, found.missing
+    yield f"# {clip(str(file), 80)}: {found.layout}"
+    a, b = m.pixel
+    yield f"# {lx * um:.4g} µm x {ly * um:.4g} µm, in pixels of {a * um:.4g} µm x {b * um:.4g} µm"
+    yield f"# rms height {m.h_rms * um:.3g} µm, without curvature {heights.h_rms * um:.3g} µm"
+    if missing:
+        share = 100 * missing / m.heights.size
+        yield f"# {missing} pixels missing ({share:.2g} %), filled smoothly, which makes h_rms a little smaller"
+    yield f"# skewness {heights.skewness:.2f}, kurtosis {heights.kurtosis:.2f} (0 and 3 of the Gaussian of the model)"
+    long, short = (2e6 * math.pi / q for q in fit.q_range)
+    yield f"# {_hurst(fit)}, fitted between wavelengths of {long:.3g} µm and {short:.3g} µm"
+    if fit.resolved:
+        yield f"# roll-off at {fit.wavelength * um:.3g} µm: the largest wavelength"
+    else:
+        yield "# no roll-off within the map: the shorter side of the map stands for the largest wavelength"
+    remarks = ridges_as_roughness(table["wavelength"], Scene().geometry.ridge_wavelength)
+    for remark in remarks + missing_waves(min(m.size)):
+        yield f"# {remark}"
+    try:
+        from_data({"roughness": {key: float(f"{value:.4g}") for key, value in table.items()}})
+    except SceneError as error:
+        yield f"# a scene refuses these values: {error}; is the unit of the heights right?"
+    yield ""
+    yield "[roughness]"
+    for key, value in table.items():
+        yield f"{key} = {value:.4g}"
+
+
+def _hurst(fit: Fit) -> str:
+    """Return the Hurst exponent in words."""
+    if fit.hurst_found:
+        return f"Hurst exponent {fit.hurst:.2f}"
+    return f"Hurst exponent not found within {HURST[0]:g} to {HURST[1]:g}"
+
+
+def draw_map(file: Path, name: str, found: Found, fit: Fit) -> None:
+    """Draw the map without curvature, the distribution of its heights, and its spectrum with the fit."""
+    flat, um = found.map.detrended("curvature"), 1e6
+    heights, spectrum = distribution(flat), power_spectrum(flat, window="hann")
+    with output.panels(file, f"{name}: curvature removed", 3) as (figure, (area, shares, psd)):
+        limit = float(np.abs(flat.heights).max()) * um
+        ends = (0, flat.size[0] * um, 0, flat.size[1] * um)
+        image = area.imshow(flat.heights.T * um, origin="lower", extent=ends, cmap="cividis", vmin=-limit, vmax=limit)
+        figure.colorbar(image, ax=area, label="height (µm)", shrink=0.8)
+        area.set(xlabel="x (µm)", ylabel="y (µm)")
+        z = np.linspace(-4, 4, 200) * heights.h_rms
+        middle = (heights.edges[1:] + heights.edges[:-1]) / 2
+        output.curve(shares, 0, middle * um, heights.density / um, "map")
+        output.curve(shares, 1, z * um, heights.gaussian(z) / um, f"Gaussian, {heights.h_rms * um:.3g} µm rms")
+        shares.set(xlabel="height (µm)", ylabel="probability density (1/µm)")
+        shares.set_ylim(0, 1.35 * float(heights.density.max()) / um)
+        ring = spectrum.radial()
+        kept = ring.psd > 0
+        psd.loglog(ring.q[kept], ring.psd[kept], "o", ms=4, color="0.5", label="map, Hann's window")
+        q = np.geomspace(*fit.q_range, 100)
+        output.curve(psd, 1, q, fit.psd(q), f"fit: {_hurst(fit)}")
+        psd.set(xlabel="wavevector q (1/m)", ylabel="power spectrum C (m⁴)")
+        for ax in (shares, psd):
+            ax.legend()

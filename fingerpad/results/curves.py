@@ -1,0 +1,260 @@
+"""Pictures of curves: stresses and gaps along the skin near the screen; friction and contact over sliding or time."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from numpy.lib.stride_tricks import sliding_window_view
+from numpy.typing import NDArray
+
+from fingerpad.results import style
+from fingerpad.results.states import called
+from variational.state import ContactState
+
+Array = NDArray[np.float64]
+_MM, _MS, _UM, _KPA = 1e3, 1e3, 1e6, 1e-3
+_SHORT = 1.0  # s, below which the axis of time is in ms
+_RUBS = 1e-6  # of mu_0: a coefficient below is roundoff
+_TOOTH_SPAN = 4  # points: the span of a saw tooth to either side
+_NOTHING = 1e-9  # of the contact force: an external force below is roundoff
+_COARSE = 0.1  # of the peak: deeper saw teeth are noted; 7 % at the default contact size
+
+
+@dataclass(frozen=True)
+class SurfaceProfile:
+    """The skin near the screen in one state; arrays along the arc, a NaN between ridges breaks the lines."""
+
+    title: str
+    state: ContactState
+    x: Array
+    """Current abscissa (m)."""
+    y: Array
+    """Current height above the screen (m)."""
+    p: Array
+    """Contact pressure (Pa of current area)."""
+    t: Array
+    """Shear traction on the skin (Pa of current area), positive towards x > 0."""
+    p_el: Array
+    """Electrostatic attraction (Pa of current area)."""
+    d_eq: Array
+    """Equivalent air gap of the ridge (m)."""
+    ridge: Array
+    """Number of the ridge, 0 at the centre."""
+    note: str = ""
+    """What else the panel's title says."""
+
+
+def surface(path: Path | str | None, states: Sequence[SurfaceProfile], title: str, largest_gap: float = 6e-6) -> Figure:
+    """Draw pressure, shear traction, attraction and gaps along the surface (Fig. 2 of Forsbach et al. 2023).
+
+    Numbers above the pressure are those of the ridges in contact, 0 at the centre of the finger. A note says where the
+    mesh is too coarse for the pressure: where :func:`saw_teeth` exceeds a tenth.
+
+    Args:
+        path: of the PNG file; None for the figure alone.
+        states: one pair of panels each, such as normal contact, partial slip and full slip.
+        title: what they have in common, see :mod:`fingerpad.results.style`.
+        largest_gap: end of the gaps' axis (m).
+    """
+    with style.look():
+        figure = style.figure(1 + 3.0 * len(states))
+        figure.suptitle(title)
+        axes = figure.subplots(2 * len(states), 1, sharex=True, squeeze=False, height_ratios=[2, 1] * len(states))[:, 0]
+        stresses, gaps = axes[::2], axes[1::2]
+        for letter, state, above, below in zip("ABCDEFGH", states, stresses, gaps, strict=False):
+            _draw_stresses(above, state)
+            above.set_title(_surface_title(letter, state), loc="left")
+            _draw_gaps(below, state, largest_gap)
+        bottom, top = _common_range(states)
+        for ax in stresses:
+            ax.set_ylim(bottom, top)
+        handles = [h for ax in (stresses[0], gaps[0]) for h in ax.get_legend_handles_labels()[0]]
+        figure.legend(handles=handles, loc="outside lower center", ncols=3)
+        touching = np.concatenate([s.x[s.p > 0] for s in states])
+        if len(touching):
+            gaps[-1].set_xlim(_MM * touching.min() - 0.5, _MM * touching.max() + 0.5)
+        gaps[-1].set_xlabel("x on the screen (mm)")
+        return style.save(figure, path)
+
+
+def saw_teeth(p: Array) -> float:
+    """Return the depth of the deepest saw tooth of the contact pressure over its peak.
+
+    A tooth is a dip of the pressure between two larger ones, both within :data:`_TOOTH_SPAN` points, where every point
+    between is under pressure. Four points are a facet's: teeth of a coarse mesh go up and down within one facet or two.
+
+    Args:
+        p: contact pressure (Pa) along the arc, a NaN between ridges, shape (points,).
+    """
+    deepest, known = 0.0, np.nan_to_num(p)
+    for patch in np.split(known, np.flatnonzero(known <= 0)):
+        if len(patch):
+            largest = sliding_window_view(np.pad(patch, _TOOTH_SPAN), _TOOTH_SPAN).max(axis=1)
+            dips = np.minimum(largest[: len(patch)], largest[_TOOTH_SPAN + 1 :]) - patch
+            deepest = max(deepest, float(dips[patch > 0].max(initial=0.0)))
+    return deepest / float(known.max()) if deepest else 0.0
+
+
+def _surface_title(letter: str, s: SurfaceProfile) -> str:
+    words = f"{letter}  {style.plain(s.title)}: {style.conditions([s.state], place=True)}"
+    words += f", $L_R$ = {_MM * s.state.contact_length:.3g} mm"
+    if _pressed(s):
+        words += f", $f_{{ext}}/L_R$ = {_KPA * s.state.f_ext / s.state.contact_length:.3g} kPa"
+    teeth = saw_teeth(s.p)
+    coarse = (
+        f"mesh too coarse for the pressure: saw teeth of {100 * teeth:.0f} % of its peak" if teeth > _COARSE else ""
+    )
+    notes = "; ".join(filter(None, (s.note, coarse)))
+    return f"{words}\n     {notes}" if notes else words
+
+
+def _pressed(s: SurfaceProfile) -> bool:
+    """Return whether an external force presses the skin, beyond roundoff of what the skin bears."""
+    length = s.state.contact_length
+    return length > 0 and s.state.f_ext > _NOTHING * float(np.nanmax(s.p)) * length
+
+
+def _common_range(states: Sequence[SurfaceProfile]) -> tuple[float, float]:
+    values = _KPA * np.concatenate([array[np.isfinite(array)] for s in states for array in (s.p, s.t, s.p_el)])
+    low, high = min(float(values.min(initial=0)), 0.0), max(float(values.max(initial=0)), 1e-9)
+    return low - 0.06 * (high - low), high + 0.17 * (high - low)  # numbers of ridges above
+
+
+def _draw_stresses(ax: Axes, s: SurfaceProfile) -> None:
+    x = _MM * s.x
+    ax.axhline(0, color="0.7", lw=0.8, zorder=0)
+    ax.fill_between(x, 0, _KPA * s.p, color=style.PRESSURE, alpha=0.12, lw=0)
+    ax.plot(x, _KPA * s.p, color=style.PRESSURE, lw=1.2, label="contact pressure $p$")
+    ax.plot(x, _KPA * s.p_el, color=style.ATTRACTION, ls="--", label="attraction $\\sigma_{el}$")
+    ax.plot(x, _KPA * s.t, color=style.SHEAR, label="shear traction $t$ on the skin, positive to the right")
+    ax.set_ylabel("stress (kPa)")
+    for number in np.unique(s.ridge[s.p > 0]):
+        where = x[(s.ridge == number) & (s.p > 0)].mean()
+        ax.text(where, 0.97, f"{number:.0f}", transform=ax.get_xaxis_transform(), ha="center", va="top", fontsize=8)
+    if _pressed(s):
+        mean = _KPA * s.state.f_ext / s.state.contact_length
+        there_and_back: Any = (lambda stress: stress / mean, lambda ratio: ratio * mean)
+        ax.secondary_yaxis("right", functions=there_and_back).set_ylabel("stress / $(f_{ext}/L_R)$ (–)")
+
+
+def _draw_gaps(ax: Axes, s: SurfaceProfile, largest: float) -> None:
+    ax.axhline(0, color="0.7", lw=0.8, zorder=0)
+    ax.fill_between(_MM * s.x, np.minimum(_UM * s.y, 2 * _UM * largest), 2 * _UM * largest, color="0.85", lw=0)
+    ax.plot(_MM * s.x, _UM * s.y, color="0.4", lw=1, label="height of the skin (grey) above the screen")
+    ax.plot(_MM * s.x, _UM * s.d_eq, color=style.GAP, lw=2.2, label="equivalent air gap $d_{eq}$")
+    ax.set_ylim(-0.08 * largest * _UM, largest * _UM)
+    ax.set_ylabel("gap (µm)")
+
+
+def history(
+    path: Path | str | None,
+    states: Sequence[ContactState],
+    title: str,
+    mu_0: float | None = None,
+    named: Mapping[str, ContactState] | None = None,
+) -> Figure:
+    """Draw friction force, contact length and the number of ridges in contact over the bone's displacement.
+
+    Args:
+        path: of the PNG file; None for the figure alone.
+        states: accepted states in order, from the last one before sliding on.
+        title: what run it is, see :mod:`fingerpad.results.style`.
+        mu_0: friction coefficient, drawn as the limit without attraction.
+        named: states by name; those with an estimated discretisation error are drawn with error bars.
+    """
+
+    def column(name: str) -> Array:
+        return np.array([getattr(state, name) for state in states], dtype=float)
+
+    x, f_t = _MM * column("bone_x"), column("f_t")
+    with style.look():
+        figure = style.figure(7.5)
+        figure.suptitle(title)
+        force, length, ridges = figure.subplots(3, 1, sharex=True, height_ratios=[2, 2, 1])
+        force.plot(x, f_t, "o-", ms=3.5, color=style.BLACK, label="friction force $f_T$")
+        force.set_ylabel("friction force $f_T$ (N/m)")
+        _draw_apparent(force, x, column("f_ext"), column("mu_app"), mu_0)
+        length.plot(x, _MM * column("contact_length"), "o-", ms=3.5, color=style.BLACK, label="contact length $L_R$")
+        length.set_ylabel("contact length $L_R$ (mm)")
+        _draw_errors(force, named or {}, "f_t", 1.0)
+        _draw_errors(length, named or {}, "contact_length", _MM)
+        ridges.step(x, column("ridges_in_contact"), where="post", color=style.BLACK)
+        ridges.set_ylabel("ridges in\ncontact (number)")
+        ridges.margins(y=0.15)
+        style.count(ridges.yaxis)
+        ridges.set_xlabel("sideways displacement of the bone (mm)")
+        _draw_jumps((force, length, ridges), x, states)
+        for ax in (force, length):
+            ax.legend(loc="lower left", bbox_to_anchor=(0, 1), ncols=2, borderaxespad=0.2)
+        return style.save(figure, path)
+
+
+def _draw_jumps(axes: Sequence[Axes], at: Array, states: Sequence[ContactState]) -> bool:
+    """Draw a dotted line at each jump; return whether there is one."""
+    jumps = at[[state.record is not None and state.record.jump for state in states]]
+    for k, ax in enumerate(axes):
+        for j, jump in enumerate(jumps):
+            label = "part of the skin jumps" if j == k == 0 else None
+            ax.axvline(jump, color="0.4", lw=1, ls=":", zorder=0, label=label)
+    return len(jumps) > 0
+
+
+def _draw_errors(ax: Axes, named: Mapping[str, ContactState], quantity: str, unit: float) -> None:
+    """Draw the named states whose error is known, with error bars, in the colours of the states."""
+    for name, state in named.items():
+        error = getattr(state.error, quantity)
+        if np.isfinite(error) and np.isfinite(state.bone_x) and not (quantity == "f_t" and name != "full_slip"):
+            ax.errorbar(
+                _MM * state.bone_x, unit * getattr(state, quantity), unit * error, fmt="D", ms=6, capsize=5,
+                color=style.STATE[name], label=f"{called(name, state.voltage)} ± discretisation error", zorder=4,
+            )  # fmt: skip
+
+
+def _draw_apparent(ax: Axes, x: Array, f_ext: Array, mu_app: Array, mu_0: float | None) -> None:
+    """Add mu_app on the right, a second scale of the same curve where f_ext is constant, else a curve of its own."""
+    label = "apparent friction\n$\\mu_{app} = f_T / f_{ext}$ (–)"
+    load, other = float(f_ext[0]), ax
+    if load > 0 and np.allclose(f_ext, load, rtol=1e-6, atol=0):
+        there_and_back: Any = (lambda force: force / load, lambda mu: mu * load)
+        ax.secondary_yaxis("right", functions=there_and_back).set_ylabel(label)
+    else:
+        load, other = 1.0, ax.twinx()
+        other.plot(x, mu_app, "s--", ms=3, color=style.GREEN)
+        other.set_ylabel(label, color=style.GREEN)
+    if mu_0 is not None:
+        words = f"$\\mu_{{app}} = \\mu_0$ = {mu_0:.3g}: without attraction"
+        ax.plot([], [], color="0.4", lw=1, ls="--", label=words)
+        for sign in np.unique(np.sign(mu_app[np.abs(mu_app) > _RUBS * mu_0])) if mu_0 else ():
+            other.axhline(sign * mu_0 * load, color="0.4", lw=1, ls="--")
+
+
+def over_time(path: Path | str | None, states: Sequence[ContactState], title: str) -> Figure:
+    """Draw voltage, friction force and contact length over time.
+
+    Args:
+        path: of the PNG file; None for the figure alone.
+        states: accepted states in order, with their times.
+        title: what run it is, see :mod:`fingerpad.results.style`.
+    """
+    time = np.array([state.time for state in states])
+    short = time[-1] - time[0] < _SHORT
+    t = (_MS if short else 1.0) * time
+    rows = (
+        ("voltage $U$ (V)", [state.voltage for state in states], style.VERMILION),
+        ("friction force\n$f_T$ (N/m)", [state.f_t for state in states], style.BLACK),
+        ("contact length\n$L_R$ (mm)", [_MM * state.contact_length for state in states], style.BLUE),
+    )
+    with style.look():
+        figure = style.figure(7.5)
+        figure.suptitle(title)
+        axes = figure.subplots(3, 1, sharex=True)
+        for ax, (label, values, colour) in zip(axes, rows, strict=True):
+            ax.plot(t, values, "o-", ms=3, color=colour)
+            ax.set_ylabel(label)
+        words = "; dotted lines: part of the skin jumps" if _draw_jumps(axes, t, states) else ""
+        axes[-1].set_xlabel(f"time ({'ms' if short else 's'}){words}")
+        return style.save(figure, path)

@@ -1,0 +1,241 @@
+"""Measured findings beside ours: rules of the verdicts, fits with known answers, and what the page claims in words."""
+
+import argparse
+import shlex
+
+import numpy as np
+import pytest
+
+from benchmarks import assumptions
+from benchmarks.assumptions import LEAST_GAP, NEAR, PAPER
+from benchmarks.harness import DOCS, ROOT, kept
+from benchmarks.measured import __main__ as command
+from benchmarks.measured import fingers, rows, rules
+from benchmarks.measured.rules import HIT, MISS, PART, by_factor, by_form, by_share
+from benchmarks.peers import calculix_ridge, ours, plain
+from benchmarks.peers.__main__ import half_width
+from benchmarks.peers.exchange import Answer, Case, Load, Ridge, State, cases
+from benchmarks.runs import FORCES, VOLTAGES
+from fingerpad.cli.arguments import scene_of
+
+
+@pytest.fixture(scope="module")
+def judged():
+    return {row.key: row for row in command.judged(DOCS)}
+
+
+def test_rules():
+    """The same for all rows of a kind; a bound belongs to the better verdict."""
+    assert [by_share(share) for share in (1.0, 0.99, 0.5, 0.49)] == [HIT, PART, PART, MISS]
+    assert [by_factor(*ours, 2.0, 4.0) for ours in ((2, 4), (1.9, 3), (2, 8), (0.9, 3), (3, 8.1))] == [
+        HIT,
+        *(PART, PART, MISS, MISS),
+    ]
+    assert by_factor(1.6, 1.6, 2.0, 2.0, 1.25) == HIT and by_factor(1.5, 1.5, 2.0, 2.0, 1.25) == PART
+
+
+def test_exponents_of_a_power():
+    """U² and U³ over any base, each force by itself."""
+    u = np.array(VOLTAGES)
+    values = np.array([5 + 0.3 * u**2, 1e-3 + 1e-9 * u**3])
+    assert rows.exponents(values, VOLTAGES[1:4]) == pytest.approx([2.0, 3.0], abs=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("misfits", "others", "verdict"),
+    [
+        ((0.1,), (0.11,), HIT),
+        ((0.05,), (0.1,), PART),
+        ((0.11,), (0.0,), MISS),
+        ((0.05, 0.05), (0.05, 0.2), HIT),
+        ((0.05, 0.11), (0.05, 0.05), PART),
+    ],
+)
+def test_form_has_to_fit_and_another_not_to(misfits, others, verdict):
+    """Where another form with as many parameters fits too, the curve does not show which form it has."""
+    assert by_form(misfits, others) == verdict
+
+
+@pytest.mark.parametrize("fit", [rules.of_each, rules.of_largest])
+@pytest.mark.parametrize(("form", "parameter"), [(rules.exponential, 4.0), (rules.power, 2.2), (rules.line, 0.3)])
+def test_forms_find_their_own_curves(form, parameter, fit):
+    """The parameter comes back at any scale, and nothing is left."""
+    x = np.linspace(0.1e-3, 1e-3, 8)
+    found = fit(form, x, 3e4 * form(x, parameter))
+    assert found.parameter == pytest.approx(parameter, rel=1e-4) and found.misfit < 1e-4
+
+
+@pytest.mark.parametrize("form", [rules.paraboloid, rules.ellipse])
+def test_pressures_find_their_own_curves(form):
+    """The half width comes back, in units of the outermost ridge; the other form leaves some per cent."""
+    x = np.linspace(-3e-3, 3e-3, 13)
+    pressure = 2e4 * form(x, 1.2)
+    found = rules.of_largest(form, x, pressure)
+    assert found.parameter == pytest.approx(1.2, rel=1e-4) and found.misfit < 1e-4
+    other = rules.ellipse if form is rules.paraboloid else rules.paraboloid
+    assert 0.005 < rules.of_largest(other, x, pressure).misfit < 0.1
+
+
+def test_kept_rows_are_those_of_the_other_pages(judged):
+    """Where docs/paper.json or docs/models.json are made anew, ``make measured`` has to be given again."""
+    own = kept("measured").numbers
+    again = command.numbers(own["runs"], DOCS)
+    assert {key: row["verdict"] for key, row in again["rows"].items()} == {
+        k: r["verdict"] for k, r in own["rows"].items()
+    }
+    for key, row in again["rows"].items():
+        assert row["numbers"] == pytest.approx(own["rows"][key]["numbers"], rel=1e-6, abs=1e-9), key
+    for name, values in again["curves"].items():
+        assert values == pytest.approx(own["curves"][name], rel=1e-9)
+
+
+def test_kept_friction_follows_the_attraction():
+    """At full slip f_T = µ_0 (f_ext + attraction), so that both rise by the same power of the voltage."""
+    found = rows.grid(kept("paper").numbers, kept("models").numbers)
+    coarse, forces = found.coarse, np.array(FORCES)[:, None]
+    # The slide ends where f_T is steady to 1e-6 of itself.
+    expected = 0.25 * (forces + coarse["full_slip_f_electrostatic"])
+    np.testing.assert_allclose(coarse["full_slip_f_t"], expected, rtol=1e-6)
+    known = [row for row in kept("newtons").numbers["friction"] if row["radius"] == 28e-3 and row["voltage"] == 200]
+    for name in ("gross_area", "contact_area"):  # of the page of newtons
+        sums = dict(zip(fingers.NEWTONS, found.full_finger[f"full_slip_200_{name}"], strict=True))
+        for row in known:
+            assert sums[round(row["f_ext"], 6)] == pytest.approx(row[name], rel=1e-9)
+
+
+def test_runs_of_the_page_balance_their_force():
+    wanted, runs = fingers.scenes(), kept("measured").numbers["runs"]
+    assert set(runs) == set(wanted)
+    for run in runs.values():
+        total = sum(run["pressure"]) * wanted["dry 20"].geometry.ridge_wavelength
+        assert total == pytest.approx(fingers.FORCE, rel=1e-6) and len(run["place"]) == run["ridges"]
+
+
+# -- the page of assumptions -----------------------------------------------------------------------------------------
+@pytest.fixture(scope="module")
+def found():
+    return kept("assumptions").numbers
+
+
+@pytest.mark.slow
+def test_printed_options_give_the_scene(monkeypatch):
+    """As the command line reads them; whether errors are estimated is left to it."""
+    monkeypatch.chdir(ROOT)
+    parser = argparse.ArgumentParser()
+    parser.add_argument("scene", nargs="?", type=assumptions.Path)
+    parser.add_argument("--set", action="append", default=[])
+    for name, case in (assumptions.cases() | assumptions.profiles()).items():
+        printed = assumptions._command(case).strip("`").replace("none", "")
+        scene = scene_of(parser.parse_args([*shlex.split(printed), "--set", "output.errors=false"]))
+        assert scene.parameters() == case._replace(errors=False).scene().parameters(), name
+
+
+def test_sentences_hold_of_the_numbers(found):
+    """What the prose says without a number of its own."""
+    full, shaped, words = found["full"], found["profiles"], assumptions.Comparison(found)
+    mechanical = [name for name in full if "voltage" not in name and "friction" not in name and name != "flat 0"]
+    changes = {name: abs(full[name]["mu_app"] / full["reference"]["mu_app"] - 1) for name in mechanical}
+    profiles = {name for name in assumptions.PARAMETERS if "ridge_profile" in name}
+    assert changes["flat 200"] > max(changes[name] for name in mechanical if name != "flat 200")
+    assert max(changes[name] for name in assumptions.LITTLE) < min(changes[name] for name in profiles)
+    flat, inside = full["flat"], words.counts("flat")
+    assert inside[0] == inside[2] and abs(flat["mu_app"] / PAPER - 1) <= NEAR  # both statements at 170 V
+    assert max(flat["gaps"]["full_slip"]) in (flat["gaps"]["full_slip"][0], flat["gaps"]["full_slip"][-1])
+    at_200 = [row for name, row in shaped.items() if name.endswith("] at 200 V")]
+    assert len(at_200) == 7 and not any(
+        row["d_eq"] >= LEAST_GAP and abs(row["mu_app"] / PAPER - 1) <= NEAR for row in at_200
+    )
+    low = shaped["[1, -0.25] at 150 V"]
+    assert low["d_eq"] > LEAST_GAP and low["mu_app"] < PAPER * (1 - NEAR)
+    assert min(words.met) < 170 < max(words.met)
+    assert min(words.change(*pair, "charged") for pair in (assumptions.LIGHT, ("flat 200", "flat 0"))) > 0
+
+
+def test_default_is_that_of_other_pages(found):
+    """The same scene at 10 µm, run for the models' page; the other counts the ridges that can touch by a rule."""
+    models = kept("models").numbers["scenes"]["75 N/m, 200 V"]["full"]["summary"]
+    reference = found["full"]["reference"]
+    assert reference["mu_app"] == pytest.approx(models["full_slip_mu_app"], rel=1e-5)
+    assert reference["charged"] == pytest.approx(models["charged_contact_length"], rel=1e-3)
+
+
+# -- what other codes are told ---------------------------------------------------------------------------------------
+WIDTH = 0.483  # mm
+
+
+@pytest.fixture(scope="module")
+def body():
+    return ours.make(0.04)
+
+
+@pytest.fixture(scope="module")
+def ridge(body) -> Ridge:
+    return ours.for_peers(body)
+
+
+@pytest.fixture(scope="module")
+def answer(body, ridge) -> Answer:
+    pressed, moved = Load(0.0, -0.01, "pressed without friction"), Load(0.02, -0.01, "moved 5 µm")
+    case = Case(0.25, (Load(0.0, -0.005), pressed, moved))
+    return ours.solve(case, body, ridge.points[ridge.skin].reshape(-1, 2))
+
+
+def test_triangles(ridge):
+    """Counter-clockwise, each middle half-way along its edge (roundoff), and together the ridge.
+
+    Tolerance of the area: chords of 40 um over a curvature of 4 per mm miss a thousandth of the bottom's 0.05 mm.
+    """
+    p = ridge.points[ridge.triangles]
+    for k in range(3):
+        np.testing.assert_allclose(p[:, 3 + k], (p[:, k] + p[:, (k + 1) % 3]) / 2, atol=1e-14)
+    (a, b), (c, d) = ((p[:, k] - p[:, 0]).T for k in (1, 2))
+    area = (a * d - b * c) / 2
+    assert area.min() > 0
+    assert area.sum() == pytest.approx(WIDTH * (0.6 - 0.05), rel=2e-3)
+
+
+def test_skin(ridge):
+    """The skin leads from side to side, left to right, without a gap."""
+    np.testing.assert_array_equal(ridge.skin[1:, 0], ridge.skin[:-1, 1])
+    ends = ridge.points[ridge.skin[[0, -1], [0, 1]]]
+    np.testing.assert_allclose(ends, [[-WIDTH / 2, 0.1], [WIDTH / 2, 0.1]], atol=1e-12)
+
+
+def test_screen_that_moves_instead(answer):
+    """After 20 um under a penetration of 10 um all slips: friction on the skin is mu_f F_n, against the motion.
+
+    Tolerance: the imbalance at which solves end, 1e-12 N/mm, on some 30 nodes.
+    """
+    _, moved = answer.states
+    assert moved.f_t == pytest.approx(-0.25 * moved.f_n, abs=1e-10)
+
+
+def test_half_width_of_a_parabola():
+    """An edge from (0, -1) to (2, 3) with its middle at (1, 0.25): y = -1 + x/2 + 3/4 x^2, below until its root."""
+    points = np.array([[0.0, 0.0], [2.0, 0.0], [1.0, 0.0]])
+    mesh = Ridge(points, np.zeros((0, 6), int), np.array([[0, 1, 2]]), np.zeros(0, int), np.zeros(0, int))
+    state = State("", 0, 0, [[0.0, -1.0], [0.0, 3.0], [0.0, 0.25]], [], [], [])
+    x = np.linspace(0, (-0.5 + np.sqrt(0.25 + 3)) / 1.5, 200001)
+    exact = np.hypot(np.diff(x), np.diff(-1 + x / 2 + 0.75 * x**2)).sum() / 2
+    assert half_width(mesh, state) == pytest.approx(exact, rel=1e-5)  # the error of six Gauss points
+
+
+def test_deck(ridge):
+    """CalculiX gets Ogden's exponent in its own sign, D = 2/K, every facet once, and numbers short enough for it."""
+    deck = calculix_ridge.deck(cases()["friction"], ridge)
+    lines = deck.splitlines()
+    law = [float(word) for word in lines[lines.index("*HYPERELASTIC, OGDEN, N=1") + 1].split(",")]
+    assert law == pytest.approx([0.08676, 14.53, 3 * (1 - 2 * 0.48) / (0.08676 * 1.48)])
+    slave = lines[lines.index("*SURFACE, NAME=SLAVE") + 1 : lines.index("*SURFACE, NAME=MASTER")]
+    assert len(slave) == len(ridge.skin)
+    assert max(len(word.strip()) for line in lines for word in line.split(",") if "*" not in line) <= 20
+    assert deck.count("*STEP") == len(cases()["friction"].loads)
+
+
+def test_plain_script_agrees(body, ridge):
+    """The same forms on the same mesh give the same forces; tolerance: imbalances of 1e-12 N/mm on some 30 nodes."""
+    case = Case(0.25, (Load(0.0, -0.005, "pressed"), Load(0.0035, -0.005, "moved")))
+    one, other = plain.solve(case, ridge), ours.solve(case, body, ridge.points[ridge.skin].reshape(-1, 2))
+    for a, b in zip(one.states, other.states, strict=True):
+        assert (a.f_n, a.f_t) == pytest.approx((b.f_n, b.f_t), abs=1e-10)
+        np.testing.assert_allclose(a.displacement, b.displacement, atol=1e-8)
