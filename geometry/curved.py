@@ -39,12 +39,17 @@ def least(nodes: Array) -> Array:
 
 
 def curve_edges() -> None:
-    """Give the mesh of the current gmsh model nodes in the middle of its edges.
-
-    Where an edge is so curved that a triangle beside it would be folded, or nearly, as in a layer that is much thinner
-    than the edge is long or at a tip that is much sharper, the edges of that triangle are less curved.
-    """
+    """Give the mesh of the current gmsh model nodes in the middle of its edges, on its curves."""
     gmsh.model.mesh.setOrder(2)
+    unfold()
+
+
+def unfold() -> None:
+    """Leave no triangle of second order of the current gmsh model folded, or nearly.
+
+    Where an edge is too curved for a triangle beside it, as in a layer that is much thinner than the edge is long or at
+    a tip that is much sharper, the edges of that triangle are less curved.
+    """
     numbers, coordinates, _ = gmsh.model.mesh.getNodes()
     order = np.argsort(numbers)
     points = np.asarray(coordinates).reshape(-1, 3)[order]
