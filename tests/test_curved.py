@@ -61,8 +61,8 @@ def test_no_triangle_is_folded(case):
 def test_crest_at_the_line_of_symmetry_is_no_corner():
     """The skin is level at x = 0, where two mirrored facets meet: a spline that ends there was inclined by 0.06.
 
-    Tolerance: four times what a parabola through a facet of 20 um leaves, 3 h^3 k^2 / (96 R), with k = 2 pi / 483 um and
-    R = 118 um.
+    Tolerance: four times what a parabola through a facet of 20 um leaves, 3 h^3 k^2 / (96 R), with k = 2 pi / 483 um,
+    and R = 118 um.
     """
     size = MeshSize(contact=20e-6, receptor=40e-6, touching_half_arc=0.3e-3)
     with session("finger"):
