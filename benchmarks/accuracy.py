@@ -211,7 +211,7 @@ def compute(args: Any) -> None:
     """Run what is missing and keep the numbers."""
     wanted, errors = loops(), harness.kept("errors", args.docs).numbers
     summaries = harness.run({name: scene for name, (scene, _) in wanted.items()}, args, _LIMIT)
-    ends = limits.solve_all({"default scene": DEFAULT} | drawn(), LEVELS, args.out.parent / "limits", args.jobs)
+    ends = limits.solve_all({"default scene": DEFAULT} | drawn(), LEVELS, args)
     cases, runs = list[Case](), dict[str, Any]()
     base = errors["default"]["unknowns"] * errors["default"]["factorisations"]
     for name, (_, plain) in wanted.items():

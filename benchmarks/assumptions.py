@@ -7,10 +7,11 @@ docs/assumptions.json and docs/assumptions.md.
 """
 
 import argparse
+import shlex
 import sys
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
@@ -23,34 +24,32 @@ from fingerpad.scene import Scene, load
 from fingerpad.scene.reading import override
 
 _LIMIT = 3600.0  # s of processor time for one run
-_SCENES = harness.ROOT / "demos" / "scenes"
-_COARSE = ("mesh.contact=10e-6", "mesh.receptor=20e-6")
 PAPER, NEAR, LEAST_GAP = 0.55, 0.05, 1.7e-6  # µ_app, what counts as equal to it; m
 
 
-class Case(NamedTuple):
-    """A run by its command: a file of ``demos/scenes``, the changes beside the mesh, the mesh's."""
-
-    file: str = ""
-    changes: tuple[str, ...] = ()
-    mesh: tuple[str, ...] = _COARSE
-    errors: bool = False
-    """Whether the row states the estimated error."""
-
-    def scene(self) -> Scene:
-        """Return the scene of the command; runs whose errors the page does not state leave them out."""
-        changes = (*self.changes, *self.mesh, *([] if self.errors else ["output.errors=false"]))
-        path = _SCENES / f"{self.file}.toml" if self.file else None
-        return load(path, dict(override(change) for change in changes))
+def _set(*changes: str) -> str:
+    return " ".join(f'--set "{change}"' if " " in change else f"--set {change}" for change in changes)
 
 
-# -- full runs -----------------------------------------------------------------------------------------------
+_COARSE = _set("mesh.contact=10e-6", "mesh.receptor=20e-6")
+_FLAT = "demos/scenes/flat_ridges.toml"
+
+
+def scene(command: str, errors: bool = False) -> Scene:
+    """Return the scene of a command's options; runs whose errors the page does not state leave them out."""
+    words = [word for word in shlex.split(command) if word != "--set"]
+    files, changes = ([word for word in words if word.endswith(".toml") is is_file] for is_file in (True, False))
+    path = harness.ROOT / files[0] if files else None
+    return load(path, dict(map(override, changes + ["output.errors=false"] * (not errors))))
+
+
+# -- full runs, by name: their options ---------------------------------------------------------------------------
 READINGS = {
-    "finest": Case(mesh=()),
-    "reference": Case(),
-    "abaqus": Case("abaqus_exponent"),
-    "gap": Case("length_by_gap"),
-    "soft": Case("soft_screen"),
+    "finest": "",
+    "reference": _COARSE,
+    "abaqus": f"demos/scenes/abaqus_exponent.toml {_COARSE}",
+    "gap": f"demos/scenes/length_by_gap.toml {_COARSE}",
+    "soft": f"demos/scenes/soft_screen.toml {_COARSE}",
 }
 PARAMETERS = {  # change: in words, if it needs any
     "geometry.ridge_profile=[1, -0.125]": "tips half as curved",
@@ -75,39 +74,40 @@ LITTLE = {
     "geometry.merkel_offset=10e-6": "half",
     "geometry.merkel_offset=40e-6": "twice",
 }
-FLAT = {
-    "flat": Case("flat_ridges", mesh=(), errors=True),
-    "flat 170": Case("flat_ridges", errors=True),
-    "flat 200": Case("flat_ridges", ("voltage=200",), errors=True),
+FLAT = {  # with errors
+    "flat": _FLAT,
+    "flat 170": f"{_FLAT} {_COARSE}",
+    "flat 200": f"{_FLAT} --set voltage=200 {_COARSE}",
 }
-BESIDE = {"flat 0": Case("flat_ridges", ("voltage=0",)), "both": Case("", ("geometry.ridge_profile=[1, -0.11]",))}
+BESIDE = {
+    "flat 0": f"{_FLAT} --set voltage=0 {_COARSE}",
+    "both": f"{_set('geometry.ridge_profile=[1, -0.11]')} {_COARSE}",
+}
 
 
-def cases() -> dict[str, Case]:
-    """Return all full runs by name."""
-    changed = {change: Case("", (change,)) for change in (*PARAMETERS, *LITTLE)}
-    return {**READINGS, **changed, **FLAT, **BESIDE}
+def runs() -> dict[str, str]:
+    """Return the options of all full runs by name."""
+    return {**READINGS, **{change: f"{_set(change)} {_COARSE}" for change in (*PARAMETERS, *LITTLE)}, **FLAT, **BESIDE}
 
 
 # -- ridge profiles ------------------------------------------------------------------------------------------
-_WIDE = "mesh.touching_fraction=0.6"
 _SHOWN = ("[1]", "[1, 0, -0.11]", "[1, -0.125]", "[1, -0.25]", "[1, -0.48, 0.13]")
 _OTHERS = ("[1, -0.0625]", "[1, 0, -0.05]")
 LIGHT = ("flat, 10 N/m, 200 V", "flat, 10 N/m, 0 V")
 _BY_VOLTAGE = {"[1, -0.25]": (150, 165), "[1, -0.48, 0.13]": (165, 170, 172)}
 
 
-def _profile(profile: str, voltage: float, *more: str) -> tuple[str, Case]:
-    changes = (f"geometry.ridge_profile={profile}", f"voltage={voltage:g}", *more)
-    return f"{profile} at {voltage:g} V", Case("", changes, (*_COARSE, *([_WIDE] if profile.count(",") > 1 else [])))
+def _profile(profile: str, voltage: float, *more: str) -> str:
+    wide = ["mesh.touching_fraction=0.6"] * (profile.count(",") > 1)
+    return f"{_set(f'geometry.ridge_profile={profile}', f'voltage={voltage:g}', *more)} {_COARSE} {_set(*wide)}".strip()
 
 
-def profiles() -> dict[str, Case]:
-    """Return the runs of ridge profiles by name: at 200 V and other voltages, the flat one at 10 N/m."""
-    at_200 = dict(_profile(profile, 200.0) for profile in (*_SHOWN, *_OTHERS))
-    others = dict(_profile(profile, u) for profile, voltages in _BY_VOLTAGE.items() for u in voltages)
-    light = {f"flat, 10 N/m, {u:g} V": _profile(_SHOWN[-1], u, "f_ext=10")[1] for u in (0.0, 200.0)}
-    return at_200 | others | light
+def profiles() -> dict[str, str]:
+    """Return the options of the runs of ridge profiles: at 200 V and other voltages, the flat one at 10 N/m."""
+    pairs = [(profile, 200) for profile in (*_SHOWN, *_OTHERS)]
+    pairs += [(profile, u) for profile, voltages in _BY_VOLTAGE.items() for u in voltages]
+    light = {name: _profile(_SHOWN[-1], u, "f_ext=10") for name, u in zip(LIGHT, (200.0, 0.0), strict=True)}
+    return {f"{profile} at {u} V": _profile(profile, u) for profile, u in pairs} | light
 
 
 # -- numbers -------------------------------------------------------------------------------------------------
@@ -122,78 +122,51 @@ def _row(summary: Summary) -> dict[str, float | None]:
 
 def compute(args: argparse.Namespace) -> None:
     """Run what is missing and keep the numbers."""
-    scenes = {name: case.scene() for name, case in cases().items()}
-    shapes = {name: case.scene() for name, case in profiles().items()}
+    scenes = {name: scene(options, name in FLAT) for name, options in runs().items()}
+    shapes = {name: scene(options) for name, options in profiles().items()}
     full, shaped = harness.run(scenes, args, _LIMIT), harness.run(shapes, args, _LIMIT)
     if failed := [name for name, summary in (full | shaped).items() if "failure" in summary]:
         raise SystemExit(f"no numbers are kept: {'; '.join(failed)} failed; the other runs are kept in {args.out}")
     found: dict[str, dict[str, Any]] = {"full": {}, "profiles": {}}
-    for name, scene in scenes.items():
-        run = Run(scene, args.out)
+    for name, its in scenes.items():
+        run = Run(its, args.out)
         gaps = {state: run.on_ridges(run.row(state), "d_eq")[1].tolist() for state in ("charged", "full_slip")}
         found["full"][name] = _row(full[name]) | {"gaps": gaps, "penetration": float(run.steps["penetration"].max())}
-    for name, scene in shapes.items():
+    for name, its in shapes.items():
         pressure = shaped[name]["full_slip_f_contact"] / shaped[name]["full_slip_contact_length"]
-        more = {"pressure": pressure, "d_eq": float(scene.closure()(pressure).d_eq)}
+        more = {"pressure": pressure, "d_eq": float(its.closure()(pressure).d_eq)}
         found["profiles"][name] = _row(shaped[name]) | more
     harness.keep("assumptions", found, harness.made([*full.values(), *shaped.values()]), args.docs)
 
 
 # -- page ----------------------------------------------------------------------------------------------------
-def _command(case: Case, mesh: bool = True) -> str:
-    """Return the options of a run's command; those of the mesh on demand."""
-    words = [f"demos/scenes/{case.file}.toml"] if case.file else []
-    for change in (*case.changes, *(case.mesh if mesh else ())):
-        words += ["--set", f'"{change}"' if " " in change else change]
-    return f"`{' '.join(words)}`" if words else "none"
+def sentences(found: Mapping[str, Any]) -> dict[str, Any]:
+    """Return what the page's sentences have of the kept numbers, by their words in the template."""
+    rows, shaped = found["full"] | found["profiles"], found["profiles"].items()
 
-
-class Comparison:
-    """The rows of all runs, and what the page's sentences and tables have of them.
-
-    Attributes:
-        rows: by name.
-        near: at 200 V, of ridge profiles that are not flat.
-        close: air gaps (m) of those of them that have the paper's friction.
-        met: voltages (V) at which the flattest profile has both of the paper's numbers.
-    """
-
-    def __init__(self, found: Mapping[str, Any]) -> None:
-        """Take the kept numbers."""
-        self.rows: dict[str, Any] = found["full"] | found["profiles"]
-        shaped = found["profiles"].items()
-        self.near = [row for name, row in shaped if name.endswith("200 V") and "flat" not in name]
-        self.close = [row["d_eq"] for row in self.near if abs(row["mu_app"] / PAPER - 1) <= NEAR]
-        flattest = [(float(name.split()[-2]), row) for name, row in shaped if name.startswith(_SHOWN[-1])]
-        both = (u for u, row in flattest if row["d_eq"] >= LEAST_GAP and abs(row["mu_app"] / PAPER - 1) <= NEAR)
-        self.met = list(both)
-
-    def change(self, name: str, other: str = "reference", key: str = "mu_app") -> float:
+    def change(name: str, other: str = "reference", key: str = "mu_app") -> float:
         """Return by how much a run differs from another (%)."""
-        return float(100 * (self.rows[name][key] / self.rows[other][key] - 1))
+        return float(100 * (rows[name][key] / rows[other][key] - 1))
 
-    def off(self, name: str) -> float:
-        """Return by how much the friction of a run is above the paper's (%)."""
-        return float(100 * (self.rows[name]["mu_app"] / PAPER - 1))
-
-    def gaps(self, name: str) -> Array:
+    def gaps(name: str) -> Array:
         """Return the air gaps of both states (m)."""
-        return np.concatenate([self.rows[name]["gaps"][state] for state in ("charged", "full_slip")])
+        return np.concatenate([rows[name]["gaps"][state] for state in ("charged", "full_slip")])
 
-    def counts(self, name: str) -> tuple[int, int, int]:
+    def counts(name: str) -> tuple[int, int, int]:
         """Return how many air gaps are in the paper's range, how many below it, and how many there are."""
-        gaps = self.gaps(name)
-        return int(within(gaps).sum()), int((gaps < LEAST_GAP).sum()), len(gaps)
+        return int(within(gaps(name)).sum()), int((gaps(name) < LEAST_GAP).sum()), len(gaps(name))
 
-    def friction(self, name: str) -> str:
-        """Return µ_app of a run, with its error where the page states it."""
-        row = self.rows[name]
-        return plus_minus(row["mu_app"], row["error"]) if row["error"] else f"{row['mu_app']:.4f}"
+    def near(row: Mapping[str, Any]) -> bool:
+        return bool(abs(row["mu_app"] / PAPER - 1) <= NEAR)
 
-    def line(self, name: str) -> str:
-        """Return the cells of a run: friction and lengths."""
-        row = self.rows[name]
-        return f"{self.friction(name)} | {row.f_t:.2f} | {1e3 * row.contact_length:.3f} | {1e3 * row.charged:.3f}"
+    at_200 = [row for name, row in shaped if name.endswith("200 V") and "flat" not in name]
+    flattest = [(float(name.split()[-2]), row) for name, row in shaped if name.startswith(_SHOWN[-1])]
+    return {
+        "rows": rows, "change": change, "gaps": gaps, "counts": counts, "near": at_200,
+        "off": lambda name: 100 * (rows[name]["mu_app"] / PAPER - 1),
+        "close": [row["d_eq"] for row in at_200 if near(row)],
+        "met": [voltage for voltage, row in flattest if row["d_eq"] >= LEAST_GAP and near(row)],
+    }  # fmt: skip
 
 
 def _span(lengths: Sequence[float]) -> str:
@@ -203,15 +176,23 @@ def _span(lengths: Sequence[float]) -> str:
 
 def draw(docs: Path) -> Path:
     """Draw the page from the kept numbers."""
-    found = Comparison(harness.kept("assumptions", docs).numbers)
+    names = sentences(harness.kept("assumptions", docs).numbers)
+    rows = names["rows"]
+
+    def friction(name: str) -> str:
+        row = rows[name]
+        return plus_minus(row["mu_app"], row["error"]) if row["error"] else f"{row['mu_app']:.4f}"
+
+    def line(name: str) -> str:
+        row = rows[name]
+        return f"{friction(name)} | {row.f_t:.2f} | {1e3 * row.contact_length:.3f} | {1e3 * row.charged:.3f}"
+
     shown = [
-        (profile, voltage, found.rows[f"{profile} at {voltage} V"])
+        (profile, voltage, rows[f"{profile} at {voltage} V"])
         for profile in _SHOWN
         for voltage in sorted({200, *_BY_VOLTAGE.get(profile, ())}, reverse=True)
     ]
-    names = {name: getattr(found, name) for name in dir(found) if not name.startswith("_")}
-    names |= {"command": _command, "span": _span, "shown": shown, "HALF": next(iter(PARAMETERS))}
-    names["option"] = lambda name: _command(Case("", () if name == "reference" else (name,)), mesh=False)
+    names |= {"friction": friction, "line": line, "span": _span, "shown": shown, "HALF": next(iter(PARAMETERS))}
     return harness.page(docs, "assumptions", "python3 -m benchmarks.assumptions", globals() | names)
 
 

@@ -8,6 +8,7 @@ state of the quantity. Writes docs/chart.json, docs/chart.md and docs/chart.png.
 """
 
 import sys
+import tomllib
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
@@ -36,35 +37,7 @@ Reference = Mapping[str, Limit]
 
 
 # -- scenes --------------------------------------------------------------------------------------------------
-_ALL_SIZES = ((40e-6, 0.5, 40e-6), (20e-6, 0.5, 20e-6), (10e-6, 0.5, 10e-6), (5e-6, 0.125, 10e-6))
-# A family is a setting; all but the first are varied around a contact size of 10 um.
-FAMILIES: Mapping[str, Mapping[str, Mapping[str, Any]]] = {
-    "contact size": {f"{h * 1e6:g} µm": {"mesh.contact": h} for h in (20e-6, 10e-6, 2.5e-6)},
-    "growth": {f"growth {growth:g}": {"mesh.growth": growth} for growth in (0.5, 0.125)},
-    "size at the sites": {f"{h * 1e6:g} µm at the sites": {"mesh.receptor": h} for h in (40e-6, 20e-6, 10e-6, 2.5e-6)},
-    "all sizes": {
-        f"{h * 1e6:g} µm, growth {growth:g}, {sites * 1e6:g} µm at the sites": {
-            "mesh.contact": h,
-            "mesh.growth": growth,
-            "mesh.receptor": sites,
-        }
-        for h, growth, sites in _ALL_SIZES
-    },
-    "element": {name: {"numerics.element": name} for name in ("P1", "P2 reduced", "P2-P1", "P3")}
-    | {"P1, 5 µm": {"mesh.contact": 5e-6, "numerics.element": "P1"}},
-    OTHER_MODEL: {
-        f"Nitsche, γ_0 = {gamma:g}": {"contact.formulation": "nitsche", "contact.gamma_0": gamma}
-        for gamma in (1.0, 10.0)
-    }
-    | {"augmented Lagrangian": {"contact.formulation": "augmented"}}
-    | {f"penalty {eps_n / 1e9:g} MPa/mm": {"contact.eps_n": eps_n} for eps_n in (0.5e12, 5e12)},
-    "solver": {f"{points} points a facet": {"numerics.quadrature_points": points} for points in (3, 6)}
-    | {
-        "tolerance 1e-7": {"numerics.tolerance": 1e-7},
-        "coupling tolerance 1e-3": {"numerics.coupling_tolerance": 1e-3},
-    },
-    "steps": {f"steps × {scale:g}": {"numerics.step_scale": scale} for scale in (0.5, 2.0)},
-}
+FAMILIES: dict[str, Any] = tomllib.loads((harness.ROOT / "benchmarks/chart.toml").read_text(encoding="utf-8"))
 
 
 def scenes() -> dict[tuple[str, str], Scene]:

@@ -91,7 +91,7 @@ def compute(args: Any) -> None:
     """Run what is missing and keep the numbers."""
     scenes = {f"{name} {value:g}": scene for name in STUDIES for value, scene in study(name).items()}
     summaries = harness.run({"default": DEFAULT} | scenes, args, _LIMIT)
-    again = limits.solve_all({"default": DEFAULT}, LEVELS, args.out.parent / "limits", 1)["default"]
+    again = limits.solve_all({"default": DEFAULT}, LEVELS, args)["default"]
     default = finished(DEFAULT, args.out)
     if default is None or "failure" in again:
         raise SystemExit(f"the default scene has no limit: {again.get('failure', 'its run did not reach full slip')}")

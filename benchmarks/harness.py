@@ -2,7 +2,8 @@
 
 A study has three steps:
 
-1. :func:`run` computes those of its scenes that are missing in ``results/traces``, kept by their parameters;
+1. :func:`run` computes those of its scenes that are missing in ``results/traces``, kept by their parameters, and
+   :func:`solve` other problems;
 2. :func:`keep` writes the numbers that its page shows to ``docs/NAME.json``, with the version that made them;
 3. its function ``draw(docs)`` reads them by :func:`kept` and draws its pictures by :func:`picture` and its page by
    :func:`page`, from a template in ``benchmarks/prose``. ``python3 -m benchmarks.pages`` draws all, without a run.
@@ -10,11 +11,13 @@ A study has three steps:
 
 import argparse
 import json
+import math
 import re
 import subprocess
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from datetime import date
+from hashlib import sha256
 from pathlib import Path
 from typing import Any
 
@@ -24,7 +27,9 @@ from matplotlib.figure import Figure
 from fingerpad.cli.arguments import positive
 from fingerpad.results import style
 from fingerpad.results.files import replace
+from fingerpad.runs import processes
 from fingerpad.runs.batch import Summary, sweep
+from fingerpad.runs.processes import End, Pool
 from fingerpad.scene import Scene
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -49,6 +54,39 @@ def parser(description: str | None, out: str = "traces") -> argparse.ArgumentPar
 def run(scenes: Mapping[str, Scene], args: argparse.Namespace, limit: float) -> dict[str, Summary]:
     """Run the scenes that are missing in ``args.out``, each for at most ``limit`` (s); return all summaries by name."""
     return sweep(scenes, args.out, args.jobs, limit)
+
+
+def solve(
+    module: str, cases: Mapping[str, Any], folder: Path, jobs: int, limit: float, hours: float = math.inf
+) -> dict[str, Any]:
+    """Solve cases by ``python3 -m MODULE CASE LIMIT``, each in a process of its own, unless its answer is kept.
+
+    Args:
+        module: which prints the answer to a case as JSON in its last line.
+        cases: data of JSON by name.
+        folder: of the answers.
+        jobs: processes at a time.
+        limit: of the processor time of each (s).
+        hours: after which none is started; such cases have no answer.
+
+    Returns:
+        The answers by name; of a process that failed its ``failure``, the reason, and ``message``.
+    """
+    folder.mkdir(parents=True, exist_ok=True)
+    texts = {name: json.dumps(case, sort_keys=True) for name, case in cases.items()}
+    files = {name: folder / f"{sha256(text.encode()).hexdigest()[:12]}.json" for name, text in texts.items()}
+    found = {name: json.loads(file.read_text(encoding="utf-8")) for name, file in files.items() if file.exists()}
+
+    def done(name: str, end: End, left: int) -> None:
+        failure = {"failure": end.reason, "message": end.message}
+        found[name] = failure if end.reason else json.loads(end.stdout.splitlines()[-1])
+        if end.reason != "STOPPED":
+            replace(files[name], json.dumps(found[name]) + "\n")
+        print(f"{left:4d} left  {name}: {end.reason or 'done'} {end.message}", flush=True)
+
+    pool = Pool[str, End](lambda name: processes.run(module, [texts[name], str(limit)], limit), jobs, hours)
+    pool.run([name for name in cases if name not in found], done)
+    return found
 
 
 def main(description: str | None, compute: Compute, draw: Draw, given: Sequence[str] | None = None) -> int:

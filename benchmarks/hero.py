@@ -75,6 +75,7 @@ def _thinned(points: Array) -> list[list[float]]:
     return thinned
 
 
+# -- page ----------------------------------------------------------------------------------------------------
 def draw(docs: Path) -> Path:
     """Draw docs/hero.png from docs/hero.json; return its path."""
     numbers = kept("hero", docs).numbers

@@ -1,6 +1,6 @@
 r"""Limits under refinement: of a quantity, and of a scene whose states are solved again on meshes of halved sizes.
 
-python3 -m benchmarks.limits SCENE.json LEVELS LIMIT     one scene, prints JSON
+python3 -m benchmarks.limits CASE LIMIT     JSON of a scene and a number of levels, prints JSON
 
 With values :math:`f_k` on meshes of size :math:`h_k`, each half of the one before, the last three give
 
@@ -19,23 +19,22 @@ solved again on the scene's own mesh, for the effect of the coarse path on norma
 state is not found on a mesh after the third, the limit is that of the meshes before, with their larger bar.
 """
 
+import argparse
 import json
 import sys
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 from mpi4py import MPI
 
+from benchmarks import harness
 from fingerpad.accuracy.solves import Solve, StateRecorder, solve_again
 from fingerpad.model.finger import Step
 from fingerpad.model.options import FingerModel, plan
 from fingerpad.model.simulation import Simulation
-from fingerpad.results.files import replace
-from fingerpad.runs.batch import key
-from fingerpad.runs.processes import End, Pool, limit_processor_time, run
+from fingerpad.runs.processes import limit_processor_time
 from fingerpad.scene import Scene, from_data, start
 from geometry.parameters import MeshSize
 from variational.solvers.continuation import StepFailed
@@ -84,28 +83,14 @@ def meshes(mesh: MeshSize, levels: int) -> list[MeshSize]:
     return [first.model_copy(update={s: getattr(first, s) / 2**n for s in _HALVED}) for n in range(levels)]
 
 
-def solve_all(scenes: Mapping[str, Scene], levels: int, folder: Path, jobs: int) -> dict[str, dict[str, Any]]:
-    """Solve the scenes that are not kept in ``folder`` yet, each in a process of its own, ``jobs`` at a time.
+def solve_all(scenes: Mapping[str, Scene], levels: int, args: argparse.Namespace) -> dict[str, dict[str, Any]]:
+    """Solve the scenes that are not kept yet beside the folder of runs of a study's command line ``args``.
 
     Return by name ``path``, ``own`` (the scene's mesh) and ``levels``, each a mesh, cost and values; or ``failure``.
     """
-    folder.mkdir(parents=True, exist_ok=True)
-    files = {name: folder / f"{key(scene)}-{levels}.json" for name, scene in scenes.items()}
-    found = {name: json.loads(file.read_text(encoding="utf-8")) for name, file in files.items() if file.exists()}
-
-    def job(name: str) -> End:
-        file = folder / f"{key(scenes[name])}.scene.json"
-        file.write_text(json.dumps(scenes[name].parameters()), encoding="utf-8")
-        return run("benchmarks.limits", [str(file), str(levels), str(_LIMIT)], _LIMIT)
-
-    def done(name: str, end: End, left: int) -> None:
-        if not end.reason:
-            replace(files[name], end.stdout)
-        found[name] = {"failure": f"{end.reason}: {end.message}"} if end.reason else json.loads(end.stdout)
-        print(f"limit of {name}: {found[name].get('failure', 'done')}; {left} left")
-
-    Pool[str, End](job, jobs).run([name for name in scenes if name not in found], done)
-    return found
+    cases = {f"limit of {name}": {"scene": scene.parameters(), "levels": levels} for name, scene in scenes.items()}
+    found = harness.solve("benchmarks.limits", cases, args.out.parent / "limits", args.jobs, _LIMIT)
+    return {name: found[f"limit of {name}"] for name in scenes}
 
 
 def limits(found: Mapping[str, Any]) -> dict[str, Limit]:
@@ -165,6 +150,6 @@ def _solve(scene: Scene, levels: int) -> dict[str, Any]:
 
 
 if __name__ == "__main__":
-    limit_processor_time(float(sys.argv[3]))
-    data = json.loads(Path(sys.argv[1]).read_text(encoding="utf-8"))
-    print(json.dumps(_solve(from_data(data), int(sys.argv[2]))))
+    limit_processor_time(float(sys.argv[2]))
+    case = json.loads(sys.argv[1])
+    print(json.dumps(_solve(from_data(case["scene"]), case["levels"])))

@@ -211,7 +211,6 @@ def operations(factor: str) -> Numbers:
         "memory": comm.allreduce(memory_mb()),
         "before": comm.allreduce(before),
         "front": factors.getMumpsInfog(11),
-        "flops": factors.getMumpsRinfog(3),
     }
 
 

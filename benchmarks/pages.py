@@ -5,7 +5,7 @@ python3 -m benchmarks.pages --stale                        also: make stale; nee
 
 A page is older than the code where a file that computes its numbers differs from that which made them: one of the
 packages (geometry, variational, fingerpad without what starts, reads, refuses, orders runs, writes and prints), or of
-the page's own program, without what only draws it. Comments and docstrings do not count, nor packages that were found
+the page's own program, up to its comment "-- page". Comments and docstrings do not count, nor packages that were found
 to compute the same numbers (docs/same.json, by benchmarks/same.py), or the same but for some that the page's program
 has no word of. Where these agree within a tolerance alone, the page is listed with it. The commit that made numbers is
 found by the hash of the packages' files that is kept with them; a program in benchmarks/ is compared with that of the
@@ -42,7 +42,7 @@ PAGES = {
     "paper": "benchmarks.paper.__main__",
     "peers": "benchmarks.peers.__main__",
     "performance": "benchmarks.performance",
-    "stability": "benchmarks.stability.page",
+    "stability": "benchmarks.stability.__main__",
     "verification": "benchmarks.verification.case",
 }
 SAME = "same.json"  # pairs of commits that compute the same numbers
@@ -50,7 +50,7 @@ _PACKAGES = ("geometry", "variational", "fingerpad")
 _WITHOUT_NUMBERS = (  # these start, read, refuse, order runs, write and print
     *(f"fingerpad/{wing}/" for wing in ("cli", "io", "results", "report", "calculator", "runs")),  # io: now results
     *("fingerpad/startup.py", "fingerpad/installed.py", "geometry/meshfile.py", "fingerpad/model/cost.py"),
-    *("fingerpad/model/expected.py", "fingerpad/scene/remarks.py", "fingerpad/scene/messages.py"),
+    *("fingerpad/model/expected.py", "fingerpad/scene/contradictions.py", "fingerpad/scene/messages.py"),
     "fingerpad/model/report.py",
 )
 _REDUCED = "fingerpad/reduced"  # no full run uses it: part of the programs that import it
@@ -85,36 +85,12 @@ def source(commit: str) -> str:
 
 @functools.cache
 def computes(text: bytes) -> str:
-    """Return the statements of a module, without comments, docstrings and what only ``draw(docs)`` uses."""
-    module = ast.parse(text)
+    """Return the statements of a module, without comments and docstrings, up to the comment ``-- page``."""
+    module = ast.parse(text.partition(b"\n# -- page ")[0])
     for node in ast.walk(module):
         if isinstance(node, ast.Module | ast.ClassDef | ast.FunctionDef) and ast.get_docstring(node, clean=False):
             node.body = node.body[1:] or [ast.Pass()]
-    drawing = _drawing(module)
-    module.body = [node for node in module.body if _name(node) not in drawing]
     return ast.dump(module)
-
-
-def _drawing(module: ast.Module) -> set[str]:
-    """Return ``draw`` of a page's program and the private names that nothing else uses; or nothing."""
-    own = {name: node for node in module.body if (name := _name(node))}
-    if "draw" not in own:
-        return set()
-    used, rest = set[str](), [node for node in module.body if node not in own.values()]
-    rest += [node for name, node in own.items() if not name.startswith("_") and name != "draw"]
-    while rest:
-        names = {each.id for each in ast.walk(rest.pop()) if isinstance(each, ast.Name)} & own.keys() - used - {"draw"}
-        used |= names
-        rest += [own[name] for name in names]
-    return {name for name in own if name.startswith("_")} - used | {"draw"}
-
-
-def _name(node: ast.stmt) -> str:
-    """Return the name that a statement of a module defines, empty where it does something else."""
-    if isinstance(node, ast.ClassDef | ast.FunctionDef):
-        return node.name
-    targets = node.targets if isinstance(node, ast.Assign) else [node.target] if isinstance(node, ast.AnnAssign) else []
-    return targets[0].id if len(targets) == 1 and isinstance(targets[0], ast.Name) else ""
 
 
 def changed(before: Mapping[str, bytes], now: Mapping[str, bytes]) -> set[str]:
@@ -177,7 +153,7 @@ def stale(name: str, docs: Path) -> tuple[str, list[str]]:
     differ, within = set[str]().union(*(paths for paths, _ in compared)), max(part for _, part in compared)
     if any(_REDUCED.replace("/", ".").encode() in text for text in now.values()):
         differ |= {path for path in since(brought, _WITHOUT_NUMBERS, pairs)[0] if path.startswith(_REDUCED)}
-    differ |= {path for path in changed(files(brought, own), now) if not path.endswith("/page.py")}
+    differ |= changed(files(brought, own), now)
     words = f"version {made['version']} of {made['date']}, commit {', '.join(found)}"
     return words + f"; the packages compute the same within {within:g} ({SAME})" * (within > 0), sorted(differ)
 
@@ -202,8 +178,8 @@ def main(given: Sequence[str] | None = None) -> int:
             words += f"; since then changed: {', '.join(differ[:_SHOWN])}{' …' * (len(differ) > _SHOWN)}"
         if differ or "within" in words:
             print(f"{name}: {words}")
-    older = sum(bool(differ) for _, differ in found.values())
-    print(f"{older} of {len(found)} pages are older than the code that they rest on")
+    own = [all(path.startswith("benchmarks/") for path in differ) for _, differ in found.values() if differ]
+    print(f"{len(own)} of {len(found)} pages are older than their code, {sum(own)} by benchmarks/ alone")
     return 0
 
 

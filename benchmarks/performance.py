@@ -6,7 +6,6 @@ Each part is measured in processes of its own and kept with the version and the 
 ratios are the same on a busy machine; the part "ranks" is refused on one. Writes docs/performance.json and the page.
 """
 
-import argparse
 import json
 import os
 import subprocess
@@ -177,10 +176,8 @@ def draw(docs: Path) -> Path:
 
 def main(given: Sequence[str] | None = None) -> int:
     """Measure, keep and draw."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = harness.parser(__doc__)
     parser.add_argument("--part", action="append", choices=PARTS, help="measure this part alone; may be repeated")
-    parser.add_argument("--docs", type=Path, default=harness.DOCS, help="folder of the page and its numbers")
-    parser.add_argument("--draw", action="store_true", help="measure nothing, draw the page from the kept numbers")
     args = parser.parse_args(given)
     if not args.draw:
         measure(args.part or list(PARTS), args.docs)

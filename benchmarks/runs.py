@@ -1,12 +1,12 @@
 """A finished run as arrays, and the scenes that several studies run."""
 
-import csv
 from collections.abc import Mapping
 from functools import cached_property
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+import pandas as pd
 from numpy.typing import NDArray
 
 from fingerpad.model.options import by_rule
@@ -39,32 +39,24 @@ class Run:
             raise FileNotFoundError(f"run {key(scene)} is not there or did not reach its end")
         self.scene, self.folder, self.summary = scene, out / key(scene), summary
 
-    def _columns(self, name: str) -> dict[str, list[str]]:
-        with (self.folder / f"{name}.csv").open(encoding="utf-8", newline="") as file:
-            rows = list(csv.DictReader(file))
-        return {column: [row[column] for row in rows] for column in rows[0]}
+    def _table(self, name: str) -> dict[str, NDArray[Any]]:
+        columns = pd.read_csv(self.folder / f"{name}.csv", float_precision="round_trip")
+        return {str(column): values.to_numpy() for column, values in columns.items()}
 
     @cached_property
-    def steps(self) -> dict[str, Array]:
-        """Columns of the accepted steps, shape (steps,); loads by name are in :attr:`loads`."""
-        words = {"True": 1.0, "False": 0.0}
-        columns = {name: values for name, values in self._columns("steps").items() if name != "load"}
-        return {name: np.array([words.get(v, v) for v in values], dtype=float) for name, values in columns.items()}
+    def steps(self) -> dict[str, NDArray[Any]]:
+        """Columns of the accepted steps, shape (steps,); ``load`` is the name of the load that each belongs to."""
+        return self._table("steps")
 
     @cached_property
-    def loads(self) -> list[str]:
-        """The load that each step belongs to."""
-        return self._columns("steps")["load"]
-
-    @cached_property
-    def ridges(self) -> dict[str, Array]:
+    def ridges(self) -> dict[str, NDArray[Any]]:
         """Columns of the ridges in contact, one row a step and ridge."""
-        return {k: np.array(v, dtype=float) for k, v in self._columns("ridges").items() if k != "note"}
+        return self._table("ridges")
 
     @cached_property
     def receptors(self) -> dict[str, Array]:
         """Strain energy density at the receptors (J/m^3), columns of shape (steps, ridges); ``ridge`` has (ridges,)."""
-        columns = {k: np.array(v, dtype=float) for k, v in self._columns("receptors").items()}
+        columns = self._table("receptors")
         count = len(np.unique(columns["ridge"]))
         return {k: v.reshape(-1, count) if k != "ridge" else v[:count] for k, v in columns.items()}
 

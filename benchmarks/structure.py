@@ -10,7 +10,6 @@ module where a function has a parameter, or returns a value, that is annotated a
 
 import argparse
 import ast
-import sys
 from collections import Counter
 from collections.abc import Iterator, Mapping
 from functools import cache
@@ -68,41 +67,31 @@ def _imported(part: ast.AST, files: Mapping[str, Path], inside: tuple[type[ast.A
 
 
 def circles(graph: Graph) -> list[list[str]]:
-    """Return the sets of modules that import each other, each sorted, by Tarjan's algorithm."""
-    index: dict[str, int] = {}
-    low: dict[str, int] = {}
-    stack: list[str] = []
-    found: list[list[str]] = []
+    """Return the sets of modules that import each other, each sorted; a module of no circle is a set of its own."""
+    reached = {name: _reached(name, graph) for name in graph}
+    found = {tuple(sorted({name} | {other for other in reached[name] if name in reached[other]})) for name in graph}
+    return [list(group) for group in sorted(found)]
 
-    def visit(name: str) -> None:
-        index[name] = low[name] = len(index)
-        stack.append(name)
-        for other in sorted(graph[name]):
-            if other not in index:
-                visit(other)
-            if other in stack:
-                low[name] = min(low[name], low[other])
-        if low[name] == index[name]:
-            group: list[str] = []
-            while not group or group[-1] != name:
-                group.append(stack.pop())
-            found.append(sorted(group))
 
-    for name in sorted(graph):
-        if name not in index:
-            visit(name)
+def _reached(name: str, graph: Graph) -> set[str]:
+    found, waiting = set[str](), [name]
+    while waiting:
+        new = graph[waiting.pop()] - found
+        found |= new
+        waiting += new
     return found
 
 
 def levels(graph: Graph) -> dict[str, int]:
     """Return the level of each module, from 1; the modules of a circle have one."""
-    groups = circles(graph)  # from the lowest up
-    place = {name: k for k, group in enumerate(groups) for name in group}
-    level: list[int] = []
-    for k, group in enumerate(groups):
-        below = {place[other] for name in group for other in graph[name]} - {k}
-        level.append(1 + max((level[other] for other in below), default=0))
-    return {name: level[k] for name, k in place.items()}
+    circle = {name: tuple(group) for group in circles(graph) for name in group}
+
+    @cache
+    def level(group: tuple[str, ...]) -> int:
+        below = {circle[other] for name in group for other in graph[name]} - {group}
+        return 1 + max(map(level, below), default=0)
+
+    return {name: level(group) for name, group in circle.items()}
 
 
 def passed(files: Mapping[str, Path]) -> dict[str, tuple[int, int]]:
@@ -132,7 +121,6 @@ def main() -> None:
     for folder in (*PRODUCT, *OTHERS):
         print(f"{folder:<12} {sum(map(lines, modules(folder).values())):6} lines in {len(modules(folder))} modules")
     print(f"{'product':<12} {sum(map(lines, files.values())):6} lines in {len(files)} modules")
-    sys.setrecursionlimit(10_000)
     graph = imports(files)
     importers = Counter(other for each in graph.values() for other in each)
     level, scene = levels(imports(files, ())), passed(files)

@@ -211,7 +211,7 @@ def fault(case: Mutant, folder: Path) -> tuple[str, str]:
         with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err), warnings.catch_warnings():
             warnings.simplefilter("error")
             try:
-                args, _ = parser.read_with_petsc(argv)
+                args = parser.read(argv, petsc=True)
                 scene = scene_of(args)
                 check_folder(args.out)
                 return _unready(scene), "ready"

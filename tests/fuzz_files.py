@@ -176,8 +176,7 @@ def _read(path: Path) -> int:
             measurements.read(path)
         else:
             unit, size = ["--unit", "um"], ["--size", "32 um", "24 um"]
-            given = {ending: unit + size for ending in (".npy", ".csv", ".xyz")}
-            given |= {ending: unit + size for ending in (".mat", ".npz")}
+            given = {ending: unit + size for ending in (".npy", ".csv", ".xyz", ".mat", ".npz")}
             return roughness.topography([str(path), *given.get(path.suffix, [])])
     except (SceneError, GeometryError) as error:
         return refuse(str(error))

@@ -12,10 +12,11 @@ from variational import compat
 from variational.state import ContactState
 
 
-def integral(body, tag, integrand=1.0) -> float:
-    """Integrate over a layer on all ranks."""
-    dx = ufl.Measure("dx", body.mesh, subdomain_data=body.cell_tags)
-    form = fem.form(fem.Constant(body.mesh, 1.0) * integrand * dx(tag))
+def integral(body, tag, integrand=1.0, kind="dx") -> float:
+    """Integrate over a layer, or with the kind "ds" over a group of facets, on all ranks."""
+    data = body.cell_tags if kind == "dx" else body.facet_tags
+    measure = ufl.Measure(kind, body.mesh, subdomain_data=data, metadata={"quadrature_degree": 7})  # the skin's
+    form = fem.form(fem.Constant(body.mesh, 1.0) * integrand * measure(tag))
     return body.mesh.comm.allreduce(fem.assemble_scalar(form))
 
 

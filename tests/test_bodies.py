@@ -4,7 +4,6 @@ import gmsh
 import numpy as np
 import pytest
 import ufl
-from dolfinx import fem
 from mpi4py import MPI
 
 import geometry
@@ -18,9 +17,8 @@ from tests.test_profiles import MM, UM
 
 def lengths(body) -> dict[int, float]:
     """Return the length of each facet group on all ranks."""
-    ds, one = ufl.Measure("ds", body.mesh, subdomain_data=body.facet_tags), fem.Constant(body.mesh, 1.0)
     groups = (tags.ridge(0), tags.BONE_RIM, tags.SIDES)
-    return {tag: body.mesh.comm.allreduce(fem.assemble_scalar(fem.form(one * ds(tag)))) for tag in groups}
+    return {tag: integral(body, tag, kind="ds") for tag in groups}
 
 
 @pytest.mark.mpi

@@ -3,9 +3,7 @@
 import argparse
 import errno
 import json
-import os
 import re
-import subprocess
 import sys
 from pathlib import Path
 
@@ -17,7 +15,7 @@ from fingerpad.cli import COMMANDS, main, ranges
 from fingerpad.cli import run as run_command
 from fingerpad.cli.arguments import Parser, scene_of, separate
 from fingerpad.scene import Scene, SceneError
-from tests.commands import ROOT, refused
+from tests.commands import ROOT, python, refused
 from variational.roughness.spectrum import SelfAffine
 
 SCENES = ROOT / "demos/scenes"
@@ -27,8 +25,8 @@ def run_line(*argv: str) -> tuple[Scene, argparse.Namespace, list[str]]:
     parser = Parser("run", "fingerpad run")
     parser.add_scene()
     parser.add_out("results", "folder")
-    args, petsc = parser.read_with_petsc(argv)
-    return scene_of(args), args, petsc
+    args = parser.read(argv, petsc=True)
+    return scene_of(args), args, args.petsc
 
 
 # -- options -----------------------------------------------------------------------------------------------
@@ -157,8 +155,7 @@ def plain(tmp_path_factory) -> tuple[Path, dict[str, list]]:
     folder = tmp_path_factory.mktemp("plain")
     np.savetxt(folder / "map.txt", SelfAffine().surface((32, 32), (100e-6, 100e-6), 1).heights * 1e6)
     (folder / "matplotlibrc").write_text("figure.dpi : nonsense\n")
-    command, variables = [sys.executable, "-P", "-c", CODE, json.dumps(PLAIN)], {"PYTHONPATH": str(ROOT)}
-    done = subprocess.run(command, capture_output=True, text=True, cwd=folder, env=variables)
+    done = python("-P", "-c", CODE, json.dumps(PLAIN), cwd=folder)
     assert (done.returncode, done.stderr) == (0, "")
     return folder, json.loads(done.stdout)
 
@@ -248,9 +245,7 @@ def test_negative_voltages(capsys):
 
 def test_terminal_without_the_letters_gets_others():
     """µ and ² are no letters of ASCII; the command prints a mark for each and goes on."""
-    command = [sys.executable, "-m", "fingerpad", "microscale", "--p", "1e4"]
-    environment = os.environ | {"PYTHONIOENCODING": "ascii"}
-    done = subprocess.run(command, env=environment, capture_output=True, text=True, check=False, cwd=ROOT)
+    done = python("-m", "fingerpad", "microscale", "--p", "1e4", PYTHONIOENCODING="ascii")
     assert done.returncode == 0 and "rms roughness 3.1 ?m" in done.stdout
 
 

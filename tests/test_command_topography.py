@@ -1,7 +1,5 @@
 """Roughness from a measured height map, by the command and in a scene."""
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 
@@ -12,12 +10,6 @@ from fingerpad.scene.messages import SceneError
 from fingerpad.scene.remarks import remarks
 from tests.commands import refused
 from variational.roughness.spectrum import SelfAffine
-
-
-def heights(folder: Path) -> np.ndarray:
-    found = SelfAffine().surface((64, 64), (400e-6, 400e-6), 3).heights * 1e6
-    found[np.random.default_rng(1).random(found.shape) < 0.03] = np.nan
-    return found
 
 
 def table_of(text: str) -> dict[str, float]:
@@ -85,9 +77,6 @@ def test_bad_height_map_of_a_scene(table, message):
     with pytest.raises(SceneError) as refusal:
         from_data({"roughness": {"topography": table}})
     assert str(refusal.value).startswith(message)
-
-
-def test_height_map_and_its_numbers_are_refused():
     with pytest.raises(SceneError, match="roughness.h_rms is 3e-06 and roughness.topography is given too"):
         from_data({"roughness": {"h_rms": 3e-6, "topography": {"file": "skin.csv", "unit": "um"}}})
 

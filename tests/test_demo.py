@@ -2,9 +2,6 @@
 
 import json
 import math
-import os
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
@@ -14,6 +11,7 @@ from fingerpad.runs import full
 from fingerpad.runs.context import RunContext
 from fingerpad.scene import from_data, load
 from tests import runs
+from tests.commands import python
 from tests.measures import rows_of
 
 pytestmark = pytest.mark.slow
@@ -24,17 +22,10 @@ NINE = {"geometry": {"ridge_count": 9}, "output": {"errors": False}}
 MESH = {"contact": 30e-6, "receptor": 80e-6, "interface": 150e-6, "growth": 0.8, "touching_half_arc": 1.3e-3}
 
 
-def run(folder: Path, *options: str, ranks: int = 1) -> subprocess.CompletedProcess[str]:
-    environment = {**os.environ, "PYTHONPATH": str(ROOT)}
-    launcher = ["mpirun", "-n", str(ranks)] if ranks > 1 else []
-    command = [*launcher, sys.executable, "-m", "fingerpad", "run", "--out", str(folder), *options]
-    return subprocess.run(command, env=environment, capture_output=True, text=True, check=False)
-
-
 @pytest.fixture(scope="module")
 def coarse(tmp_path_factory) -> Path:
     folder = tmp_path_factory.mktemp("coarse")
-    done = run(folder, str(COARSE), "--set", "output.errors=false")
+    done = python("-m", "fingerpad", "run", "--out", folder, str(COARSE), "--set", "output.errors=false")
     assert done.returncode == 0, done.stdout + done.stderr
     return folder
 
@@ -120,7 +111,7 @@ def test_ranks_agree_with_one(size):
 def test_failure_keeps_the_accepted_steps(tmp_path):
     """A Newton iteration cut short cannot converge: the run names step and reason, and leaves what it has."""
     settings = ("--set", "mesh.contact=9e-6")  # too fine to start again with half of it
-    done = run(tmp_path, str(SMALL), *settings, "-fingerpad_snes_max_it", "2")
+    done = python("-m", "fingerpad", "run", "--out", tmp_path, str(SMALL), *settings, "-fingerpad_snes_max_it", "2")
     assert done.returncode == 1
     assert "found no equilibrium" in done.stdout
     assert "DIVERGED_MAX_IT" in done.stdout

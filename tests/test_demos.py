@@ -4,13 +4,13 @@ import importlib.util
 import os
 import re
 import subprocess
-import sys
 from pathlib import Path
 
 import pytest
 from mpi4py import MPI
 
 from benchmarks import explicit, performance
+from tests.commands import python
 from tests.measures import rows_of
 from tests.pages import alike
 
@@ -20,18 +20,13 @@ DEMOS = sorted((ROOT / "demos").glob("*.py"))
 OUTPUT = ROOT / "demos" / "output"  # by python3 -m benchmarks.demos
 BODIES = ("ridge_against_hertz", "pull_off_and_energy", "own_mesh", "results_with_other_tools")
 OWN_LAWS = ("own_closure", "own_material", "own_friction")
-LIMIT = 600  # s
 STRICT = ["-W", "error", "-W", "ignore::ImportWarning"]  # dolfinx's of what it can do without
 
 
 def run(demo: Path, out: Path) -> str:
     """Run a demo in a process of its own, in a folder of its own; return what it prints."""
     small = [str(ROOT / "tests" / "small_finger.py"), str(demo)] if demo.stem == "first_run" else [str(demo), str(out)]
-    environment = {**os.environ, "PYTHONPATH": str(ROOT)}
-    done = subprocess.run(
-        [sys.executable, *STRICT, *small],
-        env=environment, cwd=out, capture_output=True, text=True, check=False, timeout=LIMIT,
-    )  # fmt: skip
+    done = python(*STRICT, *small, cwd=out)
     assert done.returncode == 0, done.stdout + done.stderr
     return done.stdout
 

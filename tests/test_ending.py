@@ -16,6 +16,7 @@ from mpi4py import MPI
 
 from fingerpad.results.files import Table, replace_json
 from fingerpad.results.interrupt import Interrupt, Interrupted
+from tests.commands import python
 from tests.measures import accepted, rows_of
 
 pytestmark = pytest.mark.slow
@@ -138,9 +139,7 @@ run(load(Path(sys.argv[1])), Path(sys.argv[2]), MPI.COMM_WORLD)
 def test_what_one_rank_raises_ends_all(tmp_path, rank):
     """The other one waits in a collective call."""
     (scene := tmp_path / "scene.toml").write_text(LONG, encoding="utf-8")
-    command = ["mpirun", "-n", "2", sys.executable, "-c", RAISES, str(scene), str(tmp_path / "out"), str(rank)]
-    environment = {**os.environ, "PYTHONPATH": str(ROOT)}
-    done = subprocess.run(command, env=environment, capture_output=True, text=True, timeout=200)
+    done = python("-c", RAISES, scene, tmp_path / "out", rank, ranks=2)
     assert done.returncode == 1
     assert done.stderr.count("ValueError: raised on one rank") == 1
     assert (tmp_path / "out" / "steps.csv").exists() and not (tmp_path / "out" / "summary.json").exists()
@@ -153,8 +152,7 @@ def test_full_disk(tmp_path):
     code += "resource.setrlimit(resource.RLIMIT_FSIZE, (100_000, 100_000))\n"
     code += "runpy.run_module('fingerpad', run_name='__main__')"
     (scene := tmp_path / "scene.toml").write_text(LONG, encoding="utf-8")
-    command = [sys.executable, "-c", code, "run", str(scene), "--out", str(tmp_path / "out")]
-    done = subprocess.run(command, env={**os.environ, "PYTHONPATH": str(ROOT)}, capture_output=True, text=True)
+    done = python("-c", code, "run", scene, "--out", tmp_path / "out")
     assert done.returncode == 1
     said = done.stderr.strip()
     assert said.startswith("fingerpad: File too large: no more results can be written")
@@ -227,37 +225,35 @@ DOORS = {
 }
 
 
-def python(code: str, *words: str, moment: str = "", handler: str = "default_int_handler"):
+def interrupted(code: str, *words: object, moment: str = "", handler: str = "default_int_handler"):
     """Run code in a process that gets SIGINT at a moment: when a module is imported, or at the end."""
-    command = [sys.executable, "-c", START.format(moment=moment, handler=handler) + code, *words]
-    environment = {**os.environ, "PYTHONPATH": str(ROOT)}
-    return subprocess.run(command, env=environment, capture_output=True, text=True, timeout=100)
+    return python("-c", START.format(moment=moment, handler=handler) + code, *words)
 
 
 @pytest.mark.parametrize(
     ("door", "moment"), [("module", "numpy"), ("script", "fingerpad.cli.params"), ("script", "the end")]
 )
 def test_ctrl_c_ends_the_program_quietly(door, moment):
-    done = python(DOORS[door], "params", "f_ext", moment=moment)
+    done = interrupted(DOORS[door], "params", "f_ext", moment=moment)
     assert (done.returncode, done.stderr) == (130, "")
 
 
 def test_ctrl_c_while_finite_elements_are_imported(tmp_path):
     """The run has not begun then."""
-    done = python(DOORS["module"], "run", "--out", str(tmp_path / "new"), moment="dolfinx")
+    done = interrupted(DOORS["module"], "run", "--out", tmp_path / "new", moment="dolfinx")
     assert (done.returncode, done.stdout, done.stderr) == (130, "", "")
     assert not (tmp_path / "new").exists()
 
 
 def test_ctrl_c_that_is_ignored_stays_ignored():
-    done = python(DOORS["module"], "params", "f_ext", moment="numpy", handler="SIG_IGN")
+    done = interrupted(DOORS["module"], "params", "f_ext", moment="numpy", handler="SIG_IGN")
     assert (done.returncode, done.stderr) == (0, "") and "f_ext" in done.stdout
 
 
 def test_library_leaves_signals_alone():
     code = "import fingerpad, fingerpad.__main__, fingerpad.cli.run\n"
     code += "assert signal.getsignal(signal.SIGINT) is signal.default_int_handler"
-    assert python(code).returncode == 0
+    assert interrupted(code).returncode == 0
 
 
 TABLES = ("steps", "ridges", "coupling")
@@ -272,10 +268,8 @@ def tables(folder: Path) -> dict[str, list[dict[str, str]]]:
 
 
 WRAPPER = """
-import os, sys, random
+import os, sys
 kind, number = sys.argv.pop(1), int(sys.argv.pop(1))
-from tests.test_history import Own
-from variational.problem import Problem
 from variational.solvers.coupling import Coupling
 from fingerpad.results import checkpoint, files
 def kill_at(owner, name, do=lambda *args: None):
@@ -302,10 +296,7 @@ sys.exit(main(sys.argv[1:]))
 
 def process(kind: str, number: int, *words: str) -> int:
     """Run a command that kills itself at a solve, in writing a part of the checkpoint, or at a row of a table."""
-    done = subprocess.run(
-        [sys.executable, "-c", WRAPPER, kind, str(number), *words],
-        env={**os.environ, "PYTHONPATH": str(ROOT)}, capture_output=True, text=True, check=False, timeout=600,
-    )  # fmt: skip
+    done = python("-c", WRAPPER, kind, number, *words)
     assert done.returncode in (0, -signal.SIGKILL), done.stderr[-2000:]
     return done.returncode
 

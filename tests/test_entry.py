@@ -1,13 +1,12 @@
 """Libraries take no configuration from the folder that a run is started in, and none from the home folder."""
 
-import os
 import subprocess
-import sys
 from pathlib import Path
 
 import pytest
 
-ROOT = Path(__file__).resolve().parents[1]
+from tests.commands import python
+
 # A file that each library reads when it is started in its folder, and what shows that it was read.
 FOUND = {
     ".petscrc": "-found 1",
@@ -29,15 +28,13 @@ print(ffcx.options.get_options()["epsilon"], matplotlib.rcParams["lines.linewidt
 """
 
 
-def python(folder: Path, code: str, **environment: str) -> subprocess.CompletedProcess[str]:
-    variables = {**os.environ, "PYTHONPATH": str(ROOT), **environment}
-    command = [sys.executable, "-P", "-W", "ignore", "-c", code]
-    return subprocess.run(command, cwd=folder, env=variables, capture_output=True, text=True)
+def run(folder: Path, code: str, **environment: str) -> subprocess.CompletedProcess[str]:
+    return python("-P", "-W", "ignore", "-c", code, cwd=folder, **environment)
 
 
 @pytest.fixture(scope="module")
 def clean(tmp_path_factory) -> str:
-    done = python(tmp_path_factory.mktemp("clean"), "import fingerpad.startup" + STATE)
+    done = run(tmp_path_factory.mktemp("clean"), "import fingerpad.startup" + STATE)
     assert done.returncode == 0, done.stderr
     return done.stdout
 
@@ -45,7 +42,7 @@ def clean(tmp_path_factory) -> str:
 def test_nothing_is_taken_from_the_current_folder(tmp_path, clean):
     for name, text in FOUND.items():
         (tmp_path / name).write_text(text.format(folder=tmp_path))
-    done = python(tmp_path, "import fingerpad.runs.full" + STATE)
+    done = run(tmp_path, "import fingerpad.runs.full" + STATE)
     assert (done.returncode, done.stdout) == (0, clean), done.stderr
     assert "UCX" not in done.stderr
 
@@ -54,7 +51,7 @@ def test_without_it_they_would_be(tmp_path, clean):
     """What the test above is worth: libraries of this version do read these files."""
     for name in (".petscrc", "ffcx_options.json", "matplotlibrc", "dolfinx_jit_options.json"):
         (tmp_path / name).write_text(FOUND[name].format())
-    done = python(tmp_path, STATE)
+    done = run(tmp_path, STATE)
     assert done.stdout == "True ['found']\n77 77.0\n"
 
 
@@ -67,7 +64,7 @@ def test_nothing_is_taken_from_the_home_folder(tmp_path, clean):
         (home / name).write_text(FOUND[name.rpartition("/")[2]].format())
     place.mkdir()
     found = [
-        python(place, first + STATE.replace(', matplotlib.rcParams["lines.linewidth"]', ""), HOME=str(home))
+        run(place, first + STATE.replace(', matplotlib.rcParams["lines.linewidth"]', ""), HOME=str(home))
         for first in ("", "import fingerpad.startup")
     ]
     assert found[0].stdout == "True ['found']\n77\n"
@@ -77,12 +74,12 @@ def test_nothing_is_taken_from_the_home_folder(tmp_path, clean):
 def test_the_environment_and_the_command_line_are_obeyed(tmp_path):
     code = "from fingerpad.startup import start; start(['-c', 'line'])\nfrom petsc4py import PETSc\n"
     code += "o = PETSc.Options(); print(*(o.getString(name) for name in 'bc'))"
-    assert python(tmp_path, code, PETSC_OPTIONS="-b environment -c environment").stdout == "environment line\n"
+    assert run(tmp_path, code, PETSC_OPTIONS="-b environment -c environment").stdout == "environment line\n"
 
 
 def test_modules_of_the_current_folder_are_not_run(tmp_path):
     """Processes of a sweep are started with python3 -m, which looks there first."""
     (tmp_path / "numpy.py").write_text("raise SystemExit('found')")
-    run = "processes.run('fingerpad.runs.batch', ['no.json', '.', '9', 'full'], 9).message"
-    code = f"from fingerpad.runs import processes; print({run})"
-    assert "No such file or directory: 'no.json'" in python(tmp_path, code).stdout
+    job = "processes.run('fingerpad.runs.batch', ['no.json', '.', '9', 'full'], 9).message"
+    code = f"from fingerpad.runs import processes; print({job})"
+    assert "No such file or directory: 'no.json'" in run(tmp_path, code).stdout

@@ -1,8 +1,6 @@
 """Files of a user, at every door: ordinary, bounded, and read with nothing beside them."""
 
 import os
-import subprocess
-import sys
 from functools import partial
 from pathlib import Path
 
@@ -16,6 +14,7 @@ from fingerpad.scene import SceneError, from_data, load
 from geometry.meshfile import file as mesh
 from geometry.profiles import GeometryError
 from geometry.shape import session
+from tests.commands import python
 from tests.test_meshfile import write
 from variational import files
 from variational.roughness.heightfile import scan
@@ -121,15 +120,14 @@ def test_neighbours_of_a_mesh_are_not_run(tmp_path, monkeypatch, name):
 
 
 @pytest.mark.parametrize(("name", "variable"), [(".gmsh-options", "HOME"), (".gmshrc", "GMSH_HOME")])
-def test_options_of_gmsh_in_the_home_have_no_effect(tmp_path, name, variable):
+def test_options_of_gmsh_in_the_home_have_no_effect(tmp_path, monkeypatch, name, variable):
     """As its window saves them; the control shows that gmsh reads them."""
     (tmp_path / name).write_text("Mesh.MeshSizeFactor = 2;\n", encoding="utf-8")
     code = "import gmsh, geometry; from geometry.shape import session\n"
     code += "gmsh.initialize(); print(gmsh.option.getNumber('Mesh.MeshSizeFactor')); gmsh.finalize()\n"
     code += "with session('a'): geometry.ridge(size=40e-6)(); print(len(gmsh.model.mesh.getNodes()[0]))"
-    environment = {key: value for key, value in os.environ.items() if key != "GMSH_HOME"}
-    environment |= {variable: str(tmp_path), "PYTHONPATH": str(ROOT)}
-    done = subprocess.run([sys.executable, "-c", code], env=environment, capture_output=True, text=True, check=True)
+    monkeypatch.delenv("GMSH_HOME", raising=False)
+    done = python("-c", code, **{variable: str(tmp_path)})
     with session("here"):
         geometry.ridge(size=40e-6)()
         expected = len(gmsh.model.mesh.getNodes()[0])

@@ -1,9 +1,10 @@
 """What needs no finite elements imports none: scenes, the microscale and the closed form run with NumPy and SciPy."""
 
 import subprocess
-import sys
 
 import pytest
+
+from tests.commands import python
 
 pytestmark = pytest.mark.slow
 HEAVY = ("dolfinx", "ufl", "basix", "ffcx", "petsc4py", "mpi4py", "gmsh")
@@ -55,7 +56,7 @@ fp.Coulomb(0.3)
 def without(code: str, *blocked: str, argument: str = "") -> subprocess.CompletedProcess[str]:
     """Run code where modules cannot be imported; None in ``sys.modules`` is Python's own way of saying so."""
     block = f"import sys; sys.modules.update(dict.fromkeys({blocked!r}))\n"
-    return subprocess.run([sys.executable, "-c", block + code, argument], capture_output=True, text=True, check=False)
+    return python("-c", block + code, argument)
 
 
 def test_modules_import_no_finite_elements():

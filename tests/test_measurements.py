@@ -9,7 +9,7 @@ import pytest
 
 import fingerpad as fp
 from fingerpad.cli import main
-from fingerpad.measurements.computed import computed
+from fingerpad.measurements.compare import computed
 from fingerpad.measurements.table import Measured, read
 from fingerpad.runs.sweep import sweep
 from fingerpad.scene import Scene, SceneError

@@ -14,6 +14,7 @@ from pathlib import Path
 import pytest
 
 from fingerpad.installed import COMPILER, need_compiler
+from tests.commands import python
 
 ROOT = Path(__file__).parent.parent
 LIBRARY = ("geometry", "variational", "fingerpad")
@@ -109,8 +110,7 @@ def test_wheel_runs(wheel, tmp_path):
     """By itself, away from the checkout: nothing that it needs is left out of it."""
     wheel.extractall(tmp_path)
     code = 'import fingerpad as fp; print(fp.__file__, fp.run(fp.Scene(f_ext=50), model="cylinders").full_slip.mu_app)'
-    variables = os.environ | {"PYTHONPATH": str(tmp_path), "PYTHONSAFEPATH": "1"}
-    done = subprocess.run([sys.executable, "-c", code], env=variables, capture_output=True, text=True, check=False)
+    done = python("-c", code, PYTHONPATH=str(tmp_path), PYTHONSAFEPATH="1")
     assert done.stdout.startswith(str(tmp_path / "fingerpad/__init__.py 0.")), done.stderr
 
 

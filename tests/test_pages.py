@@ -28,7 +28,7 @@ def test_pages_in_git_are_those_of_the_kept_numbers(tmp_path, capsys):
 # -- pages older than the code -----------------------------------------------------------------------
 OLD = {"variational/x.py": b"x = 1  # once", "fingerpad/results/x.py": b"", "benchmarks/chart.py": b"x = 1"}
 NEW = {"variational/x.py": b'"""X."""\nx = 1', "fingerpad/results/x.py": b"y", "benchmarks/chart.py": b"x = 1"}
-CHANGED = {"variational/x.py": b"x = 2", "benchmarks/chart.py": b"x = 2", "benchmarks/paper/page.py": b"y"}
+CHANGED = {"variational/x.py": b"x = 2", "benchmarks/chart.py": b"x = 2"}
 
 
 class History:
@@ -68,8 +68,8 @@ def test_page_is_older_where_its_code_computes_something_else(since):
     assert since("chart", MADE, old=OLD, new=NEW) == []
     assert since("chart", MADE, old=OLD, new=NEW | CHANGED) == ["benchmarks/chart.py", "variational/x.py"]
     assert since("errors", MADE, old=OLD, new=NEW | CHANGED) == ["variational/x.py"]
-    drawing = {"benchmarks/paper/page.py": b"x"}, {"benchmarks/paper/page.py": b"y"}
-    assert since("paper", MADE, old=OLD | drawing[0], new=OLD | drawing[1]) == []
+    drawing = {"benchmarks/chart.py": b"x = 1\n\n\n# -- page ---\ny = 2"}
+    assert since("chart", MADE, old=OLD, new=NEW | drawing) == []
     assert since("chart", MADE, old=OLD, new=NEW | {"variational/new.py": b"x"}) == []  # imported by none of the others
     assert since("chart", MADE, old=OLD, new={}) == ["benchmarks/chart.py", "variational/x.py"]
 
@@ -91,8 +91,12 @@ def test_results_differ_by_their_numbers_alone():
     assert same.numbers(before) == {"mu": 0.5, "steps": before["steps"]}
     assert list(same.differences(before, before | {"more": 1})) == []
     now = before | {"mu": 0.5000000000000001, "steps": [{"a": 1}]}
-    assert len(list(same.differences(before, now))) == 2
-    assert len(list(same.differences(before, now, but=["mu"]))) == 1
+    assert list(same.differences(before, now)) == [
+        "mu: 0.5 before, 0.5000000000000001 now",
+        "steps[]: 2 before, 1 now",
+        "steps[1].a: nan before, None now",
+    ]
+    assert list(same.differences(before, now, but=["mu", "steps"])) == []
     assert list(same.differences({"full_slip_mu_app": 0.0}, {"full_slip_mu_app": None})) == []
     assert list(same.differences({"full_slip_mu_app": 0.1}, {"full_slip_mu_app": None}))
     assert list(same.differences(before, {})) and list(same.differences({"a": None}, {"a": 0.0}))
@@ -118,6 +122,14 @@ def test_numbers_are_kept_as_they_are(tmp_path):
     assert found.numbers == numbers | {"none": None}
     assert found.made == BY
     assert '   {"k": 0, "value": 0.1},\n' in (tmp_path / "study.json").read_text(encoding="utf-8")
+
+
+def test_template_is_filled():
+    """Fields are f-strings, a row is repeated, a part is there where its condition holds."""
+    template = "{x:.2f}\nfor k, v in rows: | {k} | {cells(v, None)} |\nif not rows:\nnone\nend\n{len(rows)}\n"
+    names = {"x": 1.5, "rows": [("a", 0.123456), ("b", 2)], "cells": harness.cells}
+    assert harness._filled(template, names) == "1.50\n| a | 0.1235 | – |\n| b | 2 | – |\n2\n"
+    assert harness._filled(template, names | {"rows": []}) == "1.50\n\nnone\n0\n"
 
 
 # -- The picture that opens the README is drawn from the numbers in git ---

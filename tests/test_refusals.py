@@ -301,6 +301,7 @@ def named(name: str) -> list[dict]:
             named("n" * 300),
             f"history[0].name is '{'n' * 55}...'; it must be of 100 bytes at most, since files are named by it",
         ),
+        (named("voltage") * 2, f"history[1].name is 'voltage' and history[0].name is 'voltage'; {OWN_NAME}"),
         (named("on off") + named("On_off"), f"history[1].name is 'On_off' and history[0].name is 'on off'; {OWN_NAME}"),
         *(
             (

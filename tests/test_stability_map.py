@@ -1,13 +1,13 @@
 """The stability map: its plan, its kept runs, single runs of a coarse strip, and the page drawn from their numbers."""
 
+from argparse import Namespace
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
-from benchmarks.stability import __main__ as keeping
 from benchmarks.stability import plan, solve
-from benchmarks.stability.__main__ import Runs, run_all
+from benchmarks.stability.__main__ import outcomes
 from benchmarks.stability.plan import Case
 from variational.solvers.equations import Control
 from variational.solvers.newton import Solver
@@ -27,10 +27,17 @@ def panel() -> plan.Panel:
 
 
 @pytest.fixture(scope="module")
-def tiny(panel, tmp_path_factory) -> Runs:
-    runs = Runs(tmp_path_factory.mktemp("stability") / "runs.jsonl")
-    assert run_all([*panel.cases(), IRRECOVERABLE], runs, jobs=2, limit=300, hours=1) == 0
-    return runs
+def tiny(panel, tmp_path_factory):
+    """The outcomes of the panel's runs, and of one that fails; all are kept."""
+    given, cases = options(tmp_path_factory.mktemp("stability")), [*panel.cases(), IRRECOVERABLE]
+    found = outcomes(cases, given)
+    assert set(found) == set(cases) and outcomes(cases, options(given.out, hours=0.0)) == found
+    return found
+
+
+def options(out, limit=300.0, hours=1.0):
+    """Return the options of the command."""
+    return Namespace(out=out, jobs=2, limit=limit, hours=hours)
 
 
 # -- the plan ------------------------------------------------------------------------------------------
@@ -50,7 +57,7 @@ def test_default_is_the_products():
 def test_tiny_map_converges(tiny, panel):
     """Pressed by half a newton a metre the ridge bears it, whatever the voltage. Tolerance: the solve's."""
     for case in panel.cases():
-        found = tiny.outcomes[case]
+        found = tiny[case]
         assert found.status == "converged"
         assert found.f_ext == pytest.approx(0.5, rel=1e-7)
         assert found.newton >= found.steps > 1
@@ -60,10 +67,9 @@ def test_tiny_map_converges(tiny, panel):
 def test_friction_at_full_slip(tmp_path):
     """Without voltage the screen drags with mu_0 times the force. Tolerance: the solve's."""
     case = replace(TINY, voltage=0.0, slide=1e-3)
-    runs = Runs(tmp_path / "runs.jsonl")
-    run_all([case], runs, jobs=1, limit=300, hours=1)
-    assert runs.outcomes[case].full_slip
-    assert runs.outcomes[case].f_t == pytest.approx(0.25 * 0.5, rel=1e-6)
+    found = outcomes([case], options(tmp_path))[case]
+    assert found.full_slip
+    assert found.f_t == pytest.approx(0.25 * 0.5, rel=1e-6)
 
 
 @pytest.mark.parametrize("sides", ["carried", "free"])
@@ -78,7 +84,7 @@ def test_strip_off_the_screen_follows_the_bone(sides):
 
 def test_failure_is_recorded_with_its_reason(tiny):
     """A penalty 1e8 times the default leaves no digits: the run says by which name and in which load it ended."""
-    found = tiny.outcomes[IRRECOVERABLE]
+    found = tiny[IRRECOVERABLE]
     assert found.status == "failed"
     assert found.reason.startswith("DIVERGED_")
     assert found.reason in found.message
@@ -101,7 +107,7 @@ def test_newton_alone_is_never_pseudo_transient(monkeypatch, allowed):
     assert asked == {allowed, False}
 
 
-def test_time_limit():
+def test_time_limit(tmp_path):
     """A run that takes too long is stopped and reported so: steps of a billionth never end on any machine."""
-    found = keeping.solve(replace(TINY, step_scale=1e-9), limit=1)
+    (found,) = outcomes([replace(TINY, step_scale=1e-9)], options(tmp_path, limit=1)).values()
     assert (found.status, found.reason, found.seconds) == ("failed", "TIME_LIMIT", 1)

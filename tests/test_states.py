@@ -232,7 +232,7 @@ def test_friction_without_a_force_has_no_coefficient(pressed):
     whole, before, up = (
         states.load_result("", rows, None).extremes for rows in ([*pressed.rows, lifted], pressed.rows, [lifted])
     )
-    assert whole["mu_app"].to_dict() == before["mu_app"].to_dict()
+    assert repr(whole["mu_app"]) == repr(before["mu_app"])
     assert "mu_app" not in up and up["f_t"].min == lifted.f_t
 
 

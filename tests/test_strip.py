@@ -5,7 +5,6 @@ from functools import partial
 import numpy as np
 import pytest
 import ufl
-from dolfinx import fem
 from mpi4py import MPI
 from numpy.testing import assert_allclose
 
@@ -14,6 +13,7 @@ from geometry import tags
 from geometry.mesh import load
 from geometry.parameters import Fingertip, MeshSize
 from geometry.profiles import GeometryError, Profiles
+from tests.measures import integral
 
 UM = 1e-6
 WAVE, HEIGHT = Fingertip().ridge_wavelength, 1500 * UM
@@ -23,14 +23,6 @@ SIZE = MeshSize(contact=20 * UM, interface=60 * UM)
 @pytest.fixture(scope="module", params=[1, 3])
 def body(request):
     return request.param, load(MPI.COMM_WORLD, partial(strip.build, Fingertip(), SIZE, request.param, HEIGHT))
-
-
-def integral(mesh, measure, integrand=1.0) -> float:
-    return mesh.comm.allreduce(fem.assemble_scalar(fem.form(fem.Constant(mesh, 1.0) * integrand * measure)))
-
-
-def layer(strip_mesh, tag):
-    return ufl.Measure("dx", strip_mesh.mesh, subdomain_data=strip_mesh.cell_tags)(tag)
 
 
 def mean_depths() -> list[float]:
@@ -46,7 +38,7 @@ def test_area(body):
     """
     ridges, mesh = body
     expected = np.diff(mean_depths()) * ridges * WAVE
-    found = [integral(mesh.mesh, layer(mesh, tag)) for tag in strip.LAYERS]
+    found = [integral(mesh, tag) for tag in strip.LAYERS]
     assert_allclose(found, expected, rtol=2e-3)
 
 
@@ -56,8 +48,8 @@ def test_layers_are_mirrored(body):
     ridges, mesh = body
     x = ufl.SpatialCoordinate(mesh.mesh)[0]
     for tag in strip.LAYERS:
-        moment = integral(mesh.mesh, layer(mesh, tag), x)
-        assert abs(moment) < 1e-5 * ridges * WAVE * integral(mesh.mesh, layer(mesh, tag))
+        moment = integral(mesh, tag, x)
+        assert abs(moment) < 1e-5 * ridges * WAVE * integral(mesh, tag)
 
 
 @pytest.mark.mpi
@@ -72,11 +64,10 @@ def test_ridges(body):
     x = np.linspace(-0.5, 0.5, 20001) * WAVE
     y = Profiles(Fingertip()).skin(x)
     length = np.hypot(np.diff(x), np.diff(y)).sum()
-    ds = ufl.Measure("ds", mesh.mesh, subdomain_data=mesh.facet_tags)
     for j in mesh.ridges():
-        found = integral(mesh.mesh, ds(tags.ridge(j)))
+        found = integral(mesh, tags.ridge(j), kind="ds")
         assert found == pytest.approx(length, rel=3e-3)
-        centre = integral(mesh.mesh, ds(tags.ridge(j)), ufl.SpatialCoordinate(mesh.mesh)[0]) / found
+        centre = integral(mesh, tags.ridge(j), ufl.SpatialCoordinate(mesh.mesh)[0], "ds") / found
         assert centre == pytest.approx(j * WAVE, abs=1e-6 * WAVE)
 
 
@@ -87,11 +78,10 @@ def test_rim_and_sides(body):
     Tolerance: roundoff.
     """
     ridges, mesh = body
-    ds = ufl.Measure("ds", mesh.mesh, subdomain_data=mesh.facet_tags)
-    assert integral(mesh.mesh, ds(tags.BONE_RIM)) == pytest.approx(ridges * WAVE, rel=1e-12, abs=0)
-    height = integral(mesh.mesh, ds(tags.BONE_RIM), ufl.SpatialCoordinate(mesh.mesh)[1]) / (ridges * WAVE)
+    assert integral(mesh, tags.BONE_RIM, kind="ds") == pytest.approx(ridges * WAVE, rel=1e-12, abs=0)
+    height = integral(mesh, tags.BONE_RIM, ufl.SpatialCoordinate(mesh.mesh)[1], "ds") / (ridges * WAVE)
     assert height == pytest.approx(HEIGHT, rel=1e-12, abs=0)
-    assert integral(mesh.mesh, ds(tags.SIDES)) == pytest.approx(2 * (HEIGHT - 100 * UM), rel=1e-12, abs=0)
+    assert integral(mesh, tags.SIDES, kind="ds") == pytest.approx(2 * (HEIGHT - 100 * UM), rel=1e-12, abs=0)
 
 
 def test_tips_are_on_the_screen(body):
@@ -119,8 +109,7 @@ def test_contact_size():
 def test_finger_without_ridged_flanks():
     """A finger of one ridge makes a strip of one, whose grooves reach their full depth. Tolerance: roundoff."""
     mesh = load(MPI.COMM_WORLD, partial(strip.build, Fingertip(ridge_count=1), SIZE))
-    ds = ufl.Measure("ds", mesh.mesh, subdomain_data=mesh.facet_tags)
-    assert integral(mesh.mesh, ds(tags.SIDES)) == pytest.approx(2 * (HEIGHT - 100 * UM), rel=1e-12, abs=0)
+    assert integral(mesh, tags.SIDES, kind="ds") == pytest.approx(2 * (HEIGHT - 100 * UM), rel=1e-12, abs=0)
 
 
 @pytest.mark.parametrize(

@@ -1,14 +1,13 @@
 """The structure of the product that CONTRIBUTING promises: no import circle, no long module, few levels."""
 
 import re
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
 
 from benchmarks import structure
 from fingerpad.cli import _BESIDE, COMMANDS
+from tests.commands import python
 
 FILES = {name: path for folder in structure.PRODUCT for name, path in structure.modules(folder).items()}
 
@@ -56,13 +55,9 @@ def test_each_module_is_imported_by_a_quick_test():
     imports = [
         *(f"tests.{name}" for name in QUICK),
         *(f"fingerpad.cli.{_BESIDE.get(name, name)}" for name in COMMANDS),
-        *(
-            "fingerpad.report.run_page",
-            "fingerpad.report.sweep_page",
-            "fingerpad.results.drawing",
-            "fingerpad.runs.batch",
-        ),
+        *(f"fingerpad.{name}" for name in ("report.run_page", "report.sweep_page", "results.drawing", "runs.batch")),
     ]
     code = "\n".join(["import sys", *(f"import {name}" for name in imports), "print(*sys.modules)"])
-    done = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, check=True)
+    done = python("-c", code, cwd=ROOT)
+    assert done.returncode == 0, done.stderr
     assert sorted({name.removesuffix(".__init__") for name in names} - set(done.stdout.split())) == []

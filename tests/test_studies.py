@@ -124,21 +124,20 @@ def test_printed_options_give_the_scene(monkeypatch):
     parser = argparse.ArgumentParser()
     parser.add_argument("scene", nargs="?", type=assumptions.Path)
     parser.add_argument("--set", action="append", default=[])
-    for name, case in (assumptions.cases() | assumptions.profiles()).items():
-        printed = assumptions._command(case).strip("`").replace("none", "")
-        scene = scene_of(parser.parse_args([*shlex.split(printed), "--set", "output.errors=false"]))
-        assert scene.parameters() == case._replace(errors=False).scene().parameters(), name
+    for name, options in (assumptions.runs() | assumptions.profiles()).items():
+        scene = scene_of(parser.parse_args([*shlex.split(options), "--set", "output.errors=false"]))
+        assert scene.parameters() == assumptions.scene(options).parameters(), name
 
 
 def test_sentences_hold_of_the_numbers(found):
     """What the prose says without a number of its own."""
-    full, shaped, words = found["full"], found["profiles"], assumptions.Comparison(found)
+    full, shaped, words = found["full"], found["profiles"], assumptions.sentences(found)
     mechanical = [name for name in full if "voltage" not in name and "friction" not in name and name != "flat 0"]
     changes = {name: abs(full[name]["mu_app"] / full["reference"]["mu_app"] - 1) for name in mechanical}
     profiles = {name for name in assumptions.PARAMETERS if "ridge_profile" in name}
     assert changes["flat 200"] > max(changes[name] for name in mechanical if name != "flat 200")
     assert max(changes[name] for name in assumptions.LITTLE) < min(changes[name] for name in profiles)
-    flat, inside = full["flat"], words.counts("flat")
+    flat, inside = full["flat"], words["counts"]("flat")
     assert inside[0] == inside[2] and abs(flat["mu_app"] / PAPER - 1) <= NEAR  # both statements at 170 V
     assert max(flat["gaps"]["full_slip"]) in (flat["gaps"]["full_slip"][0], flat["gaps"]["full_slip"][-1])
     at_200 = [row for name, row in shaped.items() if name.endswith("] at 200 V")]
@@ -147,8 +146,8 @@ def test_sentences_hold_of_the_numbers(found):
     )
     low = shaped["[1, -0.25] at 150 V"]
     assert low["d_eq"] > LEAST_GAP and low["mu_app"] < PAPER * (1 - NEAR)
-    assert min(words.met) < 170 < max(words.met)
-    assert min(words.change(*pair, "charged") for pair in (assumptions.LIGHT, ("flat 200", "flat 0"))) > 0
+    assert min(words["met"]) < 170 < max(words["met"])
+    assert min(words["change"](*pair, "charged") for pair in (assumptions.LIGHT, ("flat 200", "flat 0"))) > 0
 
 
 def test_default_is_that_of_other_pages(found):

@@ -13,6 +13,7 @@ from numpy.testing import assert_allclose
 from geometry import tags
 from geometry.bodies import block, ridge
 from geometry.mesh import TaggedMesh, load
+from tests.measures import integral
 from variational.surface import Surface
 
 pytestmark = pytest.mark.mpi
@@ -101,12 +102,8 @@ def test_every_facet_is_counted_once(name, request):
     body = request.getfixturevalue(name)
     surface = make(body)
     lengths = surface.per_ridge(np.ones((len(surface.pairs), 4)))
-    rule = {"quadrature_degree": surface.degree}
-    ds = ufl.Measure("ds", body.mesh, subdomain_data=body.facet_tags, metadata=rule)
     for k, j in enumerate(surface.ridge_numbers):
-        form = fem.form(fem.Constant(body.mesh, 1.0) * ds(tags.ridge(j)))
-        length = body.mesh.comm.allreduce(fem.assemble_scalar(form))
-        assert lengths[k] == pytest.approx(length, rel=1e-12, abs=0)
+        assert lengths[k] == pytest.approx(integral(body, tags.ridge(j), kind="ds"), rel=1e-12, abs=0)
 
 
 def test_integrals_do_not_depend_on_the_ranks():
@@ -157,24 +154,19 @@ def test_level_skin(square, level, length):
     assert below(surface, x, np.zeros_like(x), level) == pytest.approx(length, rel=1e-12, abs=0)
 
 
-def test_two_ends_in_a_facet():
-    """A parabola that dips below inside one facet. Tolerance: roundoff of its roots."""
+def test_parabolas_in_a_facet():
+    """One that dips below inside a facet, and one that rises above and leaves the two sides.
+
+    Tolerance: roundoff of the roots, and of a height of 1e-12 m.
+    """
     surface = make(load(MPI.COMM_WORLD, block(1e-3, 1e-3, 1e-3 / 3)))
     x, _ = points(surface)
     half, curvature = 0.05e-3, 50.0
-    y = curvature * ((x - 0.02e-3) ** 2 - half**2)
     t = 2 * curvature * half
     arc = (t * np.hypot(1, t) + np.arcsinh(t)) / (2 * curvature)
-    assert below(surface, x, y, 0.0) == pytest.approx(arc, rel=1e-12, abs=0)
-
-
-def test_hump_in_a_facet():
-    """A parabola that rises above inside one facet leaves the two sides. Tolerance: roundoff of a height of 1e-12 m."""
-    surface = make(load(MPI.COMM_WORLD, block(1e-3, 1e-3, 1e-3 / 3)))
-    x, _ = points(surface)
-    half, curvature = 0.05e-3, 1e-3
-    y = -curvature * (x**2 - half**2)
-    assert below(surface, x, y, 0.0) == pytest.approx(1e-3 - 2 * half, rel=2e-12, abs=0)
+    dip, hump = curvature * ((x - 0.02e-3) ** 2 - half**2), -1e-3 * (x**2 - half**2)
+    assert below(surface, x, dip, 0.0) == pytest.approx(arc, rel=1e-12, abs=0)
+    assert below(surface, x, hump, 0.0) == pytest.approx(1e-3 - 2 * half, rel=2e-12, abs=0)
 
 
 def test_order_of_the_contact_length():

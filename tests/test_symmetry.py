@@ -199,11 +199,19 @@ def test_half_the_finger_has_the_whole_s_tables(fingers):
 
 
 @pytest.mark.long
-def test_half_the_finger_comes_with_its_error(fingers):
-    """Two halves of a length are not known better than one: of the size of the whole's, of which a facet is a fifth."""
-    half, whole = (summary["charged_contact_length_error"] for summary in fingers[0])
-    assert whole / 5 < half < 5 * whole
-    assert set(fingers[0][0]["accuracy"]["quantities"]) >= {"charged_contact_length", "charged_sed_0", "charged_sed_1"}
+def test_half_the_finger_has_the_whole_s_numbers_and_errors(fingers):
+    """Within the air gaps' tolerance of 1e-6: the whole's mesh is the half's and its mirror image.
+
+    Two halves of a length are not known better than one: of the size of the whole's error, of which a facet is a fifth.
+    """
+    half, whole = fingers[0]
+    for name in ("f_ext", "charged_f_contact", "charged_f_electrostatic", "charged_contact_length"):
+        assert half[name] == pytest.approx(whole[name], rel=1e-5), name
+    error = "charged_contact_length_error"
+    assert whole[error] / 5 < half[error] < 5 * whole[error]
+    assert set(half["accuracy"]["quantities"]) >= {"charged_contact_length", "charged_sed_0", "charged_sed_1"}
+    assert half["unknowns"] < 0.55 * whole["unknowns"]
+    assert half["charged_f_t"] == 0.0
 
 
 def test_picture_shows_the_whole_finger(tmp_path, monkeypatch):

@@ -13,6 +13,7 @@ from fingerpad.results.result import Result
 from fingerpad.scene import Scene, SceneError, load
 from fingerpad.scene.law_code import digest
 from fingerpad.scene.remarks import used
+from tests.commands import python
 from tests.small_finger import small
 from variational.roughness.bam import BearingArea
 
@@ -56,9 +57,8 @@ def edited(place: Path) -> None:
 
 
 def command(place: Path, *words: str, cwd: Path | None = None, **more: str) -> subprocess.CompletedProcess[str]:
-    env = os.environ | {"PYTHONPATH": os.pathsep.join([str(place / "path"), os.getcwd()])} | more
-    run = [sys.executable, "-m", "fingerpad", *map(str, words)]
-    return subprocess.run(run, capture_output=True, text=True, check=False, env=env, cwd=cwd)
+    path = {"PYTHONPATH": os.pathsep.join([str(place / "path"), os.getcwd()])}
+    return python("-m", "fingerpad", *words, cwd=cwd, **path | more)
 
 
 # -- import paths ----------------------------------------------------------------------------------------------
@@ -179,7 +179,7 @@ def test_law_without_a_file_counts_in_its_process_alone():
         "one, two = (fp.Scene(friction=Mine()).parameters()['friction'] for _ in range(2))\n"
         "assert one == two\nprint(one)\n"
     )
-    found = {subprocess.run([sys.executable, "-c", code], capture_output=True, text=True).stdout for _ in range(2)}
+    found = {python("-c", code).stdout for _ in range(2)}
     assert len(found) == 2
     assert all("__main__:Mine" in text for text in found)
 

@@ -120,8 +120,3 @@ class Observer:
         """Return how deep the skin is in the screen where it bears pressure (m), the largest of all ranks' points."""
         deepest = float(np.max(-state.y, where=state.p_n > 0, initial=0.0))
         return float(np.max(self.problem.mesh.comm.allgather(deepest)))
-
-    def lowest_outside(self, height: Array) -> float:
-        """Return the lowest current height (m) among given ones of all ranks."""
-        lowest = float(height.min()) if len(height) else np.inf
-        return float(np.min(self.problem.mesh.comm.allgather(lowest)))

@@ -43,9 +43,11 @@ def pressed(scene: Scene, out: Path) -> dict[str, Any]:
 def numbers(runs: dict[str, Any], docs: Path) -> dict[str, Any]:
     """Return the numbers of the page from runs of :func:`pressed` and the kept numbers of the other pages."""
     grid = rows.grid(kept("paper", docs).numbers, kept("models", docs).numbers)
+    # Of what the scenes do not have at all, time for example, the verdict is in the table of texts.
+    known: dict[str, rows.Row] = {text["key"]: ({}, text["verdict"]) for text in _read("rows") if text["verdict"]}
     judged = {
         key: {"numbers": {name: float(value) for name, value in found.items()}, "verdict": verdict}
-        for key, (found, verdict) in rows.numbers(grid, runs).items()
+        for key, (found, verdict) in (rows.numbers(grid, runs) | known).items()
     }
     return {"runs": runs, "rows": judged, "curves": rows.curves(grid)}
 

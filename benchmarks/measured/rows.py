@@ -18,8 +18,6 @@ from benchmarks.measured import fingers, rules
 from benchmarks.measured.rules import (
     CHANGED,
     EXPONENT,
-    HIT,
-    MISS,
     RATIO,
     SIMILAR,
     STRIKING,
@@ -242,13 +240,8 @@ def _modulus(runs: Mapping[str, Any]) -> Row:
 
 
 # -- all -----------------------------------------------------------------------------------------------------
-def _without_numbers(verdict: str) -> Row:
-    """Return a row of what these scenes do not have at all: time, speed, frequency, adhesion without a voltage."""
-    return {}, verdict
-
-
 def numbers(g: Grid, runs: Mapping[str, Any]) -> dict[str, Row]:
-    """Return our numbers and the verdict of every row, by its key, in the order of ``rows.csv``."""
+    """Return our numbers and the verdict of every row of ``rows.csv`` that has some, by its key."""
     mu_0 = coefficient(Scene()) or 0.0
     low, high = (1e6 * each for each in g.gaps)
     of_load = _friction_load(g)
@@ -256,9 +249,6 @@ def numbers(g: Grid, runs: Mapping[str, Any]) -> dict[str, Row]:
         "friction_voltage": _power(g, "full_slip_f_t", VOLTAGES[1:]),
         "friction_range": _power(g, "full_slip_f_t", *AMPLITUDES),
         "area_voltage": _power(g, "full_slip_contact_length", *AMPLITUDES),
-        "frequency": _without_numbers(HIT),
-        "frequency_wide": _without_numbers(MISS),
-        "cut_off": _without_numbers(HIT),
         "friction_slip": _friction_slip(g),
         "area_before": _apparent(g, "charged_200", "charged_0", _same),
         "area_after": _apparent(g, "full_slip_200", "full_slip_0", _falls),
@@ -273,16 +263,12 @@ def numbers(g: Grid, runs: Mapping[str, Any]) -> dict[str, Row]:
         "friction_acrylic": of_load["friction_acrylic"],
         "friction_power": of_load["friction_power"],
         "softer": _softer(runs),
-        "time": _without_numbers(MISS),
-        "relaxation": _without_numbers(MISS),
-        "speed": _without_numbers(MISS),
         "ridges": _ridges(g),
         "gap_sliding": _gap_sliding(g),
         "friction_occluded": of_load["friction_occluded"],
         "gap": ({"low": low, "high": high}, by_factor(low, high, 1.5, 2.5)),
         "friction_input": ({"mu": mu_0}, by_factor(mu_0, mu_0, 0.25, 0.25)),
         "friction_glass": ({"mu": mu_0}, by_factor(mu_0, mu_0, 0.4, 0.8)),
-        "adhesion": _without_numbers(MISS),
         "modulus": _modulus(runs),
     }
 

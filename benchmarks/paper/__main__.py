@@ -4,11 +4,11 @@ environment/run python3 -m benchmarks.paper [--jobs 2] [--draw]
 
 The limit of µ_app is that of docs/errors.json (make chart). Runs are kept in results/traces by a hash of their
 parameters and shared with the other studies: started again, only what is missing or changed is run. Writes
-docs/paper.json, and from it docs/paper.md and its picture. Ends with 1 if a run is missing.
+docs/paper.json, and from it docs/paper.md and its picture; the page begins with what is missing.
 """
 
+import argparse
 import sys
-import time
 from collections.abc import Callable, Sequence
 from dataclasses import asdict
 from pathlib import Path
@@ -18,11 +18,10 @@ import numpy as np
 
 from benchmarks import newtons
 from benchmarks.errors import known
-from benchmarks.harness import keep, kept, made, page, parser, picture, run
+from benchmarks.harness import keep, kept, made, main, page, picture, run
 from benchmarks.paper import energy, fields, friction, scenes
 from benchmarks.paper.statement import BUILT, HOLDS, IN_PART, NOT, Statement
 from benchmarks.runs import FORCES, VOLTAGES, Run
-from fingerpad.runs.batch import result
 from fingerpad.slices import errors
 
 _LIMIT = 3600.0  # s of processor time for one run; the sine takes longest
@@ -63,6 +62,19 @@ def collect(out: Path) -> dict[str, Any]:
     return numbers
 
 
+def compute(args: argparse.Namespace) -> None:
+    """Run what is missing and keep its numbers."""
+    named = {f"{f:g} N/m, {u:g} V": scene for (f, u), scene in scenes.grid().items()}
+    summaries = run(named | {"sine": scenes.sine(), "stiffer": scenes.stiffer()}, args, _LIMIT)
+    try:
+        high = Run(scenes.grid()[scenes.MAP, 200.0], args.out)
+        summaries |= run({"friction": scenes.rougher(high)}, args, _LIMIT)
+    except FileNotFoundError as lost:
+        print(f"the run without voltage but with more friction cannot be made: {lost}")
+    keep("paper", collect(args.out), made(summaries.values()), args.docs)
+
+
+# -- page ----------------------------------------------------------------------------------------------------
 def _sites(statements: Sequence[Statement]) -> list[tuple[str, int, float, float, float]]:
     """Return the sites of Fig. 9B: their words, the paper's number, and place, ridge and ratio of SED here."""
     named = [(*name.rpartition(" ")[::2], ratio) for s in statements for name, ratio in s.numbers.items()]
@@ -99,33 +111,5 @@ def draw(docs: Path) -> Path:
     return page(docs, "paper", "make paper", globals() | names, *["newtons"] * sums)
 
 
-def main(given: Sequence[str] | None = None) -> int:
-    """Run what is missing, keep its numbers and draw the page."""
-    args, missing = parser(__doc__).parse_args(given), list[str]()
-    if not args.draw:
-        named = {f"{f:g} N/m, {u:g} V": scene for (f, u), scene in scenes.grid().items()}
-        anew = all(result(scene, args.out) is None for scene in named.values())
-        clock = [time.monotonic()]
-        summaries = run(named, args, _LIMIT)
-        clock.append(time.monotonic())
-        summaries |= run({"sine": scenes.sine(), "stiffer": scenes.stiffer()}, args, _LIMIT)
-        try:
-            high = Run(scenes.grid()[scenes.MAP, 200.0], args.out)
-            summaries |= run({"friction": scenes.rougher(high)}, args, _LIMIT)
-        except FileNotFoundError as lost:
-            print(f"the run without voltage but with more friction cannot be made: {lost}")
-        numbers = collect(args.out)
-        missing = numbers["missing"]
-        clock.append(time.monotonic())
-        minutes = {"grid": (clock[1] - clock[0]) / 60, "all": (clock[2] - clock[0]) / 60, "at a time": args.jobs}
-        if anew:  # else those of the last time when all runs were made
-            numbers["minutes"] = minutes
-        elif (args.docs / "paper.json").exists():
-            numbers["minutes"] = kept("paper", args.docs).numbers.get("minutes")
-        keep("paper", numbers, made(summaries.values()), args.docs)
-    print(draw(args.docs))
-    return 1 if missing else 0
-
-
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(main(__doc__, compute, draw))

@@ -28,7 +28,8 @@ class Column:
 
     def __init__(self, run: Run, row: int, ridge: float) -> None:
         """Take the finger at the end of the load that a row of :attr:`Run.steps` belongs to."""
-        a, finger = run.arrays(f"finger_{run.loads[row].replace(' ', '_')}"), run.scene.geometry
+        load, finger = str(run.steps["load"][row]).replace(" ", "_"), run.scene.geometry
+        a = run.arrays(f"finger_{load}")
         profiles, s = Profiles(finger), np.array([ridge * finger.ridge_wavelength])
         tip, skin = profiles.point(s, profiles.ve_d(s))[0], profiles.point(s)[0]
         up = (skin - tip) / np.linalg.norm(skin - tip)

@@ -110,13 +110,13 @@ def microscale() -> list[Statement]:
 # -- Fig. 9B -------------------------------------------------------------------------------------------------
 def _ends(run: Run, k: int) -> bool:
     """Whether a step is the last of a load that slides to full slip."""
-    last = k + 1 == len(run.loads) or run.loads[k + 1] != run.loads[k]
-    return last and run.loads[k].split()[0] in ("slide", "sine")
+    last = k + 1 == len(run.steps["load"]) or run.steps["load"][k + 1] != run.steps["load"][k]
+    return last and run.steps["load"][k].split()[0] in ("slide", "sine")
 
 
 def sine(run: Run) -> list[Statement]:
     """Return the statements on the response to a sine."""
-    rows = [k for k in range(len(run.loads)) if _ends(run, k)]
+    rows = [k for k in range(len(run.steps["load"])) if _ends(run, k)]
     sed, sites = run.receptors["merkel_sed"][rows], run.receptors["ridge"]
     mu_app, top = run.steps["mu_app"][rows], int(np.argmax(run.steps["voltage"][rows]))
     turned = int((np.diff(np.sign(np.diff(mu_app))) != 0).sum())

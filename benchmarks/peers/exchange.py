@@ -30,6 +30,8 @@ VARIANTS = (
     ("frictionless", "as installed", "felupe"),
 )
 TIMED = ("ours", "plain", *PEERS)
+DELTA = 1e-6  # of the stretches: keeps the root's derivatives finite where two coincide
+TOLERANCE, MOST = 1e-12, 60  # N/mm, norm of the nodal imbalance at which a solve ends; iterations a step
 _PRESS, _STEPS = -0.06, 20  # mm
 _SLIDES = ((0.005, 10), (0.05, 15))  # mm, steps
 
@@ -37,6 +39,11 @@ _SLIDES = ((0.005, 10), (0.05, 15))  # mm, steps
 def plain(values: Array) -> Any:
     """Return an array as lists of Python's own numbers, which JSON takes."""
     return values.tolist()
+
+
+def nearest(places: Array, points: Array) -> list[int]:
+    """Return the index of the place nearest to each point; shapes (n, 2) and (m, 2)."""
+    return [int(np.argmin(np.linalg.norm(places - point, axis=1))) for point in points]
 
 
 @dataclass(frozen=True)

@@ -13,10 +13,9 @@ is taken to be dragged from the moment of the touch, found by interpolation, not
 import felupe as fem
 import numpy as np
 
-from benchmarks.peers.exchange import Answer, Case, Ridge, main
+from benchmarks.peers.exchange import MOST, Answer, Case, Ridge, main
 
 _TOLERANCE = 1e-10  # norm of the imbalance over that of the reactions
-_MOST = 60  # iterations a step
 
 
 class CorrectedTriangle(fem.QuadraticTriangle):
@@ -64,7 +63,7 @@ def solve(case: Case, ridge: Ridge) -> Answer:
     planes = np.array([plane])
     supports = {"x": support(ridge.held, (0, 1)), "y": support(ridge.top, (1, 0)), "plane": support(planes, (0, 0))}
     dof0, dof1 = fem.dof.partition(field, supports)
-    how = {"items": [*bodies, *contacts], "dof0": dof0, "dof1": dof1, "tol": _TOLERANCE, "maxiter": _MOST, "verbose": 0}
+    how = {"items": [*bodies, *contacts], "dof0": dof0, "dof1": dof1, "tol": _TOLERANCE, "maxiter": MOST, "verbose": 0}
     answer = Answer("FElupe", fem.__version__, "GPL 3 or later")
     answer.ready()
     for load in case.loads:

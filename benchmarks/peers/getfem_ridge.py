@@ -12,11 +12,8 @@ import numpy as np
 from scipy.sparse import csc_matrix
 from scipy.sparse.linalg import spsolve
 
-from benchmarks.peers.exchange import Answer, Case, Load, Ridge, main, plain
+from benchmarks.peers.exchange import DELTA, MOST, TOLERANCE, Answer, Case, Load, Ridge, main, nearest, plain
 
-_DELTA = 1e-6
-_TOLERANCE = 1e-12  # N/mm, norm of the nodal imbalance
-_MOST = 60  # iterations a step
 _SKIN = 1  # number of a region
 _MACROS = {
     "F": "(Id(2) + Grad_u)",
@@ -58,7 +55,7 @@ def solve(case: Case, ridge: Ridge) -> Answer:
     model = gf.Model("real")
     model.add_fem_variable("u", space)
     model.add_im_data("anchor", at_points)
-    data = {"a": case.exponent, "G": case.shear_modulus, "K": case.bulk_modulus, "delta": _DELTA}
+    data = {"a": case.exponent, "G": case.shear_modulus, "K": case.bulk_modulus, "delta": DELTA}
     for name, value in {**data, "eps_n": case.eps_n, "eps_t": case.eps_t, "mu_f": case.mu_f}.items():
         model.add_initialized_data(name, [value])
     for name, text in _MACROS.items():
@@ -68,7 +65,7 @@ def solve(case: Case, ridge: Ridge) -> Answer:
 
     # GetFEM numbers components of a node one after the other.
     places = space.basic_dof_nodes()[:, ::2].T
-    node = np.array([int(np.argmin(np.linalg.norm(places - point, axis=1))) for point in ridge.points])
+    node = np.array(nearest(places, ridge.points))
     held = {"x": 2 * node[ridge.held], "y": 2 * node[ridge.top] + 1}
     skin = node[ridge.skin.ravel()]
     query = ["dpkg-query", "-W", "-f", "${Version}", "python3-getfem"]
@@ -90,11 +87,11 @@ def _newton(model: gf.Model, held: dict[str, np.ndarray], load: Load, answer: An
     step = np.zeros_like(u)
     step[held["x"]], step[held["y"]] = load.x - u[held["x"]], load.y - u[held["y"]]
     free = np.setdiff1d(np.arange(len(u)), np.concatenate(list(held.values())))
-    for iteration in range(_MOST):
+    for iteration in range(MOST):
         model.set_variable("u", u)
         model.assembly("build_all")
         forces = -model.rhs()
-        if iteration and np.linalg.norm(forces[free]) < _TOLERANCE:
+        if iteration and np.linalg.norm(forces[free]) < TOLERANCE:
             answer.iterations += iteration
             return forces
         tangent = model.tangent_matrix()

@@ -9,11 +9,8 @@ import netgen.meshing as netgen
 import ngsolve as ng
 import numpy as np
 
-from benchmarks.peers.exchange import Answer, Case, Ridge, left_to_right, main, plain
+from benchmarks.peers.exchange import DELTA, MOST, TOLERANCE, Answer, Case, Ridge, left_to_right, main, plain
 
-_DELTA = 1e-6
-_TOLERANCE = 1e-12  # N/mm, norm of the nodal imbalance
-_MOST = 60  # iterations a step
 _POINTS = 4  # Gauss points on an edge
 _SIMPSON = ng.IntegrationRule([(0.0,), (0.5,), (1.0,)], [1 / 6, 2 / 3, 1 / 6])
 _TRIANGLE = ng.IntegrationRule([(1 / 6, 1 / 6), (2 / 3, 1 / 6), (1 / 6, 2 / 3)], [1 / 6] * 3)
@@ -38,7 +35,7 @@ def mesh_of(ridge: Ridge) -> ng.Mesh:
 def energy(case: Case, F):
     """Return the strain energy density (MPa)."""
     C, J, a = F.trans * F, ng.Det(F), case.exponent
-    root = ng.sqrt((C[0, 0] - C[1, 1]) ** 2 / 4 + C[0, 1] ** 2 + _DELTA**2)
+    root = ng.sqrt((C[0, 0] - C[1, 1]) ** 2 / 4 + C[0, 1] ** 2 + DELTA**2)
     squares = (ng.Trace(C) / 2 + root, ng.Trace(C) / 2 - root, 1.0)
     powers = sum((J ** (-2 / 3) * square) ** (a / 2) for square in squares)
     return 2 * case.shear_modulus / a**2 * (powers - 3) + case.bulk_modulus / 2 * (J - 1) ** 2
@@ -110,9 +107,9 @@ def solve(case: Case, ridge: Ridge) -> Answer:
 def _newton(loaded: ng.BilinearForm, now: ng.GridFunction, residual: ng.BaseVector) -> int:
     """Find the equilibrium at the prescribed displacements in ``now``; return how many systems were solved."""
     free = now.space.FreeDofs()
-    for iteration in range(_MOST):
+    for iteration in range(MOST):
         loaded.Apply(now.vec, residual)
-        if iteration and np.linalg.norm(residual.FV().NumPy()[np.array(free)]) < _TOLERANCE:
+        if iteration and np.linalg.norm(residual.FV().NumPy()[np.array(free)]) < TOLERANCE:
             return iteration
         loaded.AssembleLinearization(now.vec)
         now.vec.data -= loaded.mat.Inverse(free, inverse="umfpack") * residual

@@ -8,7 +8,7 @@ import dolfinx
 import numpy as np
 from mpi4py import MPI
 
-from benchmarks.peers.exchange import Answer, Case, Ridge, left_to_right, main, plain
+from benchmarks.peers.exchange import Answer, Case, Ridge, left_to_right, main, nearest, plain
 from geometry import tags
 from geometry.bodies import ridge
 from geometry.mesh import TaggedMesh, load
@@ -74,7 +74,7 @@ def solve(case: Case, body: TaggedMesh, skin: np.ndarray) -> Answer:
     made = Body(body, skins, law, tolerance=_IMBALANCE, held=body.facets(tags.SIDES))
     problem, solver, observer = made.problem, made.solver, made.observer
     places = problem.V.tabulate_dof_coordinates()[:, :2] / _MM
-    nodes = [int(np.argmin(np.linalg.norm(places - place, axis=1))) for place in skin]
+    nodes = nearest(places, skin)
     answer = Answer("fingerpad", f"{importlib.metadata.version('fenics-dolfinx')} (dolfinx)", "this project")
     answer.ready()
     for before, now in case.steps():

@@ -9,7 +9,7 @@ from dolfinx.fem.petsc import apply_lifting, assemble_matrix, assemble_vector, c
 from mpi4py import MPI
 from petsc4py import PETSc
 
-from benchmarks.peers.exchange import Answer, Case, Ridge, main
+from benchmarks.peers.exchange import DELTA, MOST, TOLERANCE, Answer, Case, Ridge, main, nearest
 
 
 def solve(case: Case, ridge: Ridge) -> Answer:
@@ -32,7 +32,7 @@ def solve(case: Case, ridge: Ridge) -> Answer:
     u, v = fem.Function(V), ufl.TestFunction(V)
     F = ufl.Identity(2) + ufl.grad(u)
     C, J, a = F.T * F, ufl.det(F), case.exponent
-    root = ufl.sqrt((C[0, 0] - C[1, 1]) ** 2 / 4 + C[0, 1] ** 2 + 1e-12)
+    root = ufl.sqrt((C[0, 0] - C[1, 1]) ** 2 / 4 + C[0, 1] ** 2 + DELTA**2)
     powers = (ufl.tr(C) / 2 + root) ** (a / 2) + (ufl.tr(C) / 2 - root) ** (a / 2) + 1
     psi = 2 * case.shear_modulus / a**2 * (J ** (-a / 3) * powers - 3) + case.bulk_modulus / 2 * (J - 1) ** 2
     place = ufl.SpatialCoordinate(msh) + u
@@ -63,13 +63,13 @@ def solve(case: Case, ridge: Ridge) -> Answer:
     snes = PETSc.SNES().create(msh.comm)
     snes.setFunction(imbalance, forces)
     snes.setJacobian(tangent, create_matrix(jacobian))
-    snes.setTolerances(rtol=0, atol=1e-12, stol=0, max_it=60)
+    snes.setTolerances(rtol=0, atol=TOLERANCE, stol=0, max_it=MOST)
     solver = {"ksp_type": "preonly", "pc_type": "lu", "pc_factor_mat_solver_type": "mumps"}
     for name, value in solver.items():
         PETSc.Options().setValue(name, value)
     snes.setFromOptions()
     places = V.tabulate_dof_coordinates()[:, :2]
-    nodes = [int(np.argmin(np.linalg.norm(places - point, axis=1))) for point in ridge.points[ridge.skin.ravel()]]
+    nodes = nearest(places, ridge.points[ridge.skin.ravel()])
     answer = Answer("plain dolfinx", dolfinx.__version__, "as a user's script")
     answer.ready()
     for load in case.loads:

@@ -1,7 +1,9 @@
 """What the stability map runs: single runs as plain data, pairs of parameters, named failures, and their references."""
 
+import tomllib
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import asdict, dataclass, field, replace
+from pathlib import Path
 from typing import Any, Literal
 
 from variational.contact.augmented import AugmentedLagrangian
@@ -95,6 +97,7 @@ class Outcome:
     contact_length: float = 0.0
 
 
+_NAMED = Path(__file__).parent / "named.toml"
 MOST = 400  # solves of the whole map, references included
 DEFAULT = Case()
 
@@ -171,56 +174,19 @@ def charts() -> dict[str, list[Panel]]:
 
 
 def named() -> dict[str, Named]:
-    """Return the known failures by name, with the runs that reproduce them."""
-    coarse = replace(DEFAULT, contact_size=10e-6)
-    free = replace(coarse, sides="free")
-    squeezed = replace(free, indentation=30e-6, voltage=0.0, slide=0.0)
-    smooth = replace(DEFAULT, mu_f=0.0, slide=0.0, force=1.0)
-    trailing = replace(free, ridges=3, force=1.0)
-    ways = {"up to 200 V": 0.0, "up to 400 V, down to 200 V": 400.0}
-    edges = [(5e-6, "P2"), (20e-6, "P2"), (40e-6, "P2"), (20e-6, "P1")]
-    locking = {f"{e}, ν = {nu}": replace(squeezed, element=e, nu=nu) for nu in (0.48, 0.4999) for e in ELEMENTS}
-    penalty = {f"ε_n = {e:g} Pa/m": replace(coarse, parameter=e) for e in (1.5e12, 1.5e14, 1.5e16, 1.5e18)}
-    coercivity = {
-        f"{theta}, γ_0 = {gamma_0:g}": replace(coarse, formulation=f"Nitsche, {theta}", parameter=gamma_0)
-        for theta in ("θ = 0", "θ = -1")
-        for gamma_0 in (0.01, 0.1, 10.0)
-    }
-    edge = {
-        f"{h * 1e6:g} µm, {e}, {way}": replace(smooth, contact_size=h, element=e, detour=detour)
-        for h, e in edges
-        for way, detour in ways.items()
-    }
-    alone = replace(trailing, pseudo_transient=False)
+    """Return the default and its neighbours, and the known failures by name, with the runs that reproduce them."""
     return {
-        "locking": Named(locking, referenced=True),
-        "penalty": Named(penalty),
-        "coercivity": Named(coercivity),
-        "edge": Named(edge, referenced=True),
-        "snap-off": Named({"with pseudo-transient continuation": trailing, "Newton alone, with cutback": alone}),
-        "inversion": Named({"20 N/m a ridge": replace(trailing, force=20.0, voltage=0.0)}),
+        title: Named(
+            {words: replace(DEFAULT, **group.get("all", {}), **changes) for words, changes in group["runs"].items()},
+            group.get("referenced", False),
+        )
+        for title, group in tomllib.loads(_NAMED.read_text(encoding="utf-8")).items()
     }
-
-
-def neighbours() -> Named:
-    """Return the default, what differs from it in one numerical parameter, and the bias of the reference."""
-    runs = {
-        "default": DEFAULT,
-        "ε_n / 10": replace(DEFAULT, parameter=DEFAULT.parameter / 10),
-        "ε_n × 10": replace(DEFAULT, parameter=DEFAULT.parameter * 10),
-        "contact size 3 µm": replace(DEFAULT, contact_size=3e-6),
-        "contact size 10 µm": replace(DEFAULT, contact_size=10e-6),
-        "P1": replace(DEFAULT, element="P1"),
-        "steps × 1/2": replace(DEFAULT, step_scale=0.5),
-        "steps × 2": replace(DEFAULT, step_scale=2.0),
-        "1.25 µm, ε_n × 10": replace(DEFAULT.reference, parameter=DEFAULT.parameter * 10),
-    }
-    return Named(runs, referenced=True)
 
 
 def cases() -> list[Case]:
     """Return all runs, each once: named ones first, then references; ValueError if they are more than MOST."""
-    groups = [neighbours(), *named().values()]
+    groups = [*named().values()]
     shown = [case for panels in charts().values() for panel in panels for case in panel.cases()]
     runs = [case for group in groups for case in group.cases.values()]
     compared = [case for group in groups[1:] if group.referenced for case in group.cases.values()] + shown

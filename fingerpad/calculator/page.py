@@ -8,27 +8,24 @@ import html
 import json
 import re
 from collections.abc import Iterator
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from importlib.resources import files
-from typing import Any, get_args
+from typing import Any
 
 from numpy.polynomial.legendre import leggauss
-from pydantic import BaseModel, WrapValidator
 
 from fingerpad.installed import version
 from fingerpad.reduced import cylinder_errors, cylinders
 from fingerpad.reduced.model import STATES
-from fingerpad.results.quantities import PER_LENGTH
+from fingerpad.results.quantities import PER_LENGTH, Output
 from fingerpad.results.states import WORDS
 from fingerpad.scene import Scene
-from fingerpad.scene.law_keys import keys_of
+from fingerpad.scene.keys import every
 from fingerpad.scene.materials import BEARING_AREA, LARGEST_GAP
 from fingerpad.scene.remarks import LEAKAGE, skin_modulus
 from fingerpad.slices import traces
-from geometry.parameters import Fingertip, MeshSize
 from geometry.units import Range
 from variational.attraction.electroadhesion import VACUUM_PERMITTIVITY
-from variational.contact.friction import Coulomb
 
 _TABLE = (20.0, 50.0, 75.0, 100.0, 150.0), (0.0, 50.0, 100.0, 150.0, 200.0)  # N/m, V
 
@@ -41,8 +38,6 @@ class Field:
     """Of the scene, dotted."""
     words: str
     unit: str
-    per: float
-    """Units in one SI unit: 1e6 for µm."""
     slider: tuple[float, float]
     """Ends of the slider."""
     group: str
@@ -54,57 +49,51 @@ class Field:
     """The default."""
     whole: bool = False
     """Whether only whole numbers are allowed."""
+    per: float = 1.0
+    """Units in one SI unit: 1e6 for µm."""
 
 
 _FORCE = 0.5  # N, of the field that a scene has no default of
 _SHOWN = (
-    Field("voltage", "voltage U", "V", 1.0, (0.0, 250.0), "Load"),
-    Field("f_ext", "normal force f_ext, per metre of finger", "N/m", 1.0, (5.0, 150.0), "Load"),
-    Field("force", "normal force F_ext on the whole finger", "N", 1.0, (0.05, 1.0), "Load"),
-    Field("friction", "friction coefficient µ_0 without voltage", "", 1.0, (0.05, 1.0), "Load"),
-    Field("electric.d_i", "thickness d_i", "µm", 1e6, (0.1, 10.0), "Coating of the screen"),
-    Field("electric.eps_i", "relative permittivity ε_i", "", 1.0, (1.0, 30.0), "Coating of the screen"),
-    Field("roughness.h_rms", "root mean square height h_rms", "µm", 1e6, (1.0, 10.0), "Roughness of the skin"),
-    Field("roughness.wavelength", "largest wavelength λ_0", "µm", 1e6, (20.0, 500.0), "Roughness of the skin"),
-    Field("roughness.young", "elastic modulus of the surface E", "MPa", 1e-6, (0.1, 10.0), "Roughness of the skin"),
-    Field("roughness.gamma", "decay of the repulsion γ", "", 1.0, (0.3, 0.8), "More of the model"),
-    Field("roughness.beta", "prefactor of the repulsion β", "", 1.0, (0.5, 2.0), "More of the model"),
-    Field("roughness.p_floor", "pressure below which the gap is held", "Pa", 1.0, (10.0, 1e4), "More of the model"),
-    Field("electric.eps_sc", "relative permittivity of the skin ε_sc", "", 1.0, (100.0, 1e4), "More of the model"),
+    Field("voltage", "voltage U", "V", (0.0, 250.0), "Load"),
+    Field("f_ext", "normal force f_ext, per metre of finger", "N/m", (5.0, 150.0), "Load"),
+    Field("force", "normal force F_ext on the whole finger", "N", (0.05, 1.0), "Load"),
+    Field("friction", "friction coefficient µ_0 without voltage", "", (0.05, 1.0), "Load"),
+    Field("electric.d_i", "thickness d_i", "µm", (0.1, 10.0), "Coating of the screen"),
+    Field("electric.eps_i", "relative permittivity ε_i", "", (1.0, 30.0), "Coating of the screen"),
+    Field("roughness.h_rms", "root mean square height h_rms", "µm", (1.0, 10.0), "Roughness of the skin"),
+    Field("roughness.wavelength", "largest wavelength λ_0", "µm", (20.0, 500.0), "Roughness of the skin"),
+    Field("roughness.young", "elastic modulus of the surface E", "MPa", (0.1, 10.0), "Roughness of the skin"),
+    Field("roughness.gamma", "decay of the repulsion γ", "", (0.3, 0.8), "More of the model"),
+    Field("roughness.beta", "prefactor of the repulsion β", "", (0.5, 2.0), "More of the model"),
+    Field("roughness.p_floor", "pressure below which the gap is held", "Pa", (10.0, 1e4), "More of the model"),
+    Field("electric.eps_sc", "relative permittivity of the skin ε_sc", "", (100.0, 1e4), "More of the model"),
 )
 
 
 def fields() -> Iterator[Field]:
-    """Yield the fields of a scene's keys, with bounds and defaults from the scene."""
+    """Yield the fields of the page, with bounds and defaults from the keys of a scene."""
+    keys = {key.name: key for key in every(Scene)}
     for field in _SHOWN:
-        model, _, name = field.key.rpartition(".")
-        table: Any = getattr(Scene(), model) if model else Scene()
-        allowed = bounds(type(table), name) if field.key != "friction" else bounds(Coulomb, "mu_f")
-        value = _in_unit(_FORCE if name == "force" else getattr(table, name), field.per)
-        low, high = (_in_unit(end, field.per) for end in (allowed.low, allowed.high))
-        yield Field(**asdict(field) | {"low": low, "high": high, "zero": allowed.zero, "value": value})
-
-
-def contact() -> Iterator[Field]:
-    """Yield the fields of a contact as given; the values shown first are the default finger's at full slip."""
-    default, group = cylinders.solve(Scene()).full_slip, "Finger"
+        key = keys[field.key]
+        yield _bounded(field, key.limits, _FORCE if key.name == "force" else key.default)
+    # A contact as given; the values shown first are the default finger's at full slip.
+    default = cylinders.solve(Scene()).full_slip
     assert default is not None
-    low, high = bounds(MeshSize, "contact").low, bounds(Fingertip, "width").high  # a finger's facet, and its width
-    length = round(default.contact_length * 1e3, 3)
-    yield Field("length", "contact length L_R", "mm", 1e3, (0.2, 4.0), group, low * 1e3, high * 1e3, False, length)
-    ends = {type(end).__name__: end for end in Fingertip.model_fields["ridge_count"].metadata}
-    low, high, ridges = float(ends["Ge"].ge), float(ends["Le"].le), float(default.ridges_in_contact)
-    yield Field("ridges", "ridges in contact", "", 1.0, (1.0, 25.0), group, low, high, False, ridges, True)
+    facet, width = keys["mesh.contact"].limits, keys["geometry.width"].limits
+    assert facet is not None and width is not None
+    length = Field("length", "contact length L_R", "mm", (0.2, 4.0), "Finger")
+    yield _bounded(length, Range(facet.low, width.high), float(f"{default.contact_length:.6f}"))
+    ridges = Field("ridges", "ridges in contact", "", (1.0, 25.0), "Finger", whole=True)
+    yield _bounded(ridges, keys["geometry.ridge_count"].limits, default.ridges_in_contact)
 
 
-def bounds(model: type, name: str) -> Range:
-    """Return the range of a key of a table, or of a law."""
-    if not issubclass(model, BaseModel):
-        return Range(*keys_of(model)[name].metadata["range"])
-    field = model.model_fields[name]
-    choices = (field.annotation, *get_args(field.annotation))  # of a key that may be left out, too
-    parts = (*field.metadata, *(part for each in choices for part in getattr(each, "__metadata__", ())))
-    return next(p.func for p in parts if isinstance(p, WrapValidator) and isinstance(p.func, Range))
+def _bounded(field: Field, limits: Range | None, value: float) -> Field:
+    """Return a field with its bounds and its default, which are in SI units, in its own unit."""
+    assert limits is not None
+    per = Output("", field.unit).scale
+    low, high, shown = (_in_unit(float(each), per) for each in (limits.low, limits.high, value))
+    return replace(field, low=low, high=high, zero=limits.zero, value=shown, per=per)
 
 
 def _in_unit(value: float, per: float) -> float:
@@ -117,7 +106,7 @@ def data() -> dict[str, Any]:
     scene, error = Scene(), cylinder_errors.KNOWN_ERROR["full_slip"]
     nodes, weights = (each.tolist() for each in leggauss(scene.slices.count))
     return {
-        "fields": [asdict(field) for field in (*fields(), *contact())],
+        "fields": [asdict(field) for field in fields()],
         "eps_0": VACUUM_PERMITTIVITY,
         "sc_thickness": scene.geometry.sc_thickness,
         "tip_radius": cylinders.tip_radius(scene.geometry),

@@ -115,16 +115,8 @@ class Parser(argparse.ArgumentParser):
         metavar = kind.endings[0][1:].upper()
         self.add_argument(option, dest=name, type=path, metavar=metavar, default=chosen, help=what)
 
-    def read(self, argv: Sequence[str]) -> argparse.Namespace:
-        """Return the options of a command line that has none of PETSc's.
-
-        Raises:
-            SceneError: the first word at fault.
-        """
-        return self.read_with_petsc(argv, petsc=False)[0]
-
-    def read_with_petsc(self, argv: Sequence[str], petsc: bool = True) -> tuple[argparse.Namespace, list[str]]:
-        """Return options, and PETSc's options where they are allowed.
+    def read(self, argv: Sequence[str], petsc: bool = False) -> argparse.Namespace:
+        """Return options; those for PETSc are the list ``petsc``, where they are allowed.
 
         Raises:
             SceneError: the first word at fault, with the nearest option there is.
@@ -150,7 +142,8 @@ class Parser(argparse.ArgumentParser):
             refuse_file(file, kind)
             if sum(isinstance(each, Path) and _same(each, file) for each in values) > 1:
                 raise SceneError(f"{ends(file)} is given twice, once to be written; give it another name")
-        return args, passed
+        args.petsc = passed
+        return args
 
     def _refuse(self, word: str, petsc: bool) -> NoReturn:
         instead = _instead(word, self._option_string_actions, petsc)

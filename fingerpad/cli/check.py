@@ -3,8 +3,8 @@
 import importlib.util
 from collections.abc import Iterator, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
 
+from fingerpad.cli import mesh as meshes
 from fingerpad.cli.arguments import Parser, echo, scene_of
 from fingerpad.model.options import FingerModel, ModelOptions, by_rule, memory, plan, refuse_mesh, unknowns
 from fingerpad.reduced.cylinder_errors import outside, where
@@ -13,9 +13,6 @@ from fingerpad.results.terminal import about
 from fingerpad.scene import Load, Scene, SceneError
 from fingerpad.scene.remarks import leakage, remarks, used
 from geometry.profiles import GeometryError
-
-if TYPE_CHECKING:
-    from fingerpad.cli.mesh import Section
 
 _EXAMPLES = """
     fingerpad check scene.toml --out results/check
@@ -47,7 +44,7 @@ def main(argv: Sequence[str]) -> int:
     return 0
 
 
-def _mesh(scene: Scene, needed: ModelOptions) -> "Section | None":
+def _mesh(scene: Scene, needed: ModelOptions) -> meshes.Section | None:
     """Return the mesh that a run would have, or that of the scene's file; None where there is no gmsh.
 
     Raises:
@@ -55,8 +52,6 @@ def _mesh(scene: Scene, needed: ModelOptions) -> "Section | None":
     """
     if scene.geometry.file is None and importlib.util.find_spec("gmsh") is None:
         return None
-    from fingerpad.cli import mesh as meshes
-
     found = meshes.section(scene, needed)
     if scene.geometry.file is None:
         try:
@@ -115,7 +110,7 @@ def _model(scene: Scene, needed: ModelOptions) -> Iterator[str]:
         yield "finer meshes follow, to the accuracy asked for"
 
 
-def _size(scene: Scene, mesh: "Section | None") -> Iterator[str]:
+def _size(scene: Scene, mesh: meshes.Section | None) -> Iterator[str]:
     if mesh is None:
         yield "not made, since gmsh is not installed"
         return
@@ -141,12 +136,10 @@ def _um(length: float) -> str:
     return f"{length * 1e6:.3g} µm"
 
 
-def _picture(scene: Scene, folder: Path, mesh: "Section | None") -> str:
+def _picture(scene: Scene, folder: Path, mesh: meshes.Section | None) -> str:
     """Draw the mesh; return what was drawn, or why nothing was."""
     if mesh is None or importlib.util.find_spec("matplotlib") is None:
         return f"The mesh is not drawn, since {'gmsh' if mesh is None else 'matplotlib'} is not installed."
-    from fingerpad.cli import mesh as meshes
-
     folder.mkdir(parents=True, exist_ok=True)
     meshes.draw(folder / "mesh.png", mesh, by_rule(scene))
     return f"Mesh drawn: {folder / 'mesh.png'}"

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     import pandas as pd
     from matplotlib.axes import Axes
 
-    from fingerpad.measurements.computed import Computed
+    from fingerpad.measurements.compare import Computed
 
 _MODELS = """
     fingerpad compare --set voltage=100
@@ -64,7 +64,7 @@ def main(argv: Sequence[str]) -> int:
     parser.add_argument("--contact-length", type=quantity, metavar="M", help="cylinders: the length in contact, 1.6 mm")
     parser.add_argument("--ridges", type=positive, metavar="N", help="cylinders: on so many ridges")
     parser.add_argument("--run", type=path, metavar="DIR", help="cylinders: contact lengths of this full run")
-    args, petsc = parser.read_with_petsc(argv)
+    args = parser.read(argv, petsc=True)
     given = [name for name in ("contact_length", "ridges", "run") if getattr(args, name) is not None]
     if given and Cylinders.name not in args.model:
         raise SceneError(f"--{given[0].replace('_', '-')} is given without the model cylinders, which reads it; add it")
@@ -73,7 +73,7 @@ def main(argv: Sequence[str]) -> int:
     models = MODELS | {Cylinders.name: Cylinders(_footprint(scene, args.contact_length, args.ridges, args.run))}
     from fingerpad.startup import start
 
-    start(petsc)
+    start(args.petsc)
     import fingerpad.runs.full  # noqa: F401  # before Ctrl-C raises
 
     def answer_or_refusal(model: Model) -> Result:
@@ -149,10 +149,10 @@ def compare_data(argv: Sequence[str]) -> int:
     parser.add_argument("--run", "--sweep", nargs="+", type=path, required=True, **where)
     output.add_files(parser, _COLUMNS, "picture of measured and computed values", "--out")
     args = parser.read(argv)
-    from fingerpad.measurements import compare, computed, table  # pandas
+    from fingerpad.measurements import compare, table  # pandas
 
     measured = [table.read(file, _mapping(args.column), args.state) for file in args.tables]
-    known = [computed.computed(args.results, each) for each in measured]
+    known = [compare.computed(args.results, each) for each in measured]
     compared = [compare.beside(*pair) for pair in zip(measured, known, strict=True)]
     echo("\n\n".join("\n".join(_lines(each)) for each in compared))
     rows = [row for each in compared for row in _rows(each)]
@@ -224,7 +224,7 @@ def _draw(file: Path, compared: Sequence["pd.DataFrame"], known: Sequence["Compu
 
 
 def _panel(ax: "Axes", rows: "pd.DataFrame", known: "Computed") -> None:
-    from fingerpad.measurements.computed import CLOSE
+    from fingerpad.measurements.compare import CLOSE
     from fingerpad.results import style
 
     about, points = rows.attrs, known.points

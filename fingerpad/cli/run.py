@@ -42,7 +42,7 @@ def main(argv: Sequence[str]) -> int:
         metavar="FORCE",
         help="force on the whole finger (N), as --set force: slices are summed over traces of the model",
     )
-    args, petsc = parser.read_with_petsc(argv)
+    args = parser.read(argv, petsc=True)
     args.model = args.model or model_of(args.scene)
     if args.resume is not None:
         scene, args.out = _cut_short(args), args.resume
@@ -54,14 +54,14 @@ def main(argv: Sequence[str]) -> int:
     model, shown = find(args.model), not args.quiet
     context = RunContext(args.out, lines=shown, bar=shown, resume=args.resume is not None)
     if not model.meshes:
-        if petsc:
-            raise SceneError(f"{petsc[0]} is given and --model is {model.name}, which solves nothing by PETSc")
+        if args.petsc:
+            raise SceneError(f"{args.petsc[0]} is given and --model is {model.name}, which solves nothing by PETSc")
         echo(str(solved(scene, model, context)))
         _say_report(args)
         return 0
     from fingerpad.startup import start
 
-    start(petsc)
+    start(args.petsc)
     # PETSc has its options from here on.
     from fingerpad.runs.full import exit_code
 

@@ -23,8 +23,8 @@ import numpy as np
 import pandas as pd
 
 from fingerpad.scene.messages import SceneError, clip
+from fingerpad.scene.reading import text_of
 from geometry.units import to_si
-from variational import files
 
 CONDITIONS = {"force": ("N", "N/m"), "voltage": ("V",)}
 """Columns that are conditions, and their SI units."""
@@ -51,7 +51,6 @@ STATES = {"uncharged": "uncharged", "charged": "charged", "full slip": "full_sli
 _NAMES = (*CONDITIONS, *(SECTION | WHOLE), "spread")
 _COMMENT = re.compile(r"#\s*(source|doi|url|people|state)\s*:(.*)", re.IGNORECASE)
 _HEAD = re.compile(r"\s*(.*?)\s*[(\[]\s*([^()\[\]]*?)\s*[)\]]\s*")
-_MAX_BYTES = 1_000_000  # of a file
 _MAX_COLUMNS = 1000
 _MAX_HEAD = 200  # characters of a head with a unit
 
@@ -157,12 +156,7 @@ def read(
 def _file(file: Path) -> tuple[str, str, pd.DataFrame]:
     """Return the name of a file, what its rows are called, and its cells by head and line."""
     name = clip(str(file), 80)
-    try:
-        lines = files.read(file, _MAX_BYTES).decode("utf-8-sig").splitlines()
-    except OSError as error:
-        raise SceneError(f"{name} cannot be read: {error.strerror or error}") from None
-    except UnicodeDecodeError:
-        raise SceneError(f"{name} is not text in UTF-8; save it as CSV in UTF-8") from None
+    lines = text_of(file, name).splitlines()
     rows = [n for n, line in enumerate(lines, start=1) if line.strip() and not line.lstrip().startswith("#")]
     if len(rows) < 2:
         raise SceneError(f"{name} has no rows of numbers below a header such as 'force (N/m), friction (1)'")

@@ -11,7 +11,6 @@ since the screen is uniform.
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -20,8 +19,7 @@ from dolfinx import fem
 from fingerpad.model.state import steady
 from fingerpad.results.states import SLIDE_ON, full_slip
 from geometry import tags
-from geometry.mesh import TaggedMesh
-from variational.quantities import Observer, RidgeLoads
+from variational.quantities import RidgeLoads
 from variational.solvers.continuation import StepFailed
 from variational.solvers.outcome import NotConverged
 from variational.solvers.stability import Stability, StabilityCheck
@@ -30,6 +28,7 @@ from variational.state import ContactState
 
 if TYPE_CHECKING:
     from fingerpad.model.finger import Finger
+    from fingerpad.model.options import FingerModel
 
 _MIN_CLEARANCE = 10e-6  # m, height of the skin at which an attraction of 200 V comes to 1 kPa
 _MORE = 2  # ridges on either side that are added at least, or
@@ -43,27 +42,17 @@ class FingerExceeded(RuntimeError):
 class ContactZone:
     """Checks the skin of a finger."""
 
-    def __init__(
-        self, body: TaggedMesh, observer: Observer, ridges: list[int], count: int, file: str | Path | None = None
-    ) -> None:
-        """Find the skin that cannot touch.
-
-        Args:
-            body: the finger's mesh.
-            observer: evaluates its surface.
-            ridges: numbers of the ridges that can touch, of the whole finger.
-            count: number of all ridges of the finger.
-            file: the mesh's, where it is of a file, which has all the ridges there are.
-        """
-        self._observer, self._problem = observer, observer.problem
-        self._ridges, self._count, self._file = ridges, count, file
-        outside = body.facet_tags.find(tags.OUTER_SKIN)
-        self._nodes = fem.locate_dofs_topological(self._problem.V, 1, outside)
+    def __init__(self, finger: "Finger", model: "FingerModel") -> None:
+        """Find the skin that cannot touch; a mesh of a file has all the ridges there are."""
+        self._problem, self._ridges = finger.problem, finger.ridges
+        self._count, self._file = model.geometry.ridge_count, model.mesh_file
+        self._nodes = fem.locate_dofs_topological(self._problem.V, 1, finger.mesh.facets(tags.OUTER_SKIN))
 
     def _lowest_outside(self) -> float:
-        """Return the lowest height (m) of the skin that cannot touch."""
-        V, u = self._problem.V, self._problem.displacement()
-        return self._observer.lowest_outside(V.tabulate_dof_coordinates()[self._nodes, 1] + u[self._nodes, 1])
+        """Return the lowest height (m) of the skin that cannot touch; collective."""
+        heights = self._problem.V.tabulate_dof_coordinates()[self._nodes, 1]
+        heights = heights + self._problem.displacement()[self._nodes, 1]
+        return float(np.min(self._problem.mesh.comm.allgather(float(heights.min(initial=np.inf)))))
 
     def check(self, loads: RidgeLoads) -> tuple[int, str] | None:
         """Return the last ridge, on either side, that must be able to touch, and why; None where it can; collective.

@@ -131,13 +131,17 @@ class Report:
             skin = self._viewer.skin(step)
             if skin is not None:
                 self.record.skins[state.step] = skin
-            self._writer.row("steps", state.row())
-            self._tables("", {"step": state.step}, state, state.mesh_contact)
-            for iteration, change in enumerate(state.changes):
-                self._writer.row("coupling", {"step": state.step, "iteration": iteration + 1, "change": change})
-            self._console.step(state, done)
+            self._show(state, done)
             if self._simulation.finger.problem.mesh.comm.rank == 0:
                 self._log(step, state)
+
+    def _show(self, state: ContactState, done: float) -> None:
+        """Write the rows of an accepted state, and print it."""
+        self._writer.row("steps", state.row())
+        self._tables("", {"step": state.step}, state, state.mesh_contact)
+        for iteration, change in enumerate(state.changes):
+            self._writer.row("coupling", {"step": state.step, "iteration": iteration + 1, "change": change})
+        self._console.step(state, done)
 
     def _tables(self, end: str, first: Mapping[str, Any], state: ContactState, size: float | None) -> None:
         """Write the rows of ridges in contact and of receptor sites of a state."""
@@ -181,7 +185,7 @@ class Report:
             "skins": self.record.skins,
             "ends": self._ends,
             "logged": self._logged,
-            "tables": self._writer.kept(),
+            "log": self._writer.log_text(),
         }
 
     def resume(self, kept: Mapping[str, Any], places: Mapping[str, Any], done: float) -> None:
@@ -193,7 +197,7 @@ class Report:
             done: part of the whole history that is done.
         """
         finger = self._simulation.finger
-        self._writer.resume(kept["tables"])
+        self._writer.earlier_log = kept["log"]
         self._writer.take(finger.problem)
         self.record.states, self._logged = kept["states"], kept["logged"]
         self._ends, self._written = kept["ends"], kept["ends"][-1][0] if kept["ends"] else 0
@@ -209,7 +213,7 @@ class Report:
         finger.solver.x.array_w[:] = now
         finger.solver.equations.to_fields(finger.solver.x)
         for state in self.record.states:
-            self._console.step(state, done)
+            self._show(state, done)
 
     def _log_checks(self) -> None:
         for step, check in list(self._simulation.checks.items())[self._logged :]:

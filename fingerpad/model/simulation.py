@@ -78,8 +78,7 @@ class Simulation:
         self._x, self._runs = 0.0, 0  # where the bone was when it began (m), and how often the path was run for it
         self._passed = 0  # runs of the load at which another process has been, the last of them not to its end
         self._half_kept: dict[str, Any] | None = None
-        count, file = model.geometry.ridge_count, model.mesh_file
-        self._zone = ContactZone(finger.mesh, finger.observer, finger.ridges, count, file)
+        self._zone = ContactZone(finger, model)
         self._restart: RestartRequired | None = None
         self._half: HalfFinger | None = None  # while it leads the finger
 

@@ -126,13 +126,18 @@ def _file(words: str) -> str:
     return words.replace(" ", "_")
 
 
+def conditions_of(state: ContactState) -> str:
+    """Return force, voltage and the bone's place in a state in words."""
+    return f"{state.f_ext:.4g} N/m, {state.voltage:.4g} V, bone at {_MM * state.bone_x + 0.0:.4g} mm"
+
+
 def _about(state: ContactState | None) -> str:
     if state is None:
         return ""
-    words = f"{state.f_ext:.4g} N/m, {state.voltage:.4g} V, bone at {_MM * state.bone_x + 0.0:.4g} mm"
     slides = abs(state.f_t) > 1e-9 * abs(state.f_ext) and not math.isnan(state.mu_app)
     slip = f", µ = {state.mu_app:.3f}" if slides else ""
-    return f"{words}{slip}, L_R = {_MM * state.contact_length:.3f} mm, {state.ridges_in_contact} ridges in contact"
+    length = f"L_R = {_MM * state.contact_length:.3f} mm, {state.ridges_in_contact} ridges in contact"
+    return f"{conditions_of(state)}{slip}, {length}"
 
 
 def _skin(folder: Path, frame: _Frame) -> list[dict[str, Any]]:

@@ -29,20 +29,20 @@
   // -- friction and contact length over sliding -------------------------------------------------------
   function sliding() {
     const s = data.steps, first = s.first[0], cut = (name) => s[name].slice(first);
-    const x = cut("x"), jump = cut("jump"), steps = cut("step");
+    const x = cut("bone_x"), jump = cut("jump"), steps = cut("step");
     const at = (name) => x.map((_, k) => `step ${steps[k]}: ${name}`);
     const line = (name, y, yaxis, dash, marker, colour) => ({ x, y: cut(y), name, yaxis, text: at(name),
       mode: "lines+markers", line: { color: colour, dash }, marker: { symbol: marker, size: 6 },
       hovertemplate: "%{text}<br>x %{x:.4g} mm<br>%{y:.4g}<extra></extra>" });
     const traces = [line("friction µ_app", "mu_app", "y", "solid", "circle", BLACK),
-      line("contact length L_R", "length", "y2", "dash", "square", BLUE)];
-    for (const [y, yaxis] of [["mu_app", "y"], ["length", "y2"]]) {
+      line("contact length L_R", "contact_length", "y2", "dash", "square", BLUE)];
+    for (const [y, yaxis] of [["mu_app", "y"], ["contact_length", "y2"]]) {
       const values = cut(y), hit = jump.map((j, k) => (j ? k : -1)).filter((k) => k >= 0);
       if (hit.length) traces.push({ x: hit.map((k) => x[k]), y: hit.map((k) => values[k]), yaxis, name: "jump", mode: "markers",
         showlegend: yaxis === "y", marker: { symbol: "x-thin", size: 12, color: "#D55E00", line: { width: 2.5, color: "#D55E00" } },
         hovertemplate: "jump at %{x:.4g} mm<extra></extra>" });
-      const known = data.errors.filter((e) => e[y] !== null && e[y + "_error"] !== null && e.x !== null);
-      if (known.length) traces.push({ x: known.map((e) => e.x), y: known.map((e) => e[y]), yaxis, mode: "markers",
+      const known = data.errors.filter((e) => e[y] !== null && e[y + "_error"] !== null && e.bone_x !== null);
+      if (known.length) traces.push({ x: known.map((e) => e.bone_x), y: known.map((e) => e[y]), yaxis, mode: "markers",
         name: "± discretisation error", showlegend: yaxis === "y", text: known.map((e) => e.name),
         error_y: bars(known.map((e) => e[y + "_error"]), GREY), marker: { symbol: "diamond-open", size: 10, color: GREY },
         hovertemplate: "%{text}: %{y:.4g}<extra></extra>" });

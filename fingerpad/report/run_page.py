@@ -1,7 +1,6 @@
 """The report of a run: what was asked and modelled, key numbers and their trust, charts, pictures, parameters."""
 
 import math
-from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -10,13 +9,14 @@ import numpy as np
 from fingerpad.reduced.models import MODELS
 from fingerpad.report import page as html
 from fingerpad.report import trust
-from fingerpad.report.frames import frames, section
+from fingerpad.report.frames import conditions_of, frames, section
 from fingerpad.report.trust import conditions, head
 from fingerpad.results.drawing import arrays_of
 from fingerpad.results.over_time import HARMONICS, NOTE
-from fingerpad.results.quantities import PER_LENGTH, PLUS_MINUS, QUANTITIES, Output
+from fingerpad.results.quantities import PER_LENGTH, PLUS_MINUS, STEPS
 from fingerpad.results.result import Result
 from fingerpad.results.states import before_sliding, called
+from variational.state import ContactState, Errors
 
 _MM = 1e3
 _LINKS = {
@@ -26,7 +26,7 @@ _LINKS = {
 }  # fmt: skip
 _SECTION = "Section at the centre of the finger"
 _SLIDING = ("bone_x", "f_t", "mu_app", "contact_length", "ridges_in_contact")
-_BONE_X = Output("bone_x", "mm", words="bone x", digits=4)
+_CHARTED = ("bone_x", "mu_app", "contact_length")
 _RECEPTORS = (
     "Strain energy density per reference volume (kPa) at the Merkel sites, at the tips of the intermediate ridges, and "
     "at the Meissner sites, in the dermal papillae on either side. How nerves answer to it is not part of the model."
@@ -55,17 +55,13 @@ def page(result: Result) -> str:
         _pictures(result.folder),
         _model(result),
         _solver(result),
-        html.section("parameters", "Parameters", html.all_parameters(_parameters(result))),
+        html.section("parameters", "Parameters", html.all_parameters(result.parameters)),
         _reproduce(result),
     ]
     there = [name for part in sections for name in _LINKS if f'id="{name}"' in part]
     links = "".join(f'<a href="#{name}">{_LINKS[name]}</a>' for name in there)
     body = "\n".join([head(result), f"<nav>{links}</nav>", *sections])
     return html.page(title, body, {"finger": shown, "steps": _columns(result), "errors": _errors(result)})
-
-
-def _parameters(result: Result) -> Mapping[str, Any]:
-    return result.record.get("parameters") or result.scene.parameters()
 
 
 def _asked(result: Result) -> str:
@@ -103,7 +99,7 @@ def _cell(reached: list[Any]) -> str:
         return "–"
     end = reached[0].end
     friction = f", f_T {end.f_t:.4g} N/m" if abs(end.f_t) > 1e-9 * max(abs(end.f_ext), 1e-9) else ""
-    return f"{end.f_ext:.4g} N/m, {end.voltage:.4g} V, bone at {_MM * end.bone_x + 0.0:.4g} mm{friction}"
+    return f"{conditions_of(end)}{friction}"
 
 
 def _numbers(result: Result) -> str:
@@ -159,7 +155,7 @@ def _sliding(result: Result) -> str:
     still = len(before_sliding(result.steps))
     if still in (0, len(result.steps)):
         return ""
-    shown = [{**QUANTITIES, "bone_x": _BONE_X}[key] for key in _SLIDING]
+    shown = [STEPS[key] for key in _SLIDING]
     rows = [
         (str(s.step), *(each.shown(getattr(s, each.name)) for each in shown), "jump" if trust.jumped(s) else "")
         for s in result.steps[still - 1 :]
@@ -175,7 +171,7 @@ def _sliding(result: Result) -> str:
 
 def _over_time(result: Result) -> str:
     """Return extremes, means and the spectrum of friction of loads over time; nothing without such a load."""
-    f_t, length = QUANTITIES["f_t"], QUANTITIES["contact_length"]
+    f_t, length = STEPS["f_t"], STEPS["contact_length"]
     rows, spectra = [], []
     for load in result.loads:
         passed, friction = load.over_time, load.extremes["f_t"]
@@ -280,44 +276,33 @@ def _reproduce(result: Result) -> str:
     return html.section(
         "reproduce",
         "How to reproduce and cite",
-        html.again(_parameters(result), result.model),
+        html.again(result.parameters, result.model),
         html.folded("Versions", html.table(("program", "version"), rows)) if rows else "",
         html.cite(str(versions.get("fingerpad", ""))),
     )
 
 
 def _columns(result: Result) -> dict[str, list[Any]]:
-    """Return the steps as columns in the units of tables."""
+    """Return the steps as columns in the units of tables, and the first of them that the charts of sliding show."""
     steps = result.steps
-    first = max(len(before_sliding(steps)) - 1, 0) if steps else 0
-    found: dict[str, list[Any]] = {
-        "step": [state.step for state in steps],
-        "load": [state.load for state in steps],
-        "x": [_number(_MM * state.bone_x) for state in steps],
-        "f_t": [_number(state.f_t) for state in steps],
-        "mu_app": [_number(state.mu_app) for state in steps],
-        "length": [_number(_MM * state.contact_length) for state in steps],
-        "first": [first],
-    }
+    found: dict[str, list[Any]] = {key: [getattr(state, key) for state in steps] for key in ("step", "load")}
+    found |= {key: [_number(key, state) for state in steps] for key in _CHARTED}
     work = ("newton_iterations", "factorisations", "cutbacks", "jump")
-    return found | {key: [0 if s.record is None else int(getattr(s.record, key)) for s in steps] for key in work}
+    found |= {key: [0 if s.record is None else int(getattr(s.record, key)) for s in steps] for key in work}
+    return found | {"first": [max(len(before_sliding(steps)) - 1, 0) if steps else 0]}
 
 
 def _errors(result: Result) -> list[dict[str, Any]]:
     """Return the named states with an error, for the charts of sliding."""
-    return [
-        {
-            "name": called(name, state.voltage),
-            "x": _number(_MM * state.bone_x),
-            "mu_app": _number(state.mu_app) if name == "full_slip" else None,
-            "mu_app_error": _number(state.error.mu_app),
-            "length": _number(_MM * state.contact_length),
-            "length_error": _number(_MM * state.error.contact_length),
-        }
-        for name, state in result.named.items()
-        if state.error.known()
-    ]
+    found: list[dict[str, Any]] = []
+    for name, state in result.named.items():
+        if state.error.known():
+            known = {key: _number(key, state) if key != "mu_app" or name == "full_slip" else None for key in _CHARTED}
+            errors = {f"{key}_error": _number(key, state.error) for key in _CHARTED if key != "bone_x"}
+            found.append({"name": called(name, state.voltage)} | known | errors)
+    return found
 
 
-def _number(value: float) -> float | None:
+def _number(key: str, of: ContactState | Errors) -> float | None:
+    value = STEPS[key].scale * getattr(of, key)
     return float(f"{value:.6g}") + 0.0 if math.isfinite(value) else None

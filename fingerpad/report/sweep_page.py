@@ -16,7 +16,7 @@ from fingerpad.results.files import read_object
 from fingerpad.results.quantities import PER_LENGTH, Output
 from fingerpad.results.quantities import read as read_outputs
 from fingerpad.results.states import WORDS
-from fingerpad.runs.sweep_columns import LOAD, head_of, loads, printed, shown, tables
+from fingerpad.runs.sweep_columns import LOAD, head_of, in_time, loads, printed, shown, tables
 from fingerpad.scene import SceneError
 from fingerpad.scene.messages import clip
 from fingerpad.scene.reading import DEFAULT_MODEL
@@ -26,11 +26,7 @@ _CHARTS = ("mu_app", "f_t", "contact_length", "contact_area")
 _MAX_CAUTIONS = 3  # in the headline
 _MAX_VALUES = 6  # of a key in the headline
 _RUBS = 1e-6  # µ_app that is no roundoff
-_IN_TIME = {  # column of a load over time, behind its name
-    "mu_app_max": "largest µ_app",
-    "mu_app_mean": "mean µ_app",
-    "f_t_amplitude": "amplitude of f_T (N/m)",
-}
+_IN_TIME = ("mu_app_max", "mu_app_mean", "f_t_amplitude")  # columns with a chart of a load over time, behind its name
 
 _RESULTS = ("uncharged_", "charged_", "full_slip_", "load_")
 
@@ -207,10 +203,9 @@ def _charts(table: Table) -> dict[str, tuple[str, str]]:
     """Return the column and the title of each chart by the name of its place on the page."""
     found = {f"sweep_{key}": (column, each.title) for key, (column, each) in _drawn(table.shown[1]).items()}
     for k, name in enumerate(loads(table.rows[0])):
-        for key, words in _IN_TIME.items():
-            column = f"{LOAD}_{name}_{key}"
-            if column in table.rows[0]:
-                found[f"sweep_load_{k}_{key}"] = column, words
+        words = in_time(name, table.rows[0])
+        columns = {key: f"{LOAD}_{name}_{key}" for key in _IN_TIME}
+        found |= {f"sweep_load_{k}_{key}": (each, words[each]) for key, each in columns.items() if each in words}
     return found
 
 

@@ -147,9 +147,8 @@ def _balance(result: "Result") -> Iterator[Finding]:
         yield Finding("balance of forces", GOOD if abs(left) < 1e-3 * abs(state.f_ext) else BAD, words)
         return
     words += f" The solver's tolerance allows {floor:.1g} N/m."
-    yield Finding(
-        "balance of forces" if abs(left) <= floor else "forces do not balance", _worse(abs(left) > floor), words
-    )
+    holds = abs(left) <= floor
+    yield Finding("balance of forces" if holds else "forces do not balance", GOOD if holds else BAD, words)
 
 
 def _stability(result: "Result") -> Iterator[Finding]:
@@ -202,10 +201,6 @@ def _restarts(result: "Result") -> Iterator[Finding]:
 def jumped(state: ContactState) -> bool:
     """Return whether part of the skin jumped in the step of a state."""
     return state.record is not None and state.record.jump
-
-
-def _worse(wrong: bool) -> str:
-    return BAD if wrong else GOOD
 
 
 # -- headline --------------------------------------------------------------------------------------------

@@ -60,14 +60,11 @@ def attempt(folder: Path) -> Path | None:
 
 def draw_footprint(result: Result) -> None:
     """Write ``footprint.png`` at the end of a run with a whole finger; a line on the console where it fails; serial."""
-    if result.finger is None or result.folder is None:
-        return
-    from fingerpad.results.finger_picture import footprint  # Matplotlib
-
-    try:
-        footprint(result.finger, result.folder / "footprint.png")
-    except OSError as error:
-        print(f"fingerpad: footprint.png was not written: {error.strerror or error}", file=sys.stderr)
+    if result.finger is not None and result.folder is not None:
+        try:
+            result.plot("footprint", result.folder / "footprint.png")
+        except OSError as error:
+            print(f"fingerpad: footprint.png was not written: {error.strerror or error}", file=sys.stderr)
 
 
 def read(folder: Path) -> "Result | Table":

@@ -81,6 +81,12 @@ class Answer:
         return {name: state for name in STATES if (state := getattr(self, name)) is not None}
 
     @property
+    def parameters(self) -> dict[str, Any]:
+        """Parameters of the scene, as its files have them, with names of laws that are not read."""
+        kept: dict[str, Any] = self.record.get("parameters") or self.scene.parameters()
+        return kept
+
+    @property
     def whole(self) -> bool:
         """Whether the scene has a force on the whole finger; the named states are then those of its centre."""
         return self.scene.force is not None

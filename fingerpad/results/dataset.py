@@ -41,9 +41,6 @@ def dataset(result: "Answer") -> "xarray.Dataset":
 
     Returns:
         The dataset, in SI units; NaN where a state has no value.
-
-    Raises:
-        ImportError: xarray is not installed.
     """
     import xarray  # brings pandas: a second that reading numbers does not need
 
@@ -93,8 +90,6 @@ def write(file: Path, make: "Callable[[], xarray.Dataset]") -> str:
     """
     try:
         files.replace(file, bytes(make().to_netcdf(engine="scipy", format="NETCDF3_64BIT")))
-    except ImportError as error:
-        return f"{file.name} was not written: {error}; pip install xarray"
     except OSError as error:
         return f"{file.name} was not written: {error.strerror or error}; all other files are complete"
     return ""
@@ -121,7 +116,7 @@ def read(folder: Path, own: Sequence[str]) -> tuple[tuple[ContactState, ...], di
 
 def attributes(result: "Answer") -> dict[str, Any]:
     """Return the attributes of a dataset: model, versions, and every parameter by its dotted key and as JSON."""
-    parameters = result.record.get("parameters") or result.scene.parameters()  # the former with laws that are not read
+    parameters = result.parameters
     found: dict[str, Any] = {"title": "fingerpad: a fingertip on a touchscreen", "model": result.model}
     found |= {name: text for name in ("failure", "interrupted") if (text := getattr(result, name))}
     for name in ("notes", "cautions"):
@@ -150,6 +145,28 @@ def filled(shape: Sequence[int], kind: np.dtype[Any]) -> NDArray[Any]:
     return np.full(shape, np.nan) if kind.kind == "f" else np.full(shape, -1, np.int32)
 
 
+def _column(values: Sequence[Any], example: Any = math.nan) -> NDArray[Any]:
+    """Return values as NetCDF can hold them, missing where one is None; an example is of their kind."""
+    known = np.array([example if value is None else value for value in values])
+    known = known.astype({"i": np.int32, "U": object}.get(known.dtype.kind, known.dtype))
+    there = np.array([value is not None for value in values])
+    if there.all():
+        return known
+    found = filled([len(values)], known.dtype)
+    found[there] = known[there]
+    return found
+
+
+def _padded(rows: Sequence[Any]) -> NDArray[np.float64]:
+    """Return arrays, of which some are None, as one along a further first axis; NaN beyond the end of each."""
+    given = {k: np.asarray(row) for k, row in enumerate(rows) if row is not None}
+    shape = [max(each.shape[axis] for each in given.values()) for axis in range(next(iter(given.values())).ndim)]
+    found = np.full([len(rows), *shape], np.nan)
+    for k, each in given.items():
+        found[k][tuple(map(slice, each.shape))] = each
+    return found
+
+
 # -- writing -----------------------------------------------------------------------------------------------
 def _of_states(
     states: Sequence[ContactState | None], dim: str, prefix: str, known: Mapping[str, Output], numbers: Sequence[int]
@@ -159,14 +176,9 @@ def _of_states(
     first = next(filter(None, rows), UNLOADED.row() | {name: math.nan for name in known if name not in STEPS})
     found: Variables = {}
     for name, example in first.items():
-        values = np.array([example if row is None else row.get(name, math.nan) for row in rows])
-        if None in rows:
-            there = [row is not None for row in rows]
-            values, present = filled([len(rows)], values.dtype), values
-            values[there] = present[there]
-        kind = {"i": np.int32, "U": object}.get(values.dtype.kind, values.dtype)
+        values = _column([None if row is None else row.get(name, math.nan) for row in rows], example)
         about = known.get(name, Output(name, "")).about()
-        found["load_name" if prefix + name == "load" else prefix + name] = (dim,), values.astype(kind), about
+        found["load_name" if prefix + name == "load" else prefix + name] = (dim,), values, about
     place = {number: k for k, number in enumerate(numbers)}
     groups = (("ridges", f"{prefix}ridge_", RIDGES, OF_RIDGES), ("sites", prefix, SITES, OF_SITES))
     for group, start, outputs, names in groups:
@@ -188,115 +200,96 @@ def _verdicts(named: Sequence[ContactState | None]) -> Variables:
     """Return stability, and estimated errors and changes, of the named states."""
     found: Variables = {}
     for name, output in quantities.STABILITY.items():
-        kind, missing = (np.int32, -1) if name == "stable" else (np.float64, np.nan)
         given = [None if state is None else getattr(state, name) for state in named]
-        found[f"state_{name}"] = (
-            ("state",), np.array([missing if value is None else value for value in given], kind), output.about(),
-        )  # fmt: skip
-    for kind_, words in quantities.CHANGES.items():
+        if name == "stable":
+            values = np.array([-1 if each is None else each for each in given], np.int32)
+        else:
+            values = _column(given)
+        found[f"state_{name}"] = ("state",), values, output.about()
+    for kind, words in quantities.CHANGES.items():
         for field in fields(Errors):
-            changes = [math.nan if state is None else getattr(getattr(state, kind_), field.name) for state in named]
-            about = STEPS[field.name].about(f"{words} of the ")
-            found[f"state_{field.name}_{kind_}"] = ("state",), np.array(changes), about
+            changes = [None if state is None else getattr(getattr(state, kind), field.name) for state in named]
+            found[f"state_{field.name}_{kind}"] = (
+                ("state",),
+                _column(changes),
+                STEPS[field.name].about(f"{words} of the "),
+            )
     return found
 
 
 def _coupling(steps: Sequence[ContactState]) -> Variables:
     """Return the changes of the coupling iterations along ``step`` and ``iteration``; nothing without any."""
-    count = max(len(state.changes) for state in steps)
-    if not count:
+    values = _padded([state.changes for state in steps])
+    if not values.shape[1]:
         return {}
-    values = np.full((len(steps), count), np.nan)
-    for k, state in enumerate(steps):
-        values[k, : len(state.changes)] = state.changes
-    numbers = np.arange(1, count + 1, dtype=np.int32)
+    numbers = np.arange(1, values.shape[1] + 1, dtype=np.int32)
+    words = "relative change of the air gaps in the coupling iteration"
     return {
         "iteration": (("iteration",), numbers, _about("number of the coupling iteration")),
-        "coupling_change": (
-            ("step", "iteration"), values, _about("relative change of the air gaps in the coupling iteration"),
-        ),
-    }  # fmt: skip
+        "coupling_change": (("step", "iteration"), values, _about(words)),
+    }
 
 
 def _loads(result: "Answer", known: Mapping[str, Output]) -> Variables:
     """Return the results of the loads along ``load``; lengths, means and spectra are NaN where a load takes no time."""
-    loads = result.loads
+    loads, passed = result.loads, [load.over_time for load in result.loads]
     found: Variables = {}
 
     def add(name: str, values: Sequence[Any], about: dict[str, str]) -> None:
-        array = np.array(values)
-        kind = {"U": object, "i": np.int32}.get(array.dtype.kind, array.dtype)
-        found[name] = ("load",), array.astype(kind), about
+        found[name] = ("load",), _column(values), about
 
     add("load", [load.name for load in loads], STEPS["load"].about())
     add("load_last_step", [load.end.step for load in loads], _about("last step of the load"))
-    for name in ("full_slip_reached", "full_slip_held"):
-        words = f"whether full slip was {name.rpartition('_')[2]} in the load"
-        add(f"load_{name}", [getattr(load, name) for load in loads], _about(words))
-    extreme = dict.fromkeys(name for load in loads for name in load.extremes)
-    for name in extreme:
+    for word in ("reached", "held"):
+        values = [getattr(load, f"full_slip_{word}") for load in loads]
+        add(f"load_full_slip_{word}", values, _about(f"whether full slip was {word} in the load"))
+    for name in dict.fromkeys(name for load in loads for name in load.extremes):
         for end, words in (("min", "least"), ("max", "largest")):
             values = [getattr(load.extremes.get(name), end, math.nan) for load in loads]
             add(f"load_{name}_{end}", values, known[name].about(f"{words} value in the load: "))
-    passed = [load.over_time for load in loads]
     if not any(passed):
         return found
     for name, words in (("start", "time at which the load begins"), ("seconds", "length of the load")):
-        add(f"load_{name}", [getattr(each, name, math.nan) for each in passed], _about(words, "s"))
+        add(f"load_{name}", [getattr(each, name, None) for each in passed], _about(words, "s"))
     for name in next(filter(None, passed)).mean:
-        values = [math.nan if each is None else each.mean[name] for each in passed]
+        values = [None if each is None else each.mean[name] for each in passed]
         add(f"load_{name}_mean", values, known[name].about("mean over time in the load: "))
-    harmonics = max(len(each.frequency) for each in passed if each is not None)
-    if harmonics:
-        numbers = np.arange(1, harmonics + 1, dtype=np.int32)
-        found["harmonic"] = ("harmonic",), numbers, _about("multiple of the frequency of the waveform")
-        for name, output in quantities.SPECTRUM.items():
-            table = np.full((len(loads), harmonics), np.nan)
-            for k, each in enumerate(passed):
-                if each is not None and each.frequency:
-                    table[k, : len(each.frequency)] = getattr(each, name)
+    for name, output in quantities.SPECTRUM.items():
+        table = _padded([None if each is None else getattr(each, name) for each in passed])
+        if table.shape[1]:
+            numbers = np.arange(1, table.shape[1] + 1, dtype=np.int32)
+            found["harmonic"] = ("harmonic",), numbers, _about("multiple of the frequency of the waveform")
             found[f"load_{name}"] = ("load", "harmonic"), table, output.about()
     return found
 
 
 def _skin(named: Mapping[str, ContactState]) -> Variables:
     """Return the skin along ``state``, ``facet`` and ``point``; NaN beyond the facets of a state's mesh."""
-    skins = {name: state.skin for name, state in named.items() if state.skin is not None}
-    if not skins:
+    skins = [named[name].skin if name in named else None for name in STATES]
+    if not any(skins):
         return {}
-    facets, points = (max(skin.x.shape[k] for skin in skins.values()) for k in (0, 1))
-    found: Variables = {}
-    for name, output in SKIN.items():
-        values = np.full((len(STATES), facets, points), np.nan)
-        for key, skin in skins.items():
-            values[STATES.index(key), : skin.x.shape[0], : skin.x.shape[1]] = getattr(skin, name)
-        found[f"skin_{name}"] = ("state", "facet", "point"), values, output.about()
-    ridge = np.full((len(STATES), facets), np.nan)
-    for key, skin in skins.items():
-        ridge[STATES.index(key), : len(skin.ridge)] = skin.ridge
-    found["skin_ridge"] = ("state", "facet"), ridge, _about("number of the ridge of the facet")
-    return found
+    dims, number = ("state", "facet", "point"), _about("number of the ridge of the facet")
+    found: Variables = {
+        f"skin_{name}": (dims, _padded([getattr(skin, name, None) for skin in skins]), output.about())
+        for name, output in SKIN.items()
+    }
+    return found | {"skin_ridge": (dims[:2], _padded([getattr(skin, "ridge", None) for skin in skins]), number)}
 
 
 def _finger(whole: "WholeFinger | None") -> Variables:
     """Return the whole finger along ``state``, and its slices along ``state`` and ``slice``; NaN if missing."""
     if whole is None:
         return {}
-    count = max(len(total.z) for total in whole.states.values())
+    totals = [whole.states.get(name) for name in STATES]
     found: Variables = {}
     for name, output in FINGER.items():
-        for end, words in (("", ""), ("_error", "estimated error of the ")):
-            found[f"finger_{name}{end}"] = ("state",), np.full(len(STATES), np.nan), output.about(words)
+        values = [None if total is None else total.values[name] for total in totals]
+        errors = [whole.error.get(state, {}).get(name) for state in STATES]
+        found[f"finger_{name}"] = ("state",), _column(values), output.about()
+        found[f"finger_{name}_error"] = ("state",), _column(errors), output.about("estimated error of the ")
     for name, output in SLICES.items():
-        found[f"slice_{name}"] = ("state", "slice"), np.full((len(STATES), count), np.nan), output.about()
-    for state, total in whole.states.items():
-        k = STATES.index(state)
-        for name, value in whole.values(state).items():
-            found[f"finger_{name}"][1][k] = value
-        for name, value in whole.error[state].items():
-            found[f"finger_{name}_error"][1][k] = value
-        for name, along in total.slices().items():
-            found[f"slice_{name}"][1][k, : len(along)] = along
+        along = [None if total is None else total.slices()[name] for total in totals]
+        found[f"slice_{name}"] = ("state", "slice"), _padded(along), output.about()
     return found
 
 

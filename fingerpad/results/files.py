@@ -108,34 +108,17 @@ def _finite(data: Any) -> Any:
 class Table:
     """Writes a CSV file row by row: each is on disk, whole, when :meth:`write` returns."""
 
-    def __init__(self, file: Path, begin: Mapping[str, Any] | str) -> None:
-        """Start the file; an earlier one goes.
-
-        Args:
-            file: the file.
-            begin: a row, of which the names are the header, or the text of a table that is to go on.
-        """
+    def __init__(self, file: Path, row: Mapping[str, Any]) -> None:
+        """Start the file with a header, the names of a row; an earlier file goes."""
         remove(file)
-        self._path, self._file = file, file.open("x+b", buffering=0)
-        if isinstance(begin, str):
-            self._columns = next(csv.reader(io.StringIO(begin)))
-            self._append(begin.encode())
-        else:
-            self._columns = list(begin)
-            self.write(dict(zip(self._columns, self._columns, strict=True)))
-
-    def text(self) -> str:
-        """Return all of it."""
-        return self._path.read_bytes().decode()
+        self._file, self._columns = file.open("x+b", buffering=0), list(row)
+        self.write(dict(zip(self._columns, self._columns, strict=True)))
 
     def write(self, row: Mapping[str, Any]) -> None:
         """Append a row; where there is no room for all of it, none of it stays."""
         text = io.StringIO()
         csv.DictWriter(text, self._columns).writerow(row)
-        self._append(text.getvalue().encode())
-
-    def _append(self, data: bytes) -> None:
-        start = self._file.tell()
+        data, start = text.getvalue().encode(), self._file.tell()
         try:
             while data:
                 data = data[self._file.write(data) :]

@@ -17,7 +17,6 @@ Fritsch, Carlson, SIAM J. Numer. Anal. 17 (1980), doi 10.1137/0717021.
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -58,15 +57,6 @@ class OverTime:
     """Amplitudes of the friction force at these frequencies (N/m)."""
     mean_change: dict[str, float] = field(default_factory=dict)
     """What every second state alone would change the means by, in their units; of loads at a constant voltage."""
-
-    def to_dict(self) -> dict[str, Any]:
-        """Return it ready for JSON."""
-        found: dict[str, Any] = {"start": self.start, "seconds": self.seconds, "mean": self.mean}
-        found |= {"mean_change": self.mean_change} if self.mean_change else {}
-        if self.periods:
-            found["periods"] = self.periods
-            found |= {"frequency": list(self.frequency), "f_t_amplitude": list(self.f_t_amplitude)}
-        return found
 
 
 def over_time(states: Sequence[ContactState], wave: Waveform | None) -> OverTime | None:

@@ -132,7 +132,7 @@ STEPS = _listed(
     ("load_number", "", "number of the load, from 1"),
     ("f_ext", "N/m", "external normal force on the bone per metre of finger", "external force f_ext", 2),
     ("voltage", "V", "instantaneous voltage", "voltage U", 1),
-    ("bone_x", "m", "horizontal position of the bone"),
+    ("bone_x", "mm", "horizontal position of the bone", "bone x", 4),
     ("bone_height", "mm", "change of the bone's height from the unloaded position", "height of the bone", 4),
     ("f_t", "N/m", "friction force on the bone per metre of finger", "friction force f_T", 3),
     (

@@ -172,10 +172,6 @@ class Extreme:
     min_time: float = math.nan
     max_time: float = math.nan
 
-    def to_dict(self) -> dict[str, float]:
-        """Return it ready for JSON, without times that there are not."""
-        return {name: value for name, value in asdict(self).items() if not math.isnan(value)}
-
 
 @dataclass(frozen=True, eq=False)
 class LoadResult:
@@ -212,9 +208,12 @@ class LoadResult:
     def to_dict(self) -> dict[str, Any]:
         """Return the load's result, ready for JSON."""
         end = {key: getattr(self.end, key) for key in (*CONDITIONS, *RESULTS, *self.end.own) if key != "load"}
-        extremes = {quantity: extreme.to_dict() for quantity, extreme in self.extremes.items()}
+        extremes = {
+            quantity: {name: value for name, value in asdict(extreme).items() if not math.isnan(value)}  # the times
+            for quantity, extreme in self.extremes.items()
+        }
         more = {name: getattr(self, name) for name in ("full_slip_reached", "full_slip_held", "stable")}
-        more |= {} if self.over_time is None else {"over_time": self.over_time.to_dict()}
+        more |= {} if self.over_time is None else {"over_time": asdict(self.over_time)}
         return {"name": self.name, "end": end, "extremes": extremes, **more}
 
 

@@ -39,8 +39,7 @@ _SHORT = 1.0  # s, below which no time is printed
 
 def rank() -> int:
     """Return the rank of this process under a launcher of MPI, 0 without one."""
-    given = _rank()
-    return 0 if given is None else given
+    return _rank() or 0
 
 
 def ranks() -> int:

@@ -28,6 +28,7 @@ class Writer:
     Attributes:
         log: takes what is to be logged; kept in memory until the folder is taken.
         folder: where files go; None where nothing is written.
+        earlier_log: with which the log begins, of a run that this one goes on from.
     """
 
     def __init__(self, place: Folder | None, comm: MPI.Comm) -> None:
@@ -41,7 +42,7 @@ class Writer:
         self.folder = None if place is None else place.folder
         self._tables: dict[str, Table] = {}
         self._fields: Fields | None = None
-        self._earlier: Mapping[str, str] = {}  # tables and log of an earlier run
+        self.earlier_log = ""
         self.log = logging.Logger("fingerpad", logging.INFO)  # of this run alone, apart from those of the caller
         self.log.handlers = [logging.handlers.MemoryHandler(1000, logging.CRITICAL, flushOnClose=False)]
 
@@ -53,25 +54,17 @@ class Writer:
             self._taken = True
             self._place.take()
             if self._comm.rank == 0:
-                for name, text in self._earlier.items():
-                    if name != _LOG:
-                        self._tables[name] = Table(self._place.folder / f"{name}.csv", text)
                 file = _LogFile(self._place.folder / _LOG, mode="x", encoding="utf-8")
-                file.stream.write(self._earlier.get(_LOG, ""))
+                file.stream.write(self.earlier_log)
                 _send(self.log, file)
         if self._fields is None:
             self._fields = Fields(problem, self._place.folder)
 
-    def kept(self) -> dict[str, str]:
-        """Return the text of the log and of all tables but that of the fields, on rank 0."""
+    def log_text(self) -> str:
+        """Return the log so far, on rank 0; empty where there is none."""
         if self._place is None or self._comm.rank != 0:
-            return {}
-        tables = {name: table.text() for name, table in self._tables.items() if name != "fields"}
-        return tables | {_LOG: (self._place.folder / _LOG).read_text(encoding="utf-8")}
-
-    def resume(self, tables: Mapping[str, str]) -> None:
-        """Begin, before :meth:`take`, with the log and the tables of an earlier run, as :meth:`kept`."""
-        self._earlier = tables
+            return ""
+        return (self._place.folder / _LOG).read_text(encoding="utf-8")
 
     def row(self, name: str, row: Mapping[str, Any]) -> None:
         """Append a row to a table, on rank 0."""

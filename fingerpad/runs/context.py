@@ -1,7 +1,7 @@
 """What a run has beside its scene: ranks, folder, console, report, and where it goes on."""
 
 from collections.abc import Sequence
-from contextlib import AbstractContextManager, closing, nullcontext
+from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -12,7 +12,6 @@ from fingerpad.results.quantities import Output
 from fingerpad.scene import Scene
 
 if TYPE_CHECKING:
-    from fingerpad.results.terminal import Console
     from fingerpad.startup import MPI
 
 
@@ -47,12 +46,6 @@ class RunContext:
         except ImportError:
             return Serial()
         return MPI.COMM_WORLD
-
-    def console(self) -> AbstractContextManager["Console"]:
-        """Return the open console of the run, for a model with MPI; collective."""
-        from fingerpad.results.terminal import Console
-
-        return closing(Console(self.ranks, self.lines, self.bar))  # type: ignore[arg-type]
 
     def place(self, scene: Scene, model: str) -> AbstractContextManager[Folder | None]:
         """Lock the folder for the results of a scene by a model; nothing without a folder; collective.

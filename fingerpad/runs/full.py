@@ -3,6 +3,7 @@
 import json
 import signal
 from collections.abc import Sequence
+from contextlib import closing
 from pathlib import Path
 from typing import Any
 
@@ -61,7 +62,10 @@ def run(scene: Scene, context: RunContext) -> Result:
     all_together(comm)
     check_options(comm, scene.numerics.element)
     try:
-        with context.console() as console, context.place(scene, DEFAULT_MODEL) as place:
+        with (
+            closing(Console(comm, context.lines, context.bar)) as console,
+            context.place(scene, DEFAULT_MODEL) as place,
+        ):
             checkpoint = None if place is None else _checkpoint(scene, place.folder, outputs)
             kept = read(checkpoint, comm) if context.resume and checkpoint is not None else None
             writer = Writer(place, comm)

@@ -218,7 +218,9 @@ def summary(place: Path) -> Summary | None:
 
 
 def kept(result: Result, context: RunContext) -> Result:
-    """Return the result of a model without a path, its summary written into the folder if there is one; collective.
+    """Return the result of a model without a path, written into the folder if there is one; collective.
+
+    A note says what could not be written.
 
     Raises:
         FolderError: the folder is in use, holds results of another scene or model, or cannot be written to.
@@ -227,16 +229,11 @@ def kept(result: Result, context: RunContext) -> Result:
         if place is None:
             return result
         place.take()
-        return _written(replace(result, folder=place.folder), context)
+        folder, here = place.folder, replace(result, folder=place.folder)
 
+        def write() -> str:
+            replace_json(folder / "summary.json", here.to_dict())
+            return dataset.save(here)
 
-def _written(result: Result, context: RunContext) -> Result:
-    """Write summary and dataset of a result into its folder; return the result with a note on what is missing."""
-
-    def write() -> str:
-        assert result.folder is not None
-        replace_json(result.folder / "summary.json", result.to_dict())
-        return dataset.save(result)
-
-    missing = on_rank_0(context.ranks, write)
-    return replace(result, notes=(*result.notes, missing)) if missing else result
+        missing = on_rank_0(context.ranks, write)
+        return replace(here, notes=(*here.notes, missing)) if missing else here

@@ -102,10 +102,6 @@ class Sweep:
             values = [np.nan if each is None else float(getattr(each, quantity, np.nan)) for each in found]
         return np.array(values).reshape([len(values) for values in self.axes.values()])
 
-    def _forces(self) -> list[float]:
-        """Return the forces on the whole finger (N)."""
-        return list(dict.fromkeys(each.scene.force for each in self.results if each.scene.force is not None))
-
     def rows(self) -> list[dict[str, Any]]:
         """Return a flat row for each point in SI units: axes, :mod:`~fingerpad.runs.sweep_columns`, and failure."""
         return [point | row(result) for point, result in zip(self.points(), self.results, strict=True)]
@@ -131,9 +127,6 @@ class Sweep:
             loads, ridges, sites and sums over the whole finger, where a point has them; its failure and cost. The
             attributes are the parameters that all points share. Under a force on the whole finger there are
             sums over it alone.
-
-        Raises:
-            ImportError: xarray is not installed.
         """
         return _dataset(self)
 
@@ -174,7 +167,8 @@ class Sweep:
         lines = [f"{'Whole finger, at' if self.whole else 'At'} {WORDS[state]}", *_aligned(table)]
         for name, over_time in tables(rows, axes):
             lines += [f"Over time, in the load {name}", *_aligned(over_time)]
-        notes = remarks(self._forces()) if self.whole else [PER_LENGTH]
+        forces = dict.fromkeys(each.scene.force for each in self.results if each.scene.force is not None)
+        notes = remarks(forces) if self.whole else [PER_LENGTH]
         return "\n".join([*lines, *notes, *(f"! {caution}" for caution in self.cautions()), *self.notes])
 
     __repr__ = __str__

@@ -42,16 +42,30 @@ class Key:
 
     name: str
     """With its tables, as in ``roughness.h_rms``; entries of a list of tables have ``[]``."""
-    unit: str
     default: Any
-    allowed: str
-    """What it may be, in words."""
     meaning: str
     """From the docstring of the key."""
+    limits: Range | None = None
+    """Of a number, or of each in a list."""
+    choices: str = ""
+    """What it may be besides, in words."""
     required: bool = False
     """Whether a table of its kind must give it."""
     law: str = ""
     """Law that reads it, where that is not the default one."""
+
+    @property
+    def unit(self) -> str:
+        """Its SI unit; empty without one."""
+        return self.limits.unit if self.limits else ""
+
+    @property
+    def allowed(self) -> str:
+        """What it may be, in words."""
+        if self.limits is None:
+            return self.choices
+        sign = ", either sign" if self.limits.sides == 2 else ""
+        return f"{self.choices}{'0 or ' if self.limits.zero else ''}{self.limits.low:g} to {self.limits.high:g}{sign}"
 
 
 def every(scene: type[BaseModel]) -> Iterator[Key]:
@@ -77,8 +91,7 @@ def _of(model: type[BaseModel], table: str, instance: BaseModel | None) -> Itera
             meaning = docstrings(model).get(name, "")
             if law.number:
                 limits = range_of(keys_of(law.default)[law.number])
-                allowed = "" if limits is None else _words(limits)
-                yield Key(table + name, "", getattr(law.default, law.number), allowed, meaning)
+                yield Key(table + name, getattr(law.default, law.number), meaning, limits)
             laws.append((f"{table}{name}.", law, "" if law.number else meaning))
             continue
         inside = [part for part in parts if isinstance(part, type) and issubclass(part, BaseModel)]
@@ -88,9 +101,9 @@ def _of(model: type[BaseModel], table: str, instance: BaseModel | None) -> Itera
             inner.append((inside[0], f"{table}{name}{many}.", value if isinstance(value, inside[0]) else None))
             if not any(isinstance(part, WrapValidator) for part in parts):  # else it may be a number too
                 continue
-        unit, allowed = _allowed(parts)
         required = instance is None and field.is_required()
-        yield Key(table + name, unit, None if required else value, allowed, docstrings(model).get(name, ""), required)
+        meaning = docstrings(model).get(name, "")
+        yield Key(table + name, None if required else value, meaning, *_allowed(parts), required=required)
     for where, key, meaning in laws:
         yield from _of_law(where, key, meaning)
     for kind, where, value in inner:
@@ -104,7 +117,7 @@ def _of_law(table: str, key: LawKey, meaning: str) -> Iterator[Key]:
     table = table.removesuffix("law.") if key.flat else table
     several = bool(key.number or key.flat)
     text = f"{meaning or 'Name of the law.'} A law of your own has its import path here (docs/laws.md)."
-    yield Key(table + (key.flat or "law"), "", None if key.number else name, f"{names} or module:Class", text)
+    yield Key(table + (key.flat or "law"), None if key.number else name, text, choices=f"{names} or module:Class")
     seen = set[str]()
     for law in dict.fromkeys([type(default), *(key.kind.laws.values() if several else ())]):
         for field in keys_of(law).values():
@@ -113,22 +126,12 @@ def _of_law(table: str, key: LawKey, meaning: str) -> Iterator[Key]:
             seen.add(field.name)
             value = None if key.number or field.default is MISSING else field.default
             value = value if key.number or law is not type(default) else getattr(default, field.name)
-            limits = range_of(field)
-            unit, allowed = ("", _choices(field)) if limits is None else (limits.unit, _words(limits))
+            choices = ", ".join(map(str, field.metadata.get("allowed", ())))
             of = "" if law is type(default) else key.kind.name(law)
-            yield Key(table + field.name, unit, value, allowed, docstrings(law).get(field.name, ""), law=of)
+            meaning = docstrings(law).get(field.name, "")
+            yield Key(table + field.name, value, meaning, range_of(field), choices, law=of)
     for each in key.tables:
         yield from _of(each, f"{table}{each.__name__.lower()}.", None)
-
-
-def _choices(field: "Field[Any]") -> str:
-    return ", ".join(map(str, field.metadata.get("allowed", ())))
-
-
-def _words(limits: Range, several: str = "") -> str:
-    """Return a range in words."""
-    sign = ", either sign" if limits.sides == 2 else ""
-    return f"{several}{'0 or ' if limits.zero else ''}{limits.low:g} to {limits.high:g}{sign}"
 
 
 def _parts(annotation: Any) -> Iterator[Any]:
@@ -145,22 +148,22 @@ def _parts(annotation: Any) -> Iterator[Any]:
         yield annotation
 
 
-def _allowed(parts: tuple[Any, ...]) -> tuple[str, str]:
-    """Return unit and range of a key."""
+def _allowed(parts: tuple[Any, ...]) -> tuple[Range | None, str]:
+    """Return the range of a key, and what it may be besides, in words."""
     for part in parts:
         found = part.func if isinstance(part, WrapValidator) else None
         if isinstance(found, Range):
-            return found.unit, _words(found, "list: " if tuple in parts else "")
+            return found, "list: " if tuple in parts else ""
     for part in parts:
         if get_origin(part) is Literal:
-            return "", ", ".join(repr(value) for value in get_args(part)).replace("'", '"')
+            return None, ", ".join(repr(value) for value in get_args(part)).replace("'", '"')
     bounds = [part for meta in parts for part in getattr(meta, "metadata", [meta])]  # of Field(...), or bare
     low, high = (next((getattr(b, n) for b in bounds if hasattr(b, n)), None) for n in ("ge", "le"))
     if low is not None and high is not None:
-        return "", f"whole, {low} to {high}"
+        return Range(low, high), "whole, "
     if bool in parts:
-        return "", "true or false"
-    return "", "text" if str in parts else ""
+        return None, "true or false"
+    return None, "text" if str in parts else ""
 
 
 @cache

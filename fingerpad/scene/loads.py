@@ -21,6 +21,11 @@ DEFAULT_HISTORY = ("f_ext", "voltage", "slide_length")
 FINAL_STATES = ("charged normal contact", "full slip")
 """States that have files of their own where an accuracy is asked for."""
 _MAX_BYTES = 100  # of a name; a file system allows 255, of which the files take some
+_EITHER = (
+    ("f_ext", "bone_height", "at most one of the two can be prescribed"),
+    ("bone_x", "bone_x_by", "give the place or the move"),
+    ("speed", "duration", "one follows from the other, so give one"),
+)  # keys of which a load has one at most
 _FORMULA = ("=", "+", "-", "@")  # of a cell in a spreadsheet, also as wide letters; a tab is forbidden anyway
 _FORBIDDEN = '/\\:*?"<>|'  # the first separates folders, the others are forbidden on memory sticks
 Way = Annotated[Finite, within(1e-9, 0.1, "m", zero=True, sides=2)]
@@ -46,16 +51,11 @@ def load_name(name: str) -> str:
     return name
 
 
-def file_name(name: str) -> str:
-    """Return the part of a file's name that stands for a load."""
-    return name.replace(" ", "_")
-
-
 def first_clash(names: Sequence[str]) -> tuple[int, int] | None:
     """Return the places of the first two loads whose files would be one, also where letters have no case."""
     seen: dict[str, int] = {}
     for k, name in enumerate(names):
-        key = unicodedata.normalize("NFKC", file_name(name)).casefold()
+        key = unicodedata.normalize("NFKC", name.replace(" ", "_")).casefold()
         if key in seen:
             return seen[key], k
         seen[key] = k
@@ -97,11 +97,10 @@ class Load(Table):
 
     @model_validator(mode="after")
     def _consistent(self) -> "Load":
-        if self.f_ext is not None and self.bone_height is not None:
-            raise ValueError(
-                f"f_ext is {show(self.f_ext)} and bone_height is {show(self.bone_height)}; "
-                "at most one of the two can be prescribed"
-            )
+        for one, other, remedy in _EITHER:
+            values = getattr(self, one), getattr(self, other)
+            if None not in values:
+                raise ValueError(f"{one} is {show(values[0])} and {other} is {show(values[1])}; {remedy}")
         if not any(v is not None for v in (self.f_ext, self.bone_height, self.voltage, self.bone_x, self.bone_x_by)):
             raise ValueError(
                 f"name is {show(self.name)} and nothing else is given; "
@@ -123,18 +122,9 @@ class Load(Table):
                 )
 
     def _refuse_time(self) -> None:
-        """Refuse a way that is given twice, and times that are missing or contradict each other."""
-        if self.bone_x is not None and self.bone_x_by is not None:
-            raise ValueError(
-                f"bone_x is {show(self.bone_x)} and bone_x_by is {show(self.bone_x_by)}; give the place or the move"
-            )
+        """Refuse times that are missing or belong to nothing."""
         if self.speed is not None and self.bone_x is None and self.bone_x_by is None:
             raise ValueError(f"speed is {show(self.speed)} and the bone does not move; give bone_x or bone_x_by too")
-        if self.speed is not None and self.duration is not None:
-            raise ValueError(
-                f"speed is {show(self.speed)} and duration is {show(self.duration)}; one follows from the other, so "
-                "give one"
-            )
         if self.wave is None:
             return
         for name in ("f_ext", "bone_height"):
@@ -200,8 +190,12 @@ def refuse_contradictions(history: Sequence[Load], given: Mapping[str, Any], acc
         ValueError: the keys, their values and the remedy.
     """
     _refuse_history(history, given)
-    if accurate:
-        _refuse_names(history)
+    for k, load in enumerate(history) if accurate else ():
+        if first_clash([*FINAL_STATES, load.name]) is not None:
+            raise ValueError(
+                f"history[{k}].name is {show(load.name)} and accuracy is given, with which the state of that name has "
+                "files of its own; take another name"
+            )
     _refuse_times(history, step_scale)
     _refuse_floating(history)
 
@@ -225,16 +219,6 @@ def _refuse_history(history: Sequence[Load], given: Mapping[str, Any]) -> None:
             f"history[{clash[1]}].name is {other} and history[{clash[0]}].name is {one}; each load must have a "
             "name of its own, also where spaces become _ and letters have no case, since files are named by it"
         )
-
-
-def _refuse_names(history: Sequence[Load]) -> None:
-    """Refuse a load whose files would be those of a state on the final mesh."""
-    for k, load in enumerate(history):
-        if first_clash([*FINAL_STATES, load.name]) is not None:
-            raise ValueError(
-                f"history[{k}].name is {show(load.name)} and accuracy is given, with which the state of that name has "
-                "files of its own; take another name"
-            )
 
 
 def _refuse_floating(history: Sequence[Load]) -> None:

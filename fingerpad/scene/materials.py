@@ -43,14 +43,9 @@ LARGEST_GAP = 1.0  # m, with which the attraction is as good as none
 Permittivity = Annotated[Finite, within(1.0, 1e7)]
 
 
-def _exponent(data: Mapping[str, Any]) -> dict[str, Any]:
-    """Return what a layer's Ogden solid has from the keys before it."""
-    return {"convention": data.get("exponent")}
-
-
 def _layer(default: Material) -> Any:
-    """Return the annotation of a layer's material."""
-    return LawKey(MATERIALS, default, of_scene=_exponent)
+    """Return the annotation of a layer's material; an Ogden solid has its exponent from the key before it."""
+    return LawKey(MATERIALS, default, of_scene=lambda data: {"convention": data.get("exponent")})
 
 
 _SUBCUTIS, _DERMIS = Ogden(25e3, 5.0), Ogden(2.55e3, -14.53)

@@ -33,6 +33,24 @@ _QUOTED = re.compile(
 _KEY = re.compile(rf"{_NAME}(\.{_NAME})*")
 
 
+def text_of(path: Path, name: str) -> str:
+    """Return the text of a file of a user, of bounded size, without a byte order mark.
+
+    Args:
+        path: of the file.
+        name: what it is, for a refusal.
+
+    Raises:
+        SceneError: it is no ordinary file, too large, or not in UTF-8.
+    """
+    try:
+        return files.read(path, files.MOST_OF_TEXT).decode("utf-8-sig")
+    except OSError as error:
+        raise SceneError(f"{name} cannot be read: {error.strerror or error}") from None
+    except UnicodeDecodeError:
+        raise SceneError(f"{name} is not text in UTF-8; save it in UTF-8") from None
+
+
 def read(path: Path) -> dict[str, Any]:
     """Return what a TOML file holds; a byte order mark before it is allowed.
 
@@ -40,16 +58,11 @@ def read(path: Path) -> dict[str, Any]:
         SceneError: it is no ordinary file, too large, or not TOML.
     """
     name = f"scene file {clip(str(path), _PATH)}"
+    text = text_of(path, name)
     try:
-        raw = files.read(path, files.MOST_OF_TEXT)
-    except OSError as error:
-        raise SceneError(f"{name} cannot be read: {error.strerror or error}") from None
-    try:
-        return _toml(raw.decode("utf-8-sig"))
+        return _toml(text)
     except SceneError:
         raise
-    except UnicodeDecodeError:
-        raise SceneError(f"{name} is not text in UTF-8; save it in UTF-8") from None
     except ValueError as error:  # tomllib's, or a whole number of more digits than Python reads
         hint = "; decimals have points, and a value with a unit has quotes" if _AFTER_VALUE in str(error) else ""
         raise SceneError(f"{name} is not TOML: {clip(str(error), 150)}{hint}") from None
@@ -78,7 +91,7 @@ def read_study(path: Path) -> dict[str, Any]:
         SceneError: the file cannot be read, or is of a run that was given more than a scene.
     """
     if path.suffix.lower() == ".json":
-        return _of_run(path)
+        return {key: value for key, value in _kept(path).items() if key != "model"}
     data: dict[str, Any] = plain(read(path))
     _beside(data, path.parent)
     _beside(data.get("sweep"), path.parent)
@@ -96,18 +109,12 @@ def model_of(path: Path | None) -> str:
     return str(_kept(path).get("model", DEFAULT_MODEL))
 
 
-def _of_run(path: Path) -> dict[str, Any]:
-    """Return the data of the scene of a run's folder."""
-    return {key: value for key, value in _kept(path).items() if key != "model"}
-
-
 def _kept(path: Path) -> dict[str, Any]:
     """Return what a ``scene.json`` holds."""
     name = f"scene file {clip(str(path), _PATH)}"
+    text = text_of(path, name)
     try:
-        data = json.loads(files.read(path, files.MOST_OF_TEXT))
-    except OSError as error:
-        raise SceneError(f"{name} cannot be read: {error.strerror or error}") from None
+        data = json.loads(text)
     except (ValueError, RecursionError) as error:
         raise SceneError(f"{name} is not JSON: {clip(str(error), 150)}") from None
     if not isinstance(data, dict) or "geometry" not in data:
