@@ -6,10 +6,10 @@ and friction. The restored fields are no equilibrium; the state that is solved f
 pressure is not in the snapshot: it follows from the restored displacement by the second equation.
 
 **Displacement.** The old mesh is gathered on every rank (it is two-dimensional: some MB). A node of the new one takes
-the value of the old polynomial in the triangle that it is inside of or, beyond a polygon that cuts off a curved
-boundary, least outside of in barycentric coordinates. Facets of another length cut a curved ridge elsewhere, by
-:math:`h^2 \kappa / 8`, half a micron where springs of the screen bear the contact over a tenth of that. Skin that is
-too low comes out of the screen in one step of Newton's method, since all of it is in contact; skin that is too high is
+the value of the old polynomial in the triangle that it is inside of, curved or straight, or, beyond facets that cut off
+a boundary, least outside of in barycentric coordinates. Straight facets of another length cut a ridge elsewhere, by
+:math:`h^2 \kappa / 8`, half a micron where springs of the screen bear the contact over a tenth of that; curved ones
+hardly do. Skin that is too low comes out of the screen in one step of Newton's method, since all of it is in contact; skin that is too high is
 not, and comes back point by point. So a node on a ridge is put down to where the old mesh has the skin at that place of
 the ridge's chord, and not up.
 
