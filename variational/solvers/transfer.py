@@ -9,9 +9,9 @@ pressure is not in the snapshot: it follows from the restored displacement by th
 the value of the old polynomial in the triangle that it is inside of, curved or straight, or, beyond facets that cut off
 a boundary, least outside of in barycentric coordinates. Straight facets of another length cut a ridge elsewhere, by
 :math:`h^2 \kappa / 8`, half a micron where springs of the screen bear the contact over a tenth of that; curved ones
-hardly do. Skin that is too low comes out of the screen in one step of Newton's method, since all of it is in contact; skin that is too high is
-not, and comes back point by point. So a node on a ridge is put down to where the old mesh has the skin at that place of
-the ridge's chord, and not up.
+hardly do. Skin that is too low comes out of the screen in one step of Newton's method, since all of it is in contact;
+skin that is too high is not, and comes back point by point. So a node on a ridge is put down to where the old mesh has
+the skin at that place of the ridge's chord, and not up.
 
 **History.** What friction keeps is the elastic slip :math:`s - u_x = t_t / \gamma_t` at Gauss points of the skin
 (:mod:`~variational.contact.formulation`). It is interpolated linearly along each ridge, over the place on the
