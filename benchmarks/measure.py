@@ -36,7 +36,7 @@ from fingerpad.results.writing import Writer
 from fingerpad.runs import full
 from fingerpad.runs.context import RunContext
 from fingerpad.scene import load
-from variational.quantities import Observer
+from variational.resultants import Observer
 from variational.solvers.equations import Equations
 from variational.solvers.iteration import PREFIX, Iteration
 from variational.solvers.outcome import memory_mb

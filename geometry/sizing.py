@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.spatial import cKDTree
 
 from geometry.parameters import Fingertip, MeshSize
 from geometry.profiles import GeometryError, Profiles
@@ -222,8 +223,6 @@ def _rounded_down(value: float) -> float:
 
 def _signed_distance(points: Array, curve: Array, inward: Array) -> tuple[NDArray[np.intp], Array]:
     """Return the index of the nearest curve point and the distance, positive on the side of ``inward``."""
-    step = points[:, None, :] - curve[None, :, :]
-    nearest = np.argmin((step**2).sum(axis=-1), axis=1)
-    step = step[np.arange(len(points)), nearest]
-    side = (step * (inward - curve)[nearest]).sum(axis=-1)
-    return nearest, np.sign(side) * np.linalg.norm(step, axis=-1)
+    distance, nearest = cKDTree(curve).query(points)
+    side = ((points - curve[nearest]) * (inward - curve)[nearest]).sum(axis=-1)
+    return nearest, np.sign(side) * distance

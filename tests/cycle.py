@@ -7,7 +7,7 @@ the voltage and that of the air gap are what friction dissipates, and nothing is
 import numpy as np
 
 from variational.energy import Balance, EnergyBook
-from variational.quantities import Observer
+from variational.resultants import Observer
 from variational.solvers.equations import Control
 from variational.solvers.newton import Solver
 

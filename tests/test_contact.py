@@ -18,7 +18,7 @@ from variational.contact import formulation
 from variational.contact.penalty import Penalty
 from variational.materials.ogden import Ogden
 from variational.problem import Interface
-from variational.quantities import Observer
+from variational.resultants import Observer
 from variational.roughness.bam import BearingArea
 from variational.solvers.equations import Control, Equations
 from variational.solvers.newton import Solver

@@ -12,6 +12,7 @@ from urllib.parse import unquote, urlsplit
 
 import pytest
 
+import fingerpad
 from fingerpad import cli
 from fingerpad.cli.params import page
 from fingerpad.scene import Scene
@@ -118,6 +119,13 @@ def names(body: list[ast.stmt]) -> set[str]:
 
 def tree(module: str) -> ast.Module:
     return ast.parse((ROOT / f"{module.replace('.', '/')}.py").read_text(encoding="utf-8"))
+
+
+def test_every_name_of_the_package_is_on_the_page_of_the_interface():
+    """Under the module that defines it: the other pages of the reference leave it out."""
+    found = re.findall(r"auto(?:class|exception|function):: ([\w.]+)", text(Path("docs/site/api.md")))
+    names = [getattr(fingerpad, name) for name in fingerpad.__all__ if name != "geometry"]
+    assert {f"{each.__module__}.{each.__name__}" for each in names} == set(found)
 
 
 def test_places_exist():

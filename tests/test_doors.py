@@ -192,9 +192,9 @@ def test_mutants_of_scenes_and_lines(folder):
 )
 @pytest.mark.slow
 def test_what_is_broken_is_found(folder, monkeypatch, broken, value):
-    """Without one of the guards there is a mutant that shows it."""
+    """Without one of the guards there is a mutant that shows it: at present the two that are tried first."""
     monkeypatch.setattr(broken, value)
-    assert any(fault(mutant(SEED, k), folder)[0] for k in range(400))
+    assert any(fault(mutant(SEED, k), folder)[0] for k in (75, 265, *range(400)))
 
 
 # -- files -------------------------------------------------------------------------------------------------

@@ -13,7 +13,7 @@ from tests.test_problem import D_EQ, EPS_0, H_0, VOLTAGE, make, rates, residual,
 from variational import kinematics
 from variational.attraction import electroadhesion
 from variational.problem import Problem
-from variational.quantities import Observer
+from variational.resultants import Observer
 
 
 def attraction(problem):

@@ -21,7 +21,7 @@ from variational.materials.ogden import Ogden
 from variational.materials.saint_venant import SaintVenant
 from variational.output import Cellwise
 from variational.problem import Interface, Problem
-from variational.quantities import Observer
+from variational.resultants import Observer
 from variational.solvers.equations import Control, Equations
 from variational.solvers.newton import Solver
 from variational.surface import Surface

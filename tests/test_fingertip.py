@@ -60,7 +60,6 @@ def test_area(finger_mesh, profiles, layer):
     assert integral(finger_mesh, tag) == pytest.approx(areas(profiles)[tag], rel=off)
 
 
-@pytest.mark.mpi
 @pytest.mark.parametrize("layer", list(tags.LAYERS))
 def test_layers_are_mirrored(finger_mesh, layer):
     """Left and right of x = 0 weigh the same. Tolerance: the placing of nodes along the mirrored curves."""
@@ -173,7 +172,6 @@ def at_the_tips(receptors=True, growth=0.25):
     return load(MPI.COMM_WORLD, partial(fingertip.build, Fingertip(), size, receptors, half=True))
 
 
-@pytest.mark.mpi
 def test_elements_at_the_tips_below_the_merkel_sites(profiles):
     """Where ridges can touch their edges are as long as asked, elsewhere several times as long.
 
@@ -190,7 +188,6 @@ def test_elements_at_the_tips_below_the_merkel_sites(profiles):
     assert max(means[:3]) < 1.5 * RECEPTOR < 4 * RECEPTOR < means[3]
 
 
-@pytest.mark.mpi
 def test_triangles_of_a_merkel_site():
     """By default fewer than 200 each, and more than 100; the site on the line of symmetry counts half."""
     with_sites, without = (at_the_tips(wanted).mesh.topology.index_map(2).size_global for wanted in (True, False))
@@ -270,7 +267,6 @@ def test_concave_pair_stays():
 
 
 @pytest.mark.slow
-@pytest.mark.mpi
 @pytest.mark.parametrize("half", [True, False])
 def test_sharp_tips_are_meshed(half):
     """Of the fifth harmonic alone; a mesh of gmsh's own has such triangles, on either side of the mirror."""

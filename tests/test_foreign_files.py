@@ -15,7 +15,7 @@ from PIL import Image
 import fingerpad as fp
 from fingerpad.cli import main
 from fingerpad.reduced import cylinders
-from fingerpad.reduced.models import find
+from fingerpad.reduced.registry import find
 from fingerpad.report.page import picture
 from fingerpad.report.write import write
 from fingerpad.results import style

@@ -196,8 +196,7 @@ def slid(law, way: float, formulation: Formulation = EPS) -> Body:
 
 
 @pytest.mark.slow
-@pytest.mark.mpi
-@pytest.mark.parametrize("sign", [1, -1])
+@pytest.mark.parametrize("sign", [pytest.param(1, marks=pytest.mark.mpi), -1])
 @pytest.mark.parametrize(
     "formulation", [EPS, AugmentedLagrangian(1e12, 1e10, 5e-9), Nitsche(10.0, 0)], ids=lambda f: type(f).__name__
 )

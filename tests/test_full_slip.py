@@ -60,7 +60,7 @@ def test_slip_that_is_never_steady_ends_with_the_slide(monkeypatch):
 def test_slide_goes_on_the_way_it_came(end):
     """Full slip is first found at the slide's end or before it; the bone moves on by 0.2 mm and does not turn round."""
     press, slide = {"name": "press", "f_ext": 1.0}, {"name": "slide", "bone_x": end, "until_full_slip": True}
-    scene = small().replace(history=[press, slide])
+    scene = small(output={"receptors": False}).replace(history=[press, slide])
     simulation = followed(scene)
     slid = [state for state in simulation.states if state.load == "slide"]
     first = next(state.bone_x for state in slid if state.all_slip)
@@ -75,7 +75,7 @@ def test_slide_of_no_length_is_none():
     """A move by nothing until full slip, where full slip is: the bone stays, whichever way it came."""
     press, back = {"name": "press", "f_ext": 1.0}, {"name": "back", "bone_x": -5e-3, "until_full_slip": True}
     stay = {"name": "stay", "bone_x_by": 0.0, "until_full_slip": True}
-    scene = small().replace(history=[press, back, stay])
+    scene = small(output={"receptors": False}).replace(history=[press, back, stay])
     simulation = followed(scene)
     last = [state for state in simulation.states if state.load == "back"][-1]
     assert all(state.bone_x == last.bone_x for state in simulation.states if state.load == "stay")
@@ -88,7 +88,7 @@ def test_time_goes_on_where_full_slip_is_not_steady_at_once(monkeypatch):
     slides_on = FullSlip.slides_on
     monkeypatch.setattr(FullSlip, "slides_on", lambda self, *args: slides_on(self, *args) and next(steady, True))
     slide = {"name": "slide", "bone_x": 1e-3, "speed": 0.02, "until_full_slip": True}
-    scene = small().replace(history=[{"name": "press", "f_ext": 1.0}, slide])
+    scene = small(output={"receptors": False}).replace(history=[{"name": "press", "f_ext": 1.0}, slide])
     simulation = followed(scene)
     slid = [state for state in simulation.states if state.load == "slide"]
     assert [state.time for state in slid] == pytest.approx([state.bone_x / 0.02 for state in slid], rel=1e-9)
@@ -111,7 +111,7 @@ class Slid:
 
 @pytest.mark.parametrize(
     ("formulation", "change", "steady"),
-    [("penalty", 0.9e-6, True), ("penalty", 1.1e-6, False), ("augmented", 1e-3, True), ("augmented", 1e-2, False)],
+    [("penalty", 0.9e-6, True), ("penalty", 1.3e-6, False), ("augmented", 1e-3, True), ("augmented", 1e-2, False)],
 )
 def test_force_of_full_slip_is_as_steady_as_its_gaps(formulation, change, steady):
     """5 nm left of an air gap and insulators of some 2 um: 5e-3 of the attraction, 1e-6 where none are left."""

@@ -12,7 +12,7 @@ from fingerpad.model.options import FingerModel, by_rule, plan
 from fingerpad.model.simulation import Simulation
 from fingerpad.scene import from_data
 from tests.runs import followed
-from tests.test_demo import MESH, NINE
+from tests.small_finger import NINE
 from variational.materials.neo_hooke import NeoHooke
 from variational.solvers import newton as solvers
 
@@ -31,7 +31,7 @@ BRIEF = [HISTORY[0], {"name": "slide", "bone_x": 5e-6}]
 
 def model(history, led: bool = True) -> FingerModel:
     """Return a small finger's model, led by its half or not."""
-    scene = by_rule(from_data(NINE | {"history": history, "mesh": MESH}))
+    scene = by_rule(from_data(NINE | {"history": history}))
     needed = plan(scene)
     assert needed.symmetric_start
     return FingerModel(scene, replace(needed, symmetric_start=led))
@@ -50,15 +50,13 @@ def follow(history, led: bool) -> Simulation:
     return FOLLOWED[key]
 
 
-@pytest.mark.mpi
 @pytest.mark.parametrize(
     "history",
     [
-        HISTORY,
-        [{"name": "lower", "bone_height": -60e-6}, *HISTORY[2:]],
-        [HISTORY[0], {"name": "lift", "f_ext": 0.2}, *HISTORY[1:3]],
+        pytest.param(HISTORY, id="press, charge, slide"),
+        pytest.param([{"name": "lower", "bone_height": -60e-6}, *HISTORY[2:]], id="bone height", marks=pytest.mark.mpi),
+        pytest.param([HISTORY[0], {"name": "lift", "f_ext": 0.2}, HISTORY[1], BRIEF[1]], id="lift"),
     ],
-    ids=["press, charge, slide", "bone height", "lift"],
 )
 def test_half_leads_to_the_states_of_the_whole(history):
     led, whole = (follow(history, half).states for half in (True, False))
@@ -116,7 +114,7 @@ def test_record_is_that_of_the_state_and_not_of_a_probe(monkeypatch):
 def test_mixed_element_is_in_balance_on_the_whole_finger():
     """The pressure comes over with the displacement. Solved for again it left up to 5e-8, with a floor of 0."""
     layers = {layer: {"poisson": 0.4999} for layer in ("stratum_corneum", "viable_epidermis", "dermis")}
-    scene = NINE | {"history": BRIEF, "mesh": MESH, "numerics": {"element": "P2-P1"}, "materials": layers}
+    scene = NINE | {"history": BRIEF, "numerics": {"element": "P2-P1"}, "materials": layers}
     scene = by_rule(from_data(scene))
     assert plan(scene).symmetric_start
     path = followed(scene)
@@ -156,7 +154,7 @@ class Fibres(NeoHooke):
 @pytest.mark.parametrize(("history", "moves"), [(HISTORY, True), (HISTORY[:2], False)])
 def test_no_half_where_the_finger_is_not_its_own_mirror_image(history, moves):
     """An own material may have fibres at an angle; one of the program's may not."""
-    scene = from_data(NINE | {"history": history, "mesh": MESH})
+    scene = from_data(NINE | {"history": history})
     straight, inclined = (
         plan(scene.replace(materials={"dermis": solid})) for solid in (NeoHooke(2.5e3), Fibres(2.5e3))
     )

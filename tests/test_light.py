@@ -15,7 +15,7 @@ LIGHT = (
     "fingerpad.results.result",
     "fingerpad.scene",
     "fingerpad.reduced.cylinders",
-    "fingerpad.reduced.models",
+    "fingerpad.reduced.registry",
     "fingerpad.runs.context",
     "fingerpad.calculator.page",
     "fingerpad.model.options",

@@ -24,10 +24,12 @@ from variational.state import ContactState
 
 pytestmark = pytest.mark.slow
 SMALL = tomllib.loads((Path(__file__).parents[1] / "demos/scenes/small_finger.toml").read_text(encoding="utf-8"))
+SCALE = 2.0  # of the steps: half of the samples of a period
 FINGER = {
     "geometry": SMALL["geometry"],
     "mesh": SMALL["mesh"] | {"contact": 40e-6},
     "output": {"receptors": False, "errors": False},
+    "numerics": {"step_scale": SCALE},
 }
 MU_0 = 0.25
 PRESS = {"name": "press", "f_ext": 1.0}
@@ -65,16 +67,15 @@ def same(a: list[ContactState], b: list[ContactState], but: tuple[str, ...] = ()
 
 
 # -- what it is ----------------------------------------------------------------------------------------
-@pytest.mark.mpi
 def test_waveform_is_the_loads_by_hand():
     """One load at each sample, as the paper's Fig. 9B was done before: full slip does not depend on the steps.
 
     The air gaps are found to 1e-8: at 97 V a contact length changes 150 times as much as the friction, in parts.
     """
-    exact = {"numerics": {"coupling_tolerance": 1e-8}}
+    exact = {"numerics": {"coupling_tolerance": 1e-8, "step_scale": SCALE}}
     found = follow(PRESS, SLIDE, BY | {"voltage": WAVE}, **exact)
     wave = [state for state in found if state.load == "wave"]
-    samples = Load(**BY, voltage=WAVE).wave.samples(1 / 60, 1.0)
+    samples = Load(**BY, voltage=WAVE).wave.samples(1 / 60, SCALE)
     assert len(wave) == pytest.approx(len(samples), abs=2)  # the first is a jump of 20 V
     hand = [
         {"name": f"sample {k}", "voltage": abs(round(u, 9)), "bone_x": 256e-6 + 128e-6 * t * 60}
@@ -125,7 +126,7 @@ def test_every_state_is_at_the_voltage_of_its_time(wave):
     """Also where the bone moves so far between two samples that steps are cut. Tolerance: roundoff of the square."""
     states = follow(PRESS, {"name": "wave", "bone_x_by": 4e-3, "duration": 1 / 60, "voltage": wave})
     states = [state for state in states if state.time > 0]  # a jump takes no time
-    assert len(states) > 1.25 * SAMPLES
+    assert len(states) > 1.25 * SAMPLES / SCALE
 
     def voltage(time: float) -> float:
         if wave["waveform"] == "sine":
@@ -166,15 +167,15 @@ def test_square_jumps_at_one_place():
         assert plateau == pytest.approx([plateau[-1]] * 3, rel=1e-5)
 
 
-@pytest.mark.mpi
 def test_parts_of_a_jump_are_no_extremes():
     """A large jump is done in parts, at voltages that a square never has; at its begin, too."""
     square = {"waveform": "square", "amplitude": 5.0, "offset": 95.0, "frequency": 60.0}
-    states = [state for state in follow(PRESS, SLIDE, BY | {"voltage": square}) if state.load == "wave"]
+    path = follow(PRESS, SLIDE, BY | {"voltage": square}, numerics={"step_scale": 1.0})
+    states = [state for state in path if state.load == "wave"]
     own = [state for state in states if min(abs(state.voltage - u) for u in (100.0, 90.0)) < 1e-6]
     assert len(own) < len(states)
     assert without_parts_of_jumps(states, states[0].time) == own
-    picture = Drawing(MU_0, follow(PRESS, SLIDE, BY | {"voltage": square}), {}, {}, {}, None, {}).figure("time")
+    picture = Drawing(MU_0, path, {}, {}, {}, None, {}).figure("time")
     drawn = picture.axes[0].lines[0].get_ydata()
     assert set(np.round(drawn, 6)) <= {0.0, 100.0, 90.0}
     least = load_result("wave", states, None, (), scene(PRESS, BY | {"voltage": square}).history[1].wave).extremes
@@ -184,7 +185,7 @@ def test_parts_of_a_jump_are_no_extremes():
 def test_course_of_a_square():
     """Its jumps are cut into steps, its plateaus are not; what is done is counted in time, not by the pieces."""
     load = Load(name="wave", duration=2 / 60, voltage=WAVE | {"waveform": "square"})
-    pieces = targets(load, 0.0, 1.0)
+    pieces = targets(load, 0.0, SCALE)
     jumps = [after for before, after in pairwise(pieces) if before.voltage != after.voltage]
     assert len(jumps) == 3 and not any(target.continues or target.duration for target in jumps)
     assert sum(target.continues for target in pieces) == len(pieces) - 1 - len(jumps)
@@ -202,14 +203,13 @@ def test_course_of_a_square():
     assert found == pytest.approx([state.time * 60 / 2 for state in wave], abs=1e-12)
 
 
-@pytest.mark.mpi
 def test_bone_at_a_height():
     """Under a voltage over time it stays there; what it presses with falls where the attraction rises."""
     lower = {"name": "lower", "bone_height": -30e-6}
     wave = {"name": "wave", "duration": 1 / 60, "voltage": WAVE | {"waveform": "triangle", "offset": 0.0}}
     states = [state for state in follow(lower, wave) if state.load == "wave"]
     assert all(state.bone_height == pytest.approx(-30e-6, rel=1e-12) and state.bone_x == 0 for state in states)
-    assert len(states) == pytest.approx(SAMPLES + 1, abs=1)
+    assert len(states) == pytest.approx(SAMPLES / SCALE + 1, abs=1)
     forces = {round(abs(state.voltage), 6): state.f_ext for state in states}
     assert [forces[u] for u in sorted(forces)] == sorted(forces.values(), reverse=True)
     assert forces[80.0] < 0.99 * forces[0.0]
@@ -286,7 +286,6 @@ def test_mean_from_steps_that_are_too_long_is_told(tmp_path):
     assert long.to_dict()["loads"][2]["over_time"]["mean_change"]["f_t"] > 0
 
 
-@pytest.mark.mpi
 def test_square_of_a_file_is_the_square():
     """Given by its corners alone: mean and amplitudes up to the time that its jumps take."""
     jump = 1e-6 / 60

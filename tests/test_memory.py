@@ -1,6 +1,6 @@
 """Memory by the unknowns of a mesh, its refusal, and the bound that refuses element sizes before gmsh meets them."""
 
-from functools import partial
+from functools import cache, partial
 
 import pytest
 from dolfinx import fem
@@ -22,6 +22,12 @@ from variational.element import ELEMENTS
 FINE = {"contact": 10e-6, "receptor": 10e-6, "touching_half_arc": 1.0e-3}
 COARSE = {"contact": 30e-6, "receptor": 60e-6, "interface": 120e-6, "growth": 0.5, "touching_half_arc": 2.0e-3}
 EVEN = {"contact": 100e-6, "receptor": 100e-6, "interface": 150e-6, "coarsest": 150e-6, "touching_half_arc": 1.0e-3}
+
+
+@cache
+def coarse():
+    """Return a default finger on a coarse mesh, with receptors."""
+    return load(MPI.COMM_SELF, partial(fingertip.build, Fingertip(), MeshSize(**COARSE), True, False)).mesh
 
 
 @pytest.mark.parametrize(
@@ -58,8 +64,7 @@ def test_triangles_of_larger_meshes_are_bounded(size, triangles):
 @pytest.mark.parametrize("element", sorted(ELEMENTS))
 def test_unknowns_are_counted(element):
     """As those of the function spaces, on a mesh with a hole; of the half without one it is an edge less."""
-    body = load(MPI.COMM_SELF, partial(fingertip.build, Fingertip(), MeshSize(**COARSE), True, False))
-    mesh, kind = body.mesh, ELEMENTS[element]
+    mesh, kind = coarse(), ELEMENTS[element]
     spaces = [fem.functionspace(mesh, ("Lagrange", kind.degree, (2,)))]
     spaces += [fem.functionspace(mesh, ("Lagrange", 1))] if kind.mixed else []
     number = sum(space.dofmap.index_map.size_global * space.dofmap.index_map_bs for space in spaces)

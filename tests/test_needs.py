@@ -22,7 +22,7 @@ from variational.contact.nitsche import Nitsche
 from variational.contact.penalty import Penalty
 from variational.materials.ogden import Ogden
 from variational.problem import Interface
-from variational.quantities import RidgeLoads
+from variational.resultants import RidgeLoads
 from variational.roughness.bam import BearingArea
 from variational.solvers.continuation import Target
 

@@ -17,7 +17,7 @@ from variational.contact.penalty import Penalty
 from variational.energy import Balance, EnergyBook
 from variational.materials.saint_venant import SaintVenant
 from variational.problem import Interface
-from variational.quantities import Observer, RidgeLoads
+from variational.resultants import Observer, RidgeLoads
 from variational.roughness.bam import BearingArea
 from variational.solvers.continuation import Attempt, Continuation, Target
 from variational.solvers.coupling import Coupling

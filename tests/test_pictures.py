@@ -16,9 +16,10 @@ import fingerpad as fp
 from fingerpad.results import style
 from fingerpad.results.curves import SurfaceProfile, history, saw_teeth, surface
 from fingerpad.results.finger_picture import finger
+from fingerpad.scene import from_data
 from geometry import tags
 from tests.runs import no_pictures
-from tests.small_finger import small
+from tests.small_finger import NINE
 from variational.state import ContactState, Errors, StepRecord
 
 LOADED = ContactState(
@@ -213,13 +214,15 @@ def test_surface_without_contact(tmp_path):
 
 # -- pictures of a result that was read from its folder --------------------------------------------------------------
 KINDS = ("history", "surface", "finger")
+RUNS = {"plain": {"output": {"errors": False}}, "refined": {"accuracy": {"mu_app": 0.2}}}
 
 
-@pytest.fixture(scope="module", params=[{}, {"accuracy": {"mu_app": 0.2}}], ids=["plain", "refined"])
+@pytest.fixture(scope="module", params=RUNS)
 def ran(request, tmp_path_factory) -> fp.Result:
     """A run on one mesh, and one whose named states are on a finer mesh than its path."""
     with no_pictures():
-        return fp.run(small(**request.param), out=tmp_path_factory.mktemp("run") / "out")
+        scene = from_data(NINE | {"f_ext": 1.0, "voltage": 100.0} | RUNS[request.param])
+        return fp.run(scene, out=tmp_path_factory.mktemp("run") / "out")
 
 
 def pixels(figure) -> bytes:

@@ -14,6 +14,7 @@ from fingerpad.results import quantities
 from fingerpad.scene import from_data
 from geometry.units import in_si
 from tests.measures import rows_of
+from tests.runs import no_pictures
 from tests.test_dataset import SCENE
 
 pytestmark = pytest.mark.slow
@@ -26,7 +27,8 @@ MERKEL = fp.Output("merkel_max", "J/m^3", lambda state: state.sites.merkel.max()
 @pytest.fixture(scope="module")
 def result(tmp_path_factory):
     folder = tmp_path_factory.mktemp("run")
-    return fp.run(from_data(SCENE), out=folder, comm=MPI.COMM_SELF, outputs=[P_MEAN, MERKEL])
+    with no_pictures():
+        return fp.run(from_data(SCENE), out=folder, comm=MPI.COMM_SELF, outputs=[P_MEAN, MERKEL])
 
 
 def values_of(result):

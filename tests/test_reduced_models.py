@@ -6,7 +6,7 @@ import pytest
 
 import fingerpad as fp
 from fingerpad.cli import main
-from fingerpad.reduced import models
+from fingerpad.reduced import registry
 from fingerpad.reduced.model import Model, reduced_state
 from fingerpad.results.result import Result
 from fingerpad.scene import Scene, SceneError
@@ -29,7 +29,7 @@ class Block(Model):
 @pytest.fixture(autouse=True)
 def block(monkeypatch):
     """The recipe of CONTRIBUTING: one line in the registry."""
-    monkeypatch.setitem(models.MODELS, Block.name, Block())
+    monkeypatch.setitem(registry.MODELS, Block.name, Block())
 
 
 def test_run(tmp_path):

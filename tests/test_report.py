@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from fingerpad.cli import main
-from fingerpad.reduced.models import find
+from fingerpad.reduced.registry import find
 from fingerpad.report import run_page, trust
 from fingerpad.report.write import NAME, write
 from fingerpad.results.quantities import cell

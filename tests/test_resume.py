@@ -12,10 +12,9 @@ from mpi4py import MPI
 import fingerpad as fp
 from fingerpad.model.simulation import Simulation
 from fingerpad.results.checkpoint import Checkpoint, CheckpointError
-from fingerpad.results.drawing import Drawing
-from fingerpad.results.writing import Writer
 from fingerpad.runs.batch import key, sweep
 from fingerpad.scene import SceneError
+from tests.runs import tables_alone
 from tests.test_ending import tables
 from tests.test_history import Own
 from variational.problem import Problem
@@ -48,10 +47,10 @@ def scene(history="charged at rest", **more) -> fp.Scene:
 
 
 @pytest.fixture(autouse=True)
-def bare(monkeypatch):
-    monkeypatch.setattr(Drawing, "write", lambda *args: None)
-    monkeypatch.setattr(Writer, "dataset", lambda self, result: "")
-    monkeypatch.setattr("fingerpad.report.write.attempt", lambda folder: None)
+def bare():
+    """Nothing but tables and the summary is written."""
+    with tables_alone():
+        yield
 
 
 @pytest.fixture

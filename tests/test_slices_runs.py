@@ -11,7 +11,7 @@ import pytest
 
 import fingerpad as fp
 from fingerpad.model.simulation import Simulation
-from fingerpad.reduced.models import find
+from fingerpad.reduced.registry import find
 from fingerpad.report import run_page
 from fingerpad.results.folder import full_scene
 from fingerpad.runs import solve
@@ -20,7 +20,7 @@ from fingerpad.scene import SceneError, load
 from fingerpad.slices import traces
 from fingerpad.slices.estimate import with_newtons
 from fingerpad.slices.traces import history, points
-from tests.runs import no_pictures
+from tests.runs import no_pictures, tables_alone
 from tests.small_finger import small
 from variational.state import Errors
 
@@ -93,7 +93,7 @@ def test_trace_that_was_too_short_is_made_again(tmp_path, monkeypatch):
     """To a larger force, in a folder beside; the same command takes both from there, and another force is refused."""
     monkeypatch.setattr(traces, "_MARGIN", 0.55 * traces._MARGIN)
     found, scene, out = [], small(**SMALL).replace(force=FORCE), tmp_path / "out"
-    with no_pictures():
+    with tables_alone():
         found.append(fp.run(scene, out=out))
         monkeypatch.setattr(Simulation, "_accepted", None)  # nothing is solved again
         found.append(fp.run(scene, out=out))
@@ -118,7 +118,7 @@ def test_force_that_was_interrupted_goes_on(tmp_path, last):
             signal.raise_signal(signal.SIGTERM)
         return before(self, *given)
 
-    with no_pictures(), pytest.MonkeyPatch.context() as patch, pytest.raises(SystemExit) as stop:
+    with tables_alone(), pytest.MonkeyPatch.context() as patch, pytest.raises(SystemExit) as stop:
         patch.setattr(Simulation, "_accepted", accepted)
         fp.run(scene, out=out)
     assert stop.value.code == 143
@@ -129,7 +129,7 @@ def test_force_that_was_interrupted_goes_on(tmp_path, last):
     assert full_scene(out) == scene
     begun, runs = time.time(), {"uncharged", "charged", "full_slip"} if last else {"uncharged"}
     assert {path.parent.name for path in out.glob("*/scene.json")} == runs
-    with no_pictures():
+    with tables_alone():
         found = fp.run(full_scene(out), out=out, resume=last)
     for name in ("uncharged", "charged") if last else ():
         assert (out / name / "summary.json").stat().st_mtime < begun

@@ -12,7 +12,7 @@ from tests import spring
 from tests.test_contact import HEIGHT, MU_F, VOLTAGE, WIDTH, make
 from tests.test_element import layered
 from variational.element import ELEMENTS
-from variational.quantities import Observer
+from variational.resultants import Observer
 from variational.solvers.equations import Control
 from variational.solvers.outcome import NotConverged
 from variational.solvers.stability import Stability, StabilityCheck

@@ -22,7 +22,7 @@ IRRECOVERABLE = replace(TINY, parameter=1.5e24)
 @pytest.fixture(scope="module")
 def panel() -> plan.Panel:
     x = plan.Axis("voltage", "voltage (V)", (0.0, 50.0))
-    y = plan.Axis("contact_size", "contact size (µm)", (60e-6, 80e-6), 1e-6)
+    y = plan.Axis("contact_size", "contact size (µm)", (60e-6,), 1e-6)
     return plan.Panel("penalty", TINY, x, y)
 
 

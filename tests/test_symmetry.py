@@ -24,7 +24,7 @@ from variational.energy import EnergyBook
 from variational.materials.ogden import Ogden
 from variational.output import Snapshot
 from variational.problem import Interface
-from variational.quantities import RidgeLoads
+from variational.resultants import RidgeLoads
 from variational.roughness.bam import BearingArea
 from variational.solvers.continuation import Target
 from variational.solvers.stability import StabilityCheck

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from variational.contact.formulation import SurfaceState
 from variational.materials.material import Material
 from variational.problem import Interface, Problem
-from variational.quantities import Observer
+from variational.resultants import Observer
 from variational.roughness.closure import Closure
 from variational.solvers.continuation import Attempt, Continuation, Target
 from variational.solvers.coupling import Coupling

@@ -116,7 +116,8 @@ commands:
 
 A scene is a TOML file, the default press, charge and slide where none is given. Every key of a scene can be given as an
 option, with a unit where one helps: --set f_ext="50 N/m" --set roughness.h_rms=2e-6. Forces are per metre of finger
-along its axis, in N/m: 75 N/m at its centre are about 0.5 N in all. run --force takes newtons.
+along its axis, in N/m: 75 N/m at its centre correspond to about 0.5 N on the
+whole default finger. run --force takes newtons.
 
 examples:
   fingerpad estimate --f-ext 20:75:3 --voltage 0:200:5

@@ -14,7 +14,7 @@ from fingerpad.ctrl_c import raises
 from fingerpad.reduced import cylinders
 from fingerpad.reduced.cylinders import Cylinders
 from fingerpad.reduced.model import STATES, Model
-from fingerpad.reduced.models import MODELS
+from fingerpad.reduced.registry import MODELS
 from fingerpad.results.files import below, check_folder
 from fingerpad.results.quantities import PLUS_MINUS, QUANTITIES, Output, cell
 from fingerpad.results.result import Result

@@ -6,7 +6,7 @@ from pathlib import Path
 
 from fingerpad.cli.arguments import Parser, echo, path, refuse_twice, scene_of
 from fingerpad.ctrl_c import raises
-from fingerpad.reduced.models import MODELS, find
+from fingerpad.reduced.registry import MODELS, find
 from fingerpad.report.write import NAME
 from fingerpad.results.files import check_folder
 from fingerpad.results.folder import full_scene

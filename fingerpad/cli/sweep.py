@@ -9,7 +9,7 @@ from typing import Any
 from fingerpad.cli import ranges
 from fingerpad.cli.arguments import Parser, changes, echo, positive
 from fingerpad.ctrl_c import raises
-from fingerpad.reduced.models import MODELS
+from fingerpad.reduced.registry import MODELS
 from fingerpad.results.files import check_folder
 from fingerpad.runs import batch  # noqa: F401  # before Ctrl-C raises
 from fingerpad.runs.sweep import FILES, sweep

@@ -19,7 +19,7 @@ from dolfinx import fem
 from fingerpad.model.state import steady
 from fingerpad.results.states import SLIDE_ON, full_slip
 from geometry import tags
-from variational.quantities import RidgeLoads
+from variational.resultants import RidgeLoads
 from variational.solvers.continuation import StepFailed
 from variational.solvers.outcome import NotConverged
 from variational.solvers.stability import Stability, StabilityCheck

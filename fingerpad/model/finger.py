@@ -19,7 +19,7 @@ from variational.body import Body
 from variational.contact.formulation import SurfaceState
 from variational.energy import EnergyBook
 from variational.problem import Interface, Problem
-from variational.quantities import RidgeLoads
+from variational.resultants import RidgeLoads
 from variational.solvers.continuation import Attempt, Continuation
 from variational.solvers.target import Target
 from variational.state import ContactState
@@ -97,7 +97,7 @@ class Finger:
         """Return the resultants of all ridges that can touch, of the whole finger; collective.
 
         Args:
-            by_gap: see :meth:`variational.quantities.Observer.ridge_loads`.
+            by_gap: see :meth:`variational.resultants.Observer.ridge_loads`.
         """
         loads = self.observer.ridge_loads(self.continuation.surface_state, by_gap)
         return loads if self.options.both_halves else loads.whole()

@@ -16,7 +16,7 @@ from fingerpad.model.state import refuse_strained, step_record
 from fingerpad.results.states import FIRST_TOUCH, SLIDE_ON
 from fingerpad.scene import Load
 from fingerpad.scene.waveform import Sample, Waveform
-from variational.quantities import RidgeLoads
+from variational.resultants import RidgeLoads
 from variational.solvers import checkpoint
 from variational.solvers.continuation import Attempt, Continuation, StepFailed
 from variational.solvers.stability import Stability

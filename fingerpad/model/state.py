@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from variational.contact.formulation import Formulation
 from variational.contact.friction import CONE_ROUNDOFF
 from variational.energy import Balance
-from variational.quantities import RidgeLoads
+from variational.resultants import RidgeLoads
 from variational.solvers.continuation import Attempt, Continuation, StepFailed
 from variational.state import ContactState, RidgeStates, StepRecord
 

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from fingerpad.reduced.models import MODELS
+from fingerpad.reduced.registry import MODELS
 from fingerpad.report import page as html
 from fingerpad.report import trust
 from fingerpad.report.frames import conditions_of, frames, section

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING, NamedTuple
 
 from fingerpad.reduced.cylinder_errors import in_words
-from fingerpad.reduced.models import follows_path
+from fingerpad.reduced.registry import follows_path
 from fingerpad.report import page as html
 from fingerpad.report.page import BAD, CARE, GOOD
 from fingerpad.results.quantities import cell

@@ -5,7 +5,7 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from fingerpad.reduced.models import MODELS
+from fingerpad.reduced.registry import MODELS
 from fingerpad.results.files import read_object, replace
 from fingerpad.results.result import Result, steps_of
 from fingerpad.results.states import load_results, named

@@ -243,8 +243,8 @@ SWEPT = (*EXTREMES, "ridges_in_contact")
 FRICTION = ("mu_app", "f_t")
 """Quantities that are printed at full slip alone."""
 PER_LENGTH = (
-    "N/m: force per metre of finger out of the plane of the cross-section; 75 N/m at the centre of the default finger "
-    "are about 0.5 N in all."
+    "N/m: force per metre of finger out of the plane of the cross-section; 75 N/m at its centre correspond to about "
+    "0.5 N on the whole default finger."
 )
 PLUS_MINUS = (
     "±: estimated discretisation error; what the finger and the model assume is not in it (docs/assumptions.md)."

@@ -16,7 +16,7 @@ from pathlib import Path
 
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
 
-from fingerpad.reduced.models import find
+from fingerpad.reduced.registry import find
 from fingerpad.results.files import below, lock_file, replace_json
 from fingerpad.results.folder import FolderError, identity
 from fingerpad.results.terminal import between, watched
@@ -84,7 +84,7 @@ def sweep(
         folder: of all results.
         jobs: processes at a time.
         limit: seconds of processor time for one scene.
-        model: a name of :data:`fingerpad.reduced.models.MODELS`, of one that meshes.
+        model: a name of :data:`fingerpad.reduced.registry.MODELS`, of one that meshes.
         quiet: whether to print nothing, and show no bar.
 
     Returns:
@@ -141,7 +141,7 @@ def main(scene: Path, folder: Path, model: str) -> None:
     Args:
         scene: file of its parameters in JSON.
         folder: of the results.
-        model: a name of :data:`fingerpad.reduced.models.MODELS`.
+        model: a name of :data:`fingerpad.reduced.registry.MODELS`.
     """
     asked, way = from_data(json.loads(scene.read_text(encoding="utf-8"))), find(model)
     try:

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from fingerpad.installed import needed_by, source, version
-from fingerpad.reduced.models import find
+from fingerpad.reduced.registry import find
 from fingerpad.results import dataset, terminal
 from fingerpad.results.files import below, read_object, replace_json
 from fingerpad.results.folder import Serial, identity, on_rank_0
@@ -46,7 +46,7 @@ def run(
     Args:
         scene: the scene; by default press, charge and slide of the default finger.
         out: folder for tables, pictures, fields and ``summary.json``; without it nothing is written.
-        model: a name of :data:`fingerpad.reduced.models.MODELS`: ``"full"``, every ridge along the whole path
+        model: a name of :data:`fingerpad.reduced.registry.MODELS`: ``"full"``, every ridge along the whole path
             (minutes); ``"cylinders"``, a closed form (at once).
         comm: communicator; by default of all ranks.
         resume: go on from where a run of the same scene in ``out`` was cut short; only of the full model.
@@ -102,7 +102,7 @@ def solved(scene: Scene, model: "Model", context: RunContext) -> Result:
 
     Args:
         scene: the scene.
-        model: one of :data:`fingerpad.reduced.models.MODELS`.
+        model: one of :data:`fingerpad.reduced.registry.MODELS`.
         context: all else.
     """
     checked_outputs(context.outputs)

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from fingerpad.installed import source, version
-from fingerpad.reduced.models import MODELS, find
+from fingerpad.reduced.registry import MODELS, find
 from fingerpad.report.write import attempt
 from fingerpad.results import terminal
 from fingerpad.results.files import below, check_folder, replace_json
@@ -56,7 +56,7 @@ def sweep(
         scene: the scene; by default press, charge and slide of the default finger.
         out: folder of the results, of ``table.csv`` and of ``report.html``.
         jobs: points that are run at a time.
-        model: a name of :data:`fingerpad.reduced.models.MODELS`, ``"full"`` or ``"cylinders"``.
+        model: a name of :data:`fingerpad.reduced.registry.MODELS`, ``"full"`` or ``"cylinders"``.
         quiet: whether to print no line for each point, and show no progress bar.
         outputs: further quantities, each computed from every state; the folders of the points do not have them.
         **axes: values by key: ``voltage=[0, 100, 200]``, or ``**{"roughness.h_rms": [2e-6, 3e-6]}``.

@@ -26,7 +26,7 @@ from variational.solvers.target import Control
 
 if TYPE_CHECKING:
     from variational.history import Values
-    from variational.quantities import Observer
+    from variational.resultants import Observer
     from variational.solvers.coupling import Coupling
     from variational.solvers.newton import Solver
 

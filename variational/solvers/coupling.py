@@ -32,7 +32,7 @@ from mpi4py import MPI
 from numpy.typing import NDArray
 
 from variational.contact.formulation import SurfaceState
-from variational.quantities import Observer
+from variational.resultants import Observer
 from variational.roughness.closure import Closure, air_gaps, check
 from variational.solvers.iteration import EXACT, StopRule
 from variational.solvers.outcome import NotConverged

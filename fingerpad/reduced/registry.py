@@ -36,6 +36,7 @@ MODELS: dict[str, Model] = {
     "cylinders": Cylinders(),
     "full": Full(),
 }
+"""The models by name."""
 
 
 def find(name: str) -> Model:

@@ -1,4 +1,4 @@
-"""What a tribologist looks at, reduced over the surface and all ranks."""
+"""Contact resultants: forces and contact length of each ridge and of the skin, summed over facets and all ranks."""
 
 from dataclasses import dataclass, fields, replace
 from typing import TYPE_CHECKING
