@@ -208,8 +208,10 @@ def test_error_of_slices_at_the_force_at_hand():
     assert errors.known_at(0.05)["gross_area"][1] > 0.13
     assert set(errors.known_at(0.05)) == {"gross_area"} == set(errors.known_at(1.2))
     assert errors.known_at(0.01) == errors.known_at(2.0) == {}
-    low, high, none = errors.remarks([0.6, 0.05, 2.0, 0.5])
-    assert low.startswith("Error of the sum of slices at 0.6, 0.5 N, beside a finger of 20 × 14 × 28 mm in three dim")
-    assert "friction −0.7 to +0.2 %" in low and "not known" not in low
-    assert "gross area +13 to +30.1 %; friction, attraction, ridge area, indentation not known." in high
+    low, middle, none = errors.remarks([0.6, 0.05, 2.0, 0.5])
+    assert "gross area +13 to +30.1 %; friction, attraction, ridge area, indentation not known." in low
+    assert middle.startswith("Error of the sum of slices at 0.5, 0.6 N, beside a finger of 20 × 14 × 28 mm in three")
+    assert "friction −0.7 to +0.2 %" in middle and "not known" not in middle
+    (all_of_them,) = errors.remarks([0.6, 0.55, 0.5, 0.45])
+    assert "at 0.45 to 0.6 N" in all_of_them
     assert none.endswith(": friction, attraction, gross area, ridge area, indentation not known.")

@@ -14,6 +14,7 @@ At a force each quantity has the span of all comparisons there, between whose fo
 
 import math
 from collections.abc import Iterable, Mapping, Sequence
+from itertools import groupby
 
 from fingerpad.slices.total import TOTALS, Profile, Total, at_indentation
 from fingerpad.slices.trace import LEAST, Trace
@@ -191,16 +192,21 @@ def _around(points: Sequence[tuple[float, Ends]], force: float) -> list[Ends]:
 
 
 def remarks(forces: Iterable[float]) -> list[str]:
-    """Return what is known of the error at forces (N), a sentence for those that share it."""
-    shared: dict[str, list[str]] = {}
-    for force in forces:
-        found = known_at(force)
-        words = [f"{COMPARED[name]} {percent(ends)}" for name, ends in found.items()]
-        missing = ", ".join(text for name, text in COMPARED.items() if name not in found)
-        words = [", ".join(words)] * bool(words) + [f"{missing} not known"] * bool(missing)
-        shared.setdefault("; ".join(words), []).append(f"{force:.4g}")
+    """Return what is known of the error at forces (N), a sentence for neighbours that share it."""
     start, beside = "Error of the sum of slices at", "beside a finger of 20 × 14 × 28 mm in three dimensions"
-    return [f"{start} {', '.join(same)} N, {beside}: {words}." for words, same in shared.items()]
+    found = []
+    for words, same in groupby(sorted(set(forces)), _remark):
+        numbers = [f"{force:.4g}" for force in same]
+        at = ", ".join(numbers) if len(numbers) < 3 else f"{numbers[0]} to {numbers[-1]}"
+        found.append(f"{start} {at} N, {beside}: {words}.")
+    return found
+
+
+def _remark(force: float) -> str:
+    found = known_at(force)
+    words = [f"{COMPARED[name]} {percent(ends)}" for name, ends in found.items()]
+    missing = ", ".join(text for name, text in COMPARED.items() if name not in found)
+    return "; ".join([", ".join(words)] * bool(words) + [f"{missing} not known"] * bool(missing))
 
 
 def percent(ends: Ends) -> str:
