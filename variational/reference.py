@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 _NEWTON, _STEP = 12, 0.5  # iterations that find a place in a curved triangle, and the longest step of one
 _NEAR = 1e-7  # step after which a place is found to roundoff, by quadratic convergence
+_STRAIGHT = 1e-11  # of the triangle's size: what roundoff of the nodes leaves of an edge's bend
 _FLAT = 0.05  # of the straight triangle's area: least determinant, outside of the triangle
 
 
@@ -22,12 +23,14 @@ def reference_places(nodes: Array, places: Array) -> Array:
     if nodes.shape[1] == 3:
         return X
     element = basix.create_element(basix.ElementFamily.P, basix.CellType.triangle, 2)
+    bend = np.abs(nodes[:, 3:] - (nodes[:, [1, 0, 0]] + nodes[:, [2, 2, 1]]) / 2).max(axis=(1, 2))
+    far = np.flatnonzero(bend > _STRAIGHT * np.sqrt(np.abs(straight)))
     for _ in range(_NEWTON):
-        there, a, b = np.einsum("dnk,nki->dni", np.asarray(element.tabulate(1, X))[:, :, :, 0], nodes)
-        step = np.clip(_solved(a, b, places - there, _FLAT * straight)[0], -_STEP, _STEP)
-        X = X + step
-        if np.abs(step).max(initial=0) < _NEAR:
-            break
+        basis = np.asarray(element.tabulate(1, X[far]))[:, :, :, 0]
+        there, a, b = np.einsum("dnk,nki->dni", basis, nodes[far])
+        step = np.clip(_solved(a, b, places[far] - there, _FLAT * straight[far])[0], -_STEP, _STEP)
+        X[far] += step
+        far = far[np.abs(step).max(axis=1) > _NEAR]
     return X
 
 
