@@ -158,9 +158,7 @@ def test_target_that_is_reached_already():
 
 
 def test_steps_follow_the_scene_s_scale():
-    """And a scene that leaves it as it is has the key that it had before there was a scale."""
     scene = from_data(NINE | {"numerics": {"step_scale": 0.5}})
     assert scene.parameters()["numerics"]["step_scale"] == 0.5
-    assert "step_scale" not in from_data(NINE).parameters()["numerics"]
     simulation = path_of(scene)
     assert simulation.finger.continuation.step_scale == 0.5
