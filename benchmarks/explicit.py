@@ -110,7 +110,7 @@ def masses(problem: Problem, modulus: Array, scaled: bool) -> Array:
         modulus: of each cell (Pa), to which the scaled mass is proportional.
         scaled: whether the mass is scaled.
     """
-    corners = problem.mesh.geometry.x[compat.cell_geometry(problem.mesh)][:, :, :2]
+    corners = problem.mesh.geometry.x[compat.cell_geometry(problem.mesh)][:, :3, :2]
     area = np.abs(np.linalg.det(corners[:, 1:] - corners[:, :1])) / 2
     found = np.zeros(len(problem.displacement()))
     np.add.at(found, problem.V.dofmap.list, np.outer(modulus if scaled else area, _LUMPED))

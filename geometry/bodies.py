@@ -10,6 +10,7 @@ import gmsh
 import numpy as np
 
 from geometry import tags
+from geometry.curved import curve_edges
 from geometry.profiles import GeometryError
 from geometry.shape import shape
 
@@ -170,6 +171,8 @@ def _graded(
     for option in ("MeshSizeExtendFromBoundary", "MeshSizeFromPoints", "MeshSizeFromCurvature"):
         gmsh.option.setNumber(f"Mesh.{option}", 0)
     gmsh.model.mesh.generate(2)
+    if any(len(points) > 2 for points, _ in bottom):
+        curve_edges()
     return 1 / _MM
 
 
@@ -205,6 +208,7 @@ def quarter_tube(inner: float, outer: float, divisions: int) -> float:
     body = _grid(edges, (divisions + 1,) * 4)
     _groups(body, bottom=[edges[1]], right=edges[0], top=edges[3], left=edges[2])
     gmsh.model.mesh.generate(2)
+    curve_edges()
     return 1 / _MM
 
 

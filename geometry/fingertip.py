@@ -1,5 +1,6 @@
 """The fingertip's cross-section as a gmsh model: layers, nail, nail bed, the bone as a hole, ridges, sites."""
 
+from collections.abc import Callable
 from functools import lru_cache
 
 import gmsh
@@ -7,12 +8,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geometry import tags
+from geometry.curved import unfold
 from geometry.parameters import Fingertip, MeshSize
 from geometry.profiles import Profiles
-from geometry.reflection import HalfMesh
+from geometry.reflection import HalfMesh, swap_corners
 from geometry.shape import shape
 from geometry.sizing import check, growth_from_tips, touching_ridges
 
+Array = NDArray[np.float64]
 _MM = 1e3  # gmsh's tolerances suit models in mm
 _HALF_ARC = 5e-3  # m
 _SAMPLES = 32  # spline points a ridge
@@ -47,6 +50,10 @@ def _half(finger: Fingertip, size: MeshSize, receptors: bool) -> HalfMesh:
     _surfaces(curves)
     _sizes(profiles, size, curves, touching, receptors)
     gmsh.model.mesh.generate(2)
+    swap_corners()
+    gmsh.model.mesh.setOrder(2)
+    _onto_profiles(profiles, curves)
+    unfold()
     return HalfMesh.read()
 
 
@@ -81,6 +88,8 @@ class _Curves:
         self.top: list[int] = []
         self.symmetry: list[int] = []
         self.ridges: dict[int, list[int]] = {}
+        self.profiles: dict[int, tuple[Callable[[Array], Array], float, float]] = {}
+        """Depth, first and last arc length of each curve that is a part of one of the profiles."""
 
     def cut(self, side: int, upper: str, lower: str) -> list[int]:
         """Return the lines of an end between two depths."""
@@ -88,11 +97,11 @@ class _Curves:
         return self.ends[side][a:b]
 
 
-def _point(xy: NDArray[np.float64]) -> int:
+def _point(xy: Array) -> int:
     return int(gmsh.model.geo.addPoint(xy[0] * _MM, xy[1] * _MM, 0.0))
 
 
-def _spline(points: NDArray[np.float64], first: int, last: int) -> int:
+def _spline(points: Array, first: int, last: int) -> int:
     return int(gmsh.model.geo.addSpline([first, *(_point(xy) for xy in points[1:-1]), last]))
 
 
@@ -101,7 +110,7 @@ def _lines(points: list[int]) -> list[int]:
 
 
 def _chain(
-    p: Profiles, depth, stations: NDArray[np.float64], ends: tuple[int, int], samples: int = _SAMPLES
+    p: Profiles, c: _Curves, depth, stations: Array, ends: tuple[int, int], samples: int = _SAMPLES
 ) -> list[int]:
     """Return splines through the curve of given depth, broken at the stations (arc lengths)."""
     knots = [ends[0], *(_point(p.point(s, depth(s))) for s in stations[1:-1]), ends[1]]
@@ -110,6 +119,7 @@ def _chain(
         count = max(3, int(np.ceil(samples * (b - a) / p.finger.ridge_wavelength)) + 1)
         s = np.linspace(a, b, count)
         chain.append(_spline(p.point(s, depth(s)), knots[k], knots[k + 1]))
+        c.profiles[chain[-1]] = depth, a, b
     return chain
 
 
@@ -143,16 +153,16 @@ def _curves(p: Profiles, touching: list[int]) -> _Curves:
     grooves = (np.arange(f.ridge_count + 1) - f.ridge_count / 2) * f.ridge_wavelength
     tips = np.linspace(grooves[0], grooves[-1], 4 * f.ridge_count + 1)
     stations = np.concatenate([[0.0], grooves[grooves > 0], [end]])
-    c.skin = _chain(p, p.skin, stations, corners["skin"])
+    c.skin = _chain(p, c, p.skin, stations, corners["skin"])
     for j, curve in zip((j for j in p.ridges if j >= 0), c.skin[:-1], strict=True):
         c.ridges[j] = [curve]
         if j in touching:
             c.touching.append(curve)
     for name, depth in (("sc_ve", p.sc_ve), ("d_sub", p.d_sub)):
-        c.interfaces[name] = _chain(p, depth, stations, corners[name])
+        c.interfaces[name] = _chain(p, c, depth, stations, corners[name])
     # A node on each tip and papilla: facets that cut them off would leave receptor sites in the wrong layer.
     tips = np.concatenate([[0.0], tips[tips > f.ridge_wavelength / 8], [end]])
-    c.interfaces["ve_d"] = _chain(p, p.ve_d, tips, corners["ve_d"], _SHARP_SAMPLES)
+    c.interfaces["ve_d"] = _chain(p, c, p.ve_d, tips, corners["ve_d"], _SHARP_SAMPLES)
     c.wavy = c.skin[:-1] + c.interfaces["sc_ve"][:-1] + c.interfaces["ve_d"][:-1]
 
     # Dorsal faces of the nail, from the right edge to the top.
@@ -171,6 +181,20 @@ def _curves(p: Profiles, touching: list[int]) -> _Curves:
     c.top = _lines([*top, summit])
     c.symmetry = c.ends[0] + c.top
     return c
+
+
+def _onto_profiles(p: Profiles, c: _Curves) -> None:
+    """Move nodes from gmsh's splines onto the profiles.
+
+    A spline leaves its first point towards the second: at x = 0 and at the tips that it ends in there would be kinks,
+    on which the pressure and the energy density have peaks.
+    """
+    for curve, (depth, a, b) in c.profiles.items():
+        numbers, _, u = gmsh.model.mesh.getNodes(1, curve, returnParametricCoord=True)
+        s = a + np.asarray(u) * (b - a)  # a spline's parameter counts its points
+        places = _MM * p.point(s, depth(s))
+        for k, number in enumerate(numbers.tolist()):
+            gmsh.model.mesh.setNode(number, [places[k, 0], places[k, 1], 0.0], [])
 
 
 def _surfaces(c: _Curves) -> None:
@@ -243,7 +267,7 @@ def _sizes(p: Profiles, size: MeshSize, c: _Curves, touching: list[int], recepto
     gmsh.option.setNumber("Mesh.Algorithm", 6)
 
 
-def _mesh_points(xy: NDArray[np.float64]) -> list[int]:
+def _mesh_points(xy: Array) -> list[int]:
     """Add points that guide the element size without being part of the mesh."""
     points = [_point(point) for point in xy]
     gmsh.model.geo.synchronize()

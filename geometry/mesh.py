@@ -16,6 +16,7 @@ except ImportError:
     from dolfinx.io import gmshio
 
 from geometry import tags
+from geometry.curved import refuse_folded, second_order
 from geometry.profiles import GeometryError
 from geometry.shape import Shape, session
 
@@ -70,6 +71,7 @@ def load(comm: MPI.Comm, build: Callable[[], float], needed: Iterable[int] = ())
             try:
                 stack.enter_context(session("body"))
                 unit = build()
+                refuse_folded(second_order(), unit)
             except Exception as error:  # whatever it is, the other ranks must not wait for a mesh
                 plain = type(error) is Exception  # gmsh's own, which are of no other kind
                 failure = GeometryError(f"gmsh cannot mesh the body: {error}; try smaller elements") if plain else error

@@ -1,6 +1,7 @@
 """A body from a gmsh file: its physical groups say, by their names, what each part is.
 
-The file holds a plane mesh of triangles in metres, ``.msh`` of version 2.2 or 4.1. The screen is the line y = 0, and
+The file holds a plane mesh of triangles in metres, ``.msh`` of version 2.2 or 4.1. They have three nodes, or six: the
+edges are parabolas then, through the nodes in their middle. The screen is the line y = 0, and
 the body lies above it or on it; nothing is moved. Groups of cells are the layers of :data:`geometry.tags.LAYERS`
 (*stratum corneum*, *viable epidermis*, *dermis*, *subcutis*, *nail*, *nail bed*), and every triangle is in one. Groups
 of facets are
@@ -29,6 +30,7 @@ from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
 from geometry import tags
+from geometry.curved import refuse_folded
 from geometry.profiles import GeometryError
 from geometry.shape import shape
 from variational import files
@@ -43,7 +45,7 @@ _RIDGE = re.compile(r"ridge (0|-?[1-9][0-9]{0,2})")
 _LARGEST, _LEAST = 0.2, 1e-6  # m, of the longer side of a body
 _FLAT = 1e-9  # out of the plane or below the screen, over the body's size
 _THIN = 1e-6  # double area of a triangle, over the square of its longest side
-_TRIANGLE, _LINE = 2, 1  # gmsh's numbers of linear elements
+_KINDS = {2: {2: 3, 9: 6}, 1: {1: 2, 8: 3}}  # nodes of the elements allowed, by dimension and gmsh's number
 _START = b"$MeshFormat"
 # Wrong numbers can end the process in which gmsh reads them, keep it reading for ever, or take all of the memory.
 _TRY = """
@@ -174,14 +176,17 @@ def _listed(names: list[str] | dict[str, int]) -> str:
 
 
 def _check_mesh() -> None:
-    """Refuse what is no plane mesh of linear triangles on its screen."""
+    """Refuse what is no plane mesh of triangles, of first or second order, on its screen."""
     nodes, coordinates, _ = gmsh.model.mesh.getNodes()
     xyz = np.asarray(coordinates, dtype=np.float64).reshape(-1, 3)
-    triangles = _elements(2, _TRIANGLE, "triangles with 3 nodes")
-    _check_places(xyz[np.isin(nodes, triangles)])
+    every = _triangles()
+    triangles = every[:, :3]
+    used = np.isin(nodes, every)
+    _check_places(xyz[used])
     order = np.argsort(nodes)
     places = order[np.searchsorted(nodes, triangles, sorter=order)]
     _check_areas(xyz[places][:, :, :2])
+    refuse_folded(every)
     grouped = sum(len(_of_group(2, tag)) for tag in tags.LAYERS.values())
     if grouped < len(triangles):
         raise GeometryError(f"{len(triangles) - grouped} of {len(triangles)} triangles are in no group of cells")
@@ -194,7 +199,6 @@ def _check_mesh() -> None:
         raise GeometryError(f"the mesh is in {parts} parts that share no node; layers must share nodes where they meet")
     _check_nodes(xyz[:, :2], places)
     _check_facets(triangles)
-    used = np.isin(nodes, triangles)
     _check_lowest(xyz[used], np.asarray(nodes, dtype=np.int64)[used])
 
 
@@ -288,7 +292,7 @@ def _check_facets(triangles: Numbers) -> None:
     taken: dict[int, str] = {}
     known, counts = np.unique(_keys(triangles[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2)), return_counts=True)
     for dim, tag in gmsh.model.getPhysicalGroups(1):
-        name, mine = gmsh.model.getPhysicalName(dim, tag), _keys(_of_group(1, tag))
+        name, mine = gmsh.model.getPhysicalName(dim, tag), _keys(_of_group(1, tag)[:, :2])
         if not len(mine) or not np.isin(mine, known).all():
             raise GeometryError(f"group {name!r} has edges that no triangle has, or none at all")
         if (counts[np.isin(known, mine)] > 1).any() and (tags.is_ridge(tag) or tag in (tags.BONE_RIM, tags.OUTER_SKIN)):
@@ -305,27 +309,35 @@ def _keys(edges: Numbers) -> Numbers:
     return np.asarray(low * 2**31 + high)
 
 
-def _elements(dim: int, kind: int, what: str) -> Numbers:
-    """Return the nodes of all elements of a dimension, shape (elements, nodes), if they are of one kind."""
+def _triangles() -> Numbers:
+    """Return the nodes of all triangles, shape (triangles, 3 or 6), if they and the facets are of one order."""
     if len(gmsh.model.mesh.getElements(3)[0]):
         raise GeometryError("the mesh has volumes; it must be plane")
-    kinds, _, nodes = gmsh.model.mesh.getElements(dim)
-    others = [gmsh.model.mesh.getElementProperties(k)[0] for k in kinds if k != kind]
-    if others:
-        raise GeometryError(f"the mesh has elements {others[0]!r}; cells must be {what}, straight and linear")
+    found = {dim: gmsh.model.mesh.getElements(dim) for dim in (1, 2)}
+    for dim, (kinds, _, _) in found.items():
+        others = [gmsh.model.mesh.getElementProperties(k)[0] for k in kinds if k not in _KINDS[dim]]
+        if others:
+            raise GeometryError(f"the mesh has elements {others[0]!r}; cells must be triangles with 3 or with 6 nodes")
+    kinds, _, nodes = found[2]
     if not len(kinds):
-        raise GeometryError(f"the mesh has no {what}")
-    return np.asarray(nodes[0], dtype=np.int64).reshape(-1, dim + 1)
+        raise GeometryError("the mesh has no triangles with 3 or with 6 nodes")
+    if len(kinds) > 1 or any(_KINDS[1][k] != _KINDS[2][kinds[0]] // 3 + 1 for k in found[1][0]):
+        raise GeometryError(
+            "the mesh has elements of first and of second order; give triangles with 3 nodes and edges with 2, or "
+            "triangles with 6 nodes and edges with 3"
+        )
+    return np.asarray(nodes[0], dtype=np.int64).reshape(-1, _KINDS[2][kinds[0]])
 
 
 def _of_group(dim: int, tag: int) -> Numbers:
     """Return the nodes of the elements of a group, shape (elements, nodes)."""
-    kind = _TRIANGLE if dim == 2 else _LINE
+    entities = gmsh.model.getEntitiesForPhysicalGroup(dim, tag) if (dim, tag) in _groups() else ()
     found = [
-        gmsh.model.mesh.getElementsByType(kind, entity)[1]
-        for entity in (gmsh.model.getEntitiesForPhysicalGroup(dim, tag) if (dim, tag) in _groups() else ())
+        nodes.astype(np.int64).reshape(-1, _KINDS[dim][kind])
+        for entity in entities
+        for kind, _, nodes in zip(*gmsh.model.mesh.getElements(dim, entity), strict=True)
     ]
-    return np.concatenate([np.empty(0, dtype=np.int64), *found]).astype(np.int64).reshape(-1, dim + 1)
+    return np.concatenate(found) if found else np.empty((0, dim + 1), dtype=np.int64)
 
 
 def _groups() -> set[tuple[int, int]]:

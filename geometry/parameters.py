@@ -108,8 +108,9 @@ class MeshSize(Table):
     length hardly depend on this size."""
     interface: ElementSize = 80e-6
     """Largest element size on wavy junctions and on ridges that cannot touch."""
-    coarsest: ElementSize = 1e-3
-    """Largest element size."""
+    coarsest: ElementSize = 0.5e-3
+    """Largest element size. At 1 mm the force at a given indentation is 0.15 % higher, by the elements of the subcutis;
+    at 0.5 mm a finger has 3 % more unknowns."""
     growth: Annotated[Finite, within(1e-4, 1)] = 0.25
     """Increase of the element size per distance from the finest elements; twice as much, and 1 at most, from the tips
     of the intermediate ridges."""

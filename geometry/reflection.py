@@ -12,12 +12,17 @@ from geometry import tags
 Nodes = NDArray[np.int64]
 _SLIVER = 0.05  # of the smaller old area: least new one
 _ON_LINE = 1e-9  # gmsh's unit from x = 0, within which a node is its own image
-_NODES = {1: 2, 2: 3}  # of a straight facet and of a triangle, by dimension
+_KINDS = {  # by dimension and nodes of an element: gmsh's number, and the nodes' order in the mirror image
+    (1, 2): (1, [1, 0]),
+    (1, 3): (8, [1, 0, 2]),
+    (2, 3): (2, [2, 1, 0]),
+    (2, 6): (9, [2, 1, 0, 4, 3, 5]),
+}
 
 
 @dataclass(frozen=True)
 class HalfMesh:
-    """Straight facets and triangles by group."""
+    """Facets and triangles by group, of first or second order."""
 
     points: NDArray[np.float64]
     """Nodes in gmsh's unit, shape (nodes, 3)."""
@@ -26,10 +31,7 @@ class HalfMesh:
 
     @classmethod
     def read(cls) -> "HalfMesh":
-        """Return the mesh of the current gmsh model, without nodes that belong to no element of a group.
-
-        No triangle has two sides on the skin that can touch, where that can be: see :func:`swapped`.
-        """
+        """Return the mesh of the current gmsh model, without nodes that belong to no element of a group."""
         groups = {
             (dimension, tag): (_elements(dimension, tag), gmsh.model.getPhysicalName(dimension, tag))
             for dimension, tag in gmsh.model.getPhysicalGroups()
@@ -39,13 +41,7 @@ class HalfMesh:
         used = np.unique(np.concatenate([elements.ravel() for elements, _ in groups.values()]))
         points = coordinates.reshape(-1, 3)[order[np.searchsorted(numbers[order], used)]]
         found = {key: (1 + np.searchsorted(used, elements), name) for key, (elements, name) in groups.items()}
-        skin = [elements for (dimension, tag), (elements, _) in found.items() if dimension == 1 and tags.is_ridge(tag)]
-        layers = {tag: elements for (dimension, tag), (elements, _) in found.items() if dimension == 2}
-        if skin:
-            layers = swapped(points, np.concatenate(skin), layers)
-        return cls(
-            points, {key: (layers[key[1]] if key[0] == 2 else here, name) for key, (here, name) in found.items()}
-        )
+        return cls(points, found)
 
     def put(self, name: str, whole: bool) -> None:
         """Make a gmsh model of the mesh, the current one.
@@ -64,7 +60,7 @@ class HalfMesh:
         if whole:
             gmsh.model.mesh.addNodes(2, body, image[off], (self.points[off] * [-1, 1, 1]).ravel())
         for (dimension, tag), (here, word) in self.groups.items():
-            there = image[here - 1][:, ::-1]
+            there = image[here - 1][:, _KINDS[dimension, here.shape[1]][1]]
             if not whole:
                 _add(dimension, tag, word, here)
             elif tags.is_ridge(tag) and tag != tags.ridge(0):
@@ -78,18 +74,32 @@ class HalfMesh:
 def _elements(dimension: int, tag: int) -> NDArray[np.int64]:
     """Return the nodes of a group's elements, shape (elements, nodes of each)."""
     found = [
-        nodes
+        nodes.reshape(-1, gmsh.model.mesh.getElementProperties(kind)[3])
         for entity in gmsh.model.getEntitiesForPhysicalGroup(dimension, tag)
-        for nodes in gmsh.model.mesh.getElements(dimension, entity)[2]
+        for kind, _, nodes in zip(*gmsh.model.mesh.getElements(dimension, entity), strict=True)
     ]
-    return np.concatenate(found).astype(np.int64).reshape(-1, _NODES[dimension])
+    return np.concatenate(found).astype(np.int64)
 
 
 def _add(dimension: int, tag: int, name: str, elements: NDArray[np.int64]) -> None:
     """Add elements as a group."""
     entity = gmsh.model.addDiscreteEntity(dimension)
-    gmsh.model.mesh.addElementsByType(entity, dimension, [], elements.ravel())
+    gmsh.model.mesh.addElementsByType(entity, _KINDS[dimension, elements.shape[1]][0], [], elements.ravel())
     gmsh.model.addPhysicalGroup(dimension, [entity], tag, name)
+
+
+def swap_corners() -> None:
+    """Leave straight triangles of the current gmsh model one side on skin that can touch: see :func:`swapped`."""
+    numbers, coordinates, _ = gmsh.model.mesh.getNodes()
+    points = np.full((int(numbers.max()), 3), np.nan)
+    points[numbers - 1] = coordinates.reshape(-1, 3)
+    skin = [_elements(1, tag) for _, tag in gmsh.model.getPhysicalGroups(1) if tags.is_ridge(tag)]
+    layers = {tag: _elements(2, tag) for _, tag in gmsh.model.getPhysicalGroups(2)}
+    for tag, triangles in swapped(points, np.concatenate(skin), layers).items():
+        if triangles is not layers[tag]:
+            (entity,) = gmsh.model.getEntitiesForPhysicalGroup(2, tag)
+            gmsh.model.mesh.removeElements(2, entity)
+            gmsh.model.mesh.addElementsByType(entity, 2, [], triangles.ravel())
 
 
 def swapped(points: NDArray[np.float64], skin: Nodes, layers: Mapping[int, Nodes]) -> dict[int, Nodes]:

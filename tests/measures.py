@@ -8,12 +8,14 @@ import ufl
 from dolfinx import fem
 from dolfinx.mesh import entities_to_geometry
 
+from variational import compat
 from variational.state import ContactState
 
 
 def integral(body, tag, integrand=1.0, kind="dx") -> float:
     """Integrate over a layer, or with the kind "ds" over a group of facets, on all ranks."""
-    measure = ufl.Measure(kind, body.mesh, subdomain_data=body.cell_tags if kind == "dx" else body.facet_tags)
+    data = body.cell_tags if kind == "dx" else body.facet_tags
+    measure = ufl.Measure(kind, body.mesh, subdomain_data=data, metadata={"quadrature_degree": 7})  # the skin's
     form = fem.form(fem.Constant(body.mesh, 1.0) * integrand * measure(tag))
     return body.mesh.comm.allreduce(fem.assemble_scalar(form))
 
@@ -27,6 +29,14 @@ def vertices(body, facets):
     links = body.mesh.topology.connectivity(1, 0)
     points = np.unique(np.concatenate([links.links(f) for f in facets]))
     return body.mesh.geometry.x[entities_to_geometry(body.mesh, 0, points.astype(np.int32)).ravel(), :2]
+
+
+def straightened(body):
+    """Return a body whose edges have been made straight in place, as those of a mesh of first order."""
+    cells, x = compat.cell_geometry(body.mesh), body.mesh.geometry.x
+    for k, (a, b) in enumerate(((1, 2), (0, 2), (0, 1))):
+        x[cells[:, 3 + k]] = (x[cells[:, a]] + x[cells[:, b]]) / 2
+    return body
 
 
 def contact_state(**values) -> ContactState:

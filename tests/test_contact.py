@@ -169,15 +169,16 @@ def test_bone_moves_as_one(body, pressed):
 def test_ridge():
     """One papillary ridge pressed 60 um: 36.048 N/m, the limit over meshes of other programs too.
 
-    Straight facets of 20, 10 and 5 um miss it by 4e-3, 8e-4 and 6e-5: the limit is known to 6e-5 itself. The bone
-    bears the same but for some hundred nodal imbalances.
+    Facets of 20, 10, 5 and 2.5 um are above it by 8e-4, 4e-4, 2.6e-4 and 2.1e-4, and straight ones come from below to
+    1.4e-4: that much elements leave that grow by a quarter of their distance from the skin, whatever the facets. The
+    limit is known to 6e-5 itself. The bone bears the same but for some hundred nodal imbalances.
     """
     solver = make(load(MPI.COMM_WORLD, ridge(5e-6)), eps_n=1e12)
     for step in range(1, 7):
         solver.control = Control(0.0, -step * 10e-6)
         solver.solve(pseudo_transient=True)
     loads = Observer(solver.problem).ridge_loads()
-    assert loads.f_contact[0] == pytest.approx(36.048, rel=2e-4)
+    assert loads.f_contact[0] == pytest.approx(36.048, rel=3e-4)
     assert solver.reaction[1] == pytest.approx(loads.f_contact[0], abs=100 * TOLERANCE)
 
 

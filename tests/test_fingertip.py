@@ -54,9 +54,10 @@ def areas(profiles) -> dict[int, float]:
 @pytest.mark.mpi
 @pytest.mark.parametrize("layer", list(tags.LAYERS))
 def test_area(finger_mesh, profiles, layer):
-    """Tolerance: facets of up to 120 um cut the corners of waves of 483 um, those of 1 mm the nail's two faces."""
+    """Tolerance: facets of up to 120 um on tips with a radius of 6 um, where the parabolas do not follow them."""
     tag = tags.LAYERS[layer]
-    assert integral(finger_mesh, tag) == pytest.approx(areas(profiles)[tag], rel=1e-2 if "nail" in layer else 5e-3)
+    off = {"viable epidermis": 6e-3, "nail": 3e-3}.get(layer, 1e-3)  # the nail's edge is such a tip, too
+    assert integral(finger_mesh, tag) == pytest.approx(areas(profiles)[tag], rel=off)
 
 
 @pytest.mark.parametrize("layer", list(tags.LAYERS))
@@ -88,14 +89,14 @@ def away_from(curve, points) -> float:
 
 
 def test_ridges_of_the_mesh(finger_mesh, profiles):
-    """Ridge j's nodes are on the skin's curve about s = j wavelengths. Tolerance: splines through 32 points a ridge.
+    """Ridge j's nodes are on the skin's curve about s = j wavelengths. Tolerance: its points are 12 nm apart here.
 
     Its two ends are nodes, to roundoff.
     """
     for j in finger_mesh.ridges():
         s = (j + np.linspace(-0.5, 0.5, 40001)) * WAVE
         nodes = vertices(finger_mesh, finger_mesh.facet_tags.find(tags.ridge(j)))
-        assert away_from(profiles.point(s, profiles.skin(s)), nodes) < 0.05 * UM
+        assert away_from(profiles.point(s, profiles.skin(s)), nodes) < 0.01 * UM
         ends = profiles.point(s[[0, -1]], profiles.skin(s[[0, -1]]))
         assert away_from(nodes, ends) < 1e-15
 
@@ -103,10 +104,10 @@ def test_ridges_of_the_mesh(finger_mesh, profiles):
 def test_lowest_node(finger_mesh):
     """The mesh reaches the screen but for the sagitta of a facet, here up to 40 um, at a tip of radius 118 um.
 
-    Below the screen it may be by what splines miss of the curve.
+    Below the screen it may be by roundoff.
     """
     lowest = vertices(finger_mesh, finger_mesh.facet_tags.find(tags.ridge(0)))[:, 1].min()
-    assert -0.05 * UM < lowest < (40 * UM) ** 2 / (8 * 118 * UM)
+    assert -1e-9 * UM < lowest < (40 * UM) ** 2 / (8 * 118 * UM)
 
 
 def test_contact_size(finger_mesh):

@@ -16,7 +16,9 @@ from fingerpad.model.body import Body
 from geometry import tags
 from geometry.mesh import load
 from geometry.profiles import GeometryError
+from tests.measures import straightened
 from tests.pages import ROOT, blocks, printed
+from variational import compat
 from variational.contact.penalty import Penalty
 from variational.materials.ogden import Ogden
 
@@ -57,11 +59,14 @@ def place(tmp_path) -> Path:
 
 
 @pytest.mark.mpi
-@pytest.mark.parametrize("version", [2.2, 4.1])
-def test_body_from_a_file_is_the_body(place, version):
-    """The ridge by a file and by itself: the file's decimals are good for 1e-15 of a coordinate."""
-    body = Body(write(place, version=version), SKIN, contact=SPRINGS, friction=0.25).press(1.0).slide(1e-6)
-    itself = Body(RIDGE, SKIN, contact=SPRINGS, friction=0.25).press(1.0).slide(1e-6)
+@pytest.mark.parametrize(("version", "order"), [(2.2, 2), (4.1, 2), (4.1, 1)])
+def test_body_from_a_file_is_the_body(place, version, order):
+    """The ridge by a file and by itself, curved and straight: the file's decimals are good for 1e-15 of a place."""
+    written = write(place, changed(lambda: gmsh.model.mesh.setOrder(order)), version)
+    own = load(MPI.COMM_WORLD, RIDGE)
+    body = Body(written, SKIN, contact=SPRINGS, friction=0.25).press(1.0).slide(1e-6)
+    itself = Body(own if order == 2 else straightened(own), SKIN, contact=SPRINGS, friction=0.25).press(1.0).slide(1e-6)
+    assert compat.cell_geometry(body.mesh.mesh).shape[1] == 3 * order
     assert body.state.f_t == pytest.approx(itself.state.f_t, rel=1e-8)
     assert body.state.bone_height == pytest.approx(itself.state.bone_height, rel=1e-8)
 
@@ -143,6 +148,7 @@ def solid():
 
 def squares():
     model()
+    gmsh.model.mesh.setOrder(1)
     gmsh.model.mesh.recombine()
 
 
@@ -163,6 +169,7 @@ def rim_elsewhere(inside: bool):
 
 def thrown(flat: bool):
     """Move a node of the mesh inside onto or across an opposite edge of one of its triangles."""
+    gmsh.model.mesh.setOrder(1)
     entity = gmsh.model.getEntities(2)[0][1]
     inside = set(gmsh.model.mesh.getNodes(2, entity)[0])
     triangles = np.asarray(gmsh.model.mesh.getElementsByType(2, entity)[1]).reshape(-1, 3)
@@ -170,6 +177,32 @@ def thrown(flat: bool):
     here, one, two = (gmsh.model.mesh.getNode(int(node))[0] for node in (first, *others))
     middle = (one + two) / 2
     gmsh.model.mesh.setNode(int(first), middle if flat else middle + (middle - here), [])
+
+
+def folded():
+    """Move the node in the middle of an edge inside to the far end of one of its triangles."""
+    nodes = next(iter(six_nodes()))
+    gmsh.model.mesh.setNode(int(nodes[3]), 3 * gmsh.model.mesh.getNode(int(nodes[2]))[0], [])
+
+
+def six_nodes():
+    return np.asarray(gmsh.model.mesh.getElementsByType(9)[1]).reshape(-1, 6)
+
+
+def again(kind: int, dim: int, nodes):
+    """Put elements in the place of all of a dimension, into the first of its entities."""
+    for _, entity in gmsh.model.getEntities(dim):
+        gmsh.model.mesh.removeElements(dim, entity)
+    gmsh.model.mesh.addElementsByType(gmsh.model.getEntities(dim)[0][1], kind, [], np.ravel(nodes))
+
+
+def two_middles():
+    """Give a triangle a node of its own in the middle of each edge."""
+    nodes, last = six_nodes(), int(gmsh.model.mesh.getMaxNodeTag())
+    places = [gmsh.model.mesh.getNode(int(node))[0] for node in nodes[0, 3:]]
+    gmsh.model.mesh.addNodes(2, gmsh.model.getEntities(2)[0][1], last + np.arange(1, 4), np.ravel(places))
+    nodes[0, 3:] = last + np.arange(1, 4)
+    again(9, 2, nodes)
 
 
 REFUSED = {
@@ -186,10 +219,13 @@ REFUSED = {
     "small": (changed(lambda: scale(1e-4)), "large; it must be at least 1e-06 m"),
     "below": (changed(lambda: scale(1, up=-1e-5)), "the lowest point is at y = -1e-05 m, below the screen at y = 0"),
     "out of the plane": (changed(lambda: scale(1, out=1e-4)), "nodes lie out of the plane z = 0"),
-    "second order": (
-        changed(lambda: gmsh.model.mesh.setOrder(2)),
-        "'Triangle 6'; cells must be triangles with 3 nodes",
+    "third order": (
+        changed(lambda: gmsh.model.mesh.setOrder(3)),
+        "'Line 4'; cells must be triangles with 3 or with 6 nodes",
     ),
+    "two orders": (changed(lambda: again(2, 2, six_nodes()[:, :3])), "elements of first and of second order; give tri"),
+    "folded": (changed(folded), "triangles are inverted by nodes in the middle of their edges, the first at ("),
+    "two middles": (changed(two_middles), "in the middle of their edge, as neighbours must"),
     "quadrilaterals": (squares, "the mesh has elements 'Quadrilateral 4'"),
     "volumes": (solid, "group 'dermis' is of volumes; the mesh must be plane"),
     "rim inside": (partial(rim_elsewhere, True), "group 'bone rim' has edges inside the body"),

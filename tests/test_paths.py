@@ -305,8 +305,11 @@ def test_ridge_without_contact_has_the_air_gap_of_the_floor(lifted):
 
 
 def test_ridge_without_contact_is_attracted_across_its_height(lifted):
-    """Higher than its d_eq a ridge feels Eq. 3 at its height: an integral over the undeformed cosine, 1e-4 of it."""
+    """Higher than its d_eq a ridge feels Eq. 3 at its height: an integral over the undeformed cosine.
+
+    Tolerance: 21 Pa stretch 0.6 mm of 0.26 MPa by 0.05 um of the 40 um at the tip, on whose square the pull depends.
+    """
     x = np.linspace(-483e-6 / 2, 483e-6 / 2, 20001)
     y = 40e-6 + 50e-6 * (1 - np.cos(2 * np.pi * x / 483e-6))
     expected = np.trapezoid(EPS_0 * 150.0**2 / 2 / (H_0 + y) ** 2, x)
-    assert lifted.states[-1].loads.f_attraction[0] == pytest.approx(expected, rel=3e-4)
+    assert lifted.states[-1].loads.f_attraction[0] == pytest.approx(expected, rel=2.5e-3)

@@ -48,6 +48,8 @@ import ufl
 from dolfinx import fem, la
 from numpy.typing import NDArray
 
+from variational import jit
+
 
 @dataclass(frozen=True)
 class Element:
@@ -80,9 +82,28 @@ ELEMENTS = {
 }
 
 
-def at_centroid(H, centroids: fem.Function):
-    """Return H (2, 2) at its triangle's centroid, for a displacement of degree 2 at most; ``centroids`` in m."""
-    return H + ufl.dot(ufl.grad(H), centroids - ufl.SpatialCoordinate(centroids.function_space.mesh))
+class Centroid:
+    r"""Evaluates the gradient of a displacement of degree 2 at most at the centroid of each triangle.
+
+    With the map X(xi) of the reference triangle the derivative :math:`dw/d\xi = \nabla w\, J` is linear in xi, on a
+    curved triangle too.
+    """
+
+    def __init__(self, mesh: dolfinx.mesh.Mesh) -> None:
+        """Find how far the points are from their triangles' centroids, and the map there."""
+        self._J = ufl.Jacobian(mesh)
+        self._way = fem.Function(fem.functionspace(mesh, ("Discontinuous Lagrange", 1, (2,))))
+        corners = np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]])
+        self._way.x.array.reshape(-1, 3, 2)[:] = 1 / 3 - corners
+        self._K = fem.Function(fem.functionspace(mesh, ("Discontinuous Lagrange", 0, (2, 2))))
+        here = fem.Expression(ufl.inv(self._J), np.full((1, 2), 1 / 3), jit_options=jit.OPTIONS)
+        self._K.interpolate(here)
+        self._K.x.scatter_forward()
+
+    def value(self, H):
+        """Return H (2, 2) at its triangle's centroid."""
+        slope = ufl.dot(ufl.grad(ufl.dot(H, self._J)), self._J)
+        return ufl.dot(ufl.dot(H, self._J) + ufl.dot(slope, self._way), self._K)
 
 
 class LayerwisePressure:

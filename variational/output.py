@@ -23,6 +23,7 @@ from mpi4py import MPI
 from numpy.typing import NDArray
 
 from variational import compat, jit, kinematics
+from variational.reference import reference_places
 
 if TYPE_CHECKING:
     from variational.problem import Problem
@@ -30,6 +31,7 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 _ON_LINE = 1e-9  # m from x = 0, within which a vertex is its own image
 _ROUNDOFF = 1e-8  # of a barycentric coordinate: a site on a facet belongs to both cells
+_BEYOND = 1e-3  # of the body's size: what a curved edge may be beyond its nodes
 
 
 def owned_cells(mesh: dolfinx.mesh.Mesh) -> NDArray[np.int32]:
@@ -212,7 +214,7 @@ class Nodes:
         self._comm, cells = mesh.comm, np.arange(mesh.topology.index_map(2).size_local)
         # The first three degrees of freedom of a Lagrange triangle are its vertices, in the geometry's order.
         self._dofs = problem.V.dofmap.list[cells][:, :3]
-        nodes = compat.cell_geometry(mesh)[cells]
+        nodes = compat.cell_geometry(mesh)[cells][:, :3]
         names = self._together(np.asarray(mesh.geometry.input_global_indices)[nodes])
         self._sort = np.argsort(self._together(np.asarray(mesh.topology.original_cell_index)[cells]))
         _, self._first, corners = np.unique(names[self._sort].ravel(), return_index=True, return_inverse=True)
@@ -306,7 +308,7 @@ class Receptors:
 
 
 def _find(mesh: dolfinx.mesh.Mesh, sites: Array) -> tuple[NDArray[np.int32], NDArray[np.int64], Array]:
-    """Find sites among this rank's own cells, straight-sided triangles.
+    """Find sites among this rank's own cells.
 
     Returns:
         For each pair of a site and one of its cells the cell's number and the site's, both (pairs,), and the reference
@@ -316,15 +318,14 @@ def _find(mesh: dolfinx.mesh.Mesh, sites: Array) -> tuple[NDArray[np.int32], NDA
     cell, numbers, points = [], [], []
     if len(cells):
         extent = float(np.ptp(mesh.geometry.x, axis=0).max())
-        tree = geometry.bb_tree(mesh, 2, entities=cells, padding=_ROUNDOFF * extent)
+        tree = geometry.bb_tree(mesh, 2, entities=cells, padding=_BEYOND * extent)
         candidates = geometry.compute_collisions_points(tree, np.column_stack([sites, np.zeros(len(sites))]))
-        corners = mesh.geometry.x[compat.cell_geometry(mesh)][:, :, :2]
+        nodes = mesh.geometry.x[compat.cell_geometry(mesh)][:, :, :2]
         for k, site in enumerate(sites):
-            for c in candidates.links(k):
-                a, b, d = corners[c]
-                X = np.linalg.solve(np.column_stack([b - a, d - a]), site - a)
-                if min(X[0], X[1], 1 - X[0] - X[1]) >= -_ROUNDOFF:
-                    cell.append(c)
-                    numbers.append(k)
-                    points.append(X)
+            near = candidates.links(k)
+            places = reference_places(nodes[near], np.broadcast_to(site, (len(near), 2)))
+            inside = np.minimum(places.min(axis=1), 1 - places.sum(axis=1)) >= -_ROUNDOFF
+            cell.extend(near[inside])
+            numbers.extend([k] * int(inside.sum()))
+            points.extend(places[inside])
     return np.array(cell, dtype=np.int32), np.array(numbers, dtype=np.int64), np.array(points).reshape(-1, 2)

@@ -33,7 +33,7 @@ from variational import jit, kinematics
 from variational.attraction import electroadhesion
 from variational.contact.formulation import Contact, Formulation, Skin
 from variational.contact.friction import Friction, law_of
-from variational.element import ELEMENTS, LayerwisePressure, at_centroid
+from variational.element import ELEMENTS, Centroid, LayerwisePressure
 from variational.history import History, SkinField
 
 if TYPE_CHECKING:
@@ -147,6 +147,7 @@ class Problem:
         F = kinematics.deformation_gradient(H)
         energy = 0
         dx = ufl.Measure("dx", mesh, subdomain_data=cell_tags, metadata={"quadrature_degree": kind.quadrature_degree})
+        centroid = Centroid(mesh) if kind.reduced else None
         self.laws = self._laws(solids, cellwise)
         self.pressure = self._pressure(solids) if kind.mixed else None
         self.pressures = {tags: law.pressure(H) for tags, law in self.laws.items()}
@@ -161,8 +162,8 @@ class Problem:
             else:
                 rule = {"quadrature_degree": kind.volumetric_degree}
                 energy += law.pressure(H) ** 2 / (2 * bulk) * dx(tags, metadata=rule)
-            if kind.reduced:
-                self.pressures[tags] = law.pressure(at_centroid(H, self._centroids()))
+            if centroid:
+                self.pressures[tags] = law.pressure(centroid.value(H))
         self.densities = {tags: law.density(F, self.pressures[tags]) for tags, law in self.laws.items()}
 
         self.x, self.y = ufl.SpatialCoordinate(mesh)[0] + self.u[0], kinematics.current_height(mesh, self.u)
@@ -234,11 +235,6 @@ class Problem:
         """Return the pressure of the layers whose law has a volumetric part, None if there is none."""
         skins = {tag: solid.shear_modulus for tag, solid in solids.items() if solid.volumetric is not None}
         return LayerwisePressure(self.mesh, self.cell_tags, tuple(skins), max(skins.values())) if skins else None
-
-    def _centroids(self) -> fem.Function:
-        centroids = fem.Function(fem.functionspace(self.mesh, ("Discontinuous Lagrange", 0, (2,))))
-        centroids.interpolate(lambda x: x[:2])
-        return centroids
 
     def _skin_stress(self, F):
         """Return P (Pa) by the one law of the cells behind the touching skin."""

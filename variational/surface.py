@@ -25,6 +25,7 @@ class Surface:
         facets: number of each facet in the mesh.
         length: reference length of each facet (m).
         weights: Gauss weights on [0, 1], shape (points,).
+        measure_at: reference length per facet coordinate from 0 to 1 (m) at the points, shape (facets, points).
     """
 
     def __init__(
@@ -37,7 +38,7 @@ class Surface:
         """Collect the facets that this rank integrates over.
 
         Args:
-            mesh: straight-sided triangles.
+            mesh: triangles, of first or second order.
             facet_tags: tags of facets.
             ridges: facet tag of each ridge's number.
             points: Gauss points on a facet; n of them integrate degree 2n - 1.
@@ -77,10 +78,9 @@ class Surface:
         if mesh.comm.allreduce(doubled):
             raise ValueError("a cell has two facets on the touching surface; use smaller surface elements")
 
-        vertices = compat.cell_geometry(mesh)[self.pairs[:, 0]]
-        ends = np.array([[1, 2], [0, 2], [0, 1]])[self.pairs[:, 1]]
-        xy = mesh.geometry.x[np.take_along_axis(vertices, ends, axis=1)] if len(pairs) else np.zeros((0, 2, 3))
-        self.length = np.linalg.norm(xy[:, 1] - xy[:, 0], axis=1)
+        nodes = self._nodes()
+        self.measure_at = np.linalg.norm(np.einsum("kp,fki->fpi", self._slopes(nodes.shape[1]), nodes), axis=2)
+        self.length = self.measure_at @ self.weights
         # Powers of the facet coordinate at the points: interpolation is exact for the traces of elements
         # of a degree below the number of points.
         self._to_powers = np.linalg.inv(np.vander(self.points[:, 0], increasing=True))
@@ -88,16 +88,29 @@ class Surface:
         bernstein = np.array([[math.comb(i, k) / math.comb(n[-1], k) for k in n] for i in n])
         self._to_bernstein = bernstein @ self._to_powers
         self._history_maps()
-        self._reversed = self._point_order(xy)
+        self._reversed = self._point_order(nodes)
 
-    def _point_order(self, ends: Array) -> NDArray[np.bool_]:
-        """Find the facets whose points dolfinx takes from their second end, of ends (facets, 2, 3), to the first.
+    def _nodes(self) -> Array:
+        """Return the places (m) of each facet's ends and, of second order, its middle, shape (facets, 2 or 3, 2)."""
+        geometry = compat.cell_geometry(self.mesh)
+        on_facet = np.array([[1, 2, 3], [0, 2, 4], [0, 1, 5]])[:, : 2 if geometry.shape[1] == 3 else 3]
+        nodes = np.take_along_axis(geometry[self.pairs[:, 0]], on_facet[self.pairs[:, 1]], axis=1)
+        return np.asarray(self.mesh.geometry.x[nodes][:, :, :2])
+
+    def _slopes(self, nodes: int) -> Array:
+        """Return the derivatives of a facet's nodes' functions at the points, shape (nodes, points)."""
+        element = basix.create_element(basix.ElementFamily.P, basix.CellType.interval, nodes - 1)
+        return np.asarray(element.tabulate(1, self.points))[1, :, :, 0].T
+
+    def _point_order(self, nodes: Array) -> NDArray[np.bool_]:
+        """Find the facets whose points dolfinx takes from their second end to the first.
 
         By their cell's numbering in 0.9 no facet's, by their vertices' in 0.11 some.
         """
         position = self.compile(list(ufl.SpatialCoordinate(self.mesh)))
         first = self._as_given(position)[:, 0]
-        return np.asarray(np.linalg.norm(first - ends[:, 1, :2], axis=1) < self.length / 2)
+        from_first, from_second = (np.linalg.norm(first - nodes[:, k], axis=1) for k in range(2))
+        return np.asarray(from_second < from_first)
 
     # -- history ---------------------------------------------------------------------------------------
     def _history_maps(self) -> None:
@@ -149,7 +162,7 @@ class Surface:
     # -- integrals -------------------------------------------------------------------------------------
     def per_ridge(self, density: Array) -> Array:
         """Integrate a density per reference length over each ridge, summed over ranks; shape (ridges,)."""
-        return self.sum_over_facets((density @ self.weights) * self.length)
+        return self.sum_over_facets((density * self.measure_at) @ self.weights)
 
     def sum_over_facets(self, values: Array) -> Array:
         """Sum one value a facet over each ridge and all ranks; shape (ridges,)."""

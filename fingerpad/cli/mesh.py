@@ -23,6 +23,7 @@ _EXAMPLES = """
     fingerpad mesh --out finger.msh --plot finger.png
     fingerpad mesh scene.toml --set mesh.contact=20e-6 --out coarse.msh
 """
+_ON_EDGE = 6  # pieces of a curved edge in a picture
 _FINEST_EDGES = 60_000  # triangles of the whole finger up to which their edges are drawn
 
 
@@ -54,6 +55,8 @@ class Section:
     """Vertices (m), shape (points, 2)."""
     triangles: NDArray[np.int_]
     """Vertices of each triangle, shape (triangles, 3)."""
+    outline: NDArray[np.float64]
+    """Places around each triangle (m), several on each curved edge, shape (triangles, places, 2)."""
     layer: NDArray[np.int_]
     """Tag of each triangle's layer, of :mod:`geometry.tags`."""
     ridges: int
@@ -146,15 +149,28 @@ def _read(gmsh: Any, unit: float = 1e-3) -> Section:
     groups = {tag for _, tag in gmsh.model.getPhysicalGroups(2)}
     for tag in filter(groups.__contains__, tags.LAYERS.values()):
         for entity in gmsh.model.getEntitiesForPhysicalGroup(2, tag):
-            for nodes in gmsh.model.mesh.getElements(2, entity)[2]:
-                triangles.append(nodes.astype(int).reshape(-1, 3))
+            for kind, _, nodes in zip(*gmsh.model.mesh.getElements(2, entity), strict=True):
+                count = gmsh.model.mesh.getElementProperties(kind)[3]
+                triangles.append(nodes.astype(int).reshape(-1, count))
                 layers.append(np.full(len(triangles[-1]), tag))
     ridges = sum(tags.is_ridge(tag) for dimension, tag in gmsh.model.getPhysicalGroups(1))
-    every = np.concatenate(triangles)
-    used = np.unique(every)  # the others guide the element size
+    nodes = np.concatenate(triangles)
     order = np.argsort(numbers)
-    points = coordinates.reshape(-1, 3)[order[np.searchsorted(numbers, used, sorter=order)], :2] * unit
-    return Section(points, np.searchsorted(used, every), np.concatenate(layers), ridges)
+    places = coordinates.reshape(-1, 3)[order, :2] * unit
+    every = np.searchsorted(numbers[order], nodes)
+    used = np.unique(every[:, :3])  # the others guide the element size
+    corners = np.searchsorted(used, every[:, :3])
+    return Section(places[used], corners, _outline(places[every]), np.concatenate(layers), ridges)
+
+
+def _outline(nodes: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return places around triangles from those of their nodes, in gmsh's order, shape (triangles, 3 or 6, 2)."""
+    if nodes.shape[1] == 3:
+        return nodes
+    first, middle, last = nodes[:, :3, None], nodes[:, 3:, None], nodes[:, [1, 2, 0], None]
+    t = np.linspace(0, 1, _ON_EDGE, endpoint=False)[:, None]
+    curves = first * (1 - t) * (1 - 2 * t) + middle * 4 * t * (1 - t) + last * t * (2 * t - 1)
+    return np.asarray(curves.reshape(len(nodes), -1, 2))
 
 
 def draw(file: Path, found: Section, scene: Scene) -> None:
@@ -177,14 +193,14 @@ def draw(file: Path, found: Section, scene: Scene) -> None:
         )
     title = f"Mesh of the unloaded finger: {len(found.triangles)} triangles, {found.ridges} ridges can touch\n"
     with output.panels(file, title, 3) as (figure, panels):
-        x, y = found.points.T * 1e3
+        left_most = found.points[:, 0].min()
         for ax, (title, view) in zip(panels, views, strict=True):
-            _fill(ax, x, y, found, view, centre)
+            _fill(ax, found, view, centre)
             ax.set(xlabel="x (mm)", ylabel="height (mm)", aspect="equal", title=title)
             ax.axhline(0, color="k", lw=2)
             ax.locator_params(nbins=5)
             if view is not None:
-                left = 0.0 if x.min() > -1e-6 else (centre - view[0]) * 1e3
+                left = 0.0 if left_most > -1e-9 else (centre - view[0]) * 1e3
                 ax.set(xlim=(left, (centre + view[0]) * 1e3), ylim=(-0.03 * view[1] * 1e3, view[1] * 1e3))
         from matplotlib.patches import Patch
 
@@ -195,28 +211,25 @@ def draw(file: Path, found: Section, scene: Scene) -> None:
         figure.legend(handles=handles, loc="outside lower center", ncols=len(handles))
 
 
-def _fill(
-    ax: Any,
-    x: NDArray[np.float64],
-    y: NDArray[np.float64],
-    found: Section,
-    view: tuple[float, float] | None,
-    middle: float,
-) -> None:
+def _fill(ax: Any, found: Section, view: tuple[float, float] | None, middle: float) -> None:
     """Fill the triangles that are in a view, with edges where there is room for them."""
-    triangles, layer = found.triangles, found.layer
+    outline, layer = found.outline, found.layer
     if view is not None:
-        centre = found.points[triangles].mean(axis=1)
+        centre = outline.mean(axis=1)
         inside = (np.abs(centre[:, 0] - middle) < 1.2 * view[0]) & (centre[:, 1] < 1.2 * view[1])
-        triangles, layer = triangles[inside], layer[inside]
+        outline, layer = outline[inside], layer[inside]
+    from matplotlib.collections import PolyCollection
     from matplotlib.colors import ListedColormap
 
     from fingerpad.results.finger_picture import LAYER_COLOURS
 
     tagged = list(tags.LAYERS.values())
     colours = [LAYER_COLOURS[tag] for tag in tagged]
-    width = 0.25 if view is not None else 0.05 if len(triangles) < _FINEST_EDGES else 0.0
-    ax.tripcolor(
-        x, y, triangles, facecolors=np.searchsorted(tagged, layer).astype(float), cmap=ListedColormap(colours),
-        vmin=-0.5, vmax=len(tagged) - 0.5, edgecolors="k" if width else "none", linewidth=width,
+    width = 0.25 if view is not None else 0.05 if len(outline) < _FINEST_EDGES else 0.0
+    shapes = PolyCollection(
+        list(1e3 * outline), array=np.searchsorted(tagged, layer).astype(float), cmap=ListedColormap(colours),
+        edgecolors="k" if width else "face", linewidths=width,
     )  # fmt: skip
+    shapes.set_clim(-0.5, len(tagged) - 0.5)
+    ax.add_collection(shapes)
+    ax.autoscale_view()

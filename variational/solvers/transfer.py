@@ -6,12 +6,12 @@ and friction. The restored fields are no equilibrium; the state that is solved f
 pressure is not in the snapshot: it follows from the restored displacement by the second equation.
 
 **Displacement.** The old mesh is gathered on every rank (it is two-dimensional: some MB). A node of the new one takes
-the value of the old polynomial in the triangle that it is inside of or, beyond a polygon that cuts off a curved
-boundary, least outside of in barycentric coordinates. Facets of another length cut a curved ridge elsewhere, by
-:math:`h^2 \kappa / 8`, half a micron where springs of the screen bear the contact over a tenth of that. Skin that is
-too low comes out of the screen in one step of Newton's method, since all of it is in contact; skin that is too high is
-not, and comes back point by point. So a node on a ridge is put down to where the old mesh has the skin at that place of
-the ridge's chord, and not up.
+the value of the old polynomial in the triangle that it is inside of, curved or straight, or, beyond facets that cut off
+a boundary, least outside of in barycentric coordinates. Straight facets of another length cut a ridge elsewhere, by
+:math:`h^2 \kappa / 8`, half a micron where springs of the screen bear the contact over a tenth of that; curved ones
+hardly do. Skin that is too low comes out of the screen in one step of Newton's method, since all of it is in contact;
+skin that is too high is not, and comes back point by point. So a node on a ridge is put down to where the old mesh has
+the skin at that place of the ridge's chord, and not up.
 
 **History.** What friction keeps is the elastic slip :math:`s - u_x = t_t / \gamma_t` at Gauss points of the skin
 (:mod:`~variational.contact.formulation`). It is interpolated linearly along each ridge, over the place on the
@@ -37,12 +37,15 @@ from scipy.spatial import cKDTree
 from variational import compat
 from variational.contact.formulation import SurfaceState
 from variational.problem import Problem
+from variational.reference import reference_places
 from variational.solvers.coupling import Coupling
 from variational.solvers.target import Control
 
 Array = NDArray[np.float64]
 _CANDIDATES = 32  # triangles about a point, by their centroids; sizes of neighbours differ by far less
+_CURVED = 4  # of these, those that are looked into as the curved triangles that they are
 _TURNS_BACK = 1.5  # way of the skin along an axis over its extent: 1 where it goes one way, 2 there and back
+_NEWTON = 4  # iterations that find a place on a facet by its place on the chord
 _OUTSIDE = 1.0  # altitudes of a triangle that a point of the same body may be outside of it
 
 
@@ -66,8 +69,8 @@ class SkinState:
 class StateSnapshot:
     """An accepted state, the same on every rank and free of its mesh."""
 
-    corners: Array
-    """Vertices of all triangles (m), shape (cells, 3, 2)."""
+    x: Array
+    """Nodes of the geometry of all triangles (m), shape (cells, 3 or 6, 2)."""
     u: Array
     """Displacement at their nodes (m), shape (cells, nodes, 2)."""
     skin: dict[int, SkinState]
@@ -94,7 +97,7 @@ def take_snapshot(coupling: Coupling, state: SurfaceState) -> StateSnapshot:
     problem, solver = coupling.solver.problem, coupling.solver
     mesh, surface, numbers = problem.mesh, problem.surface, problem.surface.ridge_numbers
     cells = np.arange(mesh.topology.index_map(2).size_local)
-    corners = mesh.geometry.x[compat.cell_geometry(mesh)[cells]][:, :, :2]
+    x = mesh.geometry.x[compat.cell_geometry(mesh)[cells]][:, :, :2]
     u = problem.displacement()[problem.V.dofmap.list[cells]]
     history = problem.history
     followed = history.followed(state.history)
@@ -104,7 +107,7 @@ def take_snapshot(coupling: Coupling, state: SurfaceState) -> StateSnapshot:
     names, on_facet = list(relative), here.shape[2]
     skin = {j: _ridge(points[:, ridge == k].reshape(len(here), -1), on_facet, names) for k, j in enumerate(numbers)}
     return StateSnapshot(
-        _all(mesh.comm, corners, 0),
+        _all(mesh.comm, x, 0),
         _all(mesh.comm, u, 0),
         skin,
         {field.name: _all(mesh.comm, field.by_cell(history.accepted[field.name]), 0) for field in history.body},
@@ -183,25 +186,31 @@ def interpolate(snapshot: StateSnapshot, points: Array) -> tuple[Array, float]:
 def _restored(snapshot: StateSnapshot, values: Array, nodes: Array, inside: Array) -> Array:
     """Return values by cell at reference points (m), of the cells of the snapshot that points beside them are in."""
     cell, _, _ = _locate(snapshot, inside)
-    a, b, c = np.moveaxis(snapshot.corners[cell], 1, 0)
-    X = np.einsum("nij,nj->ni", np.linalg.inv(np.stack([b - a, c - a], axis=-1)), nodes - a)
-    return _evaluate(values, cell, X)
+    return _evaluate(values, cell, reference_places(snapshot.x[cell], nodes))
 
 
 def _locate(snapshot: StateSnapshot, points: Array) -> tuple[NDArray[np.int64], Array, float]:
     """Return each point's triangle, its coordinates there, shape (n, 2), and how far one is outside at most."""
     if len(points) == 0:
         return np.zeros(0, dtype=np.int64), np.zeros((0, 2)), 0.0
-    a, b, c = np.moveaxis(snapshot.corners, 1, 0)
+    a, b, c = np.moveaxis(snapshot.x[:, :3], 1, 0)
     tree = cKDTree((a + b + c) / 3)
     near = tree.query(points, min(_CANDIDATES, len(a)))[1].reshape(len(points), -1)
     edges = np.stack([b - a, c - a], axis=-1)
     to_reference = np.linalg.inv(edges)
     local = np.einsum("nkij,nkj->nki", to_reference[near], points[:, None] - a[near])
-    least = np.minimum(local.min(axis=2), 1 - local.sum(axis=2))
-    best = least.argmax(axis=1)
     row = np.arange(len(points))
-    return near[row, best], local[row, best], float(max(0.0, -least[row, best].min()))
+    near = near[row[:, None], np.argsort(-_least(local), axis=1)[:, :_CURVED]]
+    places = reference_places(snapshot.x[near.ravel()], np.repeat(points, near.shape[1], axis=0))
+    local = places.reshape(*near.shape, 2)
+    inside = _least(local)
+    best = inside.argmax(axis=1)
+    return near[row, best], local[row, best], float(max(0.0, -inside[row, best].min()))
+
+
+def _least(X: Array) -> Array:
+    """Return the least barycentric coordinate of reference coordinates, negative outside of the triangle."""
+    return np.asarray(np.minimum(X.min(axis=-1), 1 - X.sum(axis=-1)))
 
 
 def _evaluate(values: Array, cell: NDArray[np.int64], X: Array) -> Array:
@@ -222,13 +231,16 @@ def place(ridge: SkinState, position: Array, nodes: Array) -> Array:
     Both have the shape (n, 2).
     """
     n = position.shape[1]
-    gauss = _gauss(n)
-    points, along = ridge.along.reshape(-1, n), (nodes - ridge.origin) @ ridge.chord
-    length = (points[:, -1] - points[:, 0]) / (gauss[-1] - gauss[0])
-    start = points[:, 0] - gauss[0] * length
+    to_powers = np.linalg.inv(np.vander(_gauss(n), n))
+    points, along = ridge.along.reshape(-1, n) @ to_powers.T, (nodes - ridge.origin) @ ridge.chord
+    start, end = points[:, -1], points.sum(axis=1)
     facet = np.clip(np.searchsorted(start, along, side="right") - 1, 0, len(start) - 1)
-    powers = np.vander((along - start[facet]) / length[facet], n)
-    return np.einsum("nk,nki->ni", powers @ np.linalg.inv(np.vander(gauss, n)), position[facet])
+    slopes = points[:, :-1] * np.arange(n - 1, 0, -1)
+    xi = (along - start[facet]) / (end - start)[facet]
+    for _ in range(_NEWTON):  # the chord's coordinate is quadratic along a curved facet
+        off = np.einsum("nk,nk->n", np.vander(xi, n), points[facet]) - along
+        xi = xi - off / np.einsum("nk,nk->n", np.vander(xi, n - 1), slopes[facet])
+    return np.einsum("nk,nki->ni", np.vander(xi, n) @ to_powers, position[facet])
 
 
 def _gauss(n: int) -> Array:
