@@ -16,7 +16,7 @@ from variational.solvers.continuation import StepFailed
 pytestmark = pytest.mark.slow
 SCENE = NINE | {"f_ext": 1.0, "voltage": 100.0, "output": {"errors": False, "receptors": False}}
 CHAIN = (
-    {"voltage": 50.0}, {"voltage": 0.0}, {"voltage": 80.0}, {"voltage": 80.0, "f_ext": 0.4}, {"f_ext": 0.6},
+    {"voltage": 50.0}, {"voltage": 0.0}, {"voltage": 80.0}, {"voltage": 80.0, "f_ext": 1.4}, {"f_ext": 0.8},
     {"friction": 0.4}, {"electric": {"d_i": 2e-6}}, {"roughness": {"h_rms": 2e-6}}, {},
 )  # fmt: skip
 """Each from the one before; forces, voltage, friction, insulator and roughness go there and back."""
