@@ -65,9 +65,10 @@ def main(out: str = "results/demos/ridge_against_hertz", finest: str = "16") -> 
         for n, a, p in zip(facets, widths, peaks, strict=True):
             print(f"{n:3d} facets: a = {a * 1e6:.2f} um, p = {p / 1e3:.4f} kPa")
         draw(Path(out), facets, profiles)
-    # Both converge: halving the facets changes them less each time. What is left is the pad's finite size.
+    # Facets are curved as the pad is, and four of them over the half-width give both to 0.1 %. What is left on the
+    # finest mesh is the pad's finite size.
     for values, hertz in ((widths, HALF_WIDTH), (peaks, core)):
-        assert abs(values[2] - values[1]) < 0.8 * abs(values[1] - values[0])
+        assert np.ptp(values) < 1e-3 * values[2]
         assert abs(values[2] / hertz - 1) < 5e-3
     # The screen bears the force.
     assert np.allclose([body.state.f_contact for body in bodies], FORCE, rtol=1e-6)

