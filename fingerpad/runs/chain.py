@@ -39,7 +39,7 @@ if TYPE_CHECKING:
 _FREE = ("f_ext", "voltage", "friction", "roughness", "electric", "slide_length", "output")
 """Keys in which neighbours may differ: they change neither the mesh nor the layers."""
 _SAME = 1e-5  # relative difference of f_t up to which two states are one; air gaps are solved to 1e-6
-_SHORTEST = 8  # points of a chain, of which the first takes the time of some twenty others
+_SHORTEST = 8  # points of a chain, of which the first takes the time of some fifteen others
 _LIMIT = 4 * 3600.0  # s of processor time for a chain
 _LOOK = 1.0  # s between two looks for points that are finished
 
