@@ -11,8 +11,8 @@ from fingerpad.runs.sweep_results import Sweep as Sweep
 from fingerpad.scene import Scene as Scene
 from fingerpad.scene import SceneError as SceneError
 from variational.attraction.circuit import GapCircuit as GapCircuit
-from variational.attraction.tissue import ColeCole as ColeCole
-from variational.attraction.tissue import TabledTissue as TabledTissue
+from variational.attraction.dielectric import ColeCole as ColeCole
+from variational.attraction.dielectric import TabledTissue as TabledTissue
 from variational.contact.augmented import AugmentedLagrangian as AugmentedLagrangian
 from variational.contact.formulation import Formulation as Formulation
 from variational.contact.friction import Coulomb as Coulomb

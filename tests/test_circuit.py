@@ -6,9 +6,8 @@ from numpy.testing import assert_allclose
 
 import fingerpad as fp
 from variational.attraction.circuit import LEAKS, GapCircuit, breakdown_voltage, fit_leak
-from variational.attraction.electroadhesion import VACUUM_PERMITTIVITY, insulator_thickness
+from variational.attraction.dielectric import DRY, MOIST, VACUUM_PERMITTIVITY, TabledTissue, insulator_thickness
 from variational.attraction.network import Network
-from variational.attraction.tissue import DRY, MOIST, TabledTissue
 
 LAYERS = {"gap": 1.6e-6, "d_i": 1e-6, "eps_i": 3.9, "d_sc": 425e-6}
 BEHIND = (1e-6, 3.9, 425e-6)

@@ -37,7 +37,8 @@ from dolfinx import fem
 from mpi4py import MPI
 from numpy.typing import NDArray
 
-from variational.attraction.electroadhesion import ELECTROSTATIC, VACUUM_PERMITTIVITY
+from variational.attraction.dielectric import VACUUM_PERMITTIVITY
+from variational.attraction.electroadhesion import ELECTROSTATIC
 from variational.contact.formulation import SurfaceState
 
 if TYPE_CHECKING:

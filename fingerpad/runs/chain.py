@@ -164,7 +164,7 @@ class Chain:
         from fingerpad.model.options import plan
 
         self._scenes, self._half_arc, self._comm = scenes, half_arc, comm
-        strongest = max(scenes, key=lambda scene: abs(scene.voltage))
+        strongest = max(scenes, key=lambda scene: abs(scene.volts))
         self._options = replace(plan(strongest), errors=False)
         self._slips: FullSlips | None = None
         self._solved: list[Solved | None] = []  # of the present mesh, by scene

@@ -13,11 +13,10 @@ from typing import Annotated, Any
 from pydantic import AfterValidator, Discriminator, Tag, model_validator
 
 from fingerpad.scene.messages import NUMBER, WAVE, show
-from fingerpad.scene.waveform import MOST, Volts, Waveform
+from fingerpad.scene.wavefile import Volts
+from fingerpad.scene.waveform import MOST, Waveform
 from geometry.units import Finite, Switch, Table, within
 
-DEFAULT_HISTORY = ("f_ext", "voltage", "slide_length")
-"""Keys of the default loads, which a history replaces."""
 FINAL_STATES = ("charged normal contact", "full slip")
 """States that have files of their own where an accuracy is asked for."""
 _MAX_BYTES = 100  # of a name; a file system allows 255, of which the files take some
@@ -176,13 +175,19 @@ class Load(Table):
         return self.duration
 
 
+def drives(voltage: float | Waveform, history: Sequence[Load]) -> dict[str, Waveform]:
+    """Return the drives in place of a scene's voltage and of its loads', by key."""
+    given = {"voltage": voltage} | {f"history[{k}].voltage": load.wave for k, load in enumerate(history)}
+    return {key: value for key, value in given.items() if isinstance(value, Waveform)}
+
+
 # -- several ---------------------------------------------------------------------------------------------
 def refuse_contradictions(history: Sequence[Load], given: Mapping[str, Any], accurate: bool, step_scale: float) -> None:
     """Refuse the first contradiction between loads, or of them with other keys.
 
     Args:
         history: the loads of a scene.
-        given: the values of :data:`DEFAULT_HISTORY` that are given.
+        given: the values of :data:`fingerpad.scene.changes.DEFAULT_HISTORY` that are given.
         accurate: whether an accuracy is asked for.
         step_scale: key of the numerics.
 

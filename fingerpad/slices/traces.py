@@ -99,8 +99,8 @@ def history(scene: Scene, name: str, top: float) -> Scene:
     """
     light, far = top * LIGHT, scene.slide_length
     loads: list[dict[str, float | str | bool]] = [{"name": "press", "f_ext": top if name == "uncharged" else light}]
-    if name != "uncharged" and scene.voltage:
-        loads += [{"name": "charge", "voltage": scene.voltage}]
+    if name != "uncharged" and scene.volts:
+        loads += [{"name": "charge", "voltage": scene.volts}]
     if name == "charged":
         loads += [{"name": "raise", "f_ext": top}]
     if name == "full_slip":
@@ -127,7 +127,7 @@ def _followed(scene: Scene, model: "Model", solve: Solve) -> dict[str, Traced]:
     """Return the traces of a scene with a force by state, that of the result last; collective."""
     reach = _Reach(scene, profile(scene.slices), model, solve)
     found = {"uncharged": reach.follow("uncharged")}
-    if scene.voltage:
+    if scene.volts:
         found["charged"] = reach.follow("charged")
     if scene.friction_law() is not None:
         found["full_slip"] = reach.follow("full_slip")
@@ -140,7 +140,7 @@ def _summed(scene: Scene, model: "Model", found: dict[str, Traced]) -> WholeFing
     known = {name: {errors.MESH: errors.discretisation(_end(each, name))} for name, each in found.items()}
     states = {name: each.trace for name, each in found.items()}
     tops = (f"{each.trace.end[1]:.4g} N/m ({name.replace('_', ' ')})" for name, each in found.items())
-    if not scene.voltage:  # normal contact is one state then, with two names
+    if not scene.volts:  # normal contact is one state then, with two names
         for values in (totals, known, states):
             values["charged"] = values["uncharged"]  # type: ignore[assignment]
     return WholeFinger(in_order(totals), f"{model.traces} to {', '.join(tops)}", known, states, scene.slices)
@@ -155,7 +155,7 @@ def _of_path(scene: Scene, finger: WholeFinger, found: dict[str, Traced]) -> Res
         for name, each in found.items()
         if each.total is not None
     }
-    if not scene.voltage:
+    if not scene.volts:
         named["charged"] = named["uncharged"]
     return replace(
         runs[-1],

@@ -28,8 +28,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.optimize import brentq, minimize_scalar
 
-from variational.attraction.electroadhesion import VACUUM_PERMITTIVITY
-from variational.attraction.tissue import TISSUES, ColeCole, Tissue
+from variational.attraction.dielectric import TISSUES, VACUUM_PERMITTIVITY, ColeCole, Tissue
 
 Complex = NDArray[np.complex128]
 Array = NDArray[np.float64]
@@ -77,7 +76,7 @@ class GapCircuit:
     """
 
     tissue: str | Tissue = LOSSLESS
-    """``"lossless"``, ``"dry"``, ``"moist"``, or a :class:`~variational.attraction.tissue.Tissue`."""
+    """``"lossless"``, ``"dry"``, ``"moist"``, or a :class:`~variational.attraction.dielectric.Tissue`."""
     leak: str | float | None = None
     """R_gap (ohm m²), a name of :data:`LEAKS`, or None for no leak."""
     eps_sc: float = 1650.0

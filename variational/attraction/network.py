@@ -1,7 +1,8 @@
 r"""The circuit of the gap in time: resistors and capacitors, solved exactly for voltages with straight pieces.
 
-A stratum corneum of Cole–Cole terms is a sum of Debye terms (:meth:`~variational.attraction.tissue.ColeCole.debye`),
-each a resistor and a capacitor in series. With the gap and the insulator, the voltages v of the nodes obey
+A stratum corneum of Cole–Cole terms is a sum of Debye terms
+(:meth:`~variational.attraction.dielectric.ColeCole.debye`), each a resistor and a capacitor in series. With the gap and
+the insulator, the voltages v of the nodes obey
 
 .. math:: C \dot v + G v = b \, \dot U, \qquad E g = v_1 - v_2,
 
@@ -22,8 +23,7 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.linalg import eigh
 
 from variational.attraction.circuit import GapCircuit
-from variational.attraction.electroadhesion import VACUUM_PERMITTIVITY
-from variational.attraction.tissue import ColeCole, Debye
+from variational.attraction.dielectric import VACUUM_PERMITTIVITY, ColeCole, Debye
 
 Array = NDArray[np.float64]
 _LEAST = 1e-12  # weight of a mode that is left out, of the sum of all

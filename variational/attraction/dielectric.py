@@ -1,4 +1,4 @@
-r"""Stratum corneum as a dielectric that conducts: Cole–Cole terms, or a measured table over the frequency.
+r"""Dielectrics between finger and electrode: stratum corneum that conducts, by Cole–Cole terms or a measured table.
 
 .. math:: \tilde\varepsilon = \varepsilon_\infty + \sum_k \frac{\Delta_k}{1 + (i \omega \tau_k)^{1 - \alpha_k}}
           + \frac{\sigma}{i \omega \varepsilon_0}, \qquad \kappa = i \omega \varepsilon_0 \tilde\varepsilon
@@ -27,13 +27,19 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from variational.attraction.electroadhesion import VACUUM_PERMITTIVITY
-
 Complex = NDArray[np.complex128]
 Array = NDArray[np.float64]
 SPECTRUM_ERROR = 1e-9
 """Relative error of a fractional term by its sum of Debye terms, of the rule and of each end."""
 FASTEST = 1e-11  # s: a Debye term that relaxes faster counts as instantaneous, an error of 6e-5 of it at 1 MHz
+
+
+VACUUM_PERMITTIVITY = 8.854e-12  # F/m, Table 3
+
+
+def insulator_thickness(d_sc: float, eps_sc: float, d_i: float, eps_i: float) -> float:
+    """Return h_0 (m), the effective insulator thickness of stratum corneum and screen coating, both lossless."""
+    return d_sc / eps_sc + d_i / eps_i
 
 
 class Debye(NamedTuple):
