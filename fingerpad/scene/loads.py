@@ -230,7 +230,7 @@ def _refuse_floating(history: Sequence[Load]) -> None:
     """Refuse loads that leave the bone neither held nor pressed nor attracted."""
     f_ext: float | None = None
     voltage = 0.0
-    for key, load, way in _ways(history):
+    for key, load, way in ways(history):
         if load.f_ext is not None or load.bone_height is not None:
             f_ext = load.f_ext
         voltage = voltage if load.level is None else load.level
@@ -249,7 +249,7 @@ def _refuse_floating(history: Sequence[Load]) -> None:
             )
 
 
-def _ways(history: Sequence[Load]) -> Iterator[tuple[str, Load, float | None]]:
+def ways(history: Sequence[Load]) -> Iterator[tuple[str, Load, float | None]]:
     """Yield the key of each load, the load, and how far the bone goes (m); None where the run decides that."""
     place: float | None = 0.0  # of the bone; None where a load before may have stopped early
     for k, load in enumerate(history):
@@ -265,7 +265,7 @@ def _ways(history: Sequence[Load]) -> Iterator[tuple[str, Load, float | None]]:
 
 def _refuse_times(history: Sequence[Load], step_scale: float) -> None:
     """Refuse waveforms whose length is not known before the run, or whose samples are too many or end too early."""
-    for key, load, way in _ways(history):
+    for key, load, way in ways(history):
         if load.wave is None:
             continue
         if load.speed is not None and way is None:

@@ -3,6 +3,7 @@
 A number is in SI units, or a text with its unit (:mod:`geometry.units`).
 """
 
+import math
 from collections.abc import Mapping
 from dataclasses import is_dataclass
 from pathlib import Path
@@ -103,7 +104,8 @@ class Scene(Table):
         if self.accuracy is not None:
             self.accuracy.refuse(self.output.receptors, self.friction)
         if self.history is not None:
-            refuse_contradictions(self.history, given, self.accuracy is not None, self.numerics.step_scale)
+            steps = math.inf if self.electric.follows == "mean" else self.numerics.step_scale
+            refuse_contradictions(self.history, given, self.accuracy is not None, steps)
         refuse_thickness(self.roughness, self.h_0)
         refuse_drives(self.drives(), self.electric, self.geometry.sc_thickness)
         return self

@@ -6,7 +6,7 @@ attraction :math:`\sigma_{el} = \varepsilon_0 E^2 / 2` at each instant. Models t
 
 .. math:: V(t, g) = |E(t)| \,(h_0 + g), \qquad \bar V(g) = \Big( \frac1T \int V^2 dt \Big)^{1/2},
 
-which is the amount of U, and its root mean square, where nothing is lost. A constant voltage is the value at an instant: it
+which is the amount of U, and its root mean square, where nothing is lost. A constant voltage is that of an instant. It
 attracts by Eq. 3 whatever leaks, and :func:`remains` computes what is left of it.
 """
 
