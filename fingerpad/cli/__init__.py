@@ -18,6 +18,7 @@ from fingerpad.scene.messages import SceneError, clip
 
 COMMANDS = {
     "estimate": "friction over force and voltage by a closed form, in seconds, without finite elements",
+    "drive": "friction over the period of an alternating voltage, its spectrum, and whether it is felt, in a second",
     "run": "contact and friction of a finger that is pressed, charged and slid: tables, pictures, fields",
     "sweep": "a scene over values of its keys: a table; a stopped sweep continues, and no run is repeated",
     "report": "a folder of a run or of a sweep as one HTML file that needs no network, to read and to pass on",
