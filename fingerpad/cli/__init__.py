@@ -18,7 +18,6 @@ from fingerpad.scene.messages import SceneError, clip
 
 COMMANDS = {
     "estimate": "friction over force and voltage by a closed form, in seconds, without finite elements",
-    "drive": "friction over the period of an alternating voltage, its spectrum, and whether it is felt, in a second",
     "run": "contact and friction of a finger that is pressed, charged and slid: tables, pictures, fields",
     "sweep": "a scene over values of its keys: a table; a stopped sweep continues, and no run is repeated",
     "report": "a folder of a run or of a sweep as one HTML file that needs no network, to read and to pass on",
@@ -27,6 +26,7 @@ COMMANDS = {
     "check": "what a run contains, omits and costs, and a picture of its mesh; solves nothing",
     "mesh": "the mesh of the unloaded finger as a file for gmsh, in m, with names of its parts",
     "calculator": "the closed form as one HTML page with sliders, for a browser without Python or network",
+    "drive": "friction over the period of an alternating voltage, its spectrum, and whether it is felt, in a second",
     "microscale": "air gap, attraction and real area of contact of a ridge over its pressure",
     "topography": "roughness of a scene from a measured height map",
     "params": "every key of a scene: unit, default, range and meaning",
