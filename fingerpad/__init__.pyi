@@ -5,6 +5,8 @@ from fingerpad.measurements.compare import compare as compare
 from fingerpad.model.body import Body as Body
 from fingerpad.results.quantities import Output as Output
 from fingerpad.results.result import Result as Result
+from fingerpad.runs.drive import Drive as Drive
+from fingerpad.runs.drive import drive as drive
 from fingerpad.runs.solve import run as run
 from fingerpad.runs.sweep import sweep as sweep
 from fingerpad.runs.sweep_results import Sweep as Sweep

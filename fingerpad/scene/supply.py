@@ -125,9 +125,16 @@ class Supply:
             return np.full(np.shape(gap), float(np.sqrt(np.mean(self.voltages**2))))
         return np.asarray(np.interp(np.log(np.asarray(gap, dtype=float)), np.log(GAPS), self._means))
 
-    def breakdown(self, gap: float) -> float:
-        """Return the largest voltage across a gap (m) over that at which air breaks down there."""
-        return float(np.abs(self.across(gap)).max() / breakdown_voltage(gap))
+    def largest(self, low: float, high: float) -> float:
+        """Return the largest voltage of Eq. 3 (V) across gaps from ``low`` to ``high`` (m)."""
+        if self.circuit.lossless:
+            return float(np.abs(self.voltages).max())
+        first, last = np.searchsorted(GAPS, (low, high))
+        return float(np.abs(self._table[max(first - 1, 0) : last + 1]).max())
+
+    def pressure(self, volts: Array, gap: Array) -> Array:
+        """Return the attraction (Pa) at voltages of Eq. 3 (V) across gaps (m), of their shape."""
+        return np.asarray(VACUUM_PERMITTIVITY / 2 * (volts / (self.h_0 + gap)) ** 2)
 
 
 @cache
