@@ -210,7 +210,7 @@ def _failed(scene: Scene, model: "Model", why: str) -> Result:
 
 def _here(scene: Scene, model: "Model") -> Result:
     try:
-        return solved(scene, model, RunContext())
+        return solved(scene, model, RunContext(report=False))
     except SceneError as error:
         return _failed(scene, model, str(error))
 
