@@ -17,8 +17,10 @@ from numpy.typing import NDArray
 
 from benchmarks.harness import DOCS, keep, kept, made, picture
 from fingerpad.results import style
-from fingerpad.results.finger_picture import LAYER_COLOURS, interfaces
+from fingerpad.results.arrays import finger_of
+from fingerpad.results.finger_picture import LAYER_COLOURS
 from geometry import tags
+from variational.outline import loops
 
 Array = NDArray[np.float64]
 FORCES = (25, 75, 150)  # N/m, of the curves of friction
@@ -30,11 +32,12 @@ _FINE = 0.02  # mm, between the points of a drawn outline
 def main(folder: str) -> None:
     """Keep the numbers of a default run with those of docs/models.json, and draw."""
     summary = json.loads((Path(folder) / "summary.json").read_text(encoding="utf-8"))
-    with np.load(Path(folder) / "finger_slide.npz") as a:
-        xy, outlines = _MM * (a["x"] + a["u"]), []
-        for tag in tags.LAYERS.values():
-            edges = interfaces(a["triangles"][a["tag"] == tag], a["tag"][a["tag"] == tag])[1]
-            outlines += [{"layer": int(tag), "points": _rows(_thinned(xy[loop]))} for loop in _loops(edges)]
+    a = finger_of(Path(folder) / "finger_slide.npz")
+    xy, outlines = _MM * (a["x"] + a["u"]), []
+    for tag in tags.LAYERS.values():
+        for loop in loops(a["lines"], a["beside"], a["tag"], tag):
+            points = xy[loop[:, :2]].reshape(-1, 2)  # the begin and the middle of each line
+            outlines.append({"layer": int(tag), "points": _rows(_thinned(points))})
     with np.load(Path(folder) / "surface_slide.npz") as a:
         ridge = {name: a[f"end_{name}"][a["end_ridge"] == RIDGE] for name in ("x", "y", "p", "p_el", "d_eq")}
     full = {name: scene["full"].get("summary") for name, scene in kept("models").numbers["scenes"].items()}
@@ -46,23 +49,6 @@ def main(folder: str) -> None:
 
 def _rows(values: list[Any]) -> list[list[Any]]:
     return [values[k : k + 20] for k in range(0, len(values), 20)]  # each a line of the file
-
-
-def _loops(edges: Any) -> list[list[int]]:
-    """Return the closed chains of boundary edges, pairs of vertices, as vertices in order."""
-    beside: dict[int, list[int]] = {}
-    for a, b in [*edges.tolist(), *edges[:, ::-1].tolist()]:
-        beside.setdefault(a, []).append(b)
-    loops = []
-    while any(beside.values()):
-        here = next(vertex for vertex, others in beside.items() if others)
-        loops.append([here])
-        while beside[here]:
-            there = beside[here].pop()
-            beside[there].remove(here)
-            loops[-1].append(there)
-            here = there
-    return loops
 
 
 def _thinned(points: Array) -> list[list[float]]:

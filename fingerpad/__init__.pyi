@@ -5,11 +5,16 @@ from fingerpad.measurements.compare import compare as compare
 from fingerpad.model.body import Body as Body
 from fingerpad.results.quantities import Output as Output
 from fingerpad.results.result import Result as Result
+from fingerpad.runs.drive import Drive as Drive
+from fingerpad.runs.drive import drive as drive
 from fingerpad.runs.solve import run as run
 from fingerpad.runs.sweep import sweep as sweep
 from fingerpad.runs.sweep_results import Sweep as Sweep
 from fingerpad.scene import Scene as Scene
 from fingerpad.scene import SceneError as SceneError
+from variational.attraction.circuit import GapCircuit as GapCircuit
+from variational.attraction.dielectric import ColeCole as ColeCole
+from variational.attraction.dielectric import TabledTissue as TabledTissue
 from variational.contact.augmented import AugmentedLagrangian as AugmentedLagrangian
 from variational.contact.formulation import Formulation as Formulation
 from variational.contact.friction import Coulomb as Coulomb

@@ -11,6 +11,7 @@ import numpy as np
 
 from geometry import tags
 from geometry.curved import curve_edges
+from geometry.parameters import LEAST_SIZE
 from geometry.profiles import GeometryError
 from geometry.shape import shape
 
@@ -64,11 +65,16 @@ def ridge(size: float, width: float = 483e-6, height: float = 600e-6, amplitude:
         amplitude: A, height of the grooves above the tip (m).
 
     Raises:
-        GeometryError: a length is not positive, or the top is not above the grooves.
+        GeometryError: a length is not positive, the top is not above the grooves, or a facet cannot follow the tip.
     """
     _refuse_non_positive(size=size, width=width, height=height, amplitude=amplitude)
     if amplitude >= height:
         raise GeometryError(f"amplitude is {amplitude:g} m; it must be below the height, {height:g} m")
+    radius = 2 / amplitude * (width / (2 * np.pi)) ** 2
+    if size > 2 * radius:  # along which the tip would turn by more than 2 rad
+        raise GeometryError(
+            f"size is {size:g} m, too large for a tip with a radius of {radius:.3g} m; it must be at most twice that"
+        )
 
     def bottom(x: float) -> tuple[float, float]:
         return x, amplitude / 2 * (1 - np.cos(2 * np.pi * x / width))
@@ -250,6 +256,8 @@ def _refuse_non_positive(**lengths: float) -> None:
     for name, value in lengths.items():
         if not 0 < value < np.inf:
             raise GeometryError(f"{name} is {value:g} m; it must be positive")
+    if lengths.get("size", LEAST_SIZE) < LEAST_SIZE:
+        raise GeometryError(f"size is {lengths['size']:g} m; it must be at least {LEAST_SIZE:g} m, beyond roundoff")
 
 
 def _groups(body: int, bottom: list[int], right: int, top: int, left: int) -> None:

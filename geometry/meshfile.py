@@ -27,10 +27,10 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
-from scipy.spatial import cKDTree
 
 from geometry import tags
 from geometry.curved import refuse_folded
+from geometry.meshchecks import FLAT, refuse_misplaced, refuse_misshapen, refuse_unconnected
 from geometry.profiles import GeometryError
 from geometry.shape import shape
 from variational import files
@@ -42,9 +42,6 @@ FACETS = {
     "sides": tags.SIDES,
 }
 _RIDGE = re.compile(r"ridge (0|-?[1-9][0-9]{0,2})")
-_LARGEST, _LEAST = 0.2, 1e-6  # m, of the longer side of a body
-_FLAT = 1e-9  # out of the plane or below the screen, over the body's size
-_THIN = 1e-6  # double area of a triangle, over the square of its longest side
 _KINDS = {2: {2: 3, 9: 6}, 1: {1: 2, 8: 3}}  # nodes of the elements allowed, by dimension and gmsh's number
 _START = b"$MeshFormat"
 # Wrong numbers can end the process in which gmsh reads them, keep it reading for ever, or take all of the memory.
@@ -182,10 +179,10 @@ def _check_mesh() -> None:
     every = _triangles()
     triangles = every[:, :3]
     used = np.isin(nodes, every)
-    _check_places(xyz[used])
+    refuse_misplaced(xyz[used])
     order = np.argsort(nodes)
     places = order[np.searchsorted(nodes, triangles, sorter=order)]
-    _check_areas(xyz[places][:, :, :2])
+    refuse_misshapen(xyz[places][:, :, :2])
     refuse_folded(every)
     grouped = sum(len(_of_group(2, tag)) for tag in tags.LAYERS.values())
     if grouped < len(triangles):
@@ -197,76 +194,9 @@ def _check_mesh() -> None:
     parts = connected_components(links, directed=False)[0]
     if parts > 1:
         raise GeometryError(f"the mesh is in {parts} parts that share no node; layers must share nodes where they meet")
-    _check_nodes(xyz[:, :2], places)
+    refuse_unconnected(xyz[:, :2], places)
     _check_facets(triangles)
     _check_lowest(xyz[used], np.asarray(nodes, dtype=np.int64)[used])
-
-
-def _check_places(xyz: Array) -> None:
-    """Refuse a body of the wrong size or in the wrong place; ``xyz`` (m) are its nodes."""
-    if not np.isfinite(xyz).all():
-        raise GeometryError("a node has a coordinate that is not finite")
-    size = float(np.ptp(xyz[:, :2], axis=0).max())
-    if size > _LARGEST:
-        raise GeometryError(f"the body is {size:g} m large, which is no finger; lengths are in m: did you mean mm?")
-    if size < _LEAST:
-        raise GeometryError(f"the body is {size:g} m large; it must be at least {_LEAST:g} m, and lengths are in m")
-    if np.abs(xyz[:, 2]).max() > _FLAT * size:
-        raise GeometryError("nodes lie out of the plane z = 0; the mesh must be plane")
-    lowest = float(xyz[:, 1].min())
-    if lowest < -_FLAT * size:
-        raise GeometryError(
-            f"the lowest point is at y = {lowest:g} m, below the screen at y = 0; move the body up by {-lowest:g} m"
-        )
-
-
-def _check_areas(corners: Array) -> None:
-    """Refuse triangles without an area and those of both orientations; ``corners`` (m), shape (triangles, 3, 2)."""
-    a, b = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
-    double = a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]
-    longest = np.max(np.sum(np.stack([a, b, b - a]) ** 2, axis=2), axis=0)
-    flat = np.flatnonzero(np.abs(double) < _THIN * longest)
-    if len(flat):
-        x, y = corners[flat[0]].mean(axis=0)
-        raise GeometryError(f"{len(flat)} of {len(corners)} triangles have no area, the first at ({x:g}, {y:g}) m")
-    turned = int((double < 0).sum())
-    if 0 < turned < len(corners):
-        raise GeometryError(
-            f"{turned} of {len(corners)} triangles are clockwise and the others are not, so that cells may overlap; "
-            "give all of them one orientation"
-        )
-
-
-def _check_nodes(xy: Array, triangles: Numbers) -> None:
-    """Refuse triangles that are twice in the mesh, and neighbours that do not share their nodes.
-
-    Args:
-        xy: places of all nodes (m), shape (nodes, 2).
-        triangles: their nodes by place in ``xy``, shape (triangles, 3).
-    """
-    twice = len(triangles) - len(np.unique(np.sort(triangles, axis=1), axis=0))
-    if twice:
-        raise GeometryError(f"{twice} of {len(triangles)} triangles are in the mesh twice")
-    edges = np.sort(triangles[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1)
-    edges, counts = np.unique(edges, axis=0, return_counts=True)
-    if (counts > 2).any():
-        x, y = xy[edges[counts > 2][0]].mean(axis=0)
-        raise GeometryError(f"three triangles have the same edge at ({x:g}, {y:g}) m, so that they overlap")
-    edges = edges[counts == 1]
-    outline, size = np.unique(edges), float(np.ptp(xy[np.unique(triangles)], axis=0).max())
-    ends, tree = xy[edges], cKDTree(xy[outline])
-    middle, along = ends.mean(axis=1), ends[:, 1] - ends[:, 0]
-    near = tree.query_ball_point(middle, np.linalg.norm(along, axis=1) / 2 + _FLAT * size)
-    for k, places in enumerate(near):
-        others = outline[np.setdiff1d(places, np.searchsorted(outline, edges[k]))]
-        from_end = xy[others] - ends[k, 0]
-        beside = np.abs(along[k, 0] * from_end[:, 1] - along[k, 1] * from_end[:, 0]) / np.linalg.norm(along[k])
-        if (beside < _FLAT * size).any():
-            x, y = xy[others[beside.argmin()]]
-            raise GeometryError(
-                f"the triangles at ({x:g}, {y:g}) m do not share a node there, as neighbours must; "
-                "merge nodes at the same place, and let neighbours have the same nodes on their common edge"
-            )
 
 
 def _check_lowest(xyz: Array, nodes: Numbers) -> None:
@@ -275,7 +205,7 @@ def _check_lowest(xyz: Array, nodes: Numbers) -> None:
     low = xyz[np.isin(nodes, np.concatenate(ridges)), 1].min()
     below = xyz[:, 1].min()
     size = float(np.ptp(xyz[:, :2], axis=0).max())
-    if below < low - _FLAT * size:
+    if below < low - FLAT * size:
         raise GeometryError(
             f"the lowest point, at y = {below:g} m, is in no ridge group, and the lowest ridge is at y = {low:g} m; "
             "give the skin that comes down first a group 'ridge 0'"

@@ -15,7 +15,9 @@ Part = Annotated[Finite, within(1e-5, 0.1, "m")]
 Layer = Annotated[Finite, within(1e-6, 1e-2, "m")]
 Wave = Annotated[Finite, within(1e-9, 2e-3, "m")]
 Offset = Annotated[Finite, within(1e-7, 1e-3, "m")]
-ElementSize = Annotated[Finite, within(1e-8, 1e-2, "m")]
+LEAST_SIZE = 1e-8
+"""Least length (m) of an element's edge: places that are 1e-9 m apart are taken for one."""
+ElementSize = Annotated[Finite, within(LEAST_SIZE, 1e-2, "m")]
 MOST_HARMONICS = 16
 
 
@@ -100,8 +102,8 @@ class MeshSize(Table):
     """Element sizes of the fingertip's mesh (m); elements grow linearly with the distance from the finest ones."""
 
     contact: ElementSize = 5e-6
-    """Length of surface facets where ridges can touch. Range: below 10 nm skin is no continuum; 10 mm is the finger
-    itself."""
+    """Length of surface facets where ridges can touch: a quarter of the wavelength at most, and twice the least radius
+    of curvature of the skin there. Range: below 10 nm skin is no continuum; 10 mm is the finger itself."""
     receptor: ElementSize = 5e-6
     """Element size at the tips of the intermediate ridges, just below the Merkel sites, of ridges that can touch. These
     tips have a radius of 6 µm, and energy densities at the sites need an element of that size. Friction and contact

@@ -143,6 +143,14 @@ class Profiles:
         every = np.unique(np.array(self.crests)[:, None] + across)
         return np.asarray(every[np.abs(every) <= self.finger.ridge_wavelength / 2])
 
+    def radius(self, s: ArrayLike) -> Array:
+        """Return the radius of curvature (m) of the skin at arc lengths from a ridge's middle, infinite where none."""
+        harmonics = 2 * np.pi / self.finger.ridge_wavelength * np.arange(1, len(self._ridge_series) + 1)
+        phases = np.asarray(s, dtype=float)[..., None] * harmonics
+        slope = np.sin(phases) @ (harmonics * self._ridge_series)
+        bend = np.abs(np.cos(phases) @ (harmonics**2 * self._ridge_series))
+        return np.asarray(np.divide((1 + slope**2) ** 1.5, bend, out=np.full_like(bend, np.inf), where=bend > 0))
+
     @property
     def _mean_depth(self) -> float:
         """Depth of the skin's mean line: the highest crests are on the outline."""

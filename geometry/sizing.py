@@ -13,6 +13,8 @@ Array = NDArray[np.float64]
 _MIN_RIDGES = 3  # of a finger
 _CLEAR = 1e-7  # m, between two layers, several times what their samples may miss
 _APART = 1e-6  # m, between points that the mesh has where the nail begins
+_TURN = 2.0  # rad, by which the skin turns along a facet at most: a parabola of more is another shape
+_SAMPLES = 512  # points along a ridge at which its curvature is found; the shortest of 16 waves has 32
 _FASTER = 2.0  # growth from a tip over that elsewhere; at 4 the densities of the default finger are 4 % off
 
 
@@ -41,7 +43,7 @@ def check(finger: Fingertip, size: MeshSize) -> Profiles:
     """Return the fingertip's curves if they and the sizes can be meshed.
 
     Raises:
-        GeometryError: see :func:`check_shape`; or elements too large for a ridge.
+        GeometryError: see :func:`check_shape`; or elements too large for a ridge or for the curvature of its skin.
     """
     profiles = Profiles(finger)
     check_shape(profiles)
@@ -49,6 +51,13 @@ def check(finger: Fingertip, size: MeshSize) -> Profiles:
         raise GeometryError(
             f"contact size {size.contact:g} m is too large for a ridge of {finger.ridge_wavelength:g} m: "
             f"at most a quarter of it, {finger.ridge_wavelength / 4:g} m"
+        )
+    arcs = profiles.touching_arcs(size.touching_fraction, finger.ridge_wavelength / _SAMPLES)
+    radius = float(profiles.radius(arcs).min())
+    if size.contact > _TURN * radius:
+        raise GeometryError(
+            f"contact size {size.contact:g} m is too large for skin that has a radius of curvature of {radius:.3g} m "
+            f"where it can touch, by ridge_profile and ridge_amplitude: at most {_rounded_down(_TURN * radius):g} m"
         )
     return profiles
 

@@ -38,6 +38,7 @@ QUANTITIES = {
     "s": "time",
     "Hz": "frequency",
     "m/s": "speed",
+    "ohm m^2": "resistance of a unit of area",
 }
 """What each unit of a parameter measures."""
 

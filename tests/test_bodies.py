@@ -117,10 +117,16 @@ def test_foot():
         (pad(MM, 8, 0.1, 2 * MM), "flank is .*; it must be positive"),
         (foot(UM, MM, UM, MM), "recess is .*; it must be positive"),
         (ridge(10 * UM, amplitude=MM), "amplitude is 0.001 m; it must be below the height, 0.0006 m"),
+        (
+            ridge(240 * UM),
+            "size is 0.00024 m, too large for a tip with a radius of 0.000118 m; it must",
+        ),
+        (ridge(1e-12), "size is 1e-12 m; it must be at least 1e-08 m, beyond roundoff"),
+        (block(MM, MM, 1e-9), "size is 1e-09 m; it must be at least 1e-08 m, beyond roundoff"),
         (quarter_tube(MM, MM, 4), "inner is 0.001 m; it must be below the outer radius, 0.001 m"),
     ],
 )
-def test_body_without_sides_top_or_wall_is_refused(build, words):
+def test_body_that_cannot_be_made_is_refused(build, words):
     with pytest.raises(GeometryError, match=words):
         build()
 

@@ -12,7 +12,7 @@ from mpi4py import MPI
 from scipy.spatial import cKDTree
 
 from fingerpad.scene import Scene
-from geometry import fingertip, tags
+from geometry import fingertip, sizing, tags
 from geometry.mesh import load
 from geometry.parameters import Fingertip, MeshSize
 from geometry.profiles import GeometryError
@@ -268,8 +268,12 @@ def test_concave_pair_stays():
 
 @pytest.mark.slow
 @pytest.mark.parametrize("half", [True, False])
-def test_sharp_tips_are_meshed(half):
-    """Of the fifth harmonic alone; a mesh of gmsh's own has such triangles, on either side of the mirror."""
+def test_sharp_tips_are_meshed(half, monkeypatch):
+    """Of the fifth harmonic alone; a mesh of gmsh's own has such triangles, on either side of the mirror.
+
+    Its facets turn by more than they may in a scene.
+    """
+    monkeypatch.setattr(sizing, "_TURN", 10.0)
     scene = Scene.load(SMALL).replace(geometry={"ridge_profile": [0, 0, 0, 0, 1]}, mesh={"contact": 40e-6})
     size = scene.mesh.model_copy(update={"touching_half_arc": 0.5e-3})
     body = load(MPI.COMM_WORLD, partial(fingertip.build, scene.geometry, size, half=half))

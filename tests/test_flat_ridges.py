@@ -13,7 +13,7 @@ from geometry import tags
 from geometry.mesh import load
 from geometry.parameters import Fingertip, MeshSize
 from geometry.profiles import Profiles
-from variational.attraction.electroadhesion import VACUUM_PERMITTIVITY
+from variational.attraction.dielectric import VACUUM_PERMITTIVITY
 from variational.body import Body
 from variational.problem import Interface
 from variational.solvers.continuation import Target

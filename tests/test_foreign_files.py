@@ -19,8 +19,8 @@ from fingerpad.reduced.registry import find
 from fingerpad.report.page import picture
 from fingerpad.report.write import write
 from fingerpad.results import style
+from fingerpad.results.arrays import finger_of
 from fingerpad.results.checkpoint import Checkpoint
-from fingerpad.results.drawing import finger_of
 from fingerpad.results.files import Table, lock_file, read_object, replace
 from fingerpad.results.folder import Folder, FolderError, Serial, full_scene
 from fingerpad.runs.context import RunContext
@@ -107,6 +107,7 @@ FINGER = {
     "sed": np.zeros(1),
     "tag": np.zeros(1, dtype=np.int32),
 }
+LINES = {"lines": np.array([[0, 2, 1]]), "beside": np.array([[0, -1]])}
 
 
 @pytest.mark.parametrize(
@@ -116,7 +117,29 @@ FINGER = {
 def test_arrays_of_no_finger_are_none(tmp_path, changes):
     np.savez(tmp_path / "whole.npz", **FINGER)
     np.savez(tmp_path / "other.npz", **(FINGER | changes))
-    assert finger_of(tmp_path / "whole.npz").keys() == FINGER.keys() and finger_of(tmp_path / "other.npz") == {}
+    assert finger_of(tmp_path / "whole.npz").keys() == FINGER.keys() | LINES.keys()
+    assert finger_of(tmp_path / "other.npz") == {}
+
+
+@pytest.mark.parametrize(
+    "changes", [{"lines": np.array([[0, 3, 1]])}, {"beside": np.array([[0, 1]])}, {"beside": np.array([[0.0, -1.0]])}]
+)
+def test_lines_of_no_finger_are_none(tmp_path, changes):
+    np.savez(tmp_path / "whole.npz", **FINGER, **LINES)
+    np.savez(tmp_path / "other.npz", **FINGER, **(LINES | changes))
+    assert finger_of(tmp_path / "whole.npz").keys() == FINGER.keys() | LINES.keys()
+    assert finger_of(tmp_path / "other.npz") == {}
+
+
+def test_lines_of_an_earlier_version_are_straight(tmp_path):
+    """Its files have vertices and triangles alone."""
+    square = {"x": np.array([[0, 0], [1, 0], [1, 1], [0, 1.0]]), "triangles": np.array([[0, 1, 2], [0, 2, 3]])}
+    more = {"u": 0.1 * square["x"], "sed": np.ones(2), "tag": np.array([3, 4])}
+    np.savez(tmp_path / "old.npz", **square, **more)
+    found = finger_of(tmp_path / "old.npz")
+    begin, middle, end = found["x"][found["lines"]].swapaxes(0, 1)
+    assert middle == pytest.approx((begin + end) / 2) and len(found["x"]) == len(found["u"]) == 4 + 5
+    assert sorted(map(tuple, found["beside"].tolist())) == [(0, -1), (0, -1), (0, 1), (1, -1), (1, -1)]
 
 
 # -- symbolic links --------------------------------------------------------------------------------------------------

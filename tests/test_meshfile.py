@@ -1,6 +1,5 @@
 """A body from a gmsh file: what is read, on any number of ranks, and what is refused in one sentence."""
 
-import itertools
 import os
 import re
 from functools import partial
@@ -252,85 +251,6 @@ def test_name_in_another_encoding_is_refused(place):
     place.write_bytes(place.read_bytes().replace(b'"ridge 0"', b'"r\xf6cken"'))
     with pytest.raises(GeometryError, match=r"mine.msh: group \d+ has a name that is no text in UTF-8"):
         load(MPI.COMM_SELF, geometry.file(place))
-
-
-# -- by hand: what gmsh does not make itself ---------------------------------------------------------------
-def block(upper: int = 4) -> tuple[list[tuple[float, float]], list[list[int]]]:
-    """Return places (mm) and triangles of two layers of four squares, the upper one cut into ``upper``, on one line.
-
-    Their nodes on the common line are the same as far as they are at the same places.
-    """
-    rows = [[(x / 4, y) for x in range(5)] for y in (0.0, 0.25)]
-    rows += [[(x / upper, y) for x in range(upper + 1)] for y in (0.25, 0.5)]
-    places = list(dict.fromkeys(place for row in rows for place in row))
-    cells = []
-    for low, high in (rows[:2], rows[2:]):
-        for k in range(len(low) - 1):
-            a, b, c, d = (places.index(place) + 1 for place in (low[k], low[k + 1], high[k + 1], high[k]))
-            cells += [[a, b, c], [a, c, d]]
-    return places, cells
-
-
-def by_hand(file: Path, places, cells, rim) -> Path:
-    """Write a file of version 2.2 with the lower edges as ridge 0; ``rim`` are pairs of nodes."""
-    skin = [[k, k + 1] for k in range(1, 5)]
-    lines = [f"1 2 1 1 {a} {b}" for a, b in skin] + [f"1 2 2 2 {a} {b}" for a, b in rim]
-    elements = [*lines, *(f"2 2 3 3 {' '.join(map(str, cell))}" for cell in cells)]
-    file.write_text(
-        "\n".join(
-            [
-                "$MeshFormat\n2.2 0 8\n$EndMeshFormat",
-                '$PhysicalNames\n3\n1 1 "ridge 0"\n1 2 "bone rim"\n2 3 "dermis"\n$EndPhysicalNames',
-                f"$Nodes\n{len(places)}",
-                *(f"{k} {x * MM} {y * MM} 0" for k, (x, y) in enumerate(places, start=1)),
-                f"$EndNodes\n$Elements\n{len(elements)}",
-                *(f"{k} {element}" for k, element in enumerate(elements, start=1)),
-                "$EndElements\n",
-            ]
-        ),
-        encoding="utf-8",
-    )
-    return file
-
-
-def rim_of(places) -> list[tuple[int, int]]:
-    top = [k for k, (_, y) in enumerate(places, start=1) if y == 0.5]
-    return list(itertools.pairwise(top))
-
-
-def test_block_by_hand_is_a_body(tmp_path):
-    places, cells = block()
-    made = load(MPI.COMM_WORLD, geometry.file(by_hand(tmp_path / "mine.msh", places, cells, rim_of(places))))
-    assert made.mesh.topology.index_map(2).size_global == 16
-
-
-@pytest.mark.parametrize(
-    ("case", "message"),
-    [
-        ("crack", "do not share a node there, as neighbours must"),
-        ("hanging node", "the triangles at (0.000125, 0.00025) m do not share a node there"),
-        ("cells twice", "2 of 18 triangles are in the mesh twice"),
-        ("three at an edge", "three triangles have the same edge at (0.000375, 0.000125) m, so that they overlap"),
-        ("skin and rim", "groups 'bone rim' and 'ridge 0' have an edge in common"),
-    ],
-)
-def test_mesh_that_does_not_hang_together_is_refused(tmp_path, case, message):
-    """Each was accepted once, and gave a body that was too soft, or glued where it should touch."""
-    places, cells = block(8 if case == "hanging node" else 4)
-    rim = rim_of(places)
-    if case == "crack":  # the upper layer has nodes of its own, but for the first
-        shared = [k for k, (_, y) in enumerate(places, start=1) if y == 0.25][1:]
-        own = {k: len(places) + n for n, k in enumerate(shared, start=1)}
-        cells = cells[:8] + [[own.get(k, k) for k in cell] for cell in cells[8:]]
-        places = places + [places[k - 1] for k in shared]
-    elif case == "cells twice":
-        cells = cells + cells[4:6]
-    elif case == "three at an edge":
-        cells = [*cells, [1, 2, 8]]
-    elif case == "skin and rim":
-        rim = [*rim, (2, 1)]
-    with pytest.raises(GeometryError, match=re.escape(message)):
-        load(MPI.COMM_WORLD, geometry.file(by_hand(tmp_path / "mine.msh", places, cells, rim)))
 
 
 def test_triangles_outside_the_layers_are_refused(place):

@@ -14,8 +14,9 @@ from variational.contact.penalty import Penalty
 from variational.materials import ogden, saint_venant
 from variational.materials.ogden import Ogden
 from variational.materials.saint_venant import SaintVenant
-from variational.output import Cellwise, Fields, Receptors, gather_mesh, sed_per_cell
+from variational.output import Cellwise, Fields, Receptors, sed_per_cell
 from variational.problem import Interface, Problem
+from variational.snapshot import gather_mesh
 from variational.surface import Surface
 
 pytestmark = pytest.mark.mpi
@@ -147,7 +148,10 @@ def test_gathered_mesh(problem):
     assert (snapshot is None) == (problem.mesh.comm.rank > 0)
     if snapshot is None:
         return
-    assert snapshot.x.shape == snapshot.u.shape == (49, 2)
+    lines = 4 * 6 + 6  # around the square, and between its two layers
+    assert snapshot.lines.shape == (lines, 3) and snapshot.x.shape == snapshot.u.shape == (49 + lines, 2)
+    begin, middle, end = snapshot.x[snapshot.lines].swapaxes(0, 1)
+    assert np.abs(middle - (begin + end) / 2).max() < 1e-17
     assert snapshot.triangles.shape == (72, 3)
     assert np.abs(snapshot.x + snapshot.u - snapshot.x @ F_GIVEN.T).max() < 1e-17
     corners = snapshot.x[snapshot.triangles]

@@ -5,21 +5,24 @@ import shutil
 from dataclasses import replace
 from types import SimpleNamespace
 
+import matplotlib
 import numpy as np
 import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.colors import LogNorm
 from matplotlib.image import imread
 from matplotlib.tri import Triangulation
+from PIL import Image
 
 import fingerpad as fp
 from fingerpad.results import style
 from fingerpad.results.curves import SurfaceProfile, history, saw_teeth, surface
-from fingerpad.results.finger_picture import finger
+from fingerpad.results.finger_picture import finger, scales
 from fingerpad.scene import from_data
 from geometry import tags
 from tests.runs import no_pictures
 from tests.small_finger import NINE
+from variational.outline import outline
 from variational.state import ContactState, Errors, StepRecord
 
 LOADED = ContactState(
@@ -40,8 +43,14 @@ def snapshot() -> SimpleNamespace:
     keep = (np.abs(cx) > 1e-3) | (np.abs(cy - 1.6e-3) > 0.2e-3)
     triangles, cx, cy = triangles[keep], cx[keep], cy[keep]
     tag = np.where(cy < 0.4e-3, tags.STRATUM_CORNEUM, np.where(cy < 0.8e-3, tags.VIABLE_EPIDERMIS, tags.DERMIS))
-    u = np.column_stack([0 * x, 20.0 * np.maximum(np.abs(x) - 1e-3, 0) ** 2])
-    return SimpleNamespace(x=np.column_stack([x, y]), u=u, triangles=triangles, sed=2e4 * np.exp(-cy / 5e-4), tag=tag)
+    places = np.column_stack([x, y])
+    ends, beside, _ = outline(places, triangles, tag)
+    middles = len(places) + np.arange(len(ends))
+    places = np.concatenate([places, places[ends].mean(axis=1)])
+    u = np.column_stack([0 * places[:, 0], 20.0 * np.maximum(np.abs(places[:, 0]) - 1e-3, 0) ** 2])
+    lines = np.stack([ends[:, 0], middles, ends[:, 1]], axis=1)
+    sed = 2e4 * np.exp(-cy / 5e-4)
+    return SimpleNamespace(x=places, u=u, triangles=triangles, sed=sed, tag=tag, lines=lines, beside=beside)
 
 
 def profile(title: str, shift: float, sign: float) -> SurfaceProfile:
@@ -88,7 +97,7 @@ def assert_picture(path, figure) -> None:
     for label in labels(figure):
         assert label.endswith(")"), label
         assert any(unit in label for unit in ("mm", "µm", "kPa", "N/m", "(–)", "(number)")), label
-    for words in ("f_{ext}", "75 N/m", "200 V", "0.25"):
+    for words in ("f_ext", "75 N/m", "200 V", "0.25"):
         assert words in figure.get_suptitle()
 
 
@@ -106,11 +115,58 @@ def test_finger(tmp_path, snapshot, sites):
 def test_finger_views_the_contact(tmp_path, snapshot):
     """The contact, 1 mm on either side, up to 1.3 mm, with energies in kPa on a logarithmic scale."""
     near = finger(tmp_path / "finger.png", snapshot, None, TITLE).axes[1]
-    assert near.get_xlim() == pytest.approx((-2.0, 2.0))
+    assert near.get_xlim() == pytest.approx((-2.125, 2.125))  # the middle of an edge is 0.3 µm above the screen
     assert near.get_ylim()[1] == pytest.approx(1.3)
-    norm = near.collections[0].norm
-    assert isinstance(norm, LogNorm)
-    assert norm.vmax == pytest.approx(20.0, rel=0.2)
+    colours = near.figure.axes[2]
+    assert colours.get_xscale() == "log"
+    assert colours.get_xlim()[1] == pytest.approx(20.0, rel=0.2)
+
+
+def test_cells_are_drawn_where_they_are(snapshot):
+    """The colour of a pixel is that of the density of the cell there; nothing is drawn outside."""
+    near = finger(None, snapshot, None, TITLE).axes[1]
+    image = near.images[0]
+    left, right, low, high = image.get_extent()
+    rows, columns = image.get_array().shape[:2]
+    for x, y, seen in ((0.02, 0.3, True), (1.51, 1.1, True), (0.0, -0.1, False), (-1.97, 0.001, False)):
+        pixel = image.get_array()[int((y - low) / (high - low) * rows), int((x - left) / (right - left) * columns)]
+        assert bool(pixel[3]) == seen, (x, y)
+    points = 1e3 * (snapshot.x + snapshot.u)
+    cell = int(Triangulation(*points.T, snapshot.triangles).get_trifinder()(1.51, 1.1))
+    norm = LogNorm(1e-6 * np.quantile(snapshot.sed, 0.999), 1e-3 * np.quantile(snapshot.sed, 0.999))
+    pixel = image.get_array()[int((1.1 - low) / (high - low) * rows), int((1.51 - left) / (right - left) * columns)]
+    expected = matplotlib.colormaps["viridis"](norm(1e-3 * snapshot.sed[cell]), bytes=True)
+    assert np.abs(np.subtract(pixel, expected, dtype=int)).max() <= 3  # levels: its scale is of cells near the contact
+
+
+def test_figure_of_another_state_becomes_that_of_this_one(snapshot):
+    """Pixel by pixel: the finger, and the skin with another range of stresses."""
+    common = scales([snapshot])
+    other = SimpleNamespace(**vars(snapshot) | {"sed": 0.1 * snapshot.sed, "u": 0.5 * snapshot.u})
+    drawn = finger(None, other, None, "", {}, common)
+    fresh, again = (finger(None, snapshot, None, TITLE, {1: 0.5e-3}, common, on) for on in (None, drawn))
+    assert pixels(again) == pixels(fresh)
+    before, after = profile("before", 0.0, 0.2), profile("after", 1e-4, -1.0)
+    drawn = surface(None, [replace(before, p=0.3 * before.p)], "")
+    fresh, again = (surface(None, [after], TITLE, on=on) for on in (None, drawn))
+    assert pixels(again) == pixels(fresh)
+
+
+def test_file_has_the_colours_that_were_drawn(tmp_path):
+    """Of a palette: white is white, large surfaces have their colour, and a gradient is off by what five bits leave."""
+    drawn = style.sheet(3.0, "")
+    left, right = style.panel(drawn, 0.5, 4.0, 0.5, 2.5), style.panel(drawn, 5.0, 8.5, 0.5, 2.5)
+    left.set_facecolor(style.VERMILION)
+    right.imshow(np.linspace(0, 1, 256)[None], aspect="auto", cmap=style.MAGNITUDE)
+    style.save(drawn, tmp_path / "drawn.png")
+    with Image.open(tmp_path / "drawn.png") as file:
+        assert file.mode == "P"
+        found = np.asarray(file.convert("RGB")).astype(int)
+    expected = np.asarray(drawn.canvas.buffer_rgba())[:, :, :3].astype(int)
+    assert (found[0, 0] == 255).all() and (found[225, 300] == [213, 94, 0]).all()
+    gradient = (slice(100, 350), slice(760, 1270))
+    assert np.abs(found[gradient] - expected[gradient]).max() <= 7
+    assert np.abs(found - expected).mean() < 0.5
 
 
 def test_surface(tmp_path):
@@ -125,7 +181,7 @@ def test_surface(tmp_path):
     for title, state in zip(titles, states, strict=True):
         assert state.title in title
         assert "75 N/m" in title and "200 V" in title and "1.5 mm" in title and "50 kPa" in title
-        assert f"$x$ = {state.state.bone_x * 1e3:g} mm" in title
+        assert f"x = {state.state.bone_x * 1e3:g} mm" in title
     pressure = next(line for line in figure.axes[0].lines if line.get_label().startswith("contact pressure"))
     assert np.nanmax(pressure.get_ydata()) == pytest.approx(100.0)
     assert np.isnan(pressure.get_ydata()).sum() == 17  # lines break between ridges
@@ -158,7 +214,7 @@ def test_history(tmp_path, f_ext):
     """It starts with the charged normal state, the last before sliding, and marks both jumps."""
     figure = history(tmp_path / "history.png", steps(f_ext)[3:], "Sliding: " + TITLE, mu_0=0.25)
     assert_picture(tmp_path / "history.png", figure)
-    assert any("mu_{app}" in label for label in labels(figure))
+    assert any("µ_app" in label for label in labels(figure))
     assert any("ridges in\ncontact" in label for label in labels(figure))
     ticks = figure.axes[2].get_yticks()
     assert (ticks == np.round(ticks)).all(), "ridges are counted"

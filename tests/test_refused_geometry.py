@@ -3,6 +3,7 @@
 import re
 
 import gmsh
+import numpy as np
 import pytest
 from mpi4py import MPI
 from pydantic import ValidationError
@@ -91,6 +92,30 @@ def test_fingertip_is_refused(given, message):
     """What crosses, and the parameter, are named."""
     with pytest.raises(GeometryError, match=message):
         sizing.check_shape(Profiles(Fingertip(**given)))
+
+
+def test_skin_that_a_facet_cannot_follow_is_refused():
+    """Where it can touch, it turns by 2 rad along a facet at most; its circle is that of differences."""
+    sharp = Fingertip(ridge_profile=(1.0, 0, 0, 0, 0, 0, 0, 0.3))
+    message = r"contact size 2e-05 m is too large for skin that has a radius of curvature of .*: at most [0-9.e-]+ m$"
+    with pytest.raises(GeometryError, match=message) as refusal:
+        sizing.check(sharp, MeshSize(contact=20e-6))
+    largest = float(str(refusal.value).split()[-2])
+    profiles = sizing.check(sharp, MeshSize(contact=largest))
+    s = np.linspace(-60e-6, 60e-6, 120_001)
+    slope = np.gradient(profiles.skin(s), s)
+    radius = (1 + slope**2) ** 1.5 / np.abs(np.gradient(slope, s))
+    assert radius[5:-5].min() == pytest.approx(largest / 2, rel=2e-2)
+    assert profiles.radius(s)[5:-5] == pytest.approx(radius[5:-5], rel=1e-3)
+
+
+def test_grooves_may_be_sharper_than_facets():
+    """They do not touch, and a sinusoid's crest takes facets of a quarter of its wavelength."""
+    cusps = Fingertip(ridge_profile=(1.0, -0.25, 0.111))
+    profiles = Profiles(cusps)
+    assert profiles.radius(cusps.ridge_wavelength / 2) < profiles.radius(0.0) / 3
+    sizing.check(cusps, MeshSize(contact=cusps.ridge_wavelength / 4))
+    sizing.check(Fingertip(), MeshSize(contact=Fingertip().ridge_wavelength / 4))
 
 
 def test_limits_that_are_named_can_be_followed():

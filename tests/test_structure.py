@@ -55,7 +55,16 @@ def test_each_module_is_imported_by_a_quick_test():
     imports = [
         *(f"tests.{name}" for name in QUICK),
         *(f"fingerpad.cli.{_BESIDE.get(name, name)}" for name in COMMANDS),
-        *(f"fingerpad.{name}" for name in ("report.run_page", "report.sweep_page", "results.drawing", "runs.batch")),
+        *(
+            f"fingerpad.{name}"
+            for name in (
+                "report.run_page",
+                "report.sweep_page",
+                "results.drawing",
+                "results.drive_picture",
+                "runs.batch",
+            )
+        ),
     ]
     code = "\n".join(["import sys", *(f"import {name}" for name in imports), "print(*sys.modules)"])
     done = python("-c", code, cwd=ROOT)

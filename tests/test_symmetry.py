@@ -22,10 +22,10 @@ from variational.body import Body
 from variational.contact.penalty import Penalty
 from variational.energy import EnergyBook
 from variational.materials.ogden import Ogden
-from variational.output import Snapshot
 from variational.problem import Interface
 from variational.resultants import RidgeLoads
 from variational.roughness.bam import BearingArea
+from variational.snapshot import Snapshot
 from variational.solvers.continuation import Target
 from variational.solvers.stability import StabilityCheck
 

@@ -37,7 +37,8 @@ from dolfinx import fem
 from mpi4py import MPI
 from numpy.typing import NDArray
 
-from variational.attraction.electroadhesion import ELECTROSTATIC, VACUUM_PERMITTIVITY
+from variational.attraction.dielectric import VACUUM_PERMITTIVITY
+from variational.attraction.electroadhesion import ELECTROSTATIC
 from variational.contact.formulation import SurfaceState
 
 if TYPE_CHECKING:
@@ -120,6 +121,8 @@ class EnergyBook:
         near, h_0 = np.minimum(y, d), self._problem.interface.h_0
         g = h_0 + np.maximum(y, d)
         phi = -VACUUM_PERMITTIVITY / 2 * (1 / g + (d - near) / g**2)
+        if self._problem.interface.share is not None:
+            phi *= self._problem.interface.share(d_eq)[self._problem.surface.ridge, None] ** 2
         width = -surface.area_y  # current dx per reference length
         return self._copies * self._problem.surface.per_ridge(phi * width)
 

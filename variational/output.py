@@ -1,4 +1,4 @@
-"""What is evaluated inside of the body: fields for ParaView, pictures on rank 0, energy densities at receptor sites.
+"""What is evaluated inside of the body: fields for ParaView, mean energy densities, densities at receptor sites.
 
 ParaView shows the deformed body with *Warp By Vector* on ``displacement.bp``. Stress and energy density jump from
 layer to layer; they are sampled in the corners of each cell by itself and stay discontinuous.
@@ -9,7 +9,6 @@ import ctypes
 import os
 import re
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -29,7 +28,6 @@ if TYPE_CHECKING:
     from variational.problem import Problem
 
 Array = NDArray[np.float64]
-_ON_LINE = 1e-9  # m from x = 0, within which a vertex is its own image
 _ROUNDOFF = 1e-8  # of a barycentric coordinate: a site on a facet belongs to both cells
 _BEYOND = 1e-3  # of the body's size: what a curved edge may be beyond its nodes
 
@@ -170,81 +168,6 @@ def sed_per_cell(problem: "Problem") -> tuple[NDArray[np.int32], Array]:
     sample = Cellwise(problem.mesh, problem.cell_tags, problem.densities, np.asarray(points))
     means = (np.asarray(weights) / np.sum(weights)) @ sample.evaluate()[:, :, 0].T
     return owned_cells(problem.mesh), np.asarray(means)
-
-
-@dataclass(frozen=True)
-class Snapshot:
-    """A state of the whole body on one rank; straight-sided triangles between vertices."""
-
-    x: Array
-    """Reference positions of the vertices (m), shape (vertices, 2)."""
-    u: Array
-    """Their displacements (m), shape (vertices, 2)."""
-    triangles: NDArray[np.int64]
-    """Vertices of each cell, shape (cells, 3)."""
-    sed: Array
-    """Mean strain energy density of each cell (J/m^3), shape (cells,)."""
-    tag: NDArray[np.int32]
-    """Tag of each cell, zero where it has none, shape (cells,)."""
-
-    def whole(self) -> "Snapshot":
-        """Return the body whose half at x >= 0 this is, one body along the line of symmetry."""
-        on_line = np.abs(self.x[:, 0]) < _ON_LINE
-        image = np.where(on_line, np.arange(len(on_line)), len(on_line) + np.cumsum(~on_line) - 1)
-        flip = np.array([-1.0, 1.0])
-        return Snapshot(
-            np.concatenate([self.x, flip * self.x[~on_line]]),
-            np.concatenate([self.u, flip * self.u[~on_line]]),
-            np.concatenate([self.triangles, image[self.triangles][:, ::-1]]),
-            np.concatenate([self.sed, self.sed]),
-            np.concatenate([self.tag, self.tag]),
-        )
-
-
-class Nodes:
-    """Brings values to every rank, numbered as the mesh was before it was distributed.
-
-    Attributes:
-        coordinates: nodes of the unloaded mesh (m), shape (nodes, 2).
-        triangles: nodes of each cell, shape (cells, 3).
-    """
-
-    def __init__(self, problem: "Problem") -> None:
-        mesh = problem.mesh
-        self._comm, cells = mesh.comm, np.arange(mesh.topology.index_map(2).size_local)
-        # The first three degrees of freedom of a Lagrange triangle are its vertices, in the geometry's order.
-        self._dofs = problem.V.dofmap.list[cells][:, :3]
-        nodes = compat.cell_geometry(mesh)[cells][:, :3]
-        names = self._together(np.asarray(mesh.geometry.input_global_indices)[nodes])
-        self._sort = np.argsort(self._together(np.asarray(mesh.topology.original_cell_index)[cells]))
-        _, self._first, corners = np.unique(names[self._sort].ravel(), return_index=True, return_inverse=True)
-        self.triangles = corners.reshape(-1, 3)
-        self.coordinates = self._pick(mesh.geometry.x[nodes][:, :, :2])
-
-    def _together(self, mine: NDArray[Any]) -> NDArray[Any]:
-        return np.concatenate(self._comm.allgather(mine))
-
-    def by_cell(self, mine: NDArray[Any]) -> NDArray[Any]:
-        """Return one value a cell of those of own cells, on every rank; collective."""
-        return np.asarray(self._together(mine)[self._sort])
-
-    def _pick(self, mine: Array) -> Array:
-        """Return one value a node of values by cell and corner, shape (cells, 3, 2)."""
-        return np.asarray(self.by_cell(mine).reshape(-1, 2)[self._first])
-
-    def gather(self, problem: "Problem") -> Array:
-        """Return the displacement of all nodes (m), shape (nodes, 2); collective."""
-        return self._pick(problem.displacement()[self._dofs])
-
-
-def gather_mesh(problem: "Problem") -> Snapshot | None:
-    """Bring the current state to rank 0, None on the others; numbered as the mesh was before it was distributed."""
-    nodes, (cells, sed) = Nodes(problem), sed_per_cell(problem)
-    tag = np.zeros(len(cells), dtype=np.int32)
-    own = problem.cell_tags.indices < len(cells)
-    tag[problem.cell_tags.indices[own]] = problem.cell_tags.values[own]
-    found = Snapshot(nodes.coordinates, nodes.gather(problem), nodes.triangles, nodes.by_cell(sed), nodes.by_cell(tag))
-    return found if problem.mesh.comm.rank == 0 else None
 
 
 class Receptors:

@@ -19,7 +19,7 @@ equations but of pseudo-transient continuation (:mod:`~variational.solvers.trans
 never solves.
 """
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from functools import cache
 from typing import TYPE_CHECKING
@@ -56,6 +56,8 @@ class Interface:
     """Effective insulator thickness (m)."""
     attraction: electroadhesion.Attraction | None = electroadhesion.ELECTROSTATIC
     """What draws the skin to the screen; None leaves it out of the forms."""
+    share: Callable[[np.ndarray], np.ndarray] | None = None
+    """Voltage that attracts across air gaps (m), over :attr:`Problem.voltage`; None where it is the same for all."""
 
     def __init__(
         self,
@@ -63,6 +65,7 @@ class Interface:
         friction: Friction | float | None,
         h_0: float,
         attraction: electroadhesion.Attraction | None = electroadhesion.ELECTROSTATIC,
+        share: Callable[[np.ndarray], np.ndarray] | None = None,
     ) -> None:
         """Take the laws as they are described above.
 
@@ -70,7 +73,8 @@ class Interface:
             ValueError: friction is no law; in one sentence.
         """
         law = law_of(friction)
-        for name, value in (("formulation", formulation), ("friction", law), ("h_0", h_0), ("attraction", attraction)):
+        laws = {"formulation": formulation, "friction": law, "h_0": h_0, "attraction": attraction, "share": share}
+        for name, value in laws.items():
             object.__setattr__(self, name, value)
 
 
@@ -87,6 +91,7 @@ class Problem:
         guess: constant, what points on the friction cone are first taken for: STICKS or SLIPS.
         ease: constant, part of the tangential stiffness of the contact that acts: 1 but on the way to an equilibrium.
         d_eq: equivalent air gap (m), one value a cell, read on the ridges.
+        share: share of the voltage, as d_eq; None where it is the same for all ridges.
         anchor: imposed friction history (m), see :mod:`variational.contact.friction`; None without friction.
         multiplier: imposed contact pressure (Pa), read by an augmented Lagrangian.
         history: fields that accepted steps leave to the next one, these two among them.
@@ -141,6 +146,8 @@ class Problem:
         self.ease, self.dt = constant(1.0), constant(0.0)
         self._friction = friction = None if interface.friction is None else interface.friction.with_constants(constant)
         self._h_0 = h_0 = constant(interface.h_0)
+        self.share = None if interface.share is None else fem.Function(cellwise)
+        voltage = self.voltage if self.share is None else self.voltage * self.share
 
         w, v = self.w, ufl.TestFunction(self.V)
         H = ufl.grad(w)
@@ -168,7 +175,7 @@ class Problem:
 
         self.x, self.y = ufl.SpatialCoordinate(mesh)[0] + self.u[0], kinematics.current_height(mesh, self.u)
         attraction = interface.attraction
-        self.p_el = attraction.pressure(self.y, self.d_eq, self.voltage, h_0) if attraction else ufl.zero()
+        self.p_el = attraction.pressure(self.y, self.d_eq, voltage, h_0) if attraction else ufl.zero()
         normal = ufl.FacetNormal(mesh)
         self.area = kinematics.cofactor(F) * normal  # current per reference area, a vector
         skin = Skin(
@@ -187,7 +194,7 @@ class Problem:
         self.opening = formulation.opening(skin, self.contact)
         dS = surface.measure
         if attraction:
-            energy += -attraction.potential(self.y, self.d_eq, self.voltage, h_0) * self.area[1] * dS
+            energy += -attraction.potential(self.y, self.d_eq, voltage, h_0) * self.area[1] * dS
         residual = ufl.derivative(energy, w, v) + formulation.virtual_work(skin, self.contact, v) * dS
         du = ufl.TrialFunction(self.V)
         skin_mass = ufl.dot(du, v) * dS
@@ -283,6 +290,10 @@ class Problem:
         self.interface = replace(self.interface, friction=friction, h_0=h_0)
 
     def set_air_gaps(self, d_eq: np.ndarray) -> None:
-        """Give each ridge its equivalent air gap (m), shape (ridges,)."""
-        self.d_eq.x.array[self.surface.pairs[:, 0]] = d_eq[self.surface.ridge]
-        self.d_eq.x.scatter_forward()
+        """Give each ridge its equivalent air gap (m), shape (ridges,), and its share of the voltage."""
+        fields = [(self.d_eq, d_eq)]
+        if self.share is not None and self.interface.share is not None:
+            fields.append((self.share, self.interface.share(d_eq)))
+        for field, values in fields:
+            field.x.array[self.surface.pairs[:, 0]] = values[self.surface.ridge]
+            field.x.scatter_forward()

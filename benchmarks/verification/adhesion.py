@@ -26,7 +26,8 @@ from scipy.optimize import brentq, minimize_scalar
 from benchmarks.verification.bodies import Smooth, formulations, over_screen
 from benchmarks.verification.case import Case, Row
 from geometry.bodies import block, pad
-from variational.attraction.electroadhesion import VACUUM_PERMITTIVITY, Attraction
+from variational.attraction.dielectric import VACUUM_PERMITTIVITY
+from variational.attraction.electroadhesion import Attraction
 from variational.contact.penalty import Penalty
 from variational.materials.saint_venant import SaintVenant
 from variational.problem import Interface

@@ -25,7 +25,7 @@ from fingerpad.scene.materials import BEARING_AREA, LARGEST_GAP
 from fingerpad.scene.remarks import LEAKAGE, skin_modulus
 from fingerpad.slices import traces
 from geometry.units import Range
-from variational.attraction.electroadhesion import VACUUM_PERMITTIVITY
+from variational.attraction.dielectric import VACUUM_PERMITTIVITY
 
 _TABLE = (20.0, 50.0, 75.0, 100.0, 150.0), (0.0, 50.0, 100.0, 150.0, 200.0)  # N/m, V
 

@@ -26,6 +26,7 @@ COMMANDS = {
     "check": "what a run contains, omits and costs, and a picture of its mesh; solves nothing",
     "mesh": "the mesh of the unloaded finger as a file for gmsh, in m, with names of its parts",
     "calculator": "the closed form as one HTML page with sliders, for a browser without Python or network",
+    "drive": "friction over the period of an alternating voltage, its spectrum, and whether it is felt, in a second",
     "microscale": "air gap, attraction and real area of contact of a ridge over its pressure",
     "topography": "roughness of a scene from a measured height map",
     "params": "every key of a scene: unit, default, range and meaning",

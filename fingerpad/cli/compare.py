@@ -116,7 +116,7 @@ def table(results: Sequence[Result]) -> str:
             unit = f" ({quantity.unit})" if quantity.unit else ""
             states = [getattr(result, name) for result in results]
             cells = ["–" if s is None else cell(key, getattr(s, key), getattr(s.error, key, math.nan)) for s in states]
-            words = called(name, next((s.voltage for s in states if s is not None), results[0].scene.voltage))
+            words = called(name, next((s.voltage for s in states if s is not None), results[0].scene.volts))
             rows.append([f"{words}: {quantity.words}{unit}", *cells])
     rows.append(["processor time (s)", *(f"{result.cost.processor_seconds:.2f}" for result in results)])
     rows.append(["factorisations", *(str(result.cost.factorisations) for result in results)])

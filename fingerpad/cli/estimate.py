@@ -12,6 +12,7 @@ from fingerpad.reduced import cylinder_errors, cylinders
 from fingerpad.results.quantities import FINGER, PER_LENGTH, QUANTITIES
 from fingerpad.results.result import Result
 from fingerpad.runs.context import RunContext
+from fingerpad.runs.drive import drive
 from fingerpad.runs.solve import solved
 from fingerpad.scene import Scene
 from fingerpad.scene.messages import SceneError
@@ -47,7 +48,9 @@ def main(argv: Sequence[str]) -> int:
     scene = scene_of(args, meshed=False)
     cylinders.Cylinders().check(scene)
     key = "force" if args.force is not None or (scene.force is not None and args.f_ext is None) else "f_ext"
-    forces, voltages = (several(args, scene, each) for each in (key, "voltage"))
+    forces = several(args, scene, key)
+    over = scene.supply is not None and args.voltage is None
+    voltages = [scene.volts] if over else several(args, scene, "voltage")
     rows, lost = grid(scene, forces, voltages, key)
     columns = _COLUMNS if key == "f_ext" else _NEWTONS
     of = "Friction" if key == "f_ext" else "Friction of the whole finger"
@@ -62,7 +65,10 @@ def main(argv: Sequence[str]) -> int:
         echo("section at the centre of the finger.")
     states = [row["state"] for row in rows if "state" in row]
     limits = (f"{text[0].upper()}{text[1:]}." for text in on_states(states, scene.closure()))
-    said = (*([LEAKAGE] if any(voltages) else []), *(f"{text}." for text in remarks(scene)), *limits)
+    if over:
+        for force in forces:
+            echo(f"\nAt {force:g} {'N' if key == 'force' else 'N/m'}. {drive(scene.replace(**{key: force}))}")
+    said = (*([LEAKAGE] if any(voltages) and not over else []), *(f"{text}." for text in remarks(scene)), *limits)
     notes = [PER_LENGTH] if key == "f_ext" else errors.remarks(forces)
     for note in (*notes, *_known(scene, rows), *said, *lost):
         echo(note)
@@ -88,8 +94,13 @@ def grid(
     for force in forces:
         for voltage in voltages:
             row: dict[str, Any] = {key: force, "voltage": voltage}
+            asked = (
+                {key: force}
+                if scene.supply is not None and voltage == scene.volts
+                else {key: force, "voltage": voltage}
+            )
             try:
-                found = solved(scene.replace(**{key: force, "voltage": voltage}), model, RunContext())
+                found = solved(scene.replace(**asked), model, RunContext())
                 row |= _row(found)
             except SceneError as error:
                 lost.append(f"At {force:g} {unit} and {voltage:g} V: {error}.")

@@ -158,11 +158,12 @@ def assembled(
         half: of the half at x >= 0, whose mirror image is the other.
     """
     numerics, tagged = model.numerics, meshed(model, comm, half)
+    attraction = ELECTROSTATIC if model.options.voltage else None
     layers = tagged.layers().values()
     body = Body(
         tagged,
         {tag: solid for tag, solid in model.solids.items() if tag in layers},
-        Interface(model.contact, model.friction, model.h_0, ELECTROSTATIC if model.options.voltage else None),
+        Interface(model.contact, model.friction, model.h_0, attraction, model.share),
         model.closure,
         element=numerics.element,
         points=numerics.quadrature_points,

@@ -134,7 +134,8 @@ class FingerModel:
         friction: law of friction; None without friction.
         closure: the microscale; None where there is never a voltage.
         h_0: effective insulator thickness (m).
-        loads: to reach one after the other.
+        loads: to reach one after the other, with voltages of Eq. 3.
+        share: voltage at air gaps (m) over that of the loads; None where nothing is lost.
         numerics: element, tolerances and memory.
         asked: largest relative errors allowed, by quantity; empty where no accuracy is asked for.
     """
@@ -146,6 +147,8 @@ class FingerModel:
             scene: a checked scene with a ``mesh.touching_half_arc``, see :func:`fingerpad.model.options.by_rule`.
             options: the parts of the model, see :func:`plan`.
         """
+        from fingerpad.model import followed
+
         self.options = options
         self.geometry: Fingertip = scene.geometry
         self.mesh: MeshSize = scene.mesh
@@ -157,7 +160,8 @@ class FingerModel:
         self.friction = scene.friction_law()
         self.closure = scene.closure() if options.voltage else None
         self.h_0 = scene.h_0
-        self.loads = scene.loads()
+        self.loads = followed.loads(scene)
+        self.share = followed.share(scene)
         self.numerics: Numerics = scene.numerics
         self.asked: Mapping[str, float] = {} if scene.accuracy is None else scene.accuracy.tolerances()
 

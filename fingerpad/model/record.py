@@ -14,7 +14,8 @@ from numpy.typing import NDArray
 from fingerpad.results import states
 from fingerpad.results.drawing import Drawing, View
 from fingerpad.scene import Load
-from variational.output import Receptors, Snapshot, gather_mesh
+from variational.output import Receptors
+from variational.snapshot import Snapshot, gather_mesh
 from variational.state import ContactState, Sites, Skin
 
 if TYPE_CHECKING:

@@ -43,7 +43,7 @@ def changed(scene: Scene) -> list[str]:
 
 def errors(scene: Scene) -> Bands:
     """Return the known relative errors for a scene by state and quantity; empty where none is known."""
-    return {} if outside(scene.f_ext, scene.voltage) or changed(scene) else KNOWN_ERROR
+    return {} if outside(scene.f_ext, scene.volts) or changed(scene) else KNOWN_ERROR
 
 
 def in_words(bands: Bands) -> str:
@@ -60,7 +60,7 @@ def in_words(bands: Bands) -> str:
 def cautions(scene: Scene) -> list[str]:
     """Return why the error is not known for the result of a scene."""
     found = list[str]()
-    if outside(scene.f_ext, scene.voltage):
+    if outside(scene.f_ext, scene.volts):
         found.append(f"the error of this model is known of full runs at {where()}, and not at this load")
     if keys := changed(scene):
         found.append(f"the error of this model is known with the default {', '.join(keys)}, and not here")

@@ -27,7 +27,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from fingerpad.model.cautions import on_states
+from fingerpad.model.cautions import breakdown, on_states
 from fingerpad.reduced import cylinder_errors
 from fingerpad.reduced.model import STATES, Model, reduced_state, refuse_others
 from fingerpad.results.answer import Cost
@@ -165,10 +165,10 @@ def _of_summary(scene: Scene, folder: Path, summary: Mapping[str, Any]) -> Footp
         raise SceneError(f"run {folder} has no results: {summary.get('failure', 'summary.json is of another kind')}")
     if (model := summary.get("model", DEFAULT_MODEL)) != DEFAULT_MODEL:
         raise SceneError(f"run {folder} is one of the model {show(model)}; give a full run")
-    for name, unit in (("f_ext", "N/m"), ("voltage", "V")):
-        if not np.isclose(abs(summary[name]), abs(getattr(scene, name)), rtol=1e-6, atol=1e-9):
+    for name, own, unit in (("f_ext", scene.f_ext, "N/m"), ("voltage", scene.volts, "V")):
+        if not np.isclose(abs(summary[name]), abs(own), rtol=1e-6, atol=1e-9):
             raise SceneError(
-                f"run {folder} is one at {name} {summary[name]:g} {unit}, and the scene's is {getattr(scene, name):g}; "
+                f"run {folder} is one at {name} {summary[name]:g} {unit}, and the scene's is {own:g}; "
                 "give a run of this scene"
             )
     other = difference(_finger(summary["parameters"]), _finger(scene.parameters()))
@@ -235,6 +235,7 @@ def solve(scene: Scene, footprint: Footprint | None = None) -> Result:
         ((found[state], states[state]),) = _solved(scene, [scene.f_ext], length, n, state, footprint.charged)
         cautions += _others(state, states[state])
     cautions += on_states(found.values(), scene.closure())
+    cautions += breakdown(scene, [(WORDS[state], ridge.d_eq, scene.volts) for state, ridge in states.items()])
     more: dict[str, Any] = {
         f"{state}_{name}": getattr(ridge, name) for state, ridge in states.items() for name in ("p_c", "d_eq")
     }
@@ -294,13 +295,14 @@ def _solved(
         np.array(f_ext) / ridges,
         length / ridges,
     )
+    voltage = scene.volts if scene.supply is None else scene.supply.effective
     try:
         if charged:
             cylinder = Cylinder(radius, skin_modulus(scene), scene.h_0, closure)
-            found = [cylinder.over_length(*each, scene.voltage) for each in zip(length, forces, strict=True)]
+            found = [cylinder.over_length(*each, voltage) for each in zip(length, forces, strict=True)]
         else:
             moduli = hertz_modulus(radius, forces, length)
-            found = Cylinder(radius, moduli, scene.h_0, closure).under_loads(forces, scene.voltage)
+            found = Cylinder(radius, moduli, scene.h_0, closure).under_loads(forces, voltage)
     except NoEquilibriumError as error:
         raise SceneError(f"{WORDS[state]} of the model 'cylinders': {error}") from None
     states = []

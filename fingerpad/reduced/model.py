@@ -94,7 +94,7 @@ def reduced_state(scene: "Scene", contact: Mapping[str, float], slips: bool) -> 
     values: dict[str, Any] = {**contact, "ridges_in_contact": int(contact["ridges_in_contact"])}
     law = scene.friction_law() if slips else None
     f_t = 0.0 if law is None else law.resultant(contact["f_contact"], contact["contact_length"])
-    return ContactState(f_ext=scene.f_ext, voltage=scene.voltage, f_t=f_t, mu_app=f_t / scene.f_ext, **values)
+    return ContactState(f_ext=scene.f_ext, voltage=scene.volts, f_t=f_t, mu_app=f_t / scene.f_ext, **values)
 
 
 def refuse_others(scene: "Scene", model: str) -> None:

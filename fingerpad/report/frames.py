@@ -11,12 +11,11 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
-from matplotlib.tri import Triangulation
 from numpy.typing import NDArray
 
 from fingerpad.report import page as html
-from fingerpad.results.drawing import finger_of, skin_of
-from fingerpad.results.finger_picture import interfaces
+from fingerpad.results.arrays import finger_of, skin_of
+from fingerpad.results.raster import along, cells_at, pieces
 from fingerpad.results.result import Result
 from fingerpad.results.states import WORDS, called, partial_slip
 from variational.state import ContactState
@@ -26,6 +25,8 @@ _MM, _UM, _KPA = 1e3, 1e6, 1e-3
 _COLUMNS = 520  # of the grid
 _MAX_FRAMES = 12  # states with an image
 _EMPTY = 32767
+_STRAIGHT = 0.25  # of a column: bend of a cell's edge that is straight in the image
+_NEAR, _PLACES = 0.2e-3, 1e4  # mm, between a line and its segments; places a mm, to which these are rounded
 _BELOW, _ABOVE, _BESIDE = -0.15, 1.25, 0.6  # mm of the view around the contact
 
 
@@ -195,28 +196,23 @@ def _finger(file: Path, view: list[float]) -> dict[str, Any] | None:
     if not kept:
         return None
     xy = np.asarray(_MM * (kept["x"] + kept["u"]), dtype=float)
-    triangles, tag = kept["triangles"], kept["tag"]
-    density = _KPA * kept["sed"]
     left, right, bottom, top = view
-    corners = xy[triangles]
-    near = (corners[:, :, 0].max(axis=1) > left) & (corners[:, :, 0].min(axis=1) < right)
-    near &= corners[:, :, 1].min(axis=1) < top
-    x = np.linspace(left, right, _COLUMNS)
-    y = np.arange(0.5 * (x[1] - x[0]), top, x[1] - x[0])  # the screen is at 0
-    finder = Triangulation(xy[:, 0], xy[:, 1], triangles[near]).get_trifinder()
-    cells = np.asarray(finder(*np.meshgrid(x, y)), dtype=int)  # -1 outside
-    level = np.round(100 * np.log10(np.maximum(density[near], 1e-9))).astype("<i2")
-    image = np.where(cells >= 0, level[cells], _EMPTY).astype("<i2")
-    lines = np.concatenate(interfaces(triangles, tag))
+    x = np.linspace(left, right, _COLUMNS, dtype=np.float64)
+    pixel = float(x[1] - x[0])
+    y = np.arange(0.5 * pixel, top, pixel, dtype=np.float64)  # the screen is at 0
+    corners, cells = pieces(xy, kept["triangles"], kept["lines"], kept["beside"], _STRAIGHT * pixel)
+    level = np.round(100 * np.log10(np.maximum(_KPA * kept["sed"], 1e-9)))
+    image = np.append(level[cells], _EMPTY)[cells_at(corners, x, y)].astype("<i2")
+    points = xy[kept["lines"]]
     low, high = np.array([left, bottom]), np.array([right, top])
-    inside = ((xy[lines] >= low) & (xy[lines] <= high)).all(axis=(1, 2))
-    segments = np.round(1e3 * xy[lines[inside]]).astype(int)  # µm, shape (lines, 2, 2)
+    inside = ((points >= low) & (points <= high)).all(axis=(1, 2))
+    segments = np.round(_PLACES * along(xy, kept["lines"][inside], _NEAR)).astype(int)
     known = image[image != _EMPTY]
     return {
         "image": base64.b64encode(image.tobytes()).decode(),
         "shape": list(image.shape),
-        "x": [round(float(x[0]), 5), round(float(x[1] - x[0]), 7)],
-        "y": [round(float(y[0]), 5), round(float(y[1] - y[0]), 7)],
+        "x": [round(left, 5), round(pixel, 7)],
+        "y": [round(float(y[0]), 5), round(pixel, 7)],
         "highest": float(np.quantile(known, 0.999)) / 100 if known.size else 0.0,
         "lines": segments.reshape(-1, 4).tolist(),
     }

@@ -106,7 +106,7 @@
           ticktext: ticks().map((k) => String(Number(Math.pow(10, k).toPrecision(1)))),
           title: { text: "strain energy density (kPa)", side: "bottom" } } });
       const x = [], y = [];
-      for (const [a, b, c, d] of finger.lines) { x.push(a / 1e3, c / 1e3, null); y.push(b / 1e3, d / 1e3, null); }
+      for (const [a, b, c, d] of finger.lines) { x.push(a / 1e4, c / 1e4, null); y.push(b / 1e4, d / 1e4, null); }
       traces.push({ x, y, mode: "lines", line: { color: "#000", width: 0.8 }, hoverinfo: "skip" });
     } else {
       traces.push({ x: [], y: [] });

@@ -9,10 +9,13 @@ from collections.abc import Container, Iterable, Mapping, Sequence
 from importlib import resources
 from io import BytesIO
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from fingerpad.scene import Scene, SceneError, override
 from fingerpad.scene.reading import DEFAULT_MODEL, flat
+
+if TYPE_CHECKING:
+    from PIL.Image import Image
 
 _COLOURS = 128  # of a picture's palette; the pictures have fewer hues, and a third of the bytes is left
 _MAX_PIXELS = 50_000_000  # of a picture; those of a run have two millions
@@ -95,15 +98,30 @@ def picture(file: Path, words: str) -> str:
         with Image.open(file, formats=("PNG",)) as drawn:
             if drawn.width * drawn.height > _MAX_PIXELS:
                 raise ValueError
-            out = BytesIO()
-            drawn.convert("RGB").quantize(_COLOURS, dither=Image.Dither.NONE).save(out, "PNG", optimize=True)
+            drawn.load()
             size = f'width="{drawn.width}" height="{drawn.height}"'
+            found = _as_it_is(file, drawn) or _of_few_colours(drawn)
     except (OSError, SyntaxError, ValueError, Image.DecompressionBombError):
         return paragraph(f"{file.name} is left out: it is no picture of a run, or not a whole one.", "note")
-    data = base64.b64encode(out.getvalue()).decode()
+    data = base64.b64encode(found).decode()
     caption = f"<figcaption>{text(words)}</figcaption>"
     shown = f'<img {size} alt="{html.escape(words)}" src="data:image/png;base64,{data}">'
     return f"<figure>{shown}{caption}</figure>"
+
+
+def _as_it_is(file: Path, drawn: "Image") -> bytes:
+    """Return a file of a palette, as a run writes it; nothing of one that holds more than its pixels."""
+    small = drawn.mode == "P" and file.stat().st_size <= drawn.width * drawn.height
+    return file.read_bytes() if small else b""
+
+
+def _of_few_colours(drawn: "Image") -> bytes:
+    """Return a picture of all colours, as of an earlier version, as a PNG file with a palette."""
+    from PIL.Image import Dither
+
+    out = BytesIO()
+    drawn.convert("RGB").quantize(_COLOURS, dither=Dither.NONE).save(out, "PNG", optimize=True)
+    return out.getvalue()
 
 
 def page(title: str, body: str, data: Mapping[str, Any]) -> str:

@@ -11,8 +11,8 @@ from fingerpad.report import page as html
 from fingerpad.report import trust
 from fingerpad.report.frames import conditions_of, frames, section
 from fingerpad.report.trust import conditions, head
+from fingerpad.results.arrays import arrays_of
 from fingerpad.results.closures import RECORD, in_words
-from fingerpad.results.drawing import arrays_of
 from fingerpad.results.over_time import HARMONICS, NOTE
 from fingerpad.results.quantities import PER_LENGTH, PLUS_MINUS, STEPS
 from fingerpad.results.result import Result

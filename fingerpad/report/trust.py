@@ -211,7 +211,7 @@ def jumped(state: ContactState) -> bool:
 def conditions(result: "Result") -> str:
     """Return force and voltage of a run in words."""
     if result.whole and result.finger is not None:
-        return f"{result.finger.f_ext:.4g} N on the whole finger, {result.scene.voltage:.4g} V"
+        return f"{result.finger.f_ext:.4g} N on the whole finger, {result.scene.volts:.4g} V"
     last = result.full_slip or result.charged or result.last
     if last is None:
         return "a run without a result"

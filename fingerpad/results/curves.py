@@ -3,12 +3,10 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import NDArray
 
 from fingerpad.results import style
@@ -17,6 +15,10 @@ from variational.state import ContactState
 
 Array = NDArray[np.float64]
 _MM, _MS, _UM, _KPA = 1e3, 1e3, 1e6, 1e-3
+_SIDES = 1.0, 8.05  # in: left and right end of axes on a page, whose labels are beside them
+_HEAD, _FOOT = 0.35, 1.1  # in: of the picture of the skin, its title; label of x and legend
+_TITLES, _BETWEEN = 0.45, 0.1  # in: two lines of a title; between stresses and gaps
+_TITLE_AT = -0.07  # of the width of axes: where a title begins
 _SHORT = 1.0  # s, below which the axis of time is in ms
 _RUBS = 1e-6  # of mu_0: a coefficient below is roundoff
 _TOOTH_SPAN = 4  # points: the span of a saw tooth to either side
@@ -48,7 +50,13 @@ class SurfaceProfile:
     """What else the panel's title says."""
 
 
-def surface(path: Path | str | None, states: Sequence[SurfaceProfile], title: str, largest_gap: float = 6e-6) -> Figure:
+def surface(
+    path: Path | str | None,
+    states: Sequence[SurfaceProfile],
+    title: str,
+    largest_gap: float = 6e-6,
+    on: Figure | None = None,
+) -> Figure:
     """Draw pressure, shear traction, attraction and gaps along the surface (Fig. 2 of Forsbach et al. 2023).
 
     Numbers above the pressure are those of the ridges in contact, 0 at the centre of the finger. A note says where the
@@ -59,26 +67,41 @@ def surface(path: Path | str | None, states: Sequence[SurfaceProfile], title: st
         states: one pair of panels each, such as normal contact, partial slip and full slip.
         title: what they have in common, see :mod:`fingerpad.results.style`.
         largest_gap: end of the gaps' axis (m).
+        on: figure of as many other states, which becomes that of these.
     """
     with style.look():
-        figure = style.figure(1 + 3.0 * len(states))
-        figure.suptitle(title)
-        axes = figure.subplots(2 * len(states), 1, sharex=True, squeeze=False, height_ratios=[2, 1] * len(states))[:, 0]
+        figure = on or style.sheet(1 + 3.0 * len(states), title)
+        style.head(figure, title)
+        axes = figure.axes or _surface_panels(figure, len(states))
+        style.clear(axes)
         stresses, gaps = axes[::2], axes[1::2]
-        for letter, state, above, below in zip("ABCDEFGH", states, stresses, gaps, strict=False):
-            _draw_stresses(above, state)
-            above.set_title(_surface_title(letter, state), loc="left")
-            _draw_gaps(below, state, largest_gap)
         bottom, top = _common_range(states)
-        for ax in stresses:
-            ax.set_ylim(bottom, top)
-        handles = [h for ax in (stresses[0], gaps[0]) for h in ax.get_legend_handles_labels()[0]]
-        figure.legend(handles=handles, loc="outside lower center", ncols=3)
+        for letter, state, above, below in zip("ABCDEFGH", states, stresses, gaps, strict=False):
+            above.set_ylim(bottom, top)
+            _draw_stresses(above, state)
+            above.set_title(_surface_title(letter, state), loc="left", x=_TITLE_AT, fontsize=9.5)
+            _draw_gaps(below, state, largest_gap)
+        if on is None:
+            handles = [h for ax in (stresses[0], gaps[0]) for h in ax.get_legend_handles_labels()[0]]
+            figure.legend(handles=handles, loc="lower center", ncols=3)
+            gaps[-1].set_xlabel("x on the screen (mm)")
         touching = np.concatenate([s.x[s.p > 0] for s in states])
         if len(touching):
             gaps[-1].set_xlim(_MM * touching.min() - 0.5, _MM * touching.max() + 0.5)
-        gaps[-1].set_xlabel("x on the screen (mm)")
+        style.align(axes)
         return style.save(figure, path)
+
+
+def _surface_panels(figure: Figure, states: int) -> list[Axes]:
+    """Return the axes of stresses and of gaps for each state, below each other, with one scale along x."""
+    high = float(figure.get_size_inches()[1])
+    each = (high - _FOOT - _HEAD) / states
+    heights: list[tuple[float, float]] = []
+    for k in range(states):
+        base = high - _HEAD - (k + 1) * each
+        middle = base + (each - _TITLES - _BETWEEN) / 3
+        heights += [(middle + _BETWEEN, base + each - _TITLES), (base, middle)]
+    return style.column(figure, *_SIDES, heights)
 
 
 def saw_teeth(p: Array) -> float:
@@ -90,20 +113,23 @@ def saw_teeth(p: Array) -> float:
     Args:
         p: contact pressure (Pa) along the arc, a NaN between ridges, shape (points,).
     """
-    deepest, known = 0.0, np.nan_to_num(p)
-    for patch in np.split(known, np.flatnonzero(known <= 0)):
-        if len(patch):
-            largest = sliding_window_view(np.pad(patch, _TOOTH_SPAN), _TOOTH_SPAN).max(axis=1)
-            dips = np.minimum(largest[: len(patch)], largest[_TOOTH_SPAN + 1 :]) - patch
-            deepest = max(deepest, float(dips[patch > 0].max(initial=0.0)))
+    known = np.nan_to_num(p)
+    parts = np.cumsum(known <= 0)  # a patch is all points of one part that are under pressure
+    pressed = np.flatnonzero(known > 0)
+    largest = []
+    for way in (-1, 1):
+        beside = (pressed[:, None] + way * np.arange(1, _TOOTH_SPAN + 1)).clip(0, len(p) - 1)
+        same = (parts[beside] == parts[pressed][:, None]) & (known[beside] > 0)
+        largest.append(np.where(same, known[beside], 0.0).max(axis=1, initial=0.0))
+    deepest = float((np.minimum(*largest) - known[pressed]).max(initial=0.0))
     return deepest / float(known.max()) if deepest else 0.0
 
 
 def _surface_title(letter: str, s: SurfaceProfile) -> str:
     words = f"{letter}  {style.plain(s.title)}: {style.conditions([s.state], place=True)}"
-    words += f", $L_R$ = {_MM * s.state.contact_length:.3g} mm"
+    words += f", L_R = {_MM * s.state.contact_length:.3g} mm"
     if _pressed(s):
-        words += f", $f_{{ext}}/L_R$ = {_KPA * s.state.f_ext / s.state.contact_length:.3g} kPa"
+        words += f", f_ext/L_R = {_KPA * s.state.f_ext / s.state.contact_length:.3g} kPa"
     teeth = saw_teeth(s.p)
     coarse = (
         f"mesh too coarse for the pressure: saw teeth of {100 * teeth:.0f} % of its peak" if teeth > _COARSE else ""
@@ -128,24 +154,23 @@ def _draw_stresses(ax: Axes, s: SurfaceProfile) -> None:
     x = _MM * s.x
     ax.axhline(0, color="0.7", lw=0.8, zorder=0)
     ax.fill_between(x, 0, _KPA * s.p, color=style.PRESSURE, alpha=0.12, lw=0)
-    ax.plot(x, _KPA * s.p, color=style.PRESSURE, lw=1.2, label="contact pressure $p$")
-    ax.plot(x, _KPA * s.p_el, color=style.ATTRACTION, ls="--", label="attraction $\\sigma_{el}$")
-    ax.plot(x, _KPA * s.t, color=style.SHEAR, label="shear traction $t$ on the skin, positive to the right")
+    ax.plot(x, _KPA * s.p, color=style.PRESSURE, lw=1.2, label="contact pressure p")
+    ax.plot(x, _KPA * s.p_el, color=style.ATTRACTION, ls="--", label="attraction p_el")
+    ax.plot(x, _KPA * s.t, color=style.SHEAR, label="shear traction t on the skin, positive to the right")
     ax.set_ylabel("stress (kPa)")
     for number in np.unique(s.ridge[s.p > 0]):
         where = x[(s.ridge == number) & (s.p > 0)].mean()
         ax.text(where, 0.97, f"{number:.0f}", transform=ax.get_xaxis_transform(), ha="center", va="top", fontsize=8)
     if _pressed(s):
         mean = _KPA * s.state.f_ext / s.state.contact_length
-        there_and_back: Any = (lambda stress: stress / mean, lambda ratio: ratio * mean)
-        ax.secondary_yaxis("right", functions=there_and_back).set_ylabel("stress / $(f_{ext}/L_R)$ (–)")
+        style.second_scale(ax, mean, "stress / (f_ext/L_R) (–)")
 
 
 def _draw_gaps(ax: Axes, s: SurfaceProfile, largest: float) -> None:
     ax.axhline(0, color="0.7", lw=0.8, zorder=0)
     ax.fill_between(_MM * s.x, np.minimum(_UM * s.y, 2 * _UM * largest), 2 * _UM * largest, color="0.85", lw=0)
     ax.plot(_MM * s.x, _UM * s.y, color="0.4", lw=1, label="height of the skin (grey) above the screen")
-    ax.plot(_MM * s.x, _UM * s.d_eq, color=style.GAP, lw=2.2, label="equivalent air gap $d_{eq}$")
+    ax.plot(_MM * s.x, _UM * s.d_eq, color=style.GAP, lw=2.2, label="equivalent air gap d_eq")
     ax.set_ylim(-0.08 * largest * _UM, largest * _UM)
     ax.set_ylabel("gap (µm)")
 
@@ -172,14 +197,14 @@ def history(
 
     x, f_t = _MM * column("bone_x"), column("f_t")
     with style.look():
-        figure = style.figure(7.5)
-        figure.suptitle(title)
-        force, length, ridges = figure.subplots(3, 1, sharex=True, height_ratios=[2, 2, 1])
-        force.plot(x, f_t, "o-", ms=3.5, color=style.BLACK, label="friction force $f_T$")
-        force.set_ylabel("friction force $f_T$ (N/m)")
+        figure = style.sheet(7.25, title)
+        panels = style.column(figure, *_SIDES, [(4.5, 6.5), (2.0, 3.95), (0.6, 1.85)])
+        force, length, ridges = panels
+        force.plot(x, f_t, "o-", ms=3.5, color=style.BLACK, label="friction force f_T")
+        force.set_ylabel("friction force f_T (N/m)")
         _draw_apparent(force, x, column("f_ext"), column("mu_app"), mu_0)
-        length.plot(x, _MM * column("contact_length"), "o-", ms=3.5, color=style.BLACK, label="contact length $L_R$")
-        length.set_ylabel("contact length $L_R$ (mm)")
+        length.plot(x, _MM * column("contact_length"), "o-", ms=3.5, color=style.BLACK, label="contact length L_R")
+        length.set_ylabel("contact length L_R (mm)")
         _draw_errors(force, named or {}, "f_t", 1.0)
         _draw_errors(length, named or {}, "contact_length", _MM)
         ridges.step(x, column("ridges_in_contact"), where="post", color=style.BLACK)
@@ -187,7 +212,8 @@ def history(
         ridges.margins(y=0.15)
         style.count(ridges.yaxis)
         ridges.set_xlabel("sideways displacement of the bone (mm)")
-        _draw_jumps((force, length, ridges), x, states)
+        _draw_jumps(panels, x, states)
+        style.align(panels)
         for ax in (force, length):
             ax.legend(loc="lower left", bbox_to_anchor=(0, 1), ncols=2, borderaxespad=0.2)
         return style.save(figure, path)
@@ -216,17 +242,16 @@ def _draw_errors(ax: Axes, named: Mapping[str, ContactState], quantity: str, uni
 
 def _draw_apparent(ax: Axes, x: Array, f_ext: Array, mu_app: Array, mu_0: float | None) -> None:
     """Add mu_app on the right, a second scale of the same curve where f_ext is constant, else a curve of its own."""
-    label = "apparent friction\n$\\mu_{app} = f_T / f_{ext}$ (–)"
+    label = "apparent friction\nµ_app = f_T / f_ext (–)"
     load, other = float(f_ext[0]), ax
     if load > 0 and np.allclose(f_ext, load, rtol=1e-6, atol=0):
-        there_and_back: Any = (lambda force: force / load, lambda mu: mu * load)
-        ax.secondary_yaxis("right", functions=there_and_back).set_ylabel(label)
+        style.second_scale(ax, load, label)
     else:
         load, other = 1.0, ax.twinx()
         other.plot(x, mu_app, "s--", ms=3, color=style.GREEN)
         other.set_ylabel(label, color=style.GREEN)
     if mu_0 is not None:
-        words = f"$\\mu_{{app}} = \\mu_0$ = {mu_0:.3g}: without attraction"
+        words = f"µ_app = µ_0 = {mu_0:.3g}: without attraction"
         ax.plot([], [], color="0.4", lw=1, ls="--", label=words)
         for sign in np.unique(np.sign(mu_app[np.abs(mu_app) > _RUBS * mu_0])) if mu_0 else ():
             other.axhline(sign * mu_0 * load, color="0.4", lw=1, ls="--")
@@ -244,17 +269,17 @@ def over_time(path: Path | str | None, states: Sequence[ContactState], title: st
     short = time[-1] - time[0] < _SHORT
     t = (_MS if short else 1.0) * time
     rows = (
-        ("voltage $U$ (V)", [state.voltage for state in states], style.VERMILION),
-        ("friction force\n$f_T$ (N/m)", [state.f_t for state in states], style.BLACK),
-        ("contact length\n$L_R$ (mm)", [_MM * state.contact_length for state in states], style.BLUE),
+        ("voltage U (V)", [state.voltage for state in states], style.VERMILION),
+        ("friction force\nf_T (N/m)", [state.f_t for state in states], style.BLACK),
+        ("contact length\nL_R (mm)", [_MM * state.contact_length for state in states], style.BLUE),
     )
     with style.look():
-        figure = style.figure(7.5)
-        figure.suptitle(title)
-        axes = figure.subplots(3, 1, sharex=True)
+        figure = style.sheet(7.25, title)
+        axes = style.column(figure, *_SIDES, [(4.9, 6.8), (2.75, 4.65), (0.6, 2.5)])
         for ax, (label, values, colour) in zip(axes, rows, strict=True):
             ax.plot(t, values, "o-", ms=3, color=colour)
             ax.set_ylabel(label)
         words = "; dotted lines: part of the skin jumps" if _draw_jumps(axes, t, states) else ""
+        style.align(axes)
         axes[-1].set_xlabel(f"time ({'ms' if short else 's'}){words}")
         return style.save(figure, path)

@@ -3,11 +3,9 @@
 A run draws from what it has in memory, and leaves it as arrays in its folder; a result that was read draws from these.
 """
 
-import zipfile
-import zlib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from io import BytesIO
+from functools import cached_property
 from pathlib import Path
 from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any
@@ -16,19 +14,19 @@ import numpy as np
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from fingerpad.results import curves, files, finger_picture, style
+from fingerpad.results import curves, finger_picture, style
+from fingerpad.results.arrays import ALONG, finger_of, put, skin_of
 from fingerpad.results.curves import SurfaceProfile
 from fingerpad.results.over_time import without_parts_of_jumps
 from fingerpad.results.states import WORDS, before_sliding, by_load, called, named, partial_slip
 from variational.state import ContactState, Skin
 
 if TYPE_CHECKING:
-    from variational.output import Snapshot
+    from variational.snapshot import Snapshot
 
 Array = NDArray[np.float64]
 Along = Skin | Mapping[str, Array]
 """The skin of a state, or the arrays of its :class:`SurfaceProfile` by name, as a file has them."""
-_ARRAYS = ("x", "y", "p", "t", "p_el", "d_eq", "ridge")
 
 
 @dataclass(frozen=True)
@@ -70,14 +68,16 @@ class Drawing:
             folder: where to.
             each_load: also those of the end of each load.
         """
+        finger, skin = None, None  # each drawn on again by the next of its kind
         for load, end in self.ends.items() if each_load else ():
-            self._put_finger(folder / f"finger_{_file(load)}", f"After {load}", end)
+            finger = self._put_finger(folder / f"finger_{_file(load)}", f"After {load}", end, finger)
             if end.state.step in self.skins and end.state.ridges_in_contact > 0:
                 along = self._along(self.skins[end.state.step], f"After {load}", end.state)
-                self._put_skin(folder / f"surface_{_file(load)}", {"end": along})
+                skin = self._put_skin(folder / f"surface_{_file(load)}", {"end": along}, skin)
         for name, view in self.finer.items():
             if view.snapshot is not None:
-                self._put_finger(folder / f"finger_{_file(WORDS[name])}", _title(name, view.state), view)
+                file = folder / f"finger_{_file(WORDS[name])}"
+                finger = self._put_finger(file, _title(name, view.state), view, finger)
         if self._shown():
             self._put_skin(folder / "surface", self._named_skin())
         if self._sliding():
@@ -127,15 +127,15 @@ class Drawing:
         return "" if size is None else f"path on the starting mesh, contact size {size * 1e6:.3g} µm"
 
     # -- skin ----------------------------------------------------------------------------------------
-    def _skin(self, path: Path | None, skins: Mapping[str, SurfaceProfile]) -> Figure:
+    def _skin(self, path: Path | None, skins: Mapping[str, SurfaceProfile], on: Figure | None = None) -> Figure:
         conditions = style.conditions([skin.state for skin in skins.values()], self.mu_0)
-        return curves.surface(path, list(skins.values()), conditions)
+        return curves.surface(path, list(skins.values()), conditions, on=on)
 
-    def _put_skin(self, path: Path, skins: Mapping[str, SurfaceProfile]) -> None:
+    def _put_skin(self, path: Path, skins: Mapping[str, SurfaceProfile], on: Figure | None = None) -> Figure:
         """Write the picture of the skin in some states and its arrays; ``path`` has no suffix."""
-        arrays = {f"{name}_{array}": getattr(skin, array) for name, skin in skins.items() for array in _ARRAYS}
-        _put(path.with_name(f"{path.name}.npz"), arrays)
-        self._skin(path.with_name(f"{path.name}.png"), skins)
+        arrays = {f"{name}_{array}": getattr(skin, array) for name, skin in skins.items() for array in ALONG}
+        put(path.with_name(f"{path.name}.npz"), arrays)
+        return self._skin(path.with_name(f"{path.name}.png"), skins, on)
 
     def _along(self, skin: Along, title: str, state: ContactState, view: View | None = None) -> SurfaceProfile:
         return SurfaceProfile(title, state, **sorted_along(skin, state), note=self._note(view))
@@ -196,21 +196,26 @@ class Drawing:
         load = list(self.ends)[-1]
         return self._finger(path, f"After {load}", self.ends[load])
 
-    def _put_finger(self, path: Path, title: str, view: View) -> None:
+    def _put_finger(self, path: Path, title: str, view: View, on: Figure | None) -> Figure:
         """Write the picture of a finger and its arrays; ``path`` has no suffix."""
         sites: dict[str, Any] = {} if view.merkel is None else {"merkel": view.merkel}
         arrays = {"bone_x": np.array(view.state.bone_x), **sites, **vars(view.snapshot)}
-        _put(path.with_name(f"{path.name}.npz"), arrays)
-        self._finger(path.with_name(f"{path.name}.png"), title, view)
+        put(path.with_name(f"{path.name}.npz"), arrays)
+        return self._finger(path.with_name(f"{path.name}.png"), title, view, on)
 
-    def _finger(self, path: Path | None, title: str, view: View) -> Figure:
-        snapshots = [each.snapshot for each in (*self.ends.values(), *self.finer.values()) if each.snapshot is not None]
-        highest = max(map(finger_picture.highest_density, snapshots))
+    def _finger(self, path: Path | None, title: str, view: View, on: Figure | None = None) -> Figure:
         words = f"{style.plain(title)}: {style.conditions([view.state], self.mu_0, place=True)}"
         skin = self.skins.get(view.state.step) if view.size is None else view.skin
         ridges = {} if skin is None else _places(sorted_along(skin, view.state))
         assert view.snapshot is not None
-        return finger_picture.finger(path, view.snapshot, view.merkel, self._title(words, view), ridges, highest)
+        title, common = self._title(words, view), self._scales
+        return finger_picture.finger(path, view.snapshot, view.merkel, title, ridges, common, on)
+
+    @cached_property
+    def _scales(self) -> finger_picture.Scales:
+        """What the pictures of all views have in common."""
+        views = (*self.ends.values(), *self.finer.values())
+        return finger_picture.scales([view.snapshot for view in views if view.snapshot is not None])
 
 
 def _title(name: str, state: ContactState) -> str:
@@ -233,7 +238,7 @@ def sorted_along(skin: Along, state: ContactState) -> dict[str, Any]:
     if not isinstance(skin, Skin):
         return dict(skin)
     assert state.ridges is not None
-    columns: list[list[Any]] = [[] for _ in _ARRAYS]
+    columns: list[list[Any]] = [[] for _ in ALONG]
     for number in np.unique(skin.ridge):
         mine = skin.ridge == number
         order = np.argsort(skin.x[mine], axis=None)
@@ -242,17 +247,10 @@ def sorted_along(skin: Along, state: ContactState) -> dict[str, Any]:
         parts += [np.full(len(order), value) for value in (gap.item(), number)]
         for column, part in zip(columns, parts, strict=True):
             column += [part, [np.nan]]
-    return dict(zip(_ARRAYS, map(np.concatenate, columns), strict=True))
+    return dict(zip(ALONG, map(np.concatenate, columns), strict=True))
 
 
-# -- arrays of a folder ------------------------------------------------------------------------------------
-def _put(path: Path, arrays: Mapping[str, Any]) -> None:
-    """Write arrays into a file, which is there as a whole or not at all."""
-    data = BytesIO()
-    np.savez_compressed(data, **arrays)
-    files.replace(path, data.getvalue())
-
-
+# -- from a folder ------------------------------------------------------------------------------------
 def read(
     folder: Path,
     states: Sequence[ContactState],
@@ -293,39 +291,3 @@ def read(
 def _view(state: ContactState, size: float | None, skin: Along | None, finger: dict[str, Any]) -> View:
     snapshot: Any = SimpleNamespace(**finger)
     return View(state, size, skin, snapshot, finger.get("merkel"))
-
-
-def finger_of(file: Path) -> dict[str, Any]:
-    """Return the arrays of a finger by name, see :class:`variational.output.Snapshot`; none that are not whole."""
-    found = arrays_of(file)
-    try:
-        points, triangles = len(found["x"]), found["triangles"]
-        whole = found["x"].shape == found["u"].shape == (points, 2) and triangles.shape[1:] == (3,)
-        whole &= found["sed"].shape == found["tag"].shape == (len(triangles),)
-        whole &= triangles.dtype.kind in "iu" and bool(np.all((triangles >= 0) & (triangles < points)))
-        whole &= all(found[name].dtype.kind in "iuf" for name in ("x", "u", "sed", "tag"))
-    except (KeyError, TypeError):
-        whole = False
-    return found if whole else {}
-
-
-def skin_of(file: Path, prefix: str) -> dict[str, Any]:
-    """Return the skin of a state, by the names of :class:`SurfaceProfile`, or nothing.
-
-    Args:
-        file: of one state or several.
-        prefix: of the state.
-    """
-    found = arrays_of(file)
-    skin = {name: found[f"{prefix}_{name}"] for name in _ARRAYS if f"{prefix}_{name}" in found}
-    whole = all(value.ndim == 1 and value.dtype.kind == "f" for value in skin.values())
-    return skin if whole and len(skin) == len(_ARRAYS) and len({len(value) for value in skin.values()}) == 1 else {}
-
-
-def arrays_of(file: Path) -> dict[str, Any]:
-    """Return the arrays of a file by name; none without a file that can be read."""
-    try:
-        with file.open("rb") as stream, np.load(stream, allow_pickle=False) as found:
-            return dict(found)
-    except (OSError, ValueError, EOFError, TypeError, RuntimeError, MemoryError, zipfile.BadZipFile, zlib.error):
-        return {}

@@ -1,34 +1,37 @@
 """Pictures of the deformed finger: its cross-section with layers and energy density, and the footprint of the whole.
 
-Plain arrays in SI in, a PNG file out.
+Plain arrays in SI in, a PNG file out. Lines are the parabolas that the edges of the elements are.
 """
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
+import matplotlib
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.collections import LineCollection
-from matplotlib.colors import ListedColormap, LogNorm
+from matplotlib.cm import ScalarMappable
+from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
-from matplotlib.patches import Patch, Rectangle
+from matplotlib.patches import Patch, PathPatch, Rectangle
+from matplotlib.path import Path as Curve
 from matplotlib.ticker import MaxNLocator
-from matplotlib.tri import Triangulation
 from numpy.typing import NDArray
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 
 from fingerpad.results import style
+from fingerpad.results.raster import cells_at, pieces
 from geometry import tags
+from variational.outline import loops
 
 if TYPE_CHECKING:
     from fingerpad.slices.finger import WholeFinger
-    from variational.output import Snapshot
+    from variational.snapshot import Snapshot
 
 Array = NDArray[np.float64]
-Edges = NDArray[np.int64]
+Numbers = NDArray[np.int64]
+Box = tuple[float, float, float, float]
+"""Left, right, lower and upper end."""
 
 LAYER_COLOURS = {
     tags.STRATUM_CORNEUM: style.ORANGE,
@@ -43,9 +46,44 @@ _SITES: dict[str, Any] = {
 }  # fmt: skip
 _MM, _KPA = 1e3, 1e-3
 _TOUCHING = 0.5e-6  # m: vertices lower than this count as in contact when a view is chosen
+_MARGIN = 0.05  # of the cross-section, around it
+_LEAST = 1e-6  # Pa, of the upper end of the colours
+_HEIGHT = 6.75  # in, of the picture of a state; the places of its parts follow
+_ABOVE, _NEAR, _COLOURS = (0.85, 6.75, 3.65, 6.2), (0.85, 8.85, 1.25, 2.8), (1.5, 7.5, 0.52, 0.66)
+_STRAIGHT = 0.25  # pixels: the bend of a line that is drawn straight
 _LIGHT = 0.25  # opacity of the gross contact
-_WIDER = 1.2  # width of the panel along the finger over that of a state
+_FOOTPRINT, _APART, _WIDER = (0.95, 8.8, 1.2, 3.8), 0.35, 1.4  # in: all panels; between them; last one over a state's
 _DECADES = 1e3  # span of the colours of the energy density
+
+
+class Scales(NamedTuple):
+    """What the pictures of several states of a finger have in common."""
+
+    whole: Box
+    """Of the cross-section (mm)."""
+    near: Box
+    """Of the view near the contact (mm): the contact and 1 mm on either side."""
+    highest: float
+    """Upper end of the colours of the energy density (Pa)."""
+
+
+def scales(snapshots: "Sequence[Snapshot]") -> Scales:
+    """Return scales that show every one of some states; one element in a thousand near the contact is beyond them."""
+    places = [_MM * (each.x + each.u) for each in snapshots]
+    low, high = np.min([xy.min(axis=0) for xy in places], axis=0), np.max([xy.max(axis=0) for xy in places], axis=0)
+    (left, bottom), (right, top) = low - _MARGIN * (high - low), high + _MARGIN * (high - low)
+    touching = [xy[xy[:, 1] <= max(_TOUCHING * _MM, xy[:, 1].min()), 0] for xy in places]
+    near = (float(min(x.min() for x in touching)) - 1, float(max(x.max() for x in touching)) + 1, -0.22, 1.3)
+    densities = [each.sed[_visible(xy[each.triangles], near)] for each, xy in zip(snapshots, places, strict=True)]
+    highest = max(float(np.quantile(density, 0.999)) for density in densities)
+    return Scales((left, right, bottom, top), near, max(highest, _LEAST))
+
+
+def _visible(corners: Array, view: Box) -> NDArray[np.bool_]:
+    """Return which triangles, shape (triangles, 3, 2), have a part in a view, shape (triangles,)."""
+    left, right, _, top = view
+    lowest, highest = corners.min(axis=1), corners.max(axis=1)
+    return (highest[:, 0] > left) & (lowest[:, 0] < right) & (lowest[:, 1] < top)
 
 
 def finger(
@@ -54,139 +92,134 @@ def finger(
     sites: Array | None,
     title: str,
     ridges: Mapping[int, float] | None = None,
-    highest: float | None = None,
+    common: Scales | None = None,
+    on: Figure | None = None,
 ) -> Figure:
     """Draw the deformed cross-section, and the energy density near the contact.
 
     Args:
         path: of the PNG file; None for the figure alone.
-        snapshot: state of the body, see :func:`variational.output.gather_mesh`.
+        snapshot: state of the body, see :func:`variational.snapshot.gather_mesh`.
         sites: current positions of Merkel sites (m), shape (n, 2), or None.
         title: what state it is, see :mod:`fingerpad.results.style`.
         ridges: current abscissa (m) of numbered ridges, number 0 at the centre.
-        highest: upper end of the colours (Pa), for one scale over several pictures; :func:`highest_density` by default.
+        common: scales of several pictures; by default those of this state alone.
+        on: figure of another state of the same finger on the same scales, which becomes that of this state.
     """
-    xy = _MM * (snapshot.x + snapshot.u)
-    lines = interfaces(snapshot.triangles, snapshot.tag)
-    view = _near_contact(xy)
-    left, right, bottom, top = view
+    scale, xy = common or scales([snapshot]), _MM * (snapshot.x + snapshot.u)
+    left, right, bottom, top = scale.near
     with style.look():
-        figure = style.figure(6.6)
-        figure.suptitle(title)
-        above, near = figure.subplots(2, 1, height_ratios=[1.9, 1])
-        _draw_layers(above, snapshot, xy, lines, [] if sites is None else [Line2D([], [], **_SITES)])
-        above.add_patch(
-            Rectangle((left, bottom), right - left, top - bottom, fill=False, ec="black", lw=1.5, ls="--", zorder=4)
-        )
-        above.set_title("Deformed cross-section; dashed: part below")
-        scale = highest_density(snapshot) if highest is None else highest
-        _draw_density(figure, near, snapshot, xy, lines, view, _KPA * scale)
+        figure = on or _empty(snapshot, scale, sites is not None, title)
+        style.head(figure, title)
+        above, near = figure.axes[:2]
+        style.clear((above, near))
+        _draw_layers(above, snapshot, xy)
+        frame: dict[str, Any] = {"fill": False, "ec": "black", "lw": 1.5, "ls": "--", "zorder": 4}
+        above.add_artist(Rectangle((left, bottom), right - left, top - bottom, **frame))
+        _draw_density(near, snapshot, xy, scale)
+        near.set_title("Near the contact; white: between layers" + ("; numbers: ridges" if ridges else ""))
         if sites is not None:
             x, y = _MM * np.asarray(sites).T
             near.plot(x, y, **_SITES, zorder=5)
         for number, x in (ridges or {}).items():
             if left < _MM * x < right:
                 near.text(_MM * x, 0.6 * bottom, str(number), ha="center", va="center", fontsize=8)
-        near.set_title("Near the contact; white: between layers" + ("; numbers: ridges" if ridges else ""))
-        for ax in (above, near):
-            ax.set_aspect("equal")
-            ax.xaxis.set_major_locator(MaxNLocator(10, steps=[1, 2, 5, 10]))
-            ax.set_xlabel("x (mm)")
-            ax.set_ylabel("height y (mm)")
         return style.save(figure, path)
 
 
-def highest_density(snapshot: "Snapshot") -> float:
-    """Return the energy density (Pa) that one element in a thousand near the contact exceeds; not below 1 µPa."""
-    xy = _MM * (snapshot.x + snapshot.u)
-    return max(float(np.quantile(snapshot.sed[_visible(snapshot, xy, _near_contact(xy))], 0.999)), 1e-6)
+def _empty(snapshot: "Snapshot", scale: Scales, sites: bool, title: str) -> Figure:
+    """Return a figure with what all states have: the axes of both views, names of layers, colours of densities."""
+    figure = style.sheet(_HEIGHT, title)
+    for box, view in ((_ABOVE, scale.whole), (_NEAR, scale.near)):
+        ax = style.panel(figure, *_fitted(box, view))
+        ax.set(xlim=view[:2], ylim=view[2:], aspect="equal", xlabel="x (mm)", ylabel="height y (mm)")
+        ax.xaxis.set_major_locator(MaxNLocator(10, steps=[1, 2, 5, 10]))
+    above, near = figure.axes
+    above.set_title("Deformed cross-section; dashed: part below")
+    near.set_facecolor("0.92")
+    names = {tag: name for name, tag in tags.LAYERS.items()}
+    layers = _layers(snapshot)
+    handles: list[Any] = [Patch(fc=LAYER_COLOURS[tag], ec="black", lw=0.5, label=names[tag]) for tag in layers]
+    handles += [Line2D([], [], color="black", lw=2.5, label="screen")]
+    handles += [Line2D([], [], **_SITES)] if sites else []
+    above.legend(handles=handles, loc="center left", bbox_to_anchor=(1.03, 0.5))
+    colours = ScalarMappable(_norm(scale), style.MAGNITUDE)
+    bar = figure.colorbar(
+        colours, cax=style.panel(figure, *_COLOURS), orientation="horizontal", extend="both",
+        ticks=style.decades(_KPA * scale.highest / _DECADES, _KPA * scale.highest), format="%g",
+    )  # fmt: skip
+    bar.minorticks_off()
+    bar.set_label("strain energy density, mean of each element (kPa = kJ/m³ of reference volume)")
+    return figure
 
 
-def _near_contact(xy: Array) -> tuple[float, float, float, float]:
-    """Return left, right, lower and upper end (mm) of the view: the contact and 1 mm on either side."""
-    low = xy[xy[:, 1] <= max(_TOUCHING * _MM, xy[:, 1].min()), 0]
-    return float(low.min()) - 1, float(low.max()) + 1, -0.22, 1.3
+def _fitted(box: Box, view: Box) -> Box:
+    """Return the largest part of a box (in), in its middle, in which a view has one scale along both axes."""
+    wide, high = view[1] - view[0], view[3] - view[2]
+    unit = min((box[1] - box[0]) / wide, (box[3] - box[2]) / high)
+    x, y = (box[0] + box[1]) / 2, (box[2] + box[3]) / 2
+    return x - unit * wide / 2, x + unit * wide / 2, y - unit * high / 2, y + unit * high / 2
 
 
-def _visible(snapshot: "Snapshot", xy: Array, view: tuple[float, float, float, float]) -> NDArray[np.bool_]:
-    """Return which triangles have a part in a view, shape (triangles,)."""
-    left, right, _, top = view
-    lowest, highest = xy[snapshot.triangles].min(axis=1), xy[snapshot.triangles].max(axis=1)
-    return (highest[:, 0] > left) & (lowest[:, 0] < right) & (lowest[:, 1] < top)
+def _norm(scale: Scales) -> LogNorm:
+    """Return what makes colours of densities (kPa)."""
+    return LogNorm(_KPA * scale.highest / _DECADES, _KPA * scale.highest)
 
 
-def interfaces(t: Edges, tags_of: NDArray[np.int32]) -> tuple[Edges, Edges]:
-    """Return the edges, pairs of vertices, between layers and on the boundary.
+def _layers(snapshot: "Snapshot") -> list[int]:
+    """Return the tags of the layers that a finger has."""
+    return [tag for tag in LAYER_COLOURS if (snapshot.tag == tag).any()]
+
+
+def _draw_layers(ax: Axes, snapshot: "Snapshot", xy: Array) -> None:
+    for tag in _layers(snapshot):
+        around = loops(snapshot.lines, snapshot.beside, snapshot.tag, tag)
+        ax.add_artist(PathPatch(_curve(xy, np.concatenate(around)), fc=LAYER_COLOURS[tag], ec="black", lw=0.5))
+    outside = loops(snapshot.lines, snapshot.beside, snapshot.tag, 0)
+    if len(outside) == 2:
+        bone = min((xy[loop[:, 0]] for loop in outside), key=lambda places: float(np.ptp(places[:, 0])))
+        x, y = (bone.min(axis=0) + bone.max(axis=0)) / 2
+        ax.text(x, y, "bone", ha="center", va="center")
+    ax.axhline(0, color="black", lw=2.5, zorder=3)
+
+
+def _curve(xy: Array, lines: Numbers) -> Curve:
+    """Return lines as one path of parabolas, which goes on where a line begins at the end of the one before.
 
     Args:
-        t: vertices of each triangle, shape (cells, 3).
-        tags_of: the layer of each, shape (cells,).
+        xy: points, shape (points, 2).
+        lines: points where each line begins, has its middle and ends, shape (lines, 3).
     """
-    edges = np.sort(np.concatenate([t[:, [0, 1]], t[:, [1, 2]], t[:, [2, 0]]]), axis=1)
-    edges, where, count = np.unique(edges, axis=0, return_inverse=True, return_counts=True)
-    tag = np.tile(tags_of, 3)
-    lowest, highest = np.full(len(edges), np.iinfo(np.int32).max), np.zeros(len(edges), dtype=int)
-    np.minimum.at(lowest, where.ravel(), tag)
-    np.maximum.at(highest, where.ravel(), tag)
-    return edges[(count == 2) & (lowest != highest)], edges[count == 1]
+    begin, middle, end = xy[lines].swapaxes(0, 1)
+    tangents = 2 * middle - (begin + end) / 2  # where those at both ends meet
+    points = np.stack([begin, tangents, end], axis=1).reshape(-1, 2)
+    kept = np.ones((len(lines), 3), dtype=bool)
+    kept[1:, 0] = lines[1:, 0] != lines[:-1, 2]
+    codes = np.tile(np.array([Curve.MOVETO, Curve.CURVE3, Curve.CURVE3], dtype=Curve.code_type), len(lines))
+    return Curve(points[kept.ravel()], codes[kept.ravel()])
 
 
-def _draw_layers(ax: Axes, snapshot: "Snapshot", xy: Array, lines: tuple[Edges, Edges], more: list[Any]) -> None:
-    present = [tag for tag in LAYER_COLOURS if (snapshot.tag == tag).any()]
-    shade = np.zeros(max(LAYER_COLOURS) + 1)
-    shade[present] = np.arange(len(present))
-    colours = ListedColormap([LAYER_COLOURS[tag] for tag in present])
-    ax.tripcolor(
-        Triangulation(xy[:, 0], xy[:, 1], snapshot.triangles), facecolors=shade[snapshot.tag], cmap=colours,
-        vmin=-0.5, vmax=len(present) - 0.5, rasterized=True,
-    )  # fmt: skip
-    ax.add_collection(LineCollection(list(xy[np.concatenate(lines)]), colors="black", linewidths=0.5))
+def _draw_density(ax: Axes, snapshot: "Snapshot", xy: Array, scale: Scales) -> None:
+    left, right, bottom, top = scale.near
+    box = _fitted(_NEAR, scale.near)
+    columns, rows = round(style.DPI * (box[1] - box[0])), round(style.DPI * (box[3] - box[2]))
+    pixel = (right - left) / columns
+    x, y = left + pixel * (np.arange(columns) + 0.5), bottom + (top - bottom) / rows * (np.arange(rows) + 0.5)
+    corners, cells = pieces(xy, snapshot.triangles, snapshot.lines, snapshot.beside, _STRAIGHT * pixel)
+    seen = _visible(corners, scale.near)
+    norm = _norm(scale)
+    shown = np.clip(_KPA * snapshot.sed[cells[seen]], norm.vmin, norm.vmax)
+    colours = matplotlib.colormaps[style.MAGNITUDE](norm(shown), bytes=True)
+    nothing = np.zeros((1, 4), dtype=np.uint8)  # the last one, which -1 is of
+    image = np.concatenate([colours, nothing])[cells_at(corners[seen], x, y)]
+    ax.imshow(image, extent=scale.near, origin="lower", interpolation="nearest")
+    low, high = np.array([left, bottom]), np.array([right, top])
+    places = xy[snapshot.lines]
+    inside = ((places.max(axis=1) > low) & (places.min(axis=1) < high)).all(axis=1)
+    outer = snapshot.beside[:, 1] < 0
+    for mine, colour in ((inside & ~outer, "white"), (inside & outer, "black")):
+        ax.add_artist(PathPatch(_curve(xy, snapshot.lines[mine]), fill=False, ec=colour, lw=0.8))
     ax.axhline(0, color="black", lw=2.5, zorder=3)
-    names = {tag: name for name, tag in tags.LAYERS.items()}
-    handles: list[Any] = [Patch(fc=LAYER_COLOURS[tag], ec="black", lw=0.5, label=names[tag]) for tag in present]
-    handles.append(Line2D([], [], color="black", lw=2.5, label="screen"))
-    ax.legend(handles=[*handles, *more], loc="center left", bbox_to_anchor=(1.03, 0.5))
-    hole = _hole(lines[1], xy)
-    if hole is not None:
-        x, y = (xy[hole].min(axis=0) + xy[hole].max(axis=0)) / 2
-        ax.text(x, y, "bone", ha="center", va="center")
-    ax.autoscale_view()
-
-
-def _hole(boundary: Edges, xy: Array) -> NDArray[np.int64] | None:
-    """Return the vertices on the inner one of two closed boundaries, None if there are not two."""
-    pairs = (np.ones(len(boundary)), (boundary[:, 0], boundary[:, 1]))
-    label = connected_components(coo_array(pairs, shape=(len(xy), len(xy))), directed=False)[1]
-    vertices = np.unique(boundary)
-    parts = [vertices[label[vertices] == part] for part in np.unique(label[vertices])]
-    if len(parts) != 2:
-        return None
-    return min(parts, key=lambda part: float(np.ptp(xy[part, 0])))
-
-
-def _draw_density(
-    figure: Figure,
-    ax: Axes,
-    snapshot: "Snapshot",
-    xy: Array,
-    lines: tuple[Edges, Edges],
-    view: tuple[float, float, float, float],
-    most: float,
-) -> None:
-    left, right, bottom, top = view
-    visible = _visible(snapshot, xy, view)
-    norm = LogNorm(most / _DECADES, most)
-    shown = np.clip(_KPA * snapshot.sed[visible], norm.vmin, norm.vmax)
-    triangles = Triangulation(xy[:, 0], xy[:, 1], snapshot.triangles[visible])
-    drawn = ax.tripcolor(triangles, facecolors=shown, cmap=style.MAGNITUDE, norm=norm, rasterized=True)
-    ax.add_collection(LineCollection(list(xy[lines[0]]), colors="white", linewidths=0.8))
-    ax.add_collection(LineCollection(list(xy[lines[1]]), colors="black", linewidths=0.8))
-    ax.axhline(0, color="black", lw=2.5, zorder=3)
-    bar = figure.colorbar(drawn, ax=ax, location="bottom", extend="both", shrink=0.8, aspect=40)
-    bar.set_label("strain energy density, mean of each element (kPa = kJ/m³ of reference volume)")
-    ax.set_xlim(left, right)
-    ax.set_ylim(bottom, top)
-    ax.set_facecolor("0.92")
 
 
 def footprint(whole: "WholeFinger", path: Path | None = None) -> Figure:
@@ -200,12 +233,11 @@ def footprint(whole: "WholeFinger", path: Path | None = None) -> Figure:
         path: of the PNG file; None for the figure alone.
     """
     with style.look():
-        figure = style.figure(5.0)
-        ratios = [*(1.0 for _ in whole.states), _WIDER]
-        axes = figure.subplots(1, len(ratios), width_ratios=ratios, squeeze=False)[0]
+        figure = style.sheet(4.9, f"Whole finger under {whole.f_ext:.3g} N, as a sum of slices")
         widest = max(float(each.columns["gross_width"].max(initial=0)) for each in whole.states.values())
         longest = max(float(np.abs(each.z).max(initial=0)) for each in whole.states.values())
         middle, half, end = 0.0, 0.55 * _MM * widest, 1.1 * _MM * longest
+        axes = [style.panel(figure, *box) for box in _footprint_boxes(len(whole.states), half, end)]
         for axis, head, (name, total) in zip(axes, whole.heads(), whole.states.items(), strict=False):
             z, colour = _MM * total.z, style.STATE[name]
             gross, touching = (_MM * total.columns[key] / 2 for key in ("gross_width", "contact_length"))
@@ -215,18 +247,28 @@ def footprint(whole: "WholeFinger", path: Path | None = None) -> Figure:
             words = head.replace(" normal", "\nnormal")
             axis.set_title(f"{words}\n{area:.1f} mm² gross,\nridges {ridges:.2f} mm²", color=colour)
             axis.set(xlim=(-half, half), ylim=(-end, end), xlabel="x (mm)")
-            axis.set_aspect("equal")
             axes[-1].plot(total.pressure / 1e3, z, color=colour)
             middle = max(middle, float(total.pressure[len(z) // 2]) / 1e3 if len(z) else 0.0)
         for axis in (axes[0], axes[-1]):
             axis.set_ylabel("z along the finger (mm)")
         axes[-1].set(xlabel="mean contact\npressure (kPa)", title="Along the finger")
-        axes[-1].set(xlim=(0, 1.3 * middle or None), ylim=(-end, end), box_aspect=end / half / _WIDER)
+        axes[-1].set(xlim=(0, 1.3 * middle or None), ylim=(-end, end))
         bands = {
             "light: gross contact, from the first touching ridge to the last": _LIGHT,
             "dark: sum of the contact lengths of all ridges of a slice; the ridges lie apart": 1.0,
         }
         handles = [Patch(fc=style.GREY, alpha=alpha, lw=0, label=words) for words, alpha in bands.items()]
-        figure.legend(handles=handles, loc="outside lower center")
-        figure.suptitle(f"Whole finger under {whole.f_ext:.3g} N, as a sum of slices")
+        figure.legend(handles=handles, loc="lower center")
         return style.save(figure, path)
+
+
+def _footprint_boxes(states: int, half: float, end: float) -> list[Box]:
+    """Return the places (in) of the panels of states, whose millimetres are square, and of the one along the finger."""
+    left, right, bottom, top = _FOOTPRINT
+    each = (right - left) / (states + _WIDER) - _APART
+    boxes = []
+    for k in range(states + 1):
+        begin = left + k * (each + _APART) + (_APART if k == states else 0)
+        fitted = _fitted((begin, begin + each, bottom, top), (-half, half, -end, end))
+        boxes.append(fitted if k < states else (begin, right, *fitted[2:]))
+    return boxes

@@ -18,11 +18,11 @@ from typing import TYPE_CHECKING, Any
 
 from fingerpad.results.over_time import OverTime, over_time, without_parts_of_jumps
 from fingerpad.results.quantities import EXTREMES
-from fingerpad.scene.waveform import Waveform
 from variational.state import CONDITIONS, RESULTS, ContactState
 
 if TYPE_CHECKING:
     from fingerpad.scene import Load
+    from fingerpad.scene.waveform import Waveform
 
 STILL = 1e-12  # m, largest sideways displacement of a bone at rest
 SLIDE_ON = 0.2e-3  # m, further sliding over which the forces of full slip are constant
@@ -241,7 +241,7 @@ def load_result(
     mine: Sequence[ContactState],
     stable: bool | None,
     before: Sequence[ContactState] = (),
-    wave: Waveform | None = None,
+    wave: "Waveform | None" = None,
 ) -> LoadResult:
     """Return the result of a load.
 

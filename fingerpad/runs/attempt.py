@@ -126,7 +126,7 @@ class Attempt:
         self._has_kept = True
 
     def resume(self, kept: dict[str, Any]) -> None:
-        """Go on from a checkpoint, as :func:`fingerpad.runs.full.read` gives it; collective.
+        """Go on from a checkpoint, as :func:`fingerpad.runs.checkpoints.read` gives it; collective.
 
         Raises:
             CheckpointError: it is of another mesh.

@@ -170,7 +170,20 @@ def _whole(scene: Scene, model: "Model", context: RunContext) -> Result:
 
     with context.place(scene, model.name) as place:
         if place is not None and model.path:
+            if on_rank_0(context.ranks, lambda: finished(scene, place.folder) is not None):
+                return Result.load(place.folder)
             place.take()  # the scene is then there for those who go on with it
+    notes = list[str]()
+    if model.path:
+        with needed_by(f"the model {model.name!r}"):
+            from fingerpad.runs import newtons  # finite elements
+        _refuse_different(scene, context.ranks)
+        model.check(scene)
+        try:
+            found = newtons.run(scene, context)
+            return found if found.interrupted else kept(found, context)
+        except newtons.Unsuited as why:
+            notes = [f"The traces are runs of their own: {why}."]
 
     def solve(each: Scene, name: str) -> Result:
         if not model.path:
@@ -180,6 +193,7 @@ def _whole(scene: Scene, model: "Model", context: RunContext) -> Result:
         return gone_on(each, model, replace(context, folder=context.folder and below(context.folder, name)))
 
     found = traces.whole(scene, model, solve)
+    found = replace(found, notes=(*found.notes, *notes))
     return found if found.interrupted else kept(found, context)
 
 

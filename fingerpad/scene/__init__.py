@@ -1,11 +1,12 @@
 """Scenes: everything a run needs, checked, from Python, TOML or the command line."""
 
+from fingerpad.scene.changes import start
 from fingerpad.scene.loads import Load
 from fingerpad.scene.materials import CLOSURES, FRICTION_LAWS, MATERIALS
 from fingerpad.scene.messages import SceneError
 from fingerpad.scene.parameters import CONTACT, Accuracy, Contact, Numerics, Output
 from fingerpad.scene.reading import override
-from fingerpad.scene.scene import Scene, as_kept, from_data, load, start
+from fingerpad.scene.scene import Scene, as_kept, from_data, load
 
 
 def law_name(law: object) -> str:

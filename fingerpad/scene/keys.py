@@ -99,7 +99,9 @@ def _of(model: type[BaseModel], table: str, instance: BaseModel | None) -> Itera
         value = getattr(instance, name) if instance is not None else field.get_default(call_default_factory=True)
         if inside:
             inner.append((inside[0], f"{table}{name}{many}.", value if isinstance(value, inside[0]) else None))
-            if not any(isinstance(part, WrapValidator) for part in parts):  # else it may be a number too
+            if not any(
+                isinstance(part, WrapValidator) or get_origin(part) is Literal for part in parts
+            ):  # may be a number or a name too
                 continue
         required = instance is None and field.is_required()
         meaning = docstrings(model).get(name, "")

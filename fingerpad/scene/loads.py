@@ -13,11 +13,10 @@ from typing import Annotated, Any
 from pydantic import AfterValidator, Discriminator, Tag, model_validator
 
 from fingerpad.scene.messages import NUMBER, WAVE, show
-from fingerpad.scene.waveform import MOST, Volts, Waveform
+from fingerpad.scene.wavefile import Volts
+from fingerpad.scene.waveform import MOST, Waveform
 from geometry.units import Finite, Switch, Table, within
 
-DEFAULT_HISTORY = ("f_ext", "voltage", "slide_length")
-"""Keys of the default loads, which a history replaces."""
 FINAL_STATES = ("charged normal contact", "full slip")
 """States that have files of their own where an accuracy is asked for."""
 _MAX_BYTES = 100  # of a name; a file system allows 255, of which the files take some
@@ -176,13 +175,19 @@ class Load(Table):
         return self.duration
 
 
+def drives(voltage: float | Waveform, history: Sequence[Load]) -> dict[str, Waveform]:
+    """Return the drives in place of a scene's voltage and of its loads', by key."""
+    given = {"voltage": voltage} | {f"history[{k}].voltage": load.wave for k, load in enumerate(history)}
+    return {key: value for key, value in given.items() if isinstance(value, Waveform)}
+
+
 # -- several ---------------------------------------------------------------------------------------------
 def refuse_contradictions(history: Sequence[Load], given: Mapping[str, Any], accurate: bool, step_scale: float) -> None:
     """Refuse the first contradiction between loads, or of them with other keys.
 
     Args:
         history: the loads of a scene.
-        given: the values of :data:`DEFAULT_HISTORY` that are given.
+        given: the values of :data:`fingerpad.scene.changes.DEFAULT_HISTORY` that are given.
         accurate: whether an accuracy is asked for.
         step_scale: key of the numerics.
 
@@ -225,7 +230,7 @@ def _refuse_floating(history: Sequence[Load]) -> None:
     """Refuse loads that leave the bone neither held nor pressed nor attracted."""
     f_ext: float | None = None
     voltage = 0.0
-    for key, load, way in _ways(history):
+    for key, load, way in ways(history):
         if load.f_ext is not None or load.bone_height is not None:
             f_ext = load.f_ext
         voltage = voltage if load.level is None else load.level
@@ -244,7 +249,7 @@ def _refuse_floating(history: Sequence[Load]) -> None:
             )
 
 
-def _ways(history: Sequence[Load]) -> Iterator[tuple[str, Load, float | None]]:
+def ways(history: Sequence[Load]) -> Iterator[tuple[str, Load, float | None]]:
     """Yield the key of each load, the load, and how far the bone goes (m); None where the run decides that."""
     place: float | None = 0.0  # of the bone; None where a load before may have stopped early
     for k, load in enumerate(history):
@@ -260,7 +265,7 @@ def _ways(history: Sequence[Load]) -> Iterator[tuple[str, Load, float | None]]:
 
 def _refuse_times(history: Sequence[Load], step_scale: float) -> None:
     """Refuse waveforms whose length is not known before the run, or whose samples are too many or end too early."""
-    for key, load, way in _ways(history):
+    for key, load, way in ways(history):
         if load.wave is None:
             continue
         if load.speed is not None and way is None:

@@ -1,4 +1,4 @@
-"""Materials, friction, insulators and roughness of a scene, with units and the ranges that make sense.
+"""Materials, friction and roughness of a scene, with units and the ranges that make sense.
 
 A range is wider than measured values by a factor of ten or more on either side. The docstring of a key is its text in
 the scene reference, ``docs/scene.md``.
@@ -13,12 +13,12 @@ from typing import Annotated, Any, Literal
 import numpy as np
 from pydantic import BaseModel, ConfigDict, ValidationError
 
+from fingerpad.scene.electric import Electric
 from fingerpad.scene.law_keys import Kind, LawKey, fail, inside, whole
 from fingerpad.scene.messages import show
 from geometry import tags
 from geometry.parameters import Fingertip
 from geometry.units import Finite, Table, within
-from variational.attraction.electroadhesion import insulator_thickness
 from variational.contact.friction import Coulomb, Derjaguin, Friction
 from variational.materials.material import Material
 from variational.materials.neo_hooke import NeoHooke
@@ -44,7 +44,6 @@ LAYERS = {name.replace(" ", "_"): tag for name, tag in tags.LAYERS.items()}
 
 _MAX_DIFFERENCE = 1e-6  # relative difference of thicknesses that are the same
 LARGEST_GAP = 1.0  # m, with which the attraction is as good as none
-Permittivity = Annotated[Finite, within(1.0, 1e7)]
 
 
 def _layer(default: Material) -> Any:
@@ -77,22 +76,6 @@ class Materials(Table):
     """Material of the nail."""
     nail_bed: Annotated[Material, _layer(_NAIL_BED)] = _NAIL_BED
     """Material of the nail bed."""
-
-
-class Electric(Table):
-    """Insulators between finger and electrode (Table 3)."""
-
-    eps_sc: Permittivity = 1650.0
-    """Relative permittivity of the stratum corneum at 3 kHz. Range: vacuum to ten times the skin's at the lowest
-    frequencies."""
-    d_i: Annotated[Finite, within(1e-9, 1e-2, "m")] = 1e-6
-    """Thickness of the screen's insulating layer (m). Range: a few atoms to a pane of glass."""
-    eps_i: Permittivity = 3.9
-    """Relative permittivity of the screen's insulating layer. Range: vacuum to ferroelectrics."""
-
-    def h_0(self, d_sc: float) -> float:
-        """Return the effective insulator thickness (m) under stratum corneum of thickness ``d_sc`` (m)."""
-        return insulator_thickness(d_sc, self.eps_sc, self.d_i, self.eps_i)
 
 
 Length = Annotated[Finite, within(1e-10, 0.1, "m")]

@@ -16,8 +16,8 @@ _MAX_VALUE = 60  # of a value that is quoted
 MOST_KEY = 40  # of a key
 
 LAW = "law"  # kind of the errors of a law, whose context has the text and the place
-NUMBER, WAVE = "a number", "a waveform"
-"""What a voltage can be: parts of the place of an error that are no keys."""
+NUMBER, WAVE, NAME, TABLE = "a number", "a waveform", "a name", "a table"
+"""What a key with several kinds of values can be: parts of the place of an error that are no keys."""
 
 _MAX_LIST = 150  # characters of a list of keys
 _MIN_LIKENESS = 0.6  # likeness, from 0 to 1, at which a key of the same table may have been meant,
@@ -108,7 +108,7 @@ def first_error(error: ValidationError, root: type[BaseModel], keys: Iterable[st
 
     first = error.errors(include_url=False)[0]
     kind, context = first["type"], first.get("ctx", {})
-    loc = tuple(part for part in (*first["loc"], *context.get("at", ())) if part not in (NUMBER, WAVE))
+    loc = tuple(part for part in (*first["loc"], *context.get("at", ())) if part not in (NUMBER, WAVE, NAME, TABLE))
     if loc[:2] == ("contact", "law"):  # whose formulation's keys stand in the table itself
         loc = ("contact", *("formulation" if part == "law" else part for part in loc[2:]))
     key, value = key_of(loc), context.get("value", first["input"])

@@ -11,9 +11,14 @@ from collections.abc import Mapping
 from dataclasses import fields
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from fingerpad.scene.law_keys import Kept
 from fingerpad.scene.materials import LAYERS
 from fingerpad.scene.messages import clip, show
+from fingerpad.scene.supply import leak_in_words, remains, supply_of
+from fingerpad.scene.waveform import Waveform
+from variational.attraction.circuit import GapCircuit
 from variational.contact.friction import Coulomb, Friction
 from variational.roughness.bam import BearingArea
 
@@ -51,7 +56,9 @@ def used(scene: "Scene") -> dict[str, str]:
     friction = Coulomb(scene.friction) if isinstance(scene.friction, float) else scene.friction
     found["friction"] = _words(friction) if scene.friction else "none"
     charged = any(load.voltage for load in scene.loads())
+    circuit = scene.electric.circuit(scene.geometry.sc_thickness)
     found["attraction"] = _call("electrostatic", {"h_0": scene.h_0}) if charged else "none"
+    found |= {} if circuit.lossless else {"circuit": circuit_in_words(circuit)}
     found["closure"] = _words(scene.roughness) if charged else "none"
     return found | ({} if scene.geometry.file is None else {"mesh": scene.geometry.file})
 
@@ -85,18 +92,58 @@ def remarks(scene: "Scene") -> list[str]:
 
 
 def leakage(scene: "Scene") -> list[str]:
-    """Return the note on a constant voltage; none at 0 V, or where a caution on an offset says it."""
-    return [LEAKAGE] if any(load.level for load in scene.loads()) and not offsets(scene) else []
+    """Return the notes on drives and on a constant voltage; none at 0 V.
+
+    Of a drive: how large it is by every measure, the circuit, and the constant voltage that it counts as. Of a constant
+    voltage: that it leaks away, or what a circuit that leaks leaves of it. Without losses a caution on an offset
+    stands in its place.
+    """
+    circuit = scene.electric.circuit(scene.geometry.sc_thickness)
+    found = [_drive_in_words(name, wave, scene) for name, wave in scene.drives().items()]
+    constant = scene.supply is None and any(load.level for load in scene.loads())
+    if constant and circuit.lossless:
+        found += [] if offsets(scene) else [LEAKAGE]
+    elif constant:
+        found.append(_remains_in_words(scene, circuit))
+    return found
+
+
+def _drive_in_words(name: str, wave: Waveform, scene: "Scene") -> str:
+    supply = supply_of(wave, scene.electric, scene.geometry.sc_thickness)
+    losses = "without losses (Eq. 3)" if supply.circuit.lossless else circuit_in_words(supply.circuit)
+    return (
+        f"Drive {name}: {wave}, {losses}. {supply.measures()}, as a constant {supply.reference:.4g} V does without "
+        "losses."
+    )
+
+
+def circuit_in_words(circuit: GapCircuit) -> str:
+    """Return tissue and leak, with the range of the leak."""
+    tissue = circuit.tissue if isinstance(circuit.tissue, str) else "tabled"
+    return f"{tissue} stratum corneum, {leak_in_words(circuit)}"
+
+
+def _remains_in_words(scene: "Scene", circuit: GapCircuit) -> str:
+    begins = "A constant voltage is that of an instant, and attracts by Eq. 3 without losses. In a circuit of "
+    try:
+        left = remains(scene.electric, scene.geometry.sc_thickness)
+    except ValueError:
+        return f"{begins}{circuit_in_words(circuit)} it would leak away."
+    if left.decay == np.inf:
+        return f"{begins}{circuit_in_words(circuit)} {left.share:.2f} of the attraction is left after 0.1 s."
+    return (
+        f"{begins}{circuit_in_words(circuit)}, it leaks away with a time constant of {1e3 * left.decay:.3g} ms: after "
+        f"0.1 s {left.share:.2g} of the attraction is left."
+    )
 
 
 def offsets(scene: "Scene") -> list[str]:
     """Return a caution on the waveform with the largest mean voltage; none where no mean reaches 1 % of its peak."""
-    waves = [(load.name, load.wave) for load in scene.loads() if load.wave is not None]
-    name, wave = max(waves, key=lambda each: abs(each[1].mean), default=("", None))
-    if wave is None or abs(wave.mean) < _MEAN * wave.peak:
+    name, wave = max(scene.drives().items(), key=lambda each: abs(each[1].mean), default=("", None))
+    if wave is None or abs(wave.mean) < _MEAN * wave.peak or scene.electric.leak != "none":
         return []
     return [
-        f"the voltage of the load {name} has a mean of {wave.mean:.4g} V, which leaks away in a real finger; here it "
+        f"the drive {name} has a mean of {wave.mean:.4g} V, which leaks away in a real finger; here it "
         "attracts all the time, without leakage (Eq. 3), so that the attraction is too large"
     ]
 

@@ -3,6 +3,7 @@
 A number is in SI units, or a text with its unit (:mod:`geometry.units`).
 """
 
+import math
 from collections.abc import Mapping
 from dataclasses import is_dataclass
 from pathlib import Path
@@ -10,11 +11,13 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 from pydantic import Field, ValidationError, model_validator
 
+from fingerpad.scene.changes import DEFAULT_HISTORY, changed, with_coarse_start
+from fingerpad.scene.electric import Electric
 from fingerpad.scene.keys import every
 from fingerpad.scene.law_code import digest, folder_of, imported
 from fingerpad.scene.law_keys import Kept, kept
-from fingerpad.scene.loads import DEFAULT_HISTORY, Load, refuse_contradictions
-from fingerpad.scene.materials import BEARING_AREA, FRICTION, LAYERS, ROUGHNESS, Electric, Materials, refuse_thickness
+from fingerpad.scene.loads import Load, Voltage, drives, refuse_contradictions
+from fingerpad.scene.materials import BEARING_AREA, FRICTION, LAYERS, ROUGHNESS, Materials, refuse_thickness
 from fingerpad.scene.messages import SceneError, first_error, show
 from fingerpad.scene.parameters import (
     Accuracy,
@@ -27,7 +30,8 @@ from fingerpad.scene.parameters import (
     refuse_beside_mesh,
 )
 from fingerpad.scene.reading import plain, put_all, read_scene
-from fingerpad.scene.waveform import Volts
+from fingerpad.scene.supply import Supply, refuse_drives, supply_of
+from fingerpad.scene.waveform import Waveform
 from geometry.parameters import MeshSize
 from geometry.units import Finite, Table, computed, within
 from variational.contact.friction import Friction, law_of
@@ -54,10 +58,10 @@ class Scene(Table):
     force: Annotated[Finite, within(1e-5, 200.0, "N")] | None = None
     """External normal force on the whole finger (N), in place of ``f_ext``. The result is then a sum over slices along
     the finger's axis (``docs/newtons.md``). Range: the weight of a milligram to that of 20 kg."""
-    voltage: Volts = 200.0
-    """Instantaneous voltage U (V). *Assumption*: U is that of Eq. 3, not the peak-to-peak value of Table 3. Range:
-    from 1 mV, which attracts with less than 1 µPa, to ten times the voltage of displays; 0 is no voltage. The sign
-    changes no force."""
+    voltage: Voltage = 200.0
+    """Instantaneous voltage U (V), or a drive, whose mean attraction over a period acts. *Assumption*: U is that of
+    Eq. 3, not the peak-to-peak value of Table 3. Range: from 1 mV, which attracts with less than 1 µPa, to ten times
+    the voltage of displays; 0 is no voltage. The sign changes no force."""
     slide_length: Annotated[Finite, within(1e-9, 0.1, "m")] = 5e-3
     """Largest displacement of the bone (m) on the way to full slip (*assumption*). The slide stops earlier, at full
     slip."""
@@ -100,8 +104,10 @@ class Scene(Table):
         if self.accuracy is not None:
             self.accuracy.refuse(self.output.receptors, self.friction)
         if self.history is not None:
-            refuse_contradictions(self.history, given, self.accuracy is not None, self.numerics.step_scale)
+            steps = math.inf if self.electric.follows == "mean" else self.numerics.step_scale
+            refuse_contradictions(self.history, given, self.accuracy is not None, steps)
         refuse_thickness(self.roughness, self.h_0)
+        refuse_drives(self.drives(), self.electric, self.geometry.sc_thickness)
         return self
 
     def _refuse_beside_force(self) -> None:
@@ -131,7 +137,7 @@ class Scene(Table):
         Raises:
             SceneError: the first key at fault, or one in whose place the scene has a law.
         """
-        return Scene(**changed(plain(self), self.accuracy, changes))
+        return Scene(**changed(plain(self), None if self.accuracy is None else self.accuracy.tolerances(), changes))
 
     def __replace__(self, **changes: Any) -> "Scene":
         """Return :meth:`replace` of changes, as ``copy.replace`` does from Python 3.13 on."""
@@ -141,6 +147,21 @@ class Scene(Table):
     def h_0(self) -> float:
         """Effective insulator thickness (m)."""
         return self.electric.h_0(self.geometry.sc_thickness)
+
+    def drives(self) -> dict[str, Waveform]:
+        """Return the drives in place of voltages, by key."""
+        return drives(self.voltage, self.history or ())
+
+    @property
+    def supply(self) -> Supply | None:
+        """The drive ``voltage`` and the circuit behind it; None where it is a number."""
+        drive = self.drives().get("voltage")
+        return None if drive is None else supply_of(drive, self.electric, self.geometry.sc_thickness)
+
+    @property
+    def volts(self) -> float:
+        """The voltage (V) of Eq. 3: ``voltage``, or what attracts as a drive does on average over a ridge's gap."""
+        return self.voltage if isinstance(self.voltage, float) else self.supply.reference  # type: ignore[union-attr]
 
     # -- laws ------------------------------------------------------------------------------------------
     def laws(self) -> dict[str, Any]:
@@ -212,7 +233,7 @@ class Scene(Table):
         with computed():  # of a copy, which may have a force that a run has reached
             return (
                 Load(name="press", f_ext=self.centre_force),
-                Load(name="charge", voltage=self.voltage),
+                Load(name="charge", voltage=self.volts),
                 Load(name="slide", bone_x=self.slide_length, until_full_slip=True),
             )
 
@@ -235,62 +256,6 @@ def _known(key: str, law: Any) -> Any:
     if isinstance(law, Kept):
         law.refuse(key)
     return law
-
-
-# -- changes ---------------------------------------------------------------------------------------------
-_START = {"contact": 20e-6, "receptor": 40e-6, "interface": 120e-6, "growth": 0.5}  # m, but for the growth
-_START_AT_SITES = 10e-6  # m; coarser elements do not resolve the tips of 6 µm: halving them does not show the error
-
-
-def changed(present: Mapping[str, Any], accuracy: Accuracy | None, changes: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the data of a scene with changes, without the keys that the changes make meaningless.
-
-    Args:
-        present: the keys that are given so far.
-        accuracy: the present one.
-        changes: values by key, as for :meth:`fingerpad.scene.Scene.replace`.
-    """
-    present = dict(present)
-    if "accuracy" in changes and accuracy is not None:
-        coarse = start(accuracy.tolerances())
-        present["mesh"] = {key: size for key, size in present.get("mesh", {}).items() if coarse.get(key) != size}
-    replaced = {"history": (*DEFAULT_HISTORY, "force"), "force": ("f_ext",), "f_ext": ("force",)}
-    gone = {other for key, others in replaced.items() if changes.get(key) is not None for other in others}
-    present = {key: value for key, value in present.items() if key not in gone}
-    shape = changes.get("geometry")
-    if isinstance(shape, Mapping) and "file" in shape:
-        present["geometry"] = {k: value for k, value in present.get("geometry", {}).items() if k != "file_sha256"}
-    return _merged(present, changes)
-
-
-def _merged(present: Mapping[str, Any], changes: Mapping[str, Any]) -> dict[str, Any]:
-    """Return a table with changes: tables are merged, all else is replaced."""
-    found = dict(present)
-    for key, value in changes.items():
-        before = found.get(key)
-        both = isinstance(value, Mapping) and isinstance(before, Mapping) and _same_law(before, value.get("law"))
-        found[key] = _merged(before, value) if both else value  # type: ignore[arg-type]
-    return found
-
-
-def _same_law(present: Mapping[str, Any], name: Any) -> bool:
-    """Return whether changes of a table are not of another law than the table's."""
-    kind = present.get("law")
-    names = (f"{kind.__module__}:{kind.__qualname__}", kind.__name__) if isinstance(kind, type) else ()
-    return name in (None, kind, *names)
-
-
-def with_coarse_start(data: Mapping[str, Any]) -> Mapping[str, Any]:
-    """Return the data of a scene; with an accuracy, sizes that are not given are those of :func:`start`."""
-    mesh, accuracy = data.get("mesh", {}), data.get("accuracy")
-    if not (isinstance(mesh, dict) and isinstance(accuracy, dict) and accuracy):
-        return data
-    return {**data, "mesh": start(accuracy) | mesh}
-
-
-def start(asked: Mapping[str, Any]) -> dict[str, float]:
-    """Return the element sizes from which a scene starts that asks for accuracies by quantity."""
-    return _START | ({"receptor": _START_AT_SITES} if asked.get("sed") is not None else {})
 
 
 # -- files ---------------------------------------------------------------------------------------------

@@ -13,7 +13,6 @@ change at a constant voltage, as the finger slides. States between two samples, 
 waveform's own voltage. Fewer or more samples follow from ``numerics.step_scale``, as for all steps.
 """
 
-import csv
 import math
 from collections.abc import Iterator
 from itertools import count, pairwise
@@ -21,37 +20,26 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator, Field, model_validator
 
-from fingerpad.scene.messages import clip, show
-from geometry.units import Finite, Range, Table, within
-from variational import files
+from fingerpad.scene.messages import show
+from fingerpad.scene.modulation import Burst, Carrier, refuse_carrier, square_mean
+from fingerpad.scene.wavefile import HIGHEST, POINTS, Seconds, Volts, or_zero, table
+from geometry.units import Finite, Table, within
 
 SAMPLES = 24
 """Samples of a period at ``numerics.step_scale`` 1."""
 MOST = 10_000
 """Most samples of a load."""
-_POINTS = 2000  # most points of a file
-_LEAST = 1e-3  # V; what is less in a table is 0: noise, or roundoff of a computed sine
-_HIGHEST = 5e3  # V
 _TIME_TOLERANCE = 1e-9  # of a period: two times that are one
 _SUDDEN = 0.01  # of the peak: a change of the voltage, within one sample before a piece of a table, that cuts the piece
 _OWN = 0.5  # of the piece's own change: a smaller change before it cuts no piece
 _NOTHING = 1e-12  # of the peak: a voltage that is roundoff of zero
-_TIME, _VOLTAGE = "time (s)", "voltage (V)"
 Sample = tuple[float, float]
 """Time (s) since the start of the load, and voltage (V)."""
-Volts = Annotated[Finite, within(_LEAST, _HIGHEST, "V", zero=True, sides=2)]
-
-
-def _or_zero(value: Any) -> Any:
-    """Return a voltage of a table, and 0 for one that is less than a scene can have."""
-    return 0.0 if isinstance(value, float) and abs(value) < _LEAST else value
-
-
-_Tabled = Annotated[Volts, BeforeValidator(_or_zero)]
-Seconds = Annotated[Finite, within(1e-9, 1e5, "s", zero=True)]
+_Tabled = Annotated[Volts, BeforeValidator(or_zero)]
 # Behind a validator that reads a file, strict rules no longer take a list for a tuple.
 _LISTED = BeforeValidator(lambda value: tuple(value) if isinstance(value, list) else value)
-_WAVES = ("amplitude", "frequency")
+MEASURES = ("amplitude", "peak_to_peak", "rms")
+"""Keys that say how large a wave is; one of them is given."""
 
 
 class Waveform(Table):
@@ -59,12 +47,21 @@ class Waveform(Table):
 
     waveform: Literal["sine", "square", "triangle", "file"]
     """Shape. Sine and triangle start at the offset and rise, a square starts at its upper value; a file has any."""
-    amplitude: Annotated[Finite, within(1e-3, _HIGHEST, "V")] | None = None
-    """Amplitude (V): half of the peak-to-peak value. Required but for a file."""
+    amplitude: Annotated[Finite, within(1e-3, HIGHEST, "V")] | None = None
+    """Amplitude (V): half of the peak-to-peak value. One of amplitude, peak_to_peak and rms is required but for a
+    file."""
+    peak_to_peak: Annotated[Finite, within(1e-3, 2 * HIGHEST, "V")] | None = None
+    """Peak-to-peak value (V), in place of the amplitude."""
+    rms: Annotated[Finite, within(1e-3, HIGHEST, "V")] | None = None
+    """Root mean square (V) of the alternating part, without offset and pauses, in place of the amplitude."""
     frequency: Annotated[Finite, within(1e-3, 1e6, "Hz")] | None = None
     """Frequency (Hz). Required but for a file. Range: a period of a quarter of an hour to a radio wave."""
     offset: Volts = 0.0
     """Direct voltage (V) to which the wave is added, of either sign."""
+    carrier: Carrier | None = None
+    """A sine of higher frequency, of which the wave is the envelope; see :mod:`fingerpad.scene.modulation`."""
+    burst: Burst | None = None
+    """Whole periods of the wave, and a pause at the offset."""
     file: Annotated[str | None, Field(exclude=True)] = None
     """CSV file with the header ``time (s),voltage (V)``, straight between its points; a relative path starts at the
     scene file. The times start at 0 and increase. The file is read at once: a scene stores only its points."""
@@ -81,7 +78,7 @@ class Waveform(Table):
         for name in ("times", "voltages"):
             if data.get(name) is not None:
                 raise ValueError(f"{name} and file are both given; give the file alone, which has them")
-        return {key: value for key, value in data.items() if key != "file"} | _table(data["file"])
+        return {key: value for key, value in data.items() if key != "file"} | table(data["file"])
 
     @model_validator(mode="after")
     def _consistent(self) -> "Waveform":
@@ -91,26 +88,34 @@ class Waveform(Table):
         for name in ("file", "times", "voltages"):
             if getattr(self, name) is not None:
                 raise ValueError(f"{name} is given and waveform is {show(self.waveform)}; it must be 'file'")
-        for name in _WAVES:
-            if getattr(self, name) is None:
-                raise ValueError(f"{name} is missing; waveform is {show(self.waveform)} and needs it")
-        if self.peak > _HIGHEST:
+        given = [name for name in MEASURES if getattr(self, name) is not None]
+        if len(given) > 1:
+            values = " and ".join(f"{name} is {show(getattr(self, name))}" for name in given[:2])
+            raise ValueError(f"{values}; give one of {', '.join(MEASURES)}")
+        if not given or self.frequency is None:
+            what = "amplitude" if not given else "frequency"
+            instead = ", or peak_to_peak or rms in its place" if not given else ""
+            raise ValueError(f"{what} is missing; waveform is {show(self.waveform)} and needs it{instead}")
+        if self.peak > HIGHEST:
             raise ValueError(
-                f"offset is {show(self.offset)} and amplitude is {show(self.amplitude)}, together {self.peak:g} V; "
-                f"they must reach at most {_HIGHEST:g} V"
+                f"offset is {show(self.offset)} and {given[0]} is {show(getattr(self, given[0]))}, together "
+                f"{self.peak:g} V; they must reach at most {HIGHEST:g} V"
             )
+        if self.carrier is not None:
+            refuse_carrier(self)
         return self
 
     def _refuse_table(self) -> None:
-        for name in (*_WAVES, "offset"):
+        for name in (*MEASURES, "frequency", "offset", "burst"):
             if name in self.model_fields_set and getattr(self, name) not in (None, 0.0):
-                raise ValueError(f"{name} is {show(getattr(self, name))} and waveform is 'file', which has none")
+                given = "given" if name == "burst" else show(getattr(self, name))
+                raise ValueError(f"{name} is {given} and waveform is 'file', which has none")
         if self.times is None or self.voltages is None:
             raise ValueError("file is missing; waveform is 'file' and needs it")
         if len(self.times) != len(self.voltages):
             raise ValueError(f"times are {len(self.times)} and voltages are {len(self.voltages)}; give as many of each")
-        if not 2 <= len(self.times) <= _POINTS:
-            raise ValueError(f"times are {len(self.times)}; there must be from 2 to {_POINTS} of them")
+        if not 2 <= len(self.times) <= POINTS:
+            raise ValueError(f"times are {len(self.times)}; there must be from 2 to {POINTS} of them")
         if self.times[0] != 0:
             raise ValueError(f"times start at {show(self.times[0])} s; the first must be 0, where the load starts")
         late = next((k for k in range(1, len(self.times)) if self.times[k] <= self.times[k - 1]), None)
@@ -119,12 +124,23 @@ class Waveform(Table):
                 f"times are {show(self.times[late - 1])} and then {show(self.times[late])} s; each must be later than "
                 "the one before, so give a jump a short time"
             )
+        if self.carrier is not None:
+            refuse_carrier(self)
 
     # -- what it is --------------------------------------------------------------------------------------
     @property
     def period(self) -> float:
-        """Period (s); of a file its last time."""
-        return self.times[-1] if self.times is not None else 1 / (self.frequency or math.nan)
+        """Time (s) after which it repeats itself, with its pause; of a file its last time."""
+        if self.times is not None:
+            return self.times[-1]
+        return (1 if self.burst is None else self.burst.on + self.burst.off) / (self.frequency or math.nan)
+
+    @property
+    def height(self) -> float:
+        """Amplitude (V), by whichever measure it is given; 0 of a file."""
+        if self.rms is not None:
+            return self.rms / math.sqrt(square_mean(self.waveform, self.carrier))
+        return self.amplitude or (self.peak_to_peak or 0.0) / 2
 
     @property
     def end(self) -> float:
@@ -134,7 +150,7 @@ class Waveform(Table):
     @property
     def peak(self) -> float:
         """Largest amount of the voltage (V)."""
-        return max(map(abs, self.voltages)) if self.voltages else abs(self.offset) + (self.amplitude or 0.0)
+        return max(map(abs, self.voltages)) if self.voltages else abs(self.offset) + self.height
 
     @property
     def mean(self) -> float:
@@ -149,14 +165,18 @@ class Waveform(Table):
         if self.times is not None:
             return f"by a table of {len(self.times)} points over {self.times[-1]:g} s, up to {self.peak:g} V"
         offset = f" about {self.offset:g} V" if self.offset else ""
-        return f"{self.waveform} of {self.amplitude:g} V{offset} at {self.frequency:g} Hz"
+        measure = next(name for name in MEASURES if getattr(self, name) is not None)
+        how = "" if measure == "amplitude" else f" {measure.replace('_', ' ')}"
+        found = f"{self.waveform} of {getattr(self, measure):g} V{how}{offset} at {self.frequency:g} Hz"
+        found += "" if self.carrier is None else f" on a carrier of {self.carrier.frequency:g} Hz"
+        return found + ("" if self.burst is None else f", {self.burst.on} periods on and {self.burst.off} off")
 
     # -- samples -----------------------------------------------------------------------------------------
     def count(self, seconds: float, step_scale: float) -> float:
         """Return how many samples a load of some seconds has; zeros of a periodic voltage come on top."""
         if self.times is not None:
             return len(self.samples(seconds, step_scale))
-        return seconds / self.period * _per_period(step_scale)
+        return seconds * (self.frequency or math.nan) * _per_period(step_scale)
 
     def samples(self, seconds: float, step_scale: float) -> list[Sample]:
         """Return times and voltages to go to one after the other, the first at time 0.
@@ -197,7 +217,7 @@ class Waveform(Table):
         return self._value(math.sin(2 * math.pi * math.fmod(time * (self.frequency or 0.0), 1.0)))
 
     def _value(self, shape: float) -> float:
-        value = self.offset + (self.amplitude or 0.0) * shape
+        value = self.offset + self.height * shape
         return 0.0 if abs(value) < _NOTHING * self.peak else value
 
     def _points(self, n: int) -> Iterator[tuple[float, ...]]:
@@ -218,7 +238,7 @@ class Waveform(Table):
             return [(k / n, *values.get(k, (high if k < n // 2 else low,))) for k in range(n)]
         sine = self.waveform == "sine"
         found = [(k / n, self._value(_quarters(k, n) if sine else _triangle(4 * k / n))) for k in range(n)]
-        ratio = -self.offset / (self.amplitude or math.nan)
+        ratio = -self.offset / self.height
         if abs(ratio) < 1:
             first = math.asin(ratio) / (2 * math.pi) if sine else ratio / 4
             for zero in (first % 1.0, 0.5 - first):
@@ -278,46 +298,3 @@ def _change_before(times: tuple[float, ...], voltages: tuple[float, ...], k: int
         part = min((times[k + 1] - first) / (times[k + 1] - times[k]), 1.0)
         seen.append(voltages[k + 1] + part * (voltages[k] - voltages[k + 1]))
     return max(seen) - min(seen)
-
-
-# -- files ---------------------------------------------------------------------------------------------
-def _table(file: str) -> dict[str, Any]:
-    """Return times and voltages of a CSV file.
-
-    Raises:
-        ValueError: it cannot be read, has another header, or a row without two numbers in range.
-    """
-    name = f"file is {show(file)}"
-    try:
-        lines = list(csv.reader(files.read(file, files.MOST_OF_TEXT).decode("utf-8-sig").splitlines(), strict=True))
-    except OSError as error:
-        raise ValueError(f"{name}, which cannot be read: {show(error.strerror or str(error))}") from None
-    except (ValueError, csv.Error) as error:
-        raise ValueError(f"{name}, which is no table in CSV: {show(clip(str(error), 100))}") from None
-    rows = [(k, [cell.strip() for cell in row]) for k, row in enumerate(lines, start=1) if any(map(str.strip, row))]
-    header = rows[0][1] if rows else []
-    if header != [_TIME, _VOLTAGE]:
-        raise ValueError(f"{name} with the header {show(','.join(header))}; it must be '{_TIME},{_VOLTAGE}'")
-    if len(rows) - 1 > _POINTS:
-        raise ValueError(f"{name} with {len(rows) - 1} points; there must be from 2 to {_POINTS} of them")
-    times, voltages = list[float](), list[float]()
-    for line, row in rows[1:]:
-        if len(row) != 2:
-            raise ValueError(f"{name}, whose line {line} has {len(row)} cells; it must have 2, a time and a voltage")
-        for text, found, allowed in ((row[0], times, _range(Seconds)), (row[1], voltages, _range(Volts))):
-            try:
-                value = float(text)
-            except ValueError:
-                value = math.nan
-            if not math.isfinite(value):
-                raise ValueError(f"{name}, whose line {line} has {show(text)}; it must be a finite number")
-            value = _or_zero(value) if found is voltages else value
-            if value not in allowed:
-                raise ValueError(f"{name}, whose line {line} has a number that {allowed.words(value)}")
-            found.append(value)
-    return {"times": times, "voltages": voltages}
-
-
-def _range(annotation: Any) -> Range:
-    """Return the range of a key's annotation."""
-    return next(part.func for part in annotation.__metadata__ if isinstance(getattr(part, "func", None), Range))

@@ -33,10 +33,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from variational.attraction.electroadhesion import VACUUM_PERMITTIVITY
+from variational.attraction.dielectric import VACUUM_PERMITTIVITY
 from variational.roughness.closure import Closure
 
 Array = NDArray[np.floating[Any]]
+Voltage = float | Callable[[Array], Array]
+"""A voltage U (V), or one of Eq. 3 by the air gap (m) where a drive loses a part of it that depends on the gap."""
 _PRESSURES = np.geomspace(10.0, 1e7, 181)  # Pa, among which roots are separated
 _LEAST, _LARGEST = 1e-9, 1e6  # of m - 1
 _ROUNDOFF = 2e-16  # relative
@@ -97,7 +99,7 @@ class Cylinder:
     closure: Closure
     """The microscale."""
 
-    def under_loads(self, f: ArrayLike, voltage: float) -> list[RidgeState]:
+    def under_loads(self, f: ArrayLike, voltage: Voltage) -> list[RidgeState]:
         """Return the state under each of several external forces.
 
         Args:
@@ -110,7 +112,7 @@ class Cylinder:
         """
         return self._states(np.asarray(f, dtype=float), voltage)
 
-    def over_length(self, length: float, f: float, voltage: float) -> RidgeState:
+    def over_length(self, length: float, f: float, voltage: Voltage) -> RidgeState:
         """Return the state in which a contact of given length (m) bears an external force; see :meth:`under_loads`.
 
         Raises:
@@ -183,7 +185,7 @@ class Cylinder:
         return np.exp(y)
 
     # -- the microscale --------------------------------------------------------------------------------
-    def _states(self, f: Array, voltage: float, half: float | None = None) -> list[RidgeState]:
+    def _states(self, f: Array, voltage: Voltage, half: float | None = None) -> list[RidgeState]:
         """Return the branches in contact; ``half`` is a (m) where it is given."""
         if not np.all(f > 0):
             raise NoEquilibriumError(f"the force on a ridge is {f[~(f > 0)][0]:g} N/m; it must be greater than 0")
@@ -196,7 +198,7 @@ class Cylinder:
         if none.any():
             raise NoEquilibriumError(
                 f"no contact pressure from {_PRESSURES[0]:g} to {_PRESSURES[-1]:g} Pa bears {f[none][0]:g} N/m on a "
-                f"ridge at {voltage:g} V; try another force or length"
+                f"ridge at {'a drive' if callable(voltage) else f'{voltage:g} V'}; try another force or length"
             )
         k, load = np.nonzero(crossed)
         crossing, near = loads[load], None
@@ -216,7 +218,7 @@ class Cylinder:
         return [RidgeState(*(*each, more)) for each, more in zip(columns, others, strict=True)]
 
     def _at(
-        self, p_c: Array, voltage: float, loads: _Loads, near: Array | None = None
+        self, p_c: Array, voltage: Voltage, loads: _Loads, near: Array | None = None
     ) -> tuple[Array, Array, Array, Array]:
         """Return a (m), m - 1, strength of the attraction (Pa) and air gap (m) at contact pressures (Pa).
 
@@ -227,11 +229,12 @@ class Cylinder:
             near: values of m - 1 to start at.
         """
         d_eq = np.repeat(np.asarray(self.closure(p_c).d_eq, dtype=float), len(loads.f) // len(p_c))
-        sigma = VACUUM_PERMITTIVITY * voltage**2 / 2 / (self.h_0 + d_eq) ** 2
+        volts = voltage(d_eq) if callable(voltage) else voltage
+        sigma = VACUUM_PERMITTIVITY * volts**2 / 2 / (self.h_0 + d_eq) ** 2
         beyond = self._edge(loads, sigma, self.h_0 + 2 * d_eq, near)
         return self._half_width(loads, beyond, sigma)[0], beyond, sigma, d_eq
 
-    def _excess(self, p_c: Array, voltage: float, loads: _Loads, near: Array | None = None) -> tuple[Array, Array]:
+    def _excess(self, p_c: Array, voltage: Voltage, loads: _Loads, near: Array | None = None) -> tuple[Array, Array]:
         """Return m - 1, and what pressures bear beyond attraction and force (N/m); arguments of :meth:`_at`."""
         a, beyond, sigma, _ = self._at(p_c, voltage, loads, near)
         return beyond, 2 * a * (np.repeat(p_c, len(a) // len(p_c)) - sigma * (1 + beyond)) - loads.f

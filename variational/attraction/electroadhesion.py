@@ -21,14 +21,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
+from variational.attraction.dielectric import VACUUM_PERMITTIVITY
 from variational.coefficients import ufl
-
-VACUUM_PERMITTIVITY = 8.854e-12  # F/m, Table 3
-
-
-def insulator_thickness(d_sc: float, eps_sc: float, d_i: float, eps_i: float) -> float:
-    """Return h_0 (m), the effective insulator thickness of stratum corneum and screen coating."""
-    return d_sc / eps_sc + d_i / eps_i
 
 
 def attraction(y, d_eq, voltage, h_0):

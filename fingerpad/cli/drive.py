@@ -1,0 +1,132 @@
+"""``fingerpad drive``: friction over the period of a drive, and whether it is felt, without finite elements."""
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from fingerpad.cli import output, ranges
+from fingerpad.cli.arguments import PICTURE, Parser, echo, scene_of
+from fingerpad.reduced.detection import REFERENCE
+from fingerpad.results.quantities import Output
+from fingerpad.runs.drive import FREQUENCIES, Drive, drive, thresholds
+from fingerpad.scene import Scene
+from fingerpad.scene.messages import SceneError
+from fingerpad.scene.remarks import circuit_in_words, leakage
+from geometry.units import to_si
+
+_COLUMNS = (
+    Output("frequency", "Hz", digits=1),
+    Output("sine", "", digits=2),
+    Output("square_over_sine", "", words="square / sine", digits=2),
+    Output("square", "", digits=2),
+)
+_EXAMPLES = """
+    fingerpad drive --set "voltage={waveform='sine', amplitude='200 V', frequency='100 Hz'}" --plot drive.png
+    fingerpad drive --set electric.tissue=dry --set electric.leak="sliding dry" --frequency 15:480:20:log
+"""
+
+
+def main(argv: Sequence[str]) -> int:
+    """Print friction over the period of a drive and relative thresholds of detection; return the exit code."""
+    parser = Parser("drive", _EXAMPLES)
+    parser.add_scene()
+    words = "frequencies (Hz) of the relative thresholds, as 10:480:20 or 10:480:20:log"
+    parser.add_argument("--frequency", metavar="RANGE", help=words)
+    words = "picture: voltage, attraction and friction over a period, and the spectrum of friction"
+    parser.add_file("--plot", PICTURE, words, dest="period")
+    output.add_files(parser, _COLUMNS, "picture: relative thresholds over the frequency", "--thresholds")
+    args = parser.read(argv)
+    scene = scene_of(args, meshed=False)
+    if args.period and scene.supply is None:
+        raise SceneError(
+            f"--plot is given and voltage is {scene.volts:g} V; it must be a drive to be drawn over a period"
+        )
+    found = _over_period(scene)
+    frequencies = FREQUENCIES if args.frequency is None else _frequencies(args.frequency)
+    rows = table(scene, frequencies)
+    echo(f"\nVoltage at the threshold of detection, relative to a sine of {REFERENCE:g} Hz:\n")
+    echo(output.text(_COLUMNS, rows))
+    circuit = scene.electric.circuit(scene.geometry.sc_thickness)
+    echo(f"\nThrough {circuit_in_words(circuit)}.")
+    beyond = [f"{row['frequency']:g}" for row in rows if row["extrapolated"]]
+    if beyond:
+        echo(f"Extrapolated, at {', '.join(beyond)} Hz: the component that decides is beyond the known thresholds.")
+    echo("Thresholds are ± 3 dB, and of displacement; volts of a person do not follow from them.")
+    output.write_files(args, _COLUMNS, rows, draw)
+    if found is not None and args.period:
+        found.plot(args.period)
+        echo(f"Written: {args.period}")
+    return 0
+
+
+def _over_period(scene: Scene) -> Drive | None:
+    """Print what the drive of a scene does, or what remains of a constant voltage."""
+    if scene.supply is None:
+        echo(f"voltage is {scene.volts:g} V and no drive: no friction over a period.")
+        for note in leakage(scene):
+            echo(note)
+        return None
+    found = drive(scene)
+    echo(str(found))
+    return found
+
+
+def table(scene: Scene, frequencies: Sequence[float]) -> list[dict[str, Any]]:
+    """Return a row of relative thresholds for each frequency (Hz); raises as :func:`thresholds` does."""
+    return [
+        {
+            "frequency": each.frequency,
+            "sine": each.sine,
+            "square_over_sine": each.square_over_sine,
+            "square": each.sine * each.square_over_sine,
+            "extrapolated": each.extrapolated,
+        }
+        for each in thresholds(scene, frequencies)
+    ]
+
+
+def draw(file: Path, rows: Sequence[Mapping[str, Any]]) -> None:
+    """Draw relative thresholds of a sine and a square over the frequency; extrapolated ones are open circles."""
+    with output.panels(file, "Voltage at the threshold of detection", 2) as (_, (ax, other)):
+        paint(ax, other, rows)
+
+
+def paint(ax: Any, other: Any, rows: Sequence[Mapping[str, Any]]) -> None:
+    """Draw into axes the thresholds of a sine and a square, and into others their ratio."""
+    from fingerpad.results import style
+
+    f = [row["frequency"] for row in rows]
+    looks = {"sine": (style.BLUE, "o", "-"), "square": (style.VERMILION, "s", "--")}
+    for name, (colour, _, dash) in looks.items():
+        ax.loglog(f, [row[name] for row in rows], color=colour, ls=dash, label=name)
+    other.loglog(f, [row["square_over_sine"] for row in rows], color=style.BLACK)
+    for part, names in ((ax, looks), (other, ("square_over_sine",))):
+        for name in names:
+            colour, marker = looks.get(name, (style.BLACK, "D", ""))[:2]
+            for extrapolated in (False, True):
+                known = [(row["frequency"], row[name]) for row in rows if row["extrapolated"] == extrapolated]
+                if known:
+                    fill = "none" if extrapolated else colour
+                    part.plot(*zip(*known, strict=True), marker, color=colour, mfc=fill, ms=5)
+        part.set_xlabel("frequency (Hz)")
+        part.grid(alpha=0.3, which="both")
+    other.axhline(1.0, color=style.GREY, ls=":")
+    ax.set_ylabel(f"threshold over that of a sine at {REFERENCE:g} Hz (–)")
+    other.set_ylabel("threshold, square over sine (–)")
+    ax.legend(title="open: extrapolated")
+
+
+def _frequencies(text: str) -> list[float]:
+    """Return the frequencies of an option (Hz).
+
+    Raises:
+        SceneError: they are none.
+    """
+    found = []
+    for value in ranges.read("--frequency", text):
+        try:
+            number = to_si(value, "Hz") if isinstance(value, str) else float(value)
+        except ValueError as error:
+            raise SceneError(f"--frequency is {value}; {error}") from None
+        found.append(number)
+    return found

@@ -1,0 +1,149 @@
+r"""Drives as the full model follows them: loads whose voltage is that of Eq. 3, and the share of each ridge's gap.
+
+The full model has the law of Eq. 3 alone. A drive in a circuit with losses, on a carrier or in bursts becomes the
+voltage V of Eq. 3 that attracts as much (:mod:`fingerpad.scene.supply`), over time at a gap of
+:data:`~fingerpad.scene.supply.REFERENCE`. A ridge of another gap d_eq has another share of the voltage: V is multiplied
+by the ratio of the two root mean squares, frozen with d_eq in each solve. The phase of the drive is that at the
+reference gap on every ridge.
+
+A load begins with the drive switched on across a gap without charge, by the equations of the circuit in time. Where
+these are not known, of a table of a tissue or of a carrier, it begins in the steady state.
+"""
+
+from collections.abc import Callable, Iterator
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fingerpad.scene.messages import SceneError
+from fingerpad.scene.supply import REFERENCE, Supply, supply_of
+from fingerpad.scene.wavefile import POINTS
+from fingerpad.scene.waveform import Waveform
+from geometry.units import computed
+from variational.attraction.dielectric import ColeCole
+from variational.attraction.network import Network
+
+if TYPE_CHECKING:
+    from fingerpad.scene import Load, Scene
+
+Array = NDArray[np.float64]
+Share = Callable[[Array], Array]
+"""Voltage at air gaps (m), over that at the reference gap."""
+_FEW, _MANY = 12, 48  # points of a period of the wave
+_JUMP = 1e-6  # of a period, which a jump takes
+
+
+def share(scene: "Scene") -> Share | None:
+    """Return the share of each gap; None where nothing depends on it.
+
+    Raises:
+        SceneError: several drives, or a drive and a constant voltage, behind a circuit with losses.
+    """
+    drives, d_sc = scene.drives(), scene.geometry.sc_thickness
+    if scene.electric.circuit(d_sc).lossless or not drives:
+        return None
+    levels = [f"history[{k}].voltage" for k, load in enumerate(scene.history or ()) if load.level]
+    if levels or len(set(drives.values())) > 1:
+        one, other = [*drives, *levels][:2]
+        raise SceneError(
+            f"{one} and {other} are two voltages in a circuit with losses, where each ridge has the share of one "
+            "drive; give one drive and 0 V"
+        )
+    supply = supply_of(next(iter(drives.values())), scene.electric, d_sc)
+    return lambda gap: np.asarray(supply.effective(gap) / supply.reference, dtype=np.float64)
+
+
+def loads(scene: "Scene") -> "tuple[Load, ...]":
+    """Return the loads of a scene with the voltages that the full model follows.
+
+    Raises:
+        SceneError: a drive has too many periods in its load.
+    """
+    from fingerpad.scene.loads import ways  # the run starts without it
+
+    found = list(scene.loads())
+    for k, (key, load, way) in enumerate(ways(found)):
+        if load.wave is None:
+            continue
+        supply, mean = supply_of(load.wave, scene.electric, scene.geometry.sc_thickness), scene.electric.follows
+        if (
+            mean == "instantaneous"
+            and supply.circuit.lossless
+            and load.wave.carrier is None
+            and load.wave.burst is None
+        ):
+            continue
+        seconds = load.seconds(way or 0.0)
+        times, volts = constant(supply, seconds) if mean == "mean" else over_time(supply, seconds)
+        if len(times) > POINTS:
+            raise SceneError(
+                f"{key}.voltage has {seconds / load.wave.period:.4g} periods in {seconds:g} s, which need {len(times)} "
+                f"points and at most {POINTS} are possible; take a shorter load, or electric.follows = 'mean'"
+            )
+        found[k] = load.model_copy(update={"voltage": _table(times, volts, load.wave.period)})
+    return tuple(found)
+
+
+def constant(supply: Supply, seconds: float) -> tuple[Array, Array]:
+    """Return two times (s) and the voltage (V) of Eq. 3 that attracts as the drive does on average."""
+    return np.array([0.0, seconds]), np.full(2, supply.reference)
+
+
+def over_time(supply: Supply, seconds: float) -> tuple[Array, Array]:
+    """Return times (s) of a load and the voltage (V) of Eq. 3 at the reference gap, straight between them.
+
+    Args:
+        supply: the drive.
+        seconds: length of the load (s).
+    """
+    wave, tissue = supply.wave, supply.circuit.dielectric
+    factor = (supply.h_0 + REFERENCE) / REFERENCE
+    count = int(np.clip(POINTS / max(seconds * (wave.frequency or 0.0), 1.0), _FEW, _MANY))
+    if wave.carrier is None and isinstance(tissue, ColeCole):
+        t, u = (np.array(each) for each in zip(*_pieces(wave, seconds, count), strict=True))
+        network = Network.of(supply.circuit, REFERENCE, *supply.behind)
+        return t, factor * network.response(t, u)
+    square = (factor * supply.across(REFERENCE)) ** 2
+    if wave.carrier is not None:
+        square = _averaged(square, round(wave.carrier.frequency * wave.period))
+    periods = round(wave.period * (wave.frequency or 1 / wave.period))
+    n = min(count * periods, len(square))
+    t = np.arange(int(np.ceil(seconds / wave.period * n)) + 1) / n * wave.period
+    t[-1] = seconds
+    place = t / wave.period % 1.0 * len(square)
+    found = np.interp(place, np.arange(len(square) + 1), np.append(square, square[0]))
+    return t, np.sqrt(np.maximum(found, 0.0))
+
+
+def _averaged(square: Array, carried: int) -> Array:
+    """Return the mean of values over one period of a carrier around each, by their Fourier series."""
+    spectrum = np.fft.rfft(square)
+    return np.asarray(np.fft.irfft(spectrum * np.sinc(np.arange(len(spectrum)) / carried), len(square)))
+
+
+def _pieces(wave: Waveform, seconds: float, count: int) -> Iterator[tuple[float, float]]:
+    """Yield times (s) and voltages (V) of a drive without carrier, straight in between; two of one time are a jump."""
+    if wave.burst is None:
+        yield from wave.samples(seconds, 24 / count)
+        return
+    plain, one = wave.model_copy(update={"burst": None}), 1 / (wave.frequency or 1.0)
+    on, off = wave.burst.on * one, wave.burst.off * one
+    start = 0.0
+    while start < seconds * (1 - 1e-9):
+        yield from ((start + t, u) for t, u in plain.samples(min(on, seconds - start), 24 / count))
+        start += on
+        if start < seconds * (1 - 1e-9):
+            end = min(start + off, seconds)
+            yield from ((float(t), wave.offset) for t in np.linspace(start, end, count // 2))
+        start += off
+
+
+def _table(times: Array, volts: Array, period: float) -> Waveform:
+    """Return a waveform of a table; jumps take a short time."""
+    t = [float(each) for each in times]
+    for k in range(1, len(t)):
+        if times[k] - times[k - 1] < _JUMP * period:
+            t[k] = t[k - 1] + _JUMP * period
+    with computed():
+        return Waveform(waveform="file", times=tuple(t), voltages=tuple(map(float, volts)))

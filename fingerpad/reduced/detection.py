@@ -1,0 +1,94 @@
+r"""Whether a drive is felt, relative to another drive: displacement thresholds of people over the frequency.
+
+The most sensitive Fourier component of the friction force decides (Y. Vardar et al. 2016, "Effect of waveform in haptic
+perception of electrovibration on touchscreens", doi 10.1007/978-3-319-42321-0_18, found the Pacinian channel to detect
+it). With a_k the amplitude of the force at k times the frequency and A the displacement threshold, the level of a drive
+is
+
+.. math:: L = \max_k \frac{a_k}{A(k f)}, \qquad \frac{U_{th}}{U'_{th}} = \sqrt{L' / L},
+
+since at the threshold the force goes with the square of the voltage. Ratios alone are given: of waveform to waveform,
+and of a frequency to :data:`REFERENCE`. How a force moves the skin is taken as the same at every frequency.
+
+The thresholds are curves of previous literature, digitised, ± 3 dB. Between them A is a power of the frequency; beyond
+them it goes on with the power of the last two, which is marked as extrapolated.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from variational.attraction.circuit import GapCircuit
+
+Array = NDArray[np.float64]
+FREQUENCY = (2.0, 5.0, 10.0, 20.0, 40.0, 80.0, 100.0, 150.0, 200.0, 250.0, 300.0, 350.0)
+"""Frequencies (Hz) of the thresholds."""
+DISPLACEMENT = (24.3, 11.1, 5.34, 1.87, 0.496, 0.115, 0.079, 0.049, 0.042, 0.046, 0.070, 0.120)
+"""Displacement thresholds (µm)."""
+REFERENCE = 120.0
+"""Frequency (Hz) of a sine to whose threshold others are relative."""
+_SAMPLES = 4096
+_PLACES = np.arange(_SAMPLES) / _SAMPLES
+WAVES: dict[str, Array] = {
+    "sine": np.sin(2 * np.pi * _PLACES),
+    "square": np.where(_PLACES % 0.5 == 0, 0.0, np.where(_PLACES < 0.5, 1.0, -1.0)),
+}
+"""A period of each wave of amplitude 1; at a jump it is the mean, as a Fourier series has it."""
+
+
+def threshold(frequency: ArrayLike) -> Array:
+    """Return the displacement threshold (µm) at frequencies (Hz) above 0, of their shape."""
+    f, a = np.log(FREQUENCY), np.log(DISPLACEMENT)
+    x = np.log(np.asarray(frequency, dtype=float))
+    first, last = (a[1] - a[0]) / (f[1] - f[0]), (a[-1] - a[-2]) / (f[-1] - f[-2])
+    beyond = np.where(x < f[0], first * (x - f[0]), np.where(x > f[-1], last * (x - f[-1]), 0.0))
+    return np.asarray(np.exp(np.interp(x, f, a) + beyond))
+
+
+@dataclass(frozen=True)
+class Level:
+    """How far a force is above what is felt, on a scale without a unit."""
+
+    value: float
+    frequency: float
+    """Frequency (Hz) of the component that decides."""
+
+    @property
+    def extrapolated(self) -> bool:
+        """Whether no threshold is known at that frequency."""
+        return not FREQUENCY[0] <= self.frequency <= FREQUENCY[-1]
+
+    def relative_to(self, other: "Level") -> float:
+        """Return the voltage at the threshold over that of another drive."""
+        return float(np.sqrt(other.value / self.value))
+
+
+def level(force: ArrayLike, frequency: float) -> Level:
+    """Return the level of a periodic force.
+
+    Args:
+        force: at equal times over a period, shape (samples,), in any unit.
+        frequency: of the period (Hz).
+    """
+    values = np.asarray(force, dtype=float)
+    amplitude = 2 / len(values) * np.abs(np.fft.rfft(values))[1:]
+    at = frequency * np.arange(1, len(amplitude) + 1)
+    felt = amplitude / threshold(at)
+    k = int(np.argmax(felt))
+    return Level(float(felt[k]), float(at[k]))
+
+
+def of_wave(circuit: GapCircuit, wave: str, frequency: float, layers: tuple[float, float, float, float]) -> Level:
+    """Return the level of a wave of 1 V through a circuit, for a force as the square of the field.
+
+    Args:
+        circuit: of the gap.
+        wave: a name of :data:`WAVES`.
+        frequency: of the wave (Hz).
+        layers: gap (m), d_i (m), eps_i, d_sc (m).
+
+    Raises:
+        ValueError: the frequency is not greater than 0, or the tissue is not known there.
+    """
+    return level(circuit.response(WAVES[wave], frequency, *layers) ** 2, frequency)

@@ -1,0 +1,193 @@
+"""The friction of a drive over its period, and whether it is felt: quasi-static, by the closed form.
+
+At each instant of a period the finger is at full slip under the attraction of that instant. It is that of the model
+"cylinders" at the voltage of Eq. 3 that a ridge of its own air gap has then (:mod:`fingerpad.scene.supply`). Friction
+and air gap are computed at :data:`POINTS` voltages, evenly in their square, and interpolated by monotone cubic curves.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fingerpad.model.cautions import breakdown
+from fingerpad.reduced import detection
+from fingerpad.reduced.cylinders import Cylinders
+from fingerpad.runs.context import RunContext
+from fingerpad.runs.solve import solved
+from fingerpad.scene import Scene
+from fingerpad.scene.messages import SceneError
+from fingerpad.scene.remarks import leakage, remarks
+from fingerpad.scene.supply import REFERENCE, Supply
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+Array = NDArray[Any]
+POINTS = 11
+"""Voltages at which friction is computed."""
+_MARGIN = 0.7  # gaps of a charged ridge over that without voltage, at the least
+_ITERATIONS, _SAME = 50, 1e-9  # of the air gap at an instant, relative
+_NOTHING = 1e-9  # of the mean: an amplitude that is roundoff
+_COMPONENTS = 5  # largest of the spectrum that are printed
+_QUASI_STATIC = 100.0  # Hz, above which inertia begins to matter
+FREQUENCIES = (15.0, 30.0, 60.0, 120.0, 240.0, 480.0)
+"""Frequencies (Hz) of the table of relative thresholds."""
+
+
+@dataclass(frozen=True)
+class Threshold:
+    """Relative thresholds of detection at a frequency."""
+
+    frequency: float
+    """Of the drive (Hz)."""
+    sine: float
+    """Voltage at the threshold of a sine, over that of a sine of :data:`fingerpad.reduced.detection.REFERENCE`."""
+    square_over_sine: float
+    extrapolated: bool
+    """Whether a component that decides is beyond the known thresholds."""
+
+
+@dataclass(frozen=True)
+class Drive:
+    """What a drive does: arrays over one period, all of shape (samples,)."""
+
+    scene: Scene
+    time: Array
+    """From the start of a period (s)."""
+    voltage: Array
+    """U (V)."""
+    sigma_el: Array
+    """Attraction (Pa) across the air gap of that instant."""
+    f_t: Array
+    """Friction force: in N on the whole finger where the scene has a ``force``, else in N/m."""
+    frequency: Array
+    """Frequencies (Hz) of the spectrum, multiples of that of the period, shape (components,)."""
+    amplitude: Array
+    """Amplitudes of the friction force there, in its unit, shape (components,)."""
+    notes: tuple[str, ...]
+
+    @property
+    def unit(self) -> str:
+        """Unit of the friction force."""
+        return "N" if self.scene.force is not None else "N/m"
+
+    def at(self, frequency: float) -> float:
+        """Return the amplitude of the friction force at a frequency (Hz); 0 where the drive has none."""
+        near = np.abs(self.frequency - frequency) < 1e-6 * frequency
+        found = float(self.amplitude[near].sum())
+        return found if found > _NOTHING * float(self.f_t.mean()) else 0.0
+
+    def __str__(self) -> str:
+        """Return mean, extremes and the largest components."""
+        f, u, wave = self.f_t, self.unit, self.scene.voltage
+        base = getattr(wave, "frequency", None) or float(self.frequency[0])
+        largest = [k for k in np.argsort(-self.amplitude)[:_COMPONENTS] if self.amplitude[k] > 1e-6 * f.mean()]
+        parts = ", ".join(f"{self.amplitude[k]:.4g} {u} at {self.frequency[k]:.4g} Hz" for k in sorted(largest))
+        lines = [
+            f"Friction force at full slip over a period: mean {f.mean():.4g} {u}, from {f.min():.4g} to {f.max():.4g} "
+            f"{u}",
+            f"amplitude at the drive's frequency, {base:.4g} Hz: {self.at(base):.4g} {u}; at twice that, "
+            f"{2 * base:.4g} Hz: {self.at(2 * base):.4g} {u}",
+            f"largest components: {parts or 'none'}",
+            *self.notes,
+        ]
+        return "\n".join(lines)
+
+    def plot(self, path: str | Path | None = None) -> "Figure":
+        """Draw U, attraction and friction over a period, and the spectrum of friction; write a picture if asked."""
+        from fingerpad.results.drive_picture import Period, over_period  # Matplotlib
+
+        arrays = self.time, self.voltage, self.sigma_el, self.f_t
+        drawn = Period(*arrays, self.unit, self.frequency, self.amplitude)
+        title = f"{self.scene.voltage}, full slip, closed form"
+        return over_period(drawn, title, None if path is None else Path(path))
+
+
+def drive(scene: Scene) -> Drive:
+    """Return what the drive of a scene does over its period, by the closed form in less than a second.
+
+    Args:
+        scene: press, charge and slide, whose ``voltage`` is a drive.
+
+    Raises:
+        SceneError: its voltage is a number, or the model "cylinders" has no answer.
+    """
+    supply = scene.supply
+    if supply is None:
+        raise SceneError(
+            f"voltage is {scene.volts:g} V; it must be a drive, as in voltage = {{waveform = 'sine', amplitude = 200, "
+            "frequency = 100}"
+        )
+    squares, friction, gaps = _curve(scene, supply)
+    gap: Array = np.full(len(supply.voltages), gaps[0])
+    for _ in range(_ITERATIONS):
+        volts = supply.instants(gap)
+        before, gap = gap, _monotone(squares, gaps, volts**2)
+        if np.all(np.abs(gap - before) <= _SAME * gap):
+            break
+    f_t = _monotone(squares, friction, volts**2)
+    amplitude = 2 / len(f_t) * np.abs(np.fft.rfft(f_t))[1:]
+    sigma = supply.pressure(volts, gap)
+    time = np.arange(len(f_t)) / len(f_t) / supply.frequency
+    least = float(gap[int(np.argmax(volts))])
+    said = [*remarks(scene), *breakdown(scene, [("full slip", least, 0.0)])]
+    notes = [*leakage(scene), *(f"! {text}" for text in said)]
+    if 2 * (supply.wave.frequency or supply.frequency) > _QUASI_STATIC:
+        notes.append(
+            f"! friction varies faster than {_QUASI_STATIC:g} Hz, where inertia of the skin begins to matter: "
+            "amplitudes are quasi-static"
+        )
+    frequency = supply.frequency * np.arange(1, len(amplitude) + 1)
+    return Drive(scene, time, supply.voltages, sigma, f_t, frequency, amplitude, tuple(notes))
+
+
+def thresholds(scene: Scene, frequencies: Sequence[float] = FREQUENCIES) -> list[Threshold]:
+    """Return relative thresholds of detection of a sine and a square, through the circuit of a scene.
+
+    Args:
+        scene: whose insulators and losses count.
+        frequencies: of the drives (Hz).
+
+    Raises:
+        SceneError: a frequency that is not greater than 0, or at which the tissue is not known.
+    """
+    electric, d_sc = scene.electric, scene.geometry.sc_thickness
+    circuit, layers = electric.circuit(d_sc), (REFERENCE, electric.d_i, electric.eps_i, d_sc)
+    try:
+        reference = detection.of_wave(circuit, "sine", detection.REFERENCE, layers)
+        found = []
+        for f in frequencies:
+            sine, square = (detection.of_wave(circuit, wave, f, layers) for wave in detection.WAVES)
+            marked = sine.extrapolated or square.extrapolated
+            found.append(Threshold(f, sine.relative_to(reference), square.relative_to(sine), marked))
+    except ValueError as error:
+        raise SceneError(str(error)) from None
+    return found
+
+
+def _curve(scene: Scene, supply: Supply) -> tuple[Array, Array, Array]:
+    """Return squares of voltages (V²), and there the friction force and the air gap of a ridge (m)."""
+    model, context = Cylinders(), RunContext()
+
+    def at(voltage: float) -> tuple[float, float]:
+        found = solved(scene.replace(voltage=voltage), model, context)
+        state = found.full_slip
+        assert state is not None
+        force = state.f_t if found.finger is None else float(found.finger.values("full_slip")["f_t"])
+        return force, float(found.record["full_slip_d_eq"])
+
+    still = at(0.0)
+    most = supply.largest(_MARGIN * still[1], still[1])
+    squares = np.linspace(0.0, most**2, POINTS)
+    values = np.array([still, *(at(float(np.sqrt(square))) for square in squares[1:])])
+    return squares, np.array(values[:, 0]), np.array(values[:, 1])
+
+
+def _monotone(x: Array, y: Array, at: Array) -> Array:
+    from scipy.interpolate import PchipInterpolator
+
+    return np.asarray(PchipInterpolator(x, y)(np.clip(at, x[0], x[-1])))

@@ -1,0 +1,262 @@
+r"""What a drive puts across the gap: a period of its voltage, and the voltage of Eq. 3 that attracts as much.
+
+A drive repeats itself. Its voltages at equal times over one period go through the circuit of the gap
+(:mod:`variational.attraction.circuit`), which gives the field E(t) across a gap g in the steady state, and the
+attraction :math:`\sigma_{el} = \varepsilon_0 E^2 / 2` at each instant. Models take it as the voltage of Eq. 3,
+
+.. math:: V(t, g) = |E(t)| \,(h_0 + g), \qquad \bar V(g) = \Big( \frac1T \int V^2 dt \Big)^{1/2},
+
+which is the amount of U, and its root mean square, where nothing is lost. A constant voltage is that of an instant. It
+attracts by Eq. 3 whatever leaks, and :func:`remains` computes what is left of it.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cache, cached_property
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from fingerpad.scene.electric import Electric
+from fingerpad.scene.messages import show
+from fingerpad.scene.waveform import Waveform
+from variational.attraction.circuit import BREAKDOWN_FIELD, BREAKDOWN_PLATEAU, LEAKS, GapCircuit, breakdown_voltage
+from variational.attraction.dielectric import VACUUM_PERMITTIVITY
+from variational.attraction.network import Network
+
+Array = NDArray[np.float64]
+SAMPLES = 4096
+"""Least number of samples of a period."""
+_MOST = 65536
+_OF_CARRIER, _OF_WAVE, _OF_PIECE = 32, 128, 4  # samples of a period of either, and of the shortest piece of a file
+REFERENCE = 1.6e-6
+"""Gap (m) for which tables print the attraction and what remains, and at which the full model has the waveform: that of
+a ridge of the default finger."""
+GAPS = np.geomspace(2e-8, 2e-4, 97)
+"""Gaps (m) between which the voltage of Eq. 3 is interpolated, in the logarithm; within 1e-4 of the largest."""
+
+
+@dataclass(frozen=True)
+class Measures:
+    """How large a drive is: of the voltage in V, of the attraction in Pa."""
+
+    amplitude: float
+    """Half of the peak-to-peak value."""
+    peak_to_peak: float
+    rms: float
+    """Root mean square of the whole voltage, its offset too."""
+    mean: float
+    """Mean voltage."""
+    sigma_el: float
+    """Mean attraction across a gap of :data:`REFERENCE`."""
+
+    def __str__(self) -> str:
+        """Return one line."""
+        return (
+            f"U: amplitude {self.amplitude:.4g} V, peak to peak {self.peak_to_peak:.4g} V, rms {self.rms:.4g} V, mean "
+            f"{self.mean:.3g} V; mean attraction {self.sigma_el:.4g} Pa across {1e6 * REFERENCE:g} µm of air"
+        )
+
+
+@dataclass(frozen=True)
+class Supply:
+    """A drive and the circuit behind it."""
+
+    wave: Waveform
+    circuit: GapCircuit
+    behind: tuple[float, float, float]
+    """d_i (m), eps_i and d_sc (m)."""
+    h_0: float
+    """Effective insulator thickness of Eq. 3 (m)."""
+
+    @property
+    def frequency(self) -> float:
+        """Frequency (Hz) with which the drive repeats itself."""
+        return 1 / self.wave.period
+
+    @cached_property
+    def voltages(self) -> Array:
+        """Voltages of the drive at equal times over one period, shape (samples,) (V)."""
+        return one_period(self.wave)
+
+    def across(self, gap: float) -> Array:
+        """Return the voltage across a gap (m) over one period, shape (samples,) (V)."""
+        return self.circuit.response(self.voltages, self.frequency, gap, *self.behind)
+
+    def attraction(self, gap: float) -> Array:
+        """Return the attraction sigma_el across a gap (m) over one period, shape (samples,) (Pa)."""
+        return np.asarray(VACUUM_PERMITTIVITY / 2 * (self.across(gap) / gap) ** 2)
+
+    def measures(self) -> Measures:
+        """Return how large the drive is."""
+        u = self.voltages
+        low, high = float(u.min()), float(u.max())
+        rms, sigma = float(np.sqrt(np.mean(u**2))), float(self.attraction(REFERENCE).mean())
+        mean = float(u.mean())
+        return Measures((high - low) / 2, high - low, rms, 0.0 if abs(mean) < 1e-9 * rms else mean, sigma)
+
+    @cached_property
+    def reference(self) -> float:
+        """The constant voltage of Eq. 3 that attracts as the drive on average across :data:`REFERENCE` (V)."""
+        return float(self.effective(REFERENCE))
+
+    # -- as a voltage of Eq. 3 -----------------------------------------------------------------------------
+    @cached_property
+    def _table(self) -> Array:
+        """The voltage of Eq. 3 with its sign, over gaps and time, shape (gaps, samples)."""
+        return np.array([self.across(g) * (self.h_0 + g) / g for g in GAPS])
+
+    @cached_property
+    def _means(self) -> Array:
+        return np.asarray(np.sqrt(np.mean(self._table**2, axis=1)))
+
+    def instants(self, gap: Array) -> Array:
+        """Return the voltage of Eq. 3 at each instant of a period (V), by the gap (m) then; shape (samples,)."""
+        if self.circuit.lossless:
+            return np.abs(self.voltages)
+        place = np.interp(np.log(gap), np.log(GAPS), np.arange(len(GAPS)))
+        low = np.minimum(place.astype(int), len(GAPS) - 2)
+        part, at = place - low, np.arange(len(self.voltages))
+        return np.abs((1 - part) * self._table[low, at] + part * self._table[low + 1, at])
+
+    def effective(self, gap: ArrayLike) -> Array:
+        """Return the constant voltage of Eq. 3 that attracts as the drive on average, by the gap (m); its shape (V)."""
+        if self.circuit.lossless:
+            return np.full(np.shape(gap), float(np.sqrt(np.mean(self.voltages**2))))
+        return np.asarray(np.interp(np.log(np.asarray(gap, dtype=float)), np.log(GAPS), self._means))
+
+    def largest(self, low: float, high: float) -> float:
+        """Return the largest voltage of Eq. 3 (V) across gaps from ``low`` to ``high`` (m)."""
+        if self.circuit.lossless:
+            return float(np.abs(self.voltages).max())
+        first, last = np.searchsorted(GAPS, (low, high))
+        return float(np.abs(self._table[max(first - 1, 0) : last + 1]).max())
+
+    def pressure(self, volts: Array, gap: Array) -> Array:
+        """Return the attraction (Pa) at voltages of Eq. 3 (V) across gaps (m), of their shape."""
+        return np.asarray(VACUUM_PERMITTIVITY / 2 * (volts / (self.h_0 + gap)) ** 2)
+
+
+@cache
+def supply_of(wave: Waveform, electric: Electric, d_sc: float) -> Supply:
+    """Return the supply of a drive.
+
+    Args:
+        wave: the drive.
+        electric: insulators and losses.
+        d_sc: thickness of the stratum corneum (m).
+    """
+    return Supply(wave, electric.circuit(d_sc), (electric.d_i, electric.eps_i, d_sc), electric.h_0(d_sc))
+
+
+def refuse_drives(drives: Mapping[str, Waveform], electric: Electric, d_sc: float) -> None:
+    """Refuse a drive with an offset that breaks down every gap, or of a frequency at which the tissue is not known.
+
+    Args:
+        drives: of a scene, by key.
+        electric: insulators and losses.
+        d_sc: thickness of the stratum corneum (m).
+
+    Raises:
+        ValueError: in one sentence.
+    """
+    for key, wave in drives.items():
+        supply = supply_of(wave, electric, d_sc)
+        if abs(wave.offset) > (highest := _widest(supply.h_0)):
+            raise ValueError(
+                f"{key}.offset is {show(wave.offset)} V, beyond breakdown of air in a gap of any width; it must be at "
+                f"most {highest:.4g} V"
+            )
+        try:
+            supply.circuit.dielectric.refuse(wave.frequency or supply.frequency)
+        except ValueError as error:
+            raise ValueError(f"{key}.{error}") from None
+
+
+def _widest(h_0: float) -> float:
+    """Return the largest voltage (V) that some gap bears without losses."""
+    gaps = np.array([BREAKDOWN_PLATEAU / BREAKDOWN_FIELD])  # where the plateau begins
+    return float(np.max(breakdown_voltage(gaps) * (gaps + h_0) / gaps))
+
+
+def one_period(wave: Waveform) -> Array:
+    """Return the voltages of a drive at equal times over the period with which it repeats itself, from its start on.
+
+    At a jump it is the mean of the two sides, as a Fourier series has it.
+
+    Returns:
+        A power of two of voltages (V), at least :data:`SAMPLES`.
+    """
+    if wave.times is not None and wave.voltages is not None:
+        shortest = min(after - before for before, after in zip(wave.times, wave.times[1:], strict=False))
+        t = np.arange(_count(_OF_PIECE * wave.period / shortest)) / _count(_OF_PIECE * wave.period / shortest)
+        found = np.interp(t * wave.period, wave.times, wave.voltages)
+        found[0] = (wave.voltages[0] + wave.voltages[-1]) / 2
+        return np.asarray(found)
+    periods = round(wave.period * (wave.frequency or 1.0))
+    carried = 0 if wave.carrier is None else round(wave.carrier.frequency * wave.period)
+    n = _count(max(_OF_WAVE * periods, _OF_CARRIER * carried))
+    t = np.arange(n) / n
+    phase = t * periods % 1.0
+    shape = {"sine": _sine, "square": _square, "triangle": _triangle}[wave.waveform](phase)
+    if wave.carrier is not None:
+        depth = 1.0 if wave.carrier.modulation is None else wave.carrier.modulation
+        shape = (1 + depth * shape) / (1 + depth) * _sine(t * carried % 1.0)
+    if wave.burst is not None:
+        part = t * periods
+        shape = np.where(part < wave.burst.on, shape, 0.0)
+        shape[part == wave.burst.on] = (wave.waveform == "square") * -0.5 if wave.carrier is None else 0.0
+        shape[0] = (wave.waveform == "square") * 0.5 if wave.carrier is None else 0.0
+    return np.asarray(wave.offset + wave.height * shape)
+
+
+def _count(least: float) -> int:
+    return min(max(SAMPLES, 1 << int(np.ceil(np.log2(max(least, 1))))), _MOST)
+
+
+def _sine(phase: Array) -> Array:
+    return np.asarray(np.sin(2 * np.pi * phase))
+
+
+def _square(phase: Array) -> Array:
+    return np.where(phase % 0.5 == 0, 0.0, np.where(phase < 0.5, 1.0, -1.0))
+
+
+def _triangle(phase: Array) -> Array:
+    return np.asarray(1 - np.abs((4 * phase + 1) % 4 - 2))
+
+
+# -- a constant voltage ----------------------------------------------------------------------------------------
+@dataclass(frozen=True)
+class Remains:
+    """What is left of a constant voltage across a gap that leaks."""
+
+    decay: float
+    """Time constant of what leaks (s); infinite where nothing does."""
+    share: float
+    """Attraction after a tenth of a second, over that without losses."""
+
+
+def remains(electric: Electric, d_sc: float) -> Remains:
+    """Return what is left of a constant voltage across :data:`REFERENCE` after 0.1 s.
+
+    Args:
+        electric: insulators and losses.
+        d_sc: thickness of the stratum corneum (m).
+
+    Raises:
+        ValueError: the tissue is a table, which has no equations in time.
+    """
+    network = Network.of(electric.circuit(d_sc), REFERENCE, electric.d_i, electric.eps_i, d_sc)
+    left = network.response([0.0, 0.0, 0.1], [0.0, 1.0, 1.0])[-1]
+    return Remains(network.decay(), float(left * (electric.h_0(d_sc) + REFERENCE) / REFERENCE) ** 2)
+
+
+def leak_in_words(circuit: GapCircuit) -> str:
+    """Return the leak with the range in which it is likely, for every page that uses it."""
+    if circuit.leak is None:
+        return "no leak"
+    known = LEAKS[circuit.leak] if isinstance(circuit.leak, str) else LEAKS["sliding dry"]
+    name = f"'{circuit.leak}', " if isinstance(circuit.leak, str) else ""
+    of = known.source if name else "likely for a dry finger that slides"
+    return f"R_gap {name}{circuit.resistance:.4g} ohm m², {known.low:g} to {known.high:g}: {of}"

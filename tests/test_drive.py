@@ -1,0 +1,192 @@
+"""Drives in place of a voltage: one measure of how large they are, what attracts, and what is refused."""
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+import fingerpad as fp
+from fingerpad.reduced import cylinders
+from fingerpad.scene.remarks import leakage, remarks
+from fingerpad.scene.supply import GAPS, SAMPLES, Supply, one_period, supply_of
+from variational.attraction.circuit import GapCircuit
+
+SINE = {"waveform": "sine", "amplitude": 200.0, "frequency": 100.0}
+DRY = {"tissue": "dry", "leak": 300.0}
+
+
+def supply(drive: dict, **electric) -> Supply:
+    found = fp.Scene(voltage=drive, electric=electric).supply
+    assert found is not None
+    return found
+
+
+# -- how large it is -------------------------------------------------------------------------------------------------
+@pytest.mark.parametrize(("kind", "rms"), [("sine", 0.5**0.5), ("square", 1.0), ("triangle", 3**-0.5)])
+@pytest.mark.parametrize("measure", ["amplitude", "peak_to_peak", "rms"])
+def test_every_measure_is_of_the_same_drive(kind, rms, measure):
+    """Of an amplitude of 120 V. Tolerance: of the square's two samples at its jumps, and of the triangle's mean."""
+    given = {"amplitude": 120.0, "peak_to_peak": 240.0, "rms": 120.0 * rms}[measure]
+    found = supply({"waveform": kind, measure: given, "frequency": 50.0}).measures()
+    assert_allclose((found.amplitude, found.peak_to_peak), (120.0, 240.0), rtol=1e-12)
+    assert found.rms == pytest.approx(120.0 * rms, rel=3e-4)
+    assert found.mean == 0
+
+
+def test_rms_is_of_the_alternating_part():
+    """An offset adds to the square of the whole voltage; tables have that of the whole."""
+    found = supply({"waveform": "sine", "rms": 100.0, "offset": 50.0, "frequency": 50.0}).measures()
+    assert found.amplitude == pytest.approx(100 * 2**0.5) and found.mean == pytest.approx(50.0)
+    assert found.rms == pytest.approx(np.hypot(100.0, 50.0))
+
+
+def test_carrier_is_within_its_envelope():
+    """The rms that is given is that of the samples; the peaks of both differ by a twentieth of a period."""
+    for depth in (0.3, 1.0):
+        carrier = {"frequency": 2e3, "modulation": depth}
+        found = supply({"waveform": "sine", "rms": 70.0, "frequency": 100.0, "carrier": carrier}).measures()
+        assert found.rms == pytest.approx(70.0, rel=1e-9)
+        drive = {"waveform": "triangle", "amplitude": 70.0, "frequency": 100.0, "carrier": carrier}
+        assert supply(drive).measures().amplitude == pytest.approx(70.0, rel=4e-2)
+
+
+def test_burst_repeats_itself_with_its_pause():
+    """Three periods of five: the mean square is three fifths, and the frequency a fifth."""
+    found = supply(SINE | {"burst": {"on": 3, "off": 2}})
+    assert found.frequency == pytest.approx(20.0)
+    assert np.mean(found.voltages**2) == pytest.approx(0.6 * 200**2 / 2, rel=1e-3)
+    assert found.reference == pytest.approx(200 * 0.3**0.5, rel=1e-3)
+
+
+def test_file_is_taken_as_one_period():
+    table = {"waveform": "file", "times": [0.0, 0.01, 0.03, 0.04], "voltages": [0.0, 100.0, -100.0, 0.0]}
+    found = supply(table)
+    assert found.frequency == pytest.approx(25.0) and len(found.voltages) >= SAMPLES
+    assert found.reference == pytest.approx(100 / 3**0.5, rel=1e-5)
+
+
+# -- what attracts ---------------------------------------------------------------------------------------------------
+def test_lossless_drive_is_its_rms():
+    """Every model has the result of the constant voltage."""
+    drive = fp.run(fp.Scene(voltage={"waveform": "sine", "rms": 150.0, "frequency": 250.0}), model="cylinders")
+    constant = fp.run(fp.Scene(voltage=150.0), model="cylinders")
+    assert drive.full_slip.f_t == pytest.approx(constant.full_slip.f_t, rel=1e-12)
+    assert drive.full_slip.voltage == pytest.approx(150.0)
+
+
+@pytest.mark.parametrize("state", ["charged", "full_slip"])
+def test_ridge_has_the_share_of_its_own_gap(state):
+    """The attraction of a ridge in a circuit is that of the constant voltage by the share at its d_eq.
+
+    Tolerance: the voltage is interpolated between gaps that differ by a tenth.
+    """
+    scene = fp.Scene(voltage=SINE, electric=DRY)
+    found = cylinders.solve(scene)
+    gap = found.record[f"{state}_d_eq"]
+    share = GapCircuit("dry", 300.0).share(100.0, gap, 1e-6, 3.9, 425e-6)
+    constant = float(np.sqrt(200**2 / 2 * share)) * (scene.h_0 + gap) / gap
+    other = cylinders.solve(fp.Scene(voltage=constant))
+    assert found.named[state].f_electrostatic == pytest.approx(other.named[state].f_electrostatic, rel=2e-4)
+
+
+def test_interpolation_between_gaps():
+    """Tolerance: of what the interpolation between gaps that differ by a tenth leaves, relative."""
+    found = supply(SINE | {"offset": 30.0}, **DRY)
+    between = np.sqrt(GAPS[30:70:5] * GAPS[31:71:5])
+    exact = [np.sqrt(np.mean((found.across(g) * (found.h_0 + g) / g) ** 2)) for g in between]
+    assert_allclose(found.effective(between), exact, rtol=1e-3)
+    at = found.instants(np.full(len(found.voltages), between[0]))
+    assert_allclose(at, np.abs(found.across(between[0])) * (found.h_0 + between[0]) / between[0], atol=1e-3 * at.max())
+
+
+def test_constant_voltage_says_what_remains():
+    """With a leak the note has the time constant; without one that of every constant voltage stays."""
+    (note,) = leakage(fp.Scene(electric=DRY))
+    assert "time constant of 12.1 ms" in note and "230 to 410" in note
+    table = {"frequency": [1.0, 1e6], "eps": [2e3, 1e3], "sigma": [1e-4, 1e-3]}
+    (note,) = leakage(fp.Scene(electric={"tissue": table, "leak": 300.0}))
+    assert "it would leak away" in note
+
+
+def test_offset_without_a_leak_has_a_caution():
+    scene = fp.Scene(voltage=SINE | {"offset": 50.0})
+    assert ["has a mean of 50 V, which leaks away" in text for text in remarks(scene)] == [True]
+    assert remarks(scene.replace(electric=DRY)) == []
+
+
+def test_breakdown_is_by_the_local_field():
+    """Across the gap of a ridge, with the instant; a total voltage of more than 330 V can do."""
+    safe = cylinders.solve(fp.Scene(voltage=SINE | {"amplitude": 380.0}, electric=DRY))
+    assert not any("breaks down" in text for text in safe.cautions)
+    found = cylinders.solve(fp.Scene(voltage=SINE | {"amplitude": 450.0}, electric=DRY))
+    assert any("V are across a gap of 1.4" in text and "after the start of a period" in text for text in found.cautions)
+    assert any("breaks down" in text for text in cylinders.solve(fp.Scene(voltage=460.0)).cautions)
+
+
+def test_scene_of_a_drive_survives_its_files():
+    """Parameters of a scene give it again."""
+    drive = SINE | {"carrier": {"frequency": 5e3}, "burst": {"on": 5, "off": 5}, "offset": -3.0}
+    scene = fp.Scene(voltage=drive, electric={"leak": {"peak": "250 Hz"}, "tissue": "dry"})
+    assert fp.Scene(**scene.parameters()) == scene
+    assert scene.replace(voltage=100.0).supply is None
+
+
+def test_supply_is_computed_once():
+    scene = fp.Scene(voltage=SINE, electric=DRY)
+    assert scene.supply is scene.replace(f_ext=10.0).supply
+    assert supply_of(scene.voltage, scene.electric, 425e-6) is scene.supply
+
+
+def test_square_has_its_mean_at_jumps():
+    """As its Fourier series: half of the samples sum to its amplitude less half a sample."""
+    u = one_period(fp.Scene(voltage=SINE | {"waveform": "square"}).voltage)
+    assert u[0] == u[len(u) // 2] == 0 and set(u[1 : len(u) // 2]) == {200.0}
+
+
+# -- refusals --------------------------------------------------------------------------------------------------------
+FILE = {"waveform": "file", "times": [0.0, 0.01, 0.02], "voltages": [0.0, 100.0, 0.0]}
+TABLE = {"frequency": [10.0, 1e3], "eps": [2e3, 1e3], "sigma": [1e-4, 1e-3]}
+
+
+@pytest.mark.parametrize(
+    ("drive", "electric", "words"),
+    [
+        (SINE | {"rms": 100.0}, {}, "voltage.amplitude is 200 and voltage.rms is 100; give one of voltage.amplitude"),
+        ({"waveform": "sine", "frequency": 10.0}, {}, "voltage.amplitude is missing; voltage.waveform is 'sine'"),
+        ({"waveform": "sine", "rms": 10.0}, {}, "voltage.frequency is missing; voltage.waveform is 'sine'"),
+        (SINE | {"frequency": 0.0}, {}, "voltage.frequency is 0 Hz; it must be from 0.001 to 1e+06 Hz"),
+        (SINE | {"frequency": -5.0}, {}, "voltage.frequency is -5 Hz; it must be from"),
+        (SINE | {"frequency": 2e3}, {"tissue": TABLE}, "voltage.frequency is 2000 Hz; the table of the tissue has 10"),
+        (SINE | {"offset": 600.0}, {}, "voltage.offset is 600 V, beyond breakdown of air in a gap of any width; it"),
+        (
+            SINE | {"carrier": {"frequency": 50.0}},
+            {},
+            "voltage.carrier.frequency is 50 Hz and voltage",
+        ),
+        (
+            SINE | {"carrier": {"frequency": 1e6}},
+            {},
+            "voltage.carrier.frequency is 1000000 Hz, 1e+04 periods in one",
+        ),
+        (FILE | {"carrier": {"frequency": 100.0}}, {}, "voltage.carrier.frequency is 100 Hz and the voltage.file has"),
+        (FILE | {"carrier": {"frequency": 20.0, "modulation": 1.0}}, {}, "voltage.carrier.modulation is 1 and voltage"),
+        (FILE | {"rms": 20.0}, {}, "voltage.rms is 20 and voltage.waveform is 'file', which has none"),
+        (FILE | {"burst": {"on": 1, "off": 1}}, {}, "voltage.burst is given and voltage.waveform is 'file', which has"),
+        (SINE | {"burst": {"on": 0, "off": 1}}, {}, "voltage.burst.on is 0; it must be at least 1"),
+        (
+            SINE,
+            {"tissue": TABLE | {"frequency": [1e3, 10.0]}},
+            "electric.tissue.frequency is 1000 and then 10 Hz",
+        ),
+        (SINE, {"leak": 0.0}, "electric.leak is 0 ohm m^2; it must be from 0.001 to 1e+09 ohm m^2"),
+        (SINE, {"leak": "wet"}, "electric.leak is 'wet'; it must be 'none', 'sliding dry', 'resting' or 'moist'"),
+    ],
+)
+def test_drive_is_refused(drive, electric, words):
+    """One sentence that begins with the key."""
+    with pytest.raises(fp.SceneError) as refused:
+        fp.Scene(voltage=drive, electric=electric)
+    assert str(refused.value).startswith(words)
+
+
+def test_a_carrier_that_a_file_resolves_is_taken():
+    assert fp.Scene(voltage=FILE | {"carrier": {"frequency": 40.0}}).supply is not None

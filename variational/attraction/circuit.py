@@ -1,0 +1,201 @@
+r"""The gap as a part of a series circuit: screen, air gap with a leak, stratum corneum; impedances of a unit of area.
+
+.. math:: Z_i = \frac{d_i}{i \omega \varepsilon_0 \varepsilon_i}, \qquad
+          Y_g = \frac{i \omega \varepsilon_0}{g} + \frac{1}{R_{gap}}, \qquad Z_{sc} = \frac{d_{sc}}{\kappa(\omega)},
+          \qquad H = \frac{E g}{U} = \frac{1}{1 + (Z_i + Z_{sc}) Y_g}
+
+The body behind the stratum corneum is taken as a conductor. The attraction is :math:`\sigma_{el}(t) = \varepsilon_0
+E(t)^2 / 2` at each instant (B. N. J. Persson and J. Guo 2019, arXiv 1908.01140; the signal of a charge that leaks
+through the contact is theirs too). Without a leak and with a lossless stratum corneum
+:math:`H = g / (g + h_0)` at every frequency: then :math:`\sigma_{el}` is Eq. 3 of Forsbach et al. 2023.
+
+The voltage across the insulator of the screen is a high-pass: a constant voltage ends there, once the charge has leaked
+through the gap. Toward high frequencies the stratum corneum takes a growing share. In between, the share of the gap has
+a peak.
+
+:math:`R_{gap}` is the one constant that no source gives. :func:`fit_leak` takes it from the frequency of that peak.
+:data:`LEAKS` has presets with the range in which each is likely.
+
+**Breakdown.** Air breaks down by the local field: 350 V/µm in gaps below 1 µm, and 330 to 350 V across gaps of 1 to 4
+µm, a plateau (A. Peschot et al. 2014, "Deviations from the Paschen's law at short gap distances from 100 nm to 10 µm in
+air and nitrogen"). :func:`breakdown_voltage` takes the lower end.
+"""
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from scipy.optimize import brentq, minimize_scalar
+
+from variational.attraction.dielectric import TISSUES, VACUUM_PERMITTIVITY, ColeCole, Tissue
+
+Complex = NDArray[np.complex128]
+Array = NDArray[np.float64]
+LOSSLESS = "lossless"
+BREAKDOWN_FIELD = 350e6
+"""Field (V/m) at which air in a gap below 1 µm breaks down."""
+BREAKDOWN_PLATEAU = 330.0
+"""Voltage (V) across a wider gap at which air breaks down; 330 to 350 V were measured."""
+_PEAKS = (1.0, 1e5)  # Hz, among which a peak is looked for
+_LEAKS = (1e-3, 1e9)  # ohm m²
+
+
+class Leak(NamedTuple):
+    """A leak through the gap."""
+
+    value: float
+    """Resistance of a unit of area (ohm m²)."""
+    low: float
+    """Least likely value (ohm m²)."""
+    high: float
+    """Largest likely value (ohm m²)."""
+    source: str
+    """Where it comes from, in words."""
+
+
+LEAKS: dict[str, Leak] = {
+    "sliding dry": Leak(300.0, 230.0, 410.0, "a peak at 250 Hz over gaps of 1.0 to 2.5 µm"),
+    "resting": Leak(67.0, 30.0, 150.0, "an impedance 2 to 10 times lower than in sliding; their geometric mean"),
+    "moist": Leak(30.0, 3.0, 100.0, "assumed: ten times less than dry skin; no source"),
+}
+"""Presets of the leak by name."""
+
+
+def breakdown_voltage(gap: ArrayLike) -> Array:
+    """Return the voltage (V) across air gaps (m) at which air breaks down, of their shape."""
+    return np.asarray(np.minimum(BREAKDOWN_FIELD * np.asarray(gap, dtype=float), BREAKDOWN_PLATEAU))
+
+
+@dataclass(frozen=True)
+class GapCircuit:
+    """Circuit of the gap; the default is lossless, Eq. 3 of the paper.
+
+    Its methods take the layers in series: ``gap`` g (m), ``d_i`` and ``eps_i`` of the screen's insulator, ``d_sc`` of
+    the stratum corneum (m).
+    """
+
+    tissue: str | Tissue = LOSSLESS
+    """``"lossless"``, ``"dry"``, ``"moist"``, or a :class:`~variational.attraction.dielectric.Tissue`."""
+    leak: str | float | None = None
+    """R_gap (ohm m²), a name of :data:`LEAKS`, or None for no leak."""
+    eps_sc: float = 1650.0
+    """Relative permittivity of lossless stratum corneum."""
+
+    def __post_init__(self) -> None:
+        """Refuse an unknown name and a leak that is not greater than 0.
+
+        Raises:
+            ValueError: in one sentence.
+        """
+        if isinstance(self.tissue, str) and self.tissue != LOSSLESS and self.tissue not in TISSUES:
+            names = ", ".join(map(repr, (LOSSLESS, *TISSUES)))
+            raise ValueError(f"tissue is {self.tissue!r}; it must be {names} or a Tissue")
+        if isinstance(self.leak, str) and self.leak not in LEAKS:
+            raise ValueError(f"leak is {self.leak!r}; it must be {', '.join(map(repr, LEAKS))}, or a number of ohm m²")
+        if not (self.leak is None or isinstance(self.leak, str) or 0 < self.leak < np.inf):
+            raise ValueError(f"leak is {self.leak!r}; it must be greater than 0 ohm m² and finite")
+
+    @property
+    def lossless(self) -> bool:
+        """Whether the share of the gap is the same at every frequency, Eq. 3."""
+        return self.leak is None and self.tissue == LOSSLESS
+
+    @property
+    def resistance(self) -> float:
+        """R_gap (ohm m²); infinite without a leak."""
+        if self.leak is None:
+            return np.inf
+        return LEAKS[self.leak].value if isinstance(self.leak, str) else float(self.leak)
+
+    @property
+    def dielectric(self) -> Tissue:
+        """The stratum corneum."""
+        if isinstance(self.tissue, Tissue):
+            return self.tissue
+        return ColeCole(self.eps_sc) if self.tissue == LOSSLESS else TISSUES[self.tissue]
+
+    def gain(self, frequency: ArrayLike, gap: ArrayLike, d_i: float, eps_i: float, d_sc: float) -> Complex:
+        """Return H = E g / U at frequencies (Hz) from 0 on and gaps (m), arrays that broadcast.
+
+        At 0 Hz it is the limit: nothing is left across a gap that leaks, or behind which skin conducts nothing is lost.
+        """
+        f, g = np.broadcast_arrays(np.asarray(frequency, dtype=float), np.asarray(gap, dtype=float))
+        still = f == 0
+        s = 2j * np.pi * np.where(still, 1.0, f)
+        kappa = self.dielectric.conductivity(np.where(still, 1.0, f))
+        behind = d_i / (VACUUM_PERMITTIVITY * eps_i) + s * d_sc / kappa  # impedance times i omega
+        found = 1 / (1 + behind * (VACUUM_PERMITTIVITY / g + 1 / self.resistance / s))
+        if not still.any():
+            return np.asarray(found)
+        sigma = self.dielectric.conductivity(0.0).real
+        eps_0 = float(self.dielectric.permittivity(1e-6).real) if sigma == 0 else np.inf
+        constant = g / (g + d_i / eps_i + d_sc / eps_0) if self.leak is None else 0.0
+        return np.where(still, constant, found)
+
+    def share(self, frequency: ArrayLike, gap: ArrayLike, d_i: float, eps_i: float, d_sc: float) -> Array:
+        """Return ``|E g / U|²``, by which the mean attraction of a sine goes, at frequencies (Hz) and gaps (m).
+
+        Raises:
+            ValueError: a frequency that is not greater than 0, or at which the tissue is not known; a gap that is not
+                greater than 0.
+        """
+        for name, values, unit in (("frequency", frequency, "Hz"), ("gap", gap, "m")):
+            least = float(np.min(values))
+            if not least > 0:
+                raise ValueError(f"{name} is {least:g} {unit}; it must be greater than 0")
+        self.dielectric.refuse(frequency)
+        return np.asarray(np.abs(self.gain(frequency, gap, d_i, eps_i, d_sc)) ** 2)
+
+    def peak(self, gap: float, d_i: float, eps_i: float, d_sc: float) -> float:
+        """Return the frequency (Hz) from 1 Hz to 100 kHz at which the share is largest; without a leak the lowest."""
+
+        def less(logarithm: float) -> float:
+            return -float(self.share(np.exp(logarithm), gap, d_i, eps_i, d_sc))
+
+        grid = np.log(np.geomspace(*_PEAKS, 120))
+        best = int(np.argmin([less(each) for each in grid]))
+        if best in (0, len(grid) - 1):
+            return float(np.exp(grid[best]))
+        found = minimize_scalar(
+            less, bounds=(grid[best - 1], grid[best + 1]), method="bounded", options={"xatol": 1e-9}
+        )
+        return float(np.exp(found.x))
+
+    def response(
+        self, voltages: ArrayLike, frequency: float, gap: float, d_i: float, eps_i: float, d_sc: float
+    ) -> Array:
+        """Return the voltage across the gap E g (V) over a period of a periodic drive, in the steady state.
+
+        Args:
+            voltages: of the drive at equal times over one period, the first at its start, shape (samples,) (V).
+            frequency: of the period (Hz).
+            gap: g (m).
+            d_i: thickness of the screen's insulator (m).
+            eps_i: its relative permittivity.
+            d_sc: thickness of the stratum corneum (m).
+
+        Raises:
+            ValueError: as :meth:`share`.
+        """
+        u = np.asarray(voltages, dtype=float)
+        self.share(frequency, gap, d_i, eps_i, d_sc)  # refuses what has no answer
+        spectrum = np.fft.rfft(u)
+        gains = self.gain(frequency * np.arange(len(spectrum)), gap, d_i, eps_i, d_sc)
+        return np.asarray(np.fft.irfft(spectrum * gains, len(u)))
+
+
+def fit_leak(peak: float, tissue: str | Tissue, gap: float, d_i: float, eps_i: float, d_sc: float) -> float:
+    """Return R_gap (ohm m²) with which the share of the gap is largest at a frequency ``peak`` (Hz).
+
+    Raises:
+        ValueError: no leak has its peak there.
+    """
+
+    def beyond(logarithm: float) -> float:
+        return float(np.log(GapCircuit(tissue, float(np.exp(logarithm))).peak(gap, d_i, eps_i, d_sc) / peak))
+
+    low, high = (float(np.log(end)) for end in _LEAKS)
+    if not (peak > 0 and beyond(low) > 0 > beyond(high)):
+        raise ValueError(f"peak is {peak:g} Hz; no leak through a gap of {gap:g} m has its peak there")
+    return float(np.exp(brentq(beyond, low, high, xtol=1e-6)))
