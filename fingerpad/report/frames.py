@@ -172,7 +172,7 @@ def _skin(folder: Path, frame: _Frame) -> list[dict[str, Any]]:
 
 
 def _rounded(values: Array, digits: int) -> list[float | None]:
-    return [round(float(v), digits) + 0.0 if np.isfinite(v) else None for v in values]
+    return [value if math.isfinite(value) else None for value in map(float, np.round(values, digits) + 0.0)]
 
 
 def _view(skins: list[list[dict[str, Any]]]) -> list[float] | None:

@@ -14,9 +14,8 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 import numpy as np
+import scipy  # its parts are imported where they are used first: to read a scene needs none
 from numpy.typing import ArrayLike, NDArray
-from scipy.optimize import brentq, minimize_scalar
-from scipy.special import erfc, log_ndtr
 
 from variational.coefficients import OF_SCENE, parameter
 from variational.roughness.closure import AirGap, Closure, Progress
@@ -79,7 +78,7 @@ class BearingArea(Closure):
         width = np.sqrt(2) * self.h_rms
         near, far = (u_bar - self.h_0) / width, u_bar / width
         slope = -2 / np.sqrt(np.pi) / width * (np.exp(-(near**2)) - np.exp(-(far**2)))
-        return np.asarray(erfc(near) - erfc(far)), np.asarray(slope)
+        return np.asarray(scipy.special.erfc(near) - scipy.special.erfc(far)), np.asarray(slope)
 
     def air_gap(self, u_bar: ArrayLike) -> Array:
         """Return d_eq (m) at mean separation ``u_bar`` (m), Eq. 13."""
@@ -93,7 +92,7 @@ class BearingArea(Closure):
 
         .. math:: A_c / A_0 = \tfrac12 \operatorname{erfc}(\bar u / \sqrt2 h_{rms}).
         """
-        return np.asarray(erfc(np.asarray(u_bar, dtype=float) / (np.sqrt(2) * self.h_rms)) / 2)
+        return np.asarray(scipy.special.erfc(np.asarray(u_bar, dtype=float) / (np.sqrt(2) * self.h_rms)) / 2)
 
     def attraction(self, u_bar: ArrayLike, voltage: float) -> Array:
         """Return the attraction (Pa) at mean separation ``u_bar`` (m) and ``voltage`` (V): sigma_0 A_att / A_0."""
@@ -172,13 +171,13 @@ class BearingArea(Closure):
         # p_ext falls up to h_0 / 2, where the attraction is largest. From there on the logarithm of the repulsion's
         # slope over the attraction's is a convex function of u_bar, which is zero at the fold.
         first, last = self.h_0 / 2 * (1 + 1e-9), self.h_0 + (1 + 1 / self.gamma) * self.h_rms
-        least = brentq(lambda u: self._steeper(u, voltage)[1], first, last)
+        least = scipy.optimize.brentq(lambda u: self._steeper(u, voltage)[1], first, last)
         if self._steeper(least, voltage)[0] >= 0:
             return None
         if self._steeper(first, voltage)[0] <= 0:
             return first
         error = _SEPARATION * self.h_rms
-        return float(brentq(lambda u: self._steeper(u, voltage)[0], first, least, xtol=error))
+        return float(scipy.optimize.brentq(lambda u: self._steeper(u, voltage)[0], first, least, xtol=error))
 
     def _steeper(self, u_bar: float, voltage: float) -> tuple[float, float]:
         """Return the logarithm of the repulsion's slope over the attraction's beyond h_0 / 2, and its slope (1/m)."""
@@ -202,7 +201,9 @@ class BearingArea(Closure):
         highest, lowest = self.external_pressure(0.0, voltage), self.external_pressure(end, voltage)
         if not lowest < p_ext <= highest:
             raise ValueError(f"p_ext is {p_ext:g} Pa; at {voltage:g} V contact needs {lowest:.4g} to {highest:.4g} Pa")
-        found = brentq(lambda v: self.external_pressure(v, voltage) - p_ext, 0.0, end, xtol=_SEPARATION * self.h_rms)
+        found = scipy.optimize.brentq(
+            lambda v: self.external_pressure(v, voltage) - p_ext, 0.0, end, xtol=_SEPARATION * self.h_rms
+        )
         return float(self.air_gap(found))
 
     def threshold(self, approximate: bool = False) -> float:
@@ -231,11 +232,11 @@ class BearingArea(Closure):
             held = np.log(stress / self.full_pressure)
 
         def ratio(u_bar: float) -> float:
-            near, far = (log_ndtr((end - u_bar) / self.h_rms) for end in (self.h_0, 0.0))
+            near, far = (scipy.special.log_ndtr((end - u_bar) / self.h_rms) for end in (self.h_0, 0.0))
             pressures = np.logaddexp(-u_bar / (self.gamma * self.h_rms), held)
             return float(pressures - near - np.log1p(-np.exp(far - near)))
 
         end, error = self.h_0 + (1 + 1 / self.gamma) * self.h_rms, {"xatol": 1e-9 * self.h_rms}
-        found = minimize_scalar(ratio, bounds=(0.0, end), method="bounded", options=error)
+        found = scipy.optimize.minimize_scalar(ratio, bounds=(0.0, end), method="bounded", options=error)
         constant = self.full_pressure * 2 * self.h_0**2 / _EPS_0
         return float(np.sqrt(constant * np.exp(min(found.fun, ratio(0.0)))))
