@@ -11,13 +11,18 @@ contact pressure p_c it is closed form, single valued and free of the voltage.
 """
 
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
 
 import numpy as np
 import scipy  # its parts are imported where they are used first: to read a scene needs none
 from numpy.typing import ArrayLike, NDArray
 
 from variational.coefficients import OF_SCENE, parameter
-from variational.roughness.closure import AirGap, Closure
+from variational.roughness.closure import AirGap, Closure, Progress
+from variational.roughness.statistics import Slopes, Statistics, breaking_gaps
+
+if TYPE_CHECKING:
+    from variational.roughness.topography import HeightMap
 
 Array = NDArray[np.float64]
 _EPS_0 = 8.854e-12  # F/m, Table 3
@@ -53,6 +58,11 @@ class BearingArea(Closure):
     def full_pressure(self) -> float:
         """Contact pressure (Pa) at zero mean separation, where the repulsion law ends."""
         return self.beta * 4 / 3 * self.young * 2 * np.pi / self.wavelength * self.h_rms
+
+    @property
+    def pressures(self) -> tuple[float, float]:
+        """Range of mean contact pressures (Pa) in which the air gap follows the pressure."""
+        return self.p_floor, self.full_pressure
 
     def separation(self, p_c: ArrayLike) -> Array:
         """Return the mean separation u_bar (m) at contact pressure ``p_c`` (Pa), inverse of Eq. 9's first term."""
@@ -102,6 +112,39 @@ class BearingArea(Closure):
         d_eq = self.h_0 * (np.sqrt(2 / area) - 1)
         gradient = -self.h_0 / 2 * np.sqrt(2 / area) / area * slope * (-self.gamma * self.h_rms / held)
         return AirGap(d_eq, np.where(held == p_c, gradient, 0.0))
+
+    def statistics(self, p_c: ArrayLike, voltage: float = 0.0) -> Statistics:
+        """Return the gaps at mean contact pressures (Pa), and their breakdown at a voltage (V).
+
+        Heights are Gaussian and undeformed: the contact is the bearing area, where they are above the separation.
+
+        Raises:
+            ValueError: a pressure outside of p_floor to full_pressure; in one sentence.
+        """
+        p_c = np.asarray(p_c, dtype=float)
+        if (out := (p_c < self.p_floor * (1 - 1e-9)) | (p_c > self.full_pressure * (1 + 1e-9))).any():
+            raise ValueError(
+                f"the contact pressure is {p_c[out].flat[0]:g} Pa; {type(self).__name__} has {self.p_floor:.4g} to "
+                f"{self.full_pressure:.4g} Pa"
+            )
+        p_c = np.clip(p_c, self.p_floor, self.full_pressure)
+        u_bar, (d_eq, slope) = self.separation(p_c), self(p_c)
+        assert slope is not None
+        per_pressure = -self.gamma * self.h_rms / p_c
+        narrows = -np.exp(-((u_bar / self.h_rms) ** 2) / 2) / (np.sqrt(2 * np.pi) * self.h_rms)
+        square = (self.h_0 + d_eq) ** -2
+        slopes = Slopes(narrows * per_pressure, per_pressure, -2 * square / (self.h_0 + d_eq) * slope, slope)
+        broken = np.zeros_like(p_c)
+        for low, high in breaking_gaps(voltage, self.h_0):
+            broken += self.contact_area(u_bar - high) - self.contact_area(u_bar - low)
+        return Statistics(self.contact_area(u_bar), u_bar, square, d_eq, broken, slopes)
+
+    @classmethod
+    def of_map(cls, measured: "HeightMap", progress: Progress | None = None) -> dict[str, float]:
+        """Return the parameters that a measured height map gives: see :func:`.spectrum.roughness_table`."""
+        from variational.roughness.spectrum import roughness_table
+
+        return roughness_table(measured)
 
     def state(self, p_c: float, voltage: float) -> str:
         """Return where a ridge is on the closure; empty where the air gap closes as the pressure rises.
