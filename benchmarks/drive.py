@@ -167,12 +167,5 @@ def _felt(ax: Axes, rows: list[Mapping[str, Any]]) -> None:
     ax.legend(title="open: extrapolated", fontsize=8)
 
 
-def leak_words() -> str:
-    """Return every preset of the leak with its range and source."""
-    return "; ".join(
-        f'"{name}" {leak.value:g} ({leak.low:g} to {leak.high:g}: {leak.source})' for name, leak in LEAKS.items()
-    )
-
-
 if __name__ == "__main__":
     sys.exit(harness.main(__doc__, compute, draw))

@@ -42,7 +42,7 @@ def circuit(gap: float = REFERENCE, tissue: str = "dry") -> GapCircuit:
 
 
 def _share(f: float | tuple[float, ...], gap: float = REFERENCE) -> rules.Array:
-    return np.asarray(circuit(gap).share(f, *layers(gap)))
+    return np.asarray(circuit(gap).share(f, *layers(gap)), dtype=np.float64)
 
 
 def _small() -> Row:
@@ -79,7 +79,7 @@ def _wide() -> Row:
 
 def _cut_off() -> Row:
     """Judge whether a first-order high-pass misses attraction over 10 to 500 Hz."""
-    f = np.geomspace(10, 500, 40)
+    f: rules.Array = np.geomspace(10, 500, 40, dtype=np.float64)
     fit = rules.of_largest(rules.high_pass, f, _share(tuple(f)))
     return {"misfit": fit.misfit, "cut": fit.parameter * 500}, by_share(float(fit.misfit > rules.MISFIT))
 
