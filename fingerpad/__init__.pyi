@@ -27,8 +27,10 @@ from variational.materials.neo_hooke import NeoHooke as NeoHooke
 from variational.materials.ogden import Ogden as Ogden
 from variational.materials.saint_venant import SaintVenant as SaintVenant
 from variational.roughness.bam import BearingArea as BearingArea
+from variational.roughness.boundary_elements import BoundaryElements as BoundaryElements
 from variational.roughness.closure import AirGap as AirGap
 from variational.roughness.closure import Closure as Closure
+from variational.roughness.persson import Persson as Persson
 from variational.state import ContactState as ContactState
 
 __version__: str

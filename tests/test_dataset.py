@@ -15,10 +15,12 @@ from mpi4py import MPI
 import fingerpad as fp
 from fingerpad.report import run_page
 from fingerpad.results import dataset, files, quantities
+from fingerpad.results.netcdf import arrays
 from fingerpad.results.over_time import OverTime
 from fingerpad.results.result import Result
 from fingerpad.runs.sweep_results import Sweep
 from fingerpad.scene import from_data
+from tests.commands import python
 from tests.measures import rows_of
 from tests.runs import run
 from tests.small_finger import NINE
@@ -253,3 +255,16 @@ def test_report_has_the_sites_of_the_table(folder):
     for row in rows:
         assert f"<td>{1e-3 * float(row['merkel_sed']):.4g}</td>" in part
     assert "receptors" not in run_page.page(fp.run(model="cylinders")).partition("</nav>")[0]
+
+
+def test_file_is_that_of_xarray_and_is_read_as_by_xarray(folder, data):
+    """Texts, switches, numbers and what is missing, with their dimensions, units and names; and without xarray."""
+    known = arrays(folder / "result.nc")
+    assert known.keys() == set(map(str, data.variables))
+    for name, variable in data.variables.items():
+        mine = known[str(name)]
+        assert mine.shape == variable.shape and (mine.dtype.kind in "OU") == (variable.dtype.kind in "OU"), name
+        np.testing.assert_array_equal(mine, variable.values)
+    code = "import sys, fingerpad; fingerpad.Result.load(sys.argv[1]); print('xarray' in sys.modules)"
+    done = python("-c", code, str(folder))
+    assert done.stdout.strip() == "False", done.stderr

@@ -10,7 +10,8 @@ import pytest
 from mpi4py import MPI
 
 from fingerpad.model.options import FingerModel, by_rule, plan
-from fingerpad.model.simulation import Simulation, targets
+from fingerpad.model.schedule import targets
+from fingerpad.model.simulation import Simulation
 from fingerpad.report.run_page import page
 from fingerpad.results.drawing import Drawing
 from fingerpad.results.over_time import NOTE, without_parts_of_jumps

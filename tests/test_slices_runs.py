@@ -2,25 +2,21 @@
 
 import html
 import re
-import signal
-import time
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
 import fingerpad as fp
-from fingerpad.model.simulation import Simulation
 from fingerpad.reduced.registry import find
 from fingerpad.report import run_page
-from fingerpad.results.folder import full_scene
 from fingerpad.runs import solve
 from fingerpad.runs.context import RunContext
 from fingerpad.scene import SceneError, load
 from fingerpad.slices import traces
 from fingerpad.slices.estimate import with_newtons
 from fingerpad.slices.traces import history, points
-from tests.runs import no_pictures, tables_alone
+from tests.runs import no_pictures
 from tests.small_finger import small
 from variational.state import Errors
 
@@ -60,21 +56,8 @@ def test_files_have_the_finger(traced):
         total = float((slip.slice_thickness * slip.slice_f_ext).sum())
         assert total == pytest.approx(float(slip.finger_f_ext), rel=1e-12)
         assert data.finger_gross_area.attrs["units"] == "m^2"
-    assert (traced.folder / "footprint.png").exists() and (traced.folder / "charged" / "summary.json").exists()
+    assert (traced.folder / "footprint.png").exists() and not (traced.folder / "checkpoint").exists()
     assert "The whole finger, in newtons" in run_page.page(traced)
-
-
-def test_full_slip_by_two_paths(traced):
-    """Pressed on while it slides, or pressed, charged and slid: one state, where no ridge jumps between.
-
-    Tolerance: the small finger's states are 1e-8 apart; the coupling's tolerance of 1e-6 allows some 1e-6.
-    """
-    end = fp.Result.load(traced.folder / "full_slip").full_slip
-    with no_pictures():
-        direct = fp.run(small(**SMALL).replace(f_ext=end.f_ext, voltage=end.voltage)).full_slip
-    assert direct.ridges_in_contact == end.ridges_in_contact
-    for name in ("f_t", "contact_length", "f_electrostatic", "bone_height"):
-        assert getattr(direct, name) == pytest.approx(getattr(end, name), rel=1e-5)
 
 
 def test_named_states_are_the_section_at_the_centre(traced):
@@ -87,54 +70,6 @@ def test_named_states_are_the_section_at_the_centre(traced):
     slip = traced.full_slip
     assert slip.f_t == pytest.approx(0.25 * (slip.f_ext + slip.f_electrostatic), rel=1e-6)
     assert not traced.steps and traced.scene.force == FORCE
-
-
-def test_trace_that_was_too_short_is_made_again(tmp_path, monkeypatch):
-    """To a larger force, in a folder beside; the same command takes both from there, and another force is refused."""
-    monkeypatch.setattr(traces, "_MARGIN", 0.55 * traces._MARGIN)
-    found, scene, out = [], small(**SMALL).replace(force=FORCE), tmp_path / "out"
-    with tables_alone():
-        found.append(fp.run(scene, out=out))
-        monkeypatch.setattr(Simulation, "_accepted", None)  # nothing is solved again
-        found.append(fp.run(scene, out=out))
-    assert {path.name for path in out.iterdir() if path.is_dir()} >= {"uncharged", "uncharged_2", "charged"}
-    assert found[0].finger.to_dict() == found[1].finger.to_dict()
-    assert fp.Result.load(out).scene == scene
-    for other, words in (
-        (scene.replace(force=1.1 * FORCE), r"its force was 0.002, and is 0.0022 now"),
-        (scene.replace(force=None), r"its f_ext was None, and is 75.0 now"),
-    ):
-        with pytest.raises(SceneError, match=rf"holds the results of another scene \({words}\)"):
-            fp.run(other, out=out)
-
-
-@pytest.mark.parametrize("last", [False, True])
-def test_force_that_was_interrupted_goes_on(tmp_path, last):
-    """Whichever trace it was in, by the same command or by --resume; to the last bit as one that was not stopped."""
-    scene, out, before = small(**SMALL).replace(force=FORCE), tmp_path / "out", Simulation._accepted
-
-    def accepted(self, *given):
-        if not last or self._model.loads[-1].name == "hold":
-            signal.raise_signal(signal.SIGTERM)
-        return before(self, *given)
-
-    with tables_alone(), pytest.MonkeyPatch.context() as patch, pytest.raises(SystemExit) as stop:
-        patch.setattr(Simulation, "_accepted", accepted)
-        fp.run(scene, out=out)
-    assert stop.value.code == 143
-    assert stop.value.result.finger is None
-    words = "full slip" if last else "uncharged normal contact"
-    assert stop.value.result.failure.startswith("stopped by SIGTERM after step 1 of the trace of " + words)
-    assert not (out / "summary.json").exists()
-    assert full_scene(out) == scene
-    begun, runs = time.time(), {"uncharged", "charged", "full_slip"} if last else {"uncharged"}
-    assert {path.parent.name for path in out.glob("*/scene.json")} == runs
-    with tables_alone():
-        found = fp.run(full_scene(out), out=out, resume=last)
-    for name in ("uncharged", "charged") if last else ():
-        assert (out / name / "summary.json").stat().st_mtime < begun
-    for name, total in found.finger.states.items():
-        assert total.totals["f_ext"] == pytest.approx(FORCE, rel=1e-9), name
 
 
 def test_report_of_a_force_repeats_it(traced):

@@ -15,12 +15,14 @@ from fingerpad.cli.arguments import PICTURE, Parser, echo, path, quantity, scene
 from fingerpad.model.cautions import on_closure
 from fingerpad.results.quantities import QUANTITIES, Output
 from fingerpad.scene import Scene, from_data, override
-from fingerpad.scene.materials import Topography
+from fingerpad.scene.materials import CLOSURES, Topography
 from fingerpad.scene.messages import SceneError, clip, first_error
 from fingerpad.scene.remarks import missing_waves, remarks, ridges_as_roughness
+from variational.attraction.electroadhesion import VACUUM_PERMITTIVITY
 from variational.roughness.bam import STICKING, BearingArea
 from variational.roughness.heightfile import Found, scan
 from variational.roughness.spectrum import HURST, Fit, power_spectrum, roughness_table
+from variational.roughness.tabulated import TabulatedClosure
 from variational.roughness.topography import distribution
 
 _PRESSURES = "1e3:1e6:13:log"
@@ -36,6 +38,7 @@ _COLUMNS = (
 _MICROSCALE = """
     fingerpad microscale --voltage 100,200 --p 1e3:1e6:50:log --plot micro.png
     fingerpad microscale --set roughness.h_rms=2e-6 --csv micro.csv
+    fingerpad microscale --set roughness.law=BoundaryElements --voltage 0,100 --p 1e3:5e5:30:log
 """
 _TOPOGRAPHY = """
     fingerpad topography skin.csv --unit um --size "100 um" "100 um" --plot skin.png
@@ -56,7 +59,7 @@ def microscale(argv: Sequence[str]) -> int:
     if args.voltage is None and scene.history is not None:
         raise SceneError("history is given, whose loads have their own voltages; name those wanted by --voltage")
     rows = table(scene, several(args, scene, "voltage"), _pressures(args.p))
-    closure = bearing_area(scene)
+    closure = microscopic(scene)
     echo(
         f"A ridge of rms roughness {closure.h_rms * 1e6:.3g} µm, largest wavelength "
         f"{closure.wavelength * 1e6:.3g} µm; insulators: h_0 = {scene.h_0 * 1e6:.3g} µm.\n"
@@ -64,8 +67,9 @@ def microscale(argv: Sequence[str]) -> int:
     echo(output.text(_COLUMNS, rows))
     echo("\npressure: mean contact pressure of the ridge; external: that less the attraction, what the finger presses")
     echo("with; separation: mean, of skin and screen; air gap: equivalent one; real area: of the nominal area.")
-    echo(f"The air gap stays constant below {closure.p_floor * 1e-3:g} kPa (roughness.p_floor) and above")
-    echo(f"{closure.full_pressure * 1e-3:.4g} kPa, the pressure at zero separation.")
+    low, high = (p * 1e-3 for p in closure.pressures)
+    end = "the pressure at zero separation" if isinstance(closure, BearingArea) else "the end of the table of gaps"
+    echo(f"The air gap stays constant below {low:.4g} kPa (roughness.p_floor) and above {high:.4g} kPa, {end}.")
     echo(_sticking(closure))
     for text in remarks(scene):
         echo(f"{text}.")
@@ -82,7 +86,7 @@ def _pressures(text: str) -> list[float]:
         raise SceneError(f"--p: {error}") from None
 
 
-def _sticking(closure: BearingArea) -> str:
+def _sticking(closure: BearingArea | TabulatedClosure) -> str:
     """Return from which voltage on a ridge sticks, in a sentence."""
     voltage = closure.sticking_voltage()
     if voltage is None:
@@ -91,33 +95,33 @@ def _sticking(closure: BearingArea) -> str:
     return f"From {voltage:.3g} V a ridge would stick: to pull it off takes {stress} or more (a convention)."
 
 
-def bearing_area(scene: Scene) -> BearingArea:
+def microscopic(scene: Scene) -> BearingArea | TabulatedClosure:
     """Return the closure of a scene.
 
     Raises:
-        SceneError: it is another model than the bearing area's, which alone has a separation and a real area.
+        SceneError: it is a law of one's own, which has no separation and no real area.
     """
     closure = scene.closure()
-    if not isinstance(closure, BearingArea):
-        raise SceneError(f"roughness is a {type(closure).__name__}; the microscale is that of the law 'BearingArea'")
+    if not isinstance(closure, BearingArea | TabulatedClosure):
+        names = " or ".join(CLOSURES.laws)
+        raise SceneError(f"roughness is a {type(closure).__name__}; the microscale is that of a law {names}")
     return closure
 
 
 def table(scene: Scene, voltages: Sequence[float], pressures: Sequence[float]) -> list[dict[str, Any]]:
     """Return a row for each voltage (V) and mean contact pressure (Pa), in SI units.
 
-    Pressures beyond the one at zero mean separation, where the law of repulsion ends, are held there as in a run.
+    Pressures beyond the closure's range are held at its ends, as in a run.
     """
-    closure = bearing_area(scene)
-    p_c = np.array(pressures)
-    u_bar = closure.separation(np.clip(p_c, closure.p_floor, closure.full_pressure)) + 0.0  # no negative zero
-    d_eq, area = closure(p_c).d_eq, closure.contact_area(u_bar)
+    closure = microscopic(scene)
+    gaps = closure.statistics(np.clip(np.array(pressures), *closure.pressures))
     rows = []
     for voltage in voltages:
-        p_el = closure.attraction(u_bar, voltage)
+        p_el = VACUUM_PERMITTIVITY * voltage**2 / 2 * gaps.inverse_square
         for k, p in enumerate(pressures):
-            row = {"p_c": p, "u_bar": u_bar[k], "d_eq": d_eq[k], "p_el": p_el[k], "p_ext": p - p_el[k]}
-            rows.append({"voltage": voltage} | {name: float(v) for name, v in row.items()} | {"area": float(area[k])})
+            u_bar = gaps.u_bar[k] + 0.0  # no negative zero
+            row = {"p_c": p, "u_bar": u_bar, "d_eq": gaps.d_eq[k], "p_el": p_el[k], "p_ext": p - p_el[k]}
+            rows.append({"voltage": voltage} | {n: float(v) for n, v in row.items()} | {"area": float(gaps.area[k])})
     return rows
 
 
@@ -126,7 +130,7 @@ def draw_microscale(file: Path, rows: Sequence[dict[str, Any]]) -> None:
     voltages = list(dict.fromkeys(row["voltage"] for row in rows))
     first = [row for row in rows if row["voltage"] == voltages[0]]
     p = [row["p_c"] * 1e-3 for row in first]
-    with output.panels(file, "Microscale of a ridge: bearing area model", 3) as (_, (gaps, stress, area)):
+    with output.panels(file, "Microscale of a ridge", 3) as (_, (gaps, stress, area)):
         from fingerpad.results import style
 
         output.curve(gaps, 0, p, [row["d_eq"] * 1e6 for row in first], "equivalent air gap $d_{eq}$")

@@ -69,7 +69,7 @@ class FullSlips:
     """Leads a finger from full slip to full slip."""
 
     def __init__(self, simulation: Simulation) -> None:
-        """Take a simulation whose loads are reached.
+        """Take a simulation, whose loads are reached before :meth:`first`.
 
         Raises:
             ValueError: friction has a memory, so that full slip depends on its past.
@@ -94,7 +94,7 @@ class FullSlips:
         return Solved(conditions, state, self.finger.continuation.place())
 
     def solve(self, conditions: Conditions, start: Solved) -> Solved:
-        """Return full slip under other conditions; collective.
+        """Return full slip under other conditions, found to be stable; collective.
 
         Args:
             conditions: whose law of friction is of the kind of the first one.
@@ -104,6 +104,10 @@ class FullSlips:
             StepFailed: no steady and stable full slip was found from there.
             ValueError: another kind of law of friction.
         """
+        return self.checked(self.reach(conditions, start))
+
+    def reach(self, conditions: Conditions, start: Solved) -> Solved:
+        """Return steady full slip under other conditions, whose stability is not examined; see :meth:`solve`."""
         before, path = start.conditions, self.finger.continuation
 
         def set_laws(part: float) -> None:
@@ -117,17 +121,22 @@ class FullSlips:
         path.go_to(start.place)
         name = f"full slip from {before.beside(conditions) or 'itself'}"
         target = Target(name, conditions.f_ext, voltage=conditions.voltage, slips=True, constants=set_laws)
-        state = self._checked(self._simulation.slip_to(target), name)
-        return Solved(conditions, replace(state, reached=name), path.place())
-
-    def _checked(self, state: ContactState, name: str) -> ContactState:
-        """Return a state with its stability; refuse one that is no steady and stable full slip."""
+        state = self._simulation.slip_to(target)
         if not state.slip_held:
             raise StepFailed(f"{name}: {'full slip is not steady' if state.all_slip else 'not every point slips'}")
-        checked = self._simulation.checks.check(name)
+        return Solved(conditions, replace(state, reached=name), path.place())
+
+    def checked(self, solved: Solved) -> Solved:
+        """Return the present state with its stability; collective.
+
+        Raises:
+            StepFailed: it is not stable.
+        """
+        state, checked = solved.state, self._simulation.checks.check(solved.state.reached)
         if not checked.stable:
-            raise StepFailed(f"{name}: full slip is {checked}")
-        return replace(state, stable=True, lambda_min=checked.frozen.lambda_min, gain=checked.gain)
+            raise StepFailed(f"{state.reached}: full slip is {checked}")
+        state = replace(state, stable=True, lambda_min=checked.frozen.lambda_min, gain=checked.gain)
+        return replace(solved, state=state)
 
     def _set_laws(self, friction: Friction | None, roughness: Closure | None, h_0: float) -> None:
         self.finger.problem.set_laws(friction, h_0)

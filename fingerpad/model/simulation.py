@@ -1,10 +1,9 @@
 """The path of a finger's loads: from one load to the next, every accepted state checked and reported."""
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, replace
-from functools import partial
-from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -12,23 +11,20 @@ from mpi4py import MPI
 
 from fingerpad.model.checks import Checked, ContactZone, FingerExceeded, FullSlip, StabilityChecks
 from fingerpad.model.finger import Finger, HalfFinger, Step
+from fingerpad.model.schedule import targets
 from fingerpad.model.state import refuse_strained, step_record
 from fingerpad.results.states import FIRST_TOUCH, SLIDE_ON
 from fingerpad.scene import Load
-from fingerpad.scene.waveform import Sample, Waveform
 from variational.resultants import RidgeLoads
 from variational.solvers import checkpoint
 from variational.solvers.continuation import Attempt, Continuation, StepFailed
 from variational.solvers.stability import Stability
 from variational.solvers.target import Target
-from variational.solvers.transfer import StateSnapshot, restore
+from variational.solvers.transfer import StateSnapshot, restore, take_snapshot
 from variational.state import ContactState
 
 if TYPE_CHECKING:
     from fingerpad.model.options import FingerModel
-    from fingerpad.scene import Load
-
-_BEGIN = 60e-6  # m, with which a slide begins
 
 
 @dataclass(frozen=True)
@@ -114,6 +110,48 @@ class Simulation:
                 self._half.count()
         self.checks.free()
         return None
+
+    @property
+    def restart(self) -> RestartRequired | None:
+        """What must be added to the model, if the present load turned out to need it."""
+        return self._restart
+
+    @contextmanager
+    def aside(self) -> Iterator[None]:
+        """Leave the present state, and come back to it after what is reached inside, with no energies; collective."""
+        places = {name: path.place() for name, path in self._paths().items()}
+        before = self.states, self._load
+        self.states = [*self.states]
+        yield
+        for name, path in self._paths().items():
+            path.go_to(places[name])
+        self.states, self._load = before
+        self.energy = self.finger.book()
+
+    def reach(self, loads: Sequence[Load], reached: Callable[[], None]) -> None:
+        """Reach loads beside those of the model, inside of :meth:`aside`; collective.
+
+        Args:
+            loads: that do not move the bone.
+            reached: called at the end of each.
+
+        Raises:
+            StepFailed: one could not be reached.
+        """
+        for load in loads:
+            self._load = load.name
+            for target in targets(load, self._x, self._model.numerics.step_scale):
+                if self._restart is None:
+                    (self._half or self.finger.continuation).run(target)
+            if self._restart is not None:
+                return
+            reached()
+        self._restart = self._symmetry_lost()
+
+    def snapshot(self) -> tuple[StateSnapshot, bool]:
+        """Return the present state, and whether it is of the half at x >= 0, which leads the finger; collective."""
+        path = self.finger.continuation if self._half is None else self._half.path
+        return take_snapshot(path.coupling, path.surface_state), self._half is not None
 
     def _end_half(self) -> None:
         """Go on with the whole finger."""
@@ -308,36 +346,3 @@ class Simulation:
         except FingerExceeded as error:
             raise StepFailed(f"step {finger.continuation.steps} ({self._load}): {error}") from error
         return self._restart is not None
-
-
-def targets(load: "Load", x: float, step_scale: float) -> list[Target]:
-    """Return what to reach for a load, one after the other.
-
-    Args:
-        load: the load.
-        x: where the bone is (m).
-        step_scale: see ``numerics.step_scale``.
-    """
-    place = load.place(x)
-    seconds = load.seconds(0.0 if place is None else place - x)
-    if load.wave is None:
-        until = load.until_full_slip
-        return [Target(load.name, load.f_ext, load.bone_height, load.level, place, until, duration=seconds)]
-    samples = load.wave.samples(seconds, step_scale)
-    found = [Target(load.name, voltage=samples[0][1])]
-    for sample, after in pairwise(samples):
-        (before, _), (time, voltage) = sample, after
-        aim = place
-        if place is not None and time < seconds:
-            aim = x + time / seconds * (place - x)
-        begins = len(found) == 1 and aim is not None and abs(aim - x) > step_scale * _BEGIN
-        continues = time > before and not begins  # what jumps, or begins with a long slide, is cut into steps
-        inside = partial(_voltage, load.wave, sample, after) if time > before else None
-        piece = Target(load.name, voltage=voltage, bone_x=aim, voltage_at=inside, continues=continues)
-        found.append(replace(piece, duration=time - before))
-    return found
-
-
-def _voltage(wave: Waveform, before: Sample, after: Sample, part: float) -> float:
-    """Return the voltage (V) at a part of the time between two samples."""
-    return wave.between(before, after, before[0] + part * (after[0] - before[0]))

@@ -172,7 +172,7 @@ def _skin(folder: Path, frame: _Frame) -> list[dict[str, Any]]:
 
 
 def _rounded(values: Array, digits: int) -> list[float | None]:
-    return [round(float(v), digits) + 0.0 if np.isfinite(v) else None for v in values]
+    return [value if math.isfinite(value) else None for value in map(float, np.round(values, digits) + 0.0)]
 
 
 def _view(skins: list[list[dict[str, Any]]]) -> list[float] | None:
@@ -205,7 +205,7 @@ def _finger(file: Path, view: list[float]) -> dict[str, Any] | None:
     image = np.append(level[cells], _EMPTY)[cells_at(corners, x, y)].astype("<i2")
     points = xy[kept["lines"]]
     low, high = np.array([left, bottom]), np.array([right, top])
-    inside = ((points >= low) & (points <= high)).all(axis=(1, 2))
+    inside = ((points.max(axis=1) > low) & (points.min(axis=1) < high)).all(axis=1)
     segments = np.round(_PLACES * along(xy, kept["lines"][inside], _NEAR)).astype(int)
     known = image[image != _EMPTY]
     return {

@@ -12,6 +12,7 @@ from fingerpad.report import trust
 from fingerpad.report.frames import conditions_of, frames, section
 from fingerpad.report.trust import conditions, head
 from fingerpad.results.arrays import arrays_of
+from fingerpad.results.closures import RECORD, in_words
 from fingerpad.results.over_time import HARMONICS, NOTE
 from fingerpad.results.quantities import PER_LENGTH, PLUS_MINUS, STEPS
 from fingerpad.results.result import Result
@@ -142,9 +143,10 @@ def _trust(result: Result) -> str:
         f"{html.text(each.words)}</span></li>"
         for each in found
     )
+    band = in_words(result.record.get(RECORD, {}))
     note = (
         "All this is about the mathematics. The least certain input is the finger: ridge tips and roughness move µ_app "
-        "by 10 % and more (docs/assumptions.md)."
+        "by 10 % and more (docs/assumptions.md)." + (f" {band[0].upper()}{band[1:]}." if band else "")
     )
     return html.section(
         "trust", "Can these numbers be relied on?", f'<ul class="findings">{lines}</ul>', html.paragraph(note)

@@ -8,6 +8,8 @@ from fingerpad.reduced.cylinder_errors import in_words
 from fingerpad.reduced.registry import follows_path
 from fingerpad.report import page as html
 from fingerpad.report.page import BAD, CARE, GOOD
+from fingerpad.results.closures import RECORD
+from fingerpad.results.closures import in_words as band_in_words
 from fingerpad.results.quantities import cell
 from fingerpad.results.states import LoadResult, called
 from fingerpad.scene.remarks import coefficient
@@ -45,19 +47,21 @@ def findings(result: "Result") -> list[Finding]:
     return found
 
 
-def verdict(found: list[Finding], error: str = "") -> tuple[str, str]:
-    """Return the worst verdict and a sentence for the head of a page.
+def verdict(found: list[Finding], error: str = "", band: str = "") -> tuple[str, str]:
+    """Return the worst verdict and a sentence for the head of a page, and a second one where friction has a band.
 
     Args:
         found: what was looked at.
         error: estimated discretisation error of the number in the head, with its unit; empty where it has none.
+        band: friction by other models of roughness, in words; empty where it is not known.
     """
+    more = f" Not in it: {band}." if band else ""
     bad, care = ([each for each in found if each.verdict == kind] for kind in (BAD, CARE))
     for kind, worst, first in ((BAD, bad, "Do not use these numbers as they are"), (CARE, care, "Use with care")):
         if worst:
-            return kind, f"{first}: {' and '.join(each.what for each in worst)}. {worst[0].words}"
-    solved = f"solved to ± {error}" if error else "solved"
-    return GOOD, f"All that was examined holds: {solved}; what the finger and the model assume is not in it."
+            return kind, f"{first}: {' and '.join(each.what for each in worst)}. {worst[0].words}{more}"
+    solved = f"solved to ± {error}, the error of the mesh alone" if error else "solved"
+    return GOOD, f"All that was examined holds: {solved}; what the finger and the model assume is not in it.{more}"
 
 
 def _cautions(result: "Result") -> Iterator[Finding]:
@@ -250,7 +254,7 @@ def head(result: "Result") -> str:
         said = f"contact length in {called('charged', charged.voltage)}; {conditions(result)}"
     else:
         number, said = "No contact state was kept", conditions(result)
-    kind, words = verdict(findings(result), number.partition(" ± ")[2])
+    kind, words = verdict(findings(result), number.partition(" ± ")[2], band_in_words(result.record.get(RECORD, {})))
     more = ' <a href="#trust">What is not in it</a>' if kind == GOOD else ""
     return html.banner("report of a run", result.folder, number, said, kind, html.text(words) + more)
 

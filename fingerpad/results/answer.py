@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from fingerpad.results.closures import RECORD
 from fingerpad.results.quantities import FRICTION, QUANTITIES, Output
 from fingerpad.results.states import STATES, LoadResult
 from variational.state import ContactState
@@ -85,6 +86,14 @@ class Answer:
         """Parameters of the scene, as its files have them, with names of laws that are not read."""
         kept: dict[str, Any] = self.record.get("parameters") or self.scene.parameters()
         return kept
+
+    @property
+    def closures(self) -> dict[str, float | None]:
+        """µ_app at full slip by each model of roughness, by the ratio of charged cylinders; None without equilibrium.
+
+        Empty without voltage, friction or full slip, for a history, and for a closure of one's own.
+        """
+        return dict(self.record.get(RECORD, {}).get("mu_app", {}))
 
     @property
     def whole(self) -> bool:

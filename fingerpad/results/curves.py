@@ -23,7 +23,7 @@ _SHORT = 1.0  # s, below which the axis of time is in ms
 _RUBS = 1e-6  # of mu_0: a coefficient below is roundoff
 _TOOTH_SPAN = 4  # points: the span of a saw tooth to either side
 _NOTHING = 1e-9  # of the contact force: an external force below is roundoff
-_COARSE = 0.1  # of the peak: deeper saw teeth are noted; 7 % at the default contact size
+_COARSE = 0.1  # of the peak: deeper saw teeth are noted
 
 
 @dataclass(frozen=True)

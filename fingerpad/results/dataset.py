@@ -7,7 +7,7 @@ SciPy: every program for NetCDF reads it, and it loads no HDF5 beside that of do
 
 import json
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import fields, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from fingerpad.results import files, quantities
+from fingerpad.results import files, netcdf, quantities
 from fingerpad.results.quantities import FINGER, RIDGES, SITES, SKIN, SLICES, STEPS, Output
 from fingerpad.results.states import STATES, UNLOADED
 from fingerpad.scene.reading import flat
@@ -75,21 +75,21 @@ def save(result: "Answer") -> str:
         Why the file was not written, in one sentence; empty where it was.
     """
     assert result.folder is not None
-    return write(result.folder / FILE, lambda: dataset(result))
+    return write(result.folder / FILE, netcdf.encoded(variables(result), COORDINATES, attributes(result)))
 
 
-def write(file: Path, make: "Callable[[], xarray.Dataset]") -> str:
+def write(file: Path, content: bytes) -> str:
     """Write a dataset; what was there stays until all of it is written.
 
     Args:
         file: the path.
-        make: makes the dataset.
+        content: of the file.
 
     Returns:
         Why the file was not written, in one sentence; empty where it was.
     """
     try:
-        files.replace(file, bytes(make().to_netcdf(engine="scipy", format="NETCDF3_64BIT")))
+        files.replace(file, content)
     except OSError as error:
         return f"{file.name} was not written: {error.strerror or error}; all other files are complete"
     return ""
@@ -103,14 +103,11 @@ def read(folder: Path, own: Sequence[str]) -> tuple[tuple[ContactState, ...], di
         own: names of outputs that are computed from a state.
     """
     try:
-        import xarray
-
-        data = xarray.load_dataset(folder / FILE, engine="scipy")
-        arrays = {str(name): np.asarray(value.values) for name, value in data.variables.items()}
+        arrays = netcdf.arrays(folder / FILE)
         steps = tuple(_state(arrays, "", k, own) for k in range(len(arrays.get("step", ()))))
         there = [(k, name) for k, name in enumerate(STATES) if arrays["state_step"][k] >= 0]
         return steps, {name: _named_state(arrays, k, own) for k, name in there}
-    except (ImportError, OSError, ValueError, TypeError, KeyError, IndexError, EOFError):  # no file, or no whole one
+    except (OSError, ValueError, TypeError, LookupError, EOFError, AttributeError, MemoryError):  # no whole file
         return None
 
 

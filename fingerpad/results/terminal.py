@@ -13,7 +13,7 @@ from collections.abc import Callable, Collection
 from typing import TYPE_CHECKING, TextIO
 
 from fingerpad.results.quantities import PER_LENGTH, cell
-from variational.state import ContactState
+from variational.state import ContactState, StepRecord
 
 if TYPE_CHECKING:
     from mpi4py import MPI
@@ -219,18 +219,18 @@ class Console:
         """Print an accepted state.
 
         Args:
-            s: the state, with its record.
+            s: the state; with its record, if it was reached by a step of a path.
             done: part of the whole history that is done.
         """
-        assert s.record is not None
+        work = "" if s.record is None else f"{s.record.newton_iterations:6d} {s.record.factorisations:5d}"
+        jump = "" if s.record is None or not s.record.jump else f"  jump, {_released(s.record)}"
         most = self._mu_0 * s.f_contact if s.load in self._slipping else 0.0
         self._pace.at(done, abs(s.f_t) / most if most > 0 else 0.0)
         left, mu = self._pace.left(), cell("mu_app", s.mu_app)
         self.show(
             f"{s.step:4d} {s.load[:7]:7s} {s.f_ext:7.3f} {s.voltage:z5.1f} {s.bone_x * 1e3:z7.4f} "
             f"{s.bone_height * 1e3:z8.5f} {s.f_t:z8.4f} {mu:>7s} {s.f_electrostatic:7.3f} "
-            f"{s.ridges_in_contact:6d} {s.contact_length * 1e3:8.4f} {s.record.newton_iterations:6d} "
-            f"{s.record.factorisations:5d}  {left}{'  jump, ' + _released(s) if s.record.jump else ''}"
+            f"{s.ridges_in_contact:6d} {s.contact_length * 1e3:8.4f} {work:12s}  {left}{jump}"
         )
         loads = f"{s.load}: {s.f_ext:.1f} N/m, {s.voltage:.0f} V, x {s.bone_x * 1e3:.2f} mm"
         words = loads if math.isnan(s.mu_app) else f"{loads}, µ_app {s.mu_app:z.3f}"
@@ -242,10 +242,9 @@ class Console:
             self._progress.stop()
 
 
-def _released(s: ContactState) -> str:
+def _released(record: StepRecord) -> str:
     """Return the energy that a jump released in words, or below what it is where its own error hides it."""
-    assert s.record is not None
-    value, error = s.record.energy_released, s.record.released_error
+    value, error = record.energy_released, record.released_error
     if abs(value) <= error:
         return f"energy released below {max(value, 0.0) + error:.2g} J/m"
     return f"{value:.2g} ± {error:.1g} J/m released"

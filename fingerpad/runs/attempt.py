@@ -13,6 +13,7 @@ from fingerpad.model.options import FingerModel
 from fingerpad.model.report import Clock, Report
 from fingerpad.model.simulation import RestartRequired, Simulation
 from fingerpad.model.state import broken, force_error
+from fingerpad.reduced.closure_band import with_band
 from fingerpad.results.checkpoint import Checkpoint, CheckpointError
 from fingerpad.results.interrupt import Interrupt, Interrupted
 from fingerpad.results.over_time import NOTE
@@ -125,7 +126,7 @@ class Attempt:
         self._has_kept = True
 
     def resume(self, kept: dict[str, Any]) -> None:
-        """Go on from a checkpoint, as :func:`fingerpad.runs.full.read` gives it; collective.
+        """Go on from a checkpoint, as :func:`fingerpad.runs.checkpoints.read` gives it; collective.
 
         Raises:
             CheckpointError: it is of another mesh.
@@ -238,7 +239,7 @@ class Attempt:
             drawing=drawing,
             outputs=tuple(self._outputs),
         )
-        result = with_newtons(result)
+        result = with_band(with_newtons(result))
         if result.failure:
             self._writer.log.error(result.failure)
         self._writer.summary(result.to_dict())

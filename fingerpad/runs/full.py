@@ -2,23 +2,20 @@
 
 import json
 import signal
-from collections.abc import Sequence
 from contextlib import closing
-from pathlib import Path
 from typing import Any
 
 import fingerpad.startup  # noqa: F401
-from fingerpad.accuracy.solves import State
 from fingerpad.model.options import FingerModel, by_rule, plan
 from fingerpad.model.report import Clock
-from fingerpad.results.checkpoint import Checkpoint, CheckpointError
 from fingerpad.results.interrupt import Interrupt, all_together, no_room
-from fingerpad.results.provenance import check_options, provenance
-from fingerpad.results.quantities import Output, checked
+from fingerpad.results.provenance import check_options
+from fingerpad.results.quantities import checked
 from fingerpad.results.result import Result
 from fingerpad.results.terminal import Console
 from fingerpad.results.writing import Writer
 from fingerpad.runs.attempt import Attempt, Session
+from fingerpad.runs.checkpoints import checkpoint_of, read
 from fingerpad.runs.context import RunContext
 from fingerpad.runs.restarts import Restarts
 from fingerpad.scene import Scene, SceneError
@@ -27,10 +24,6 @@ from fingerpad.scene.remarks import coefficient
 from fingerpad.startup import MPI
 from geometry.parameters import MeshSize
 from geometry.profiles import GeometryError
-from variational.solvers.outcome import Counts
-from variational.solvers.target import Control, Progress
-from variational.solvers.transfer import SkinState, StateSnapshot
-from variational.state import ContactState, Errors, RidgeStates, Skin, StepRecord
 
 
 def run(scene: Scene, context: RunContext) -> Result:
@@ -66,7 +59,7 @@ def run(scene: Scene, context: RunContext) -> Result:
             closing(Console(comm, context.lines, context.bar)) as console,
             context.place(scene, DEFAULT_MODEL) as place,
         ):
-            checkpoint = None if place is None else _checkpoint(scene, place.folder, outputs)
+            checkpoint = None if place is None else checkpoint_of(scene, place.folder, outputs)
             kept = read(checkpoint, comm) if context.resume and checkpoint is not None else None
             writer = Writer(place, comm)
             restarts = Restarts(writer.log, console)
@@ -75,41 +68,6 @@ def run(scene: Scene, context: RunContext) -> Result:
     except GeometryError as error:
         what = "the finger cannot be meshed" if scene.geometry.file is None else "mesh"
         raise SceneError(f"{what}: {error}") from error
-
-
-_KEPT = (
-    *(ContactState, RidgeStates, StepRecord, Errors, Skin, Control, Counts, Progress),
-    *(State, StateSnapshot, SkinState),
-)
-"""Classes of what a checkpoint holds."""
-
-
-def read(checkpoint: Checkpoint, comm: MPI.Comm) -> dict[str, Any]:
-    """Return what the last checkpoint holds, on every rank; collective.
-
-    Raises:
-        CheckpointError: a run cannot go on from there; on every rank.
-    """
-    kept: dict[str, Any] | CheckpointError | None = None
-    if comm.rank == 0:
-        try:
-            checkpoint.check()
-            kept = checkpoint.read(_KEPT)
-        except CheckpointError as error:
-            kept = error
-    kept = comm.bcast(kept)
-    if isinstance(kept, CheckpointError):
-        raise kept
-    assert kept is not None
-    return kept
-
-
-def _checkpoint(scene: Scene, folder: Path, outputs: Sequence[Output]) -> Checkpoint:
-    """Return the checkpoint of a scene by the present program."""
-    versions = provenance()["versions"]
-    names = ", ".join(each.name for each in outputs) or "none"
-    same = {"source": versions["source"], "dolfinx": versions["dolfinx"], "list of outputs": names}
-    return Checkpoint(folder, scene.parameters(), same)
 
 
 def _run(scene: Scene, session: Session, kept: dict[str, Any] | None) -> Result:

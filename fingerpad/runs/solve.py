@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from fingerpad.installed import needed_by, source, version
+from fingerpad.reduced.closure_band import with_band
 from fingerpad.reduced.registry import find
 from fingerpad.results import dataset, terminal
 from fingerpad.results.files import below, read_object, replace_json
@@ -136,6 +137,7 @@ def _solved(scene: Scene, model: "Model", context: RunContext) -> Result:
         return result
     versions = {"versions": {"fingerpad": version(), "source": source()}}
     result = replace(result, record={**result.record, "provenance": versions})
+    result = with_band(result) if context.report else result
     return kept(result.with_outputs(context.outputs), context)
 
 
@@ -168,16 +170,30 @@ def _whole(scene: Scene, model: "Model", context: RunContext) -> Result:
 
     with context.place(scene, model.name) as place:
         if place is not None and model.path:
+            if on_rank_0(context.ranks, lambda: finished(scene, place.folder) is not None):
+                return Result.load(place.folder)
             place.take()  # the scene is then there for those who go on with it
+    notes = list[str]()
+    if model.path:
+        with needed_by(f"the model {model.name!r}"):
+            from fingerpad.runs import newtons  # finite elements
+        _refuse_different(scene, context.ranks)
+        model.check(scene)
+        try:
+            found = newtons.run(scene, context)
+            return found if found.interrupted else kept(found, context)
+        except newtons.Unsuited as why:
+            notes = [f"The traces are runs of their own: {why}."]
 
     def solve(each: Scene, name: str) -> Result:
         if not model.path:
-            return _solved(each, model, replace(context, folder=None))
+            return _solved(each, model, replace(context, folder=None, report=False))
         if context.lines and context.ranks.rank == 0:
             print(f"\nTrace of the cross-section, {name.replace('_', ' ')}", flush=True)
         return gone_on(each, model, replace(context, folder=context.folder and below(context.folder, name)))
 
     found = traces.whole(scene, model, solve)
+    found = replace(found, notes=(*found.notes, *notes))
     return found if found.interrupted else kept(found, context)
 
 

@@ -23,7 +23,7 @@ from fingerpad.results.result import Result
 from fingerpad.runs.context import RunContext
 from fingerpad.runs.solve import checked, solved
 from fingerpad.runs.sweep_results import FILE, Sweep
-from fingerpad.scene import Scene
+from fingerpad.scene import Scene, law_name
 from fingerpad.scene.messages import SceneError, clip, show
 from fingerpad.scene.reading import DEFAULT_MODEL, plain, put
 from fingerpad.scene.remarks import leakage
@@ -92,7 +92,7 @@ def sweep(
     scenes = [_with(scene, point) for point in _points(axes)]
     values = _values(scenes, axes)
     if states != STATES[0]:
-        from fingerpad.runs.chain import refuse_others
+        from fingerpad.runs.chains import refuse_others
 
         for each in scenes:
             refuse_others(each)
@@ -194,9 +194,11 @@ def _with(scene: Scene, changes: Mapping[str, Any]) -> Scene:
 
 
 def _at(scene: Scene, key: str) -> Any:
-    """Return the value of a dotted key in SI."""
+    """Return the value of a dotted key in SI; of the key ``law`` of a law's table the law's name."""
     value: Any = scene
     for part, place in re.findall(r"(\w+)|\[(\d+)\]", key):
+        if part == "law" and not hasattr(value, "law"):
+            return law_name(value)
         value = getattr(value, part) if part else value[int(place)]
     return value
 
@@ -208,7 +210,7 @@ def _failed(scene: Scene, model: "Model", why: str) -> Result:
 
 def _here(scene: Scene, model: "Model") -> Result:
     try:
-        return solved(scene, model, RunContext())
+        return solved(scene, model, RunContext(report=False))
     except SceneError as error:
         return _failed(scene, model, str(error))
 
@@ -223,7 +225,7 @@ def _in_processes(
     states: str,
 ) -> list[Result]:
     """Return the results of points, those that can be run in processes of their own, kept by their parameters."""
-    from fingerpad.runs import batch, chain
+    from fingerpad.runs import batch, chains
 
     chained = states != STATES[0]
     place = below(folder, states if chained else model.name)
@@ -242,7 +244,7 @@ def _in_processes(
             order.append(None)
     if chained:
         along = [order[k] for k in _neighbours(axes)]
-        found = chain.sweep({name: named[name] for name in along if name is not None}, place, jobs, quiet)
+        found = chains.sweep({name: named[name] for name in along if name is not None}, place, jobs, quiet)
     else:
         found = batch.sweep(named, place, jobs, _LIMIT, model.name, quiet)
     for name, scene in named.items():

@@ -133,7 +133,8 @@ class Sweep:
     def save(self) -> str:
         """Write ``sweep.nc`` into the folder; return why not in one sentence, empty where it was written."""
         assert self.folder is not None
-        return dataset.write(self.folder / FILE, self.to_xarray)
+        content = self.to_xarray().to_netcdf(engine="scipy", format="NETCDF3_64BIT")
+        return dataset.write(self.folder / FILE, bytes(content))
 
     def to_csv(self, path: str | Path) -> None:
         """Write the rows as a table."""

@@ -9,6 +9,12 @@ from fingerpad.scene.reading import override
 from fingerpad.scene.scene import Scene, as_kept, from_data, load
 
 
+def law_name(law: object) -> str:
+    """Return the name of a law, or its import path where it is one of a user's own."""
+    kinds = (MATERIALS, FRICTION_LAWS, CLOSURES, CONTACT.kind)
+    return next(kind.name(type(law)) for kind in kinds if isinstance(law, kind.base))
+
+
 def laws_by_name() -> dict[str, type]:
     """Return the laws of the package by the names of their classes."""
     kinds = (MATERIALS, FRICTION_LAWS, CLOSURES, CONTACT.kind)

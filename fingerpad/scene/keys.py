@@ -117,22 +117,25 @@ def _of_law(table: str, key: LawKey, meaning: str) -> Iterator[Key]:
     default = key.default
     name, names = key.kind.name(type(default)), ", ".join(f'"{name}"' for name in key.kind.laws)
     table = table.removesuffix("law.") if key.flat else table
-    several = bool(key.number or key.flat)
     text = f"{meaning or 'Name of the law.'} A law of your own has its import path here (docs/laws.md)."
     yield Key(table + (key.flat or "law"), None if key.number else name, text, choices=f"{names} or module:Class")
     seen = set[str]()
-    for law in dict.fromkeys([type(default), *(key.kind.laws.values() if several else ())]):
+    for law in dict.fromkeys([type(default), *(key.kind.laws.values() if key.several else ())]):
         for field in keys_of(law).values():
             if field.name in seen:
                 continue
             seen.add(field.name)
             value = None if key.number or field.default is MISSING else field.default
             value = value if key.number or law is not type(default) else getattr(default, field.name)
-            choices = ", ".join(map(str, field.metadata.get("allowed", ())))
+            kind = "true or false" if field.type in (bool, "bool") else "text" if field.type in (str, "str") else ""
+            choices = ", ".join(map(str, field.metadata.get("allowed", ()))) or kind
             of = "" if law is type(default) else key.kind.name(law)
             meaning = docstrings(law).get(field.name, "")
+            readers = [each for each, other in key.kind.laws.items() if field.name in keys_of(other)]
+            if key.several and len(readers) < len(key.kind.laws):
+                meaning += f" Of {' and '.join(readers)} alone."
             yield Key(table + field.name, value, meaning, range_of(field), choices, law=of)
-    for each in key.tables:
+    for each in key.tables(type(default)):
         yield from _of(each, f"{table}{each.__name__.lower()}.", None)
 
 
@@ -252,7 +255,7 @@ def _law(key: LawKey) -> JsonSchemaValue:
     for name, law in key.kind.laws.items():
         default = law is type(key.default)
         own = {each.name: _parameter(law, each) for each in keys_of(law).values()}
-        for table in key.tables if default else ():
+        for table in key.tables(law):
             own[table.__name__.lower()] = _describe(table.model_json_schema(schema_generator=_Generator), table)
         left = [each.name for each in keys_of(law).values() if each.default is MISSING]
         found.append(

@@ -107,6 +107,7 @@ class LawKey:
         default: law whose parameters complete a table without ``law``.
         number: parameter of the default law that a number in place of a table gives; empty for none.
         flat: key of the law's name where name and parameters stand in the table around the law; else empty.
+        several: whether the reference has the parameters of every law.
     """
 
     def __init__(
@@ -116,6 +117,7 @@ class LawKey:
         number: str = "",
         flat: str = "",
         of_scene: Callable[[Mapping[str, Any]], dict[str, Any]] = lambda data: {},
+        several: bool = False,
     ) -> None:
         """Describe a key.
 
@@ -125,11 +127,15 @@ class LawKey:
             number: see the attribute.
             flat: see the attribute.
             of_scene: gives values of fields that the scene sets by itself, from the keys before this one.
+            several: whether the reference has the parameters of every law, as where a number or the table around may
+                stand for the default one.
         """
+        self.several = several or bool(number or flat)
         self.kind, self.default, self.number, self.flat, self._of_scene = kind, default, number, flat, of_scene
 
-    tables: tuple[type[BaseModel], ...] = ()
-    """Tables inside that of the default law, by their names in small letters."""
+    def tables(self, law: type) -> tuple[type[BaseModel], ...]:
+        """Return the tables inside that of a law, which stand there by their names in small letters."""
+        return ()
 
     # -- reading -----------------------------------------------------------------------------------------
     def read(self, value: Any, info: ValidationInfo) -> Any:

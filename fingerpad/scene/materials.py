@@ -5,12 +5,13 @@ the scene reference, ``docs/scene.md``.
 """
 
 import re
+import sys
 from collections.abc import Mapping
 from numbers import Real
 from typing import Annotated, Any, Literal
 
 import numpy as np
-from pydantic import ConfigDict, ValidationError
+from pydantic import BaseModel, ConfigDict, ValidationError
 
 from fingerpad.scene.electric import Electric
 from fingerpad.scene.law_keys import Kind, LawKey, fail, inside, whole
@@ -25,6 +26,9 @@ from variational.materials.ogden import Ogden
 from variational.materials.saint_venant import SaintVenant
 from variational.roughness import closure
 from variational.roughness.bam import BearingArea
+from variational.roughness.boundary_elements import BoundaryElements
+from variational.roughness.persson import Persson
+from variational.roughness.tabulated import TabulatedClosure
 
 
 def _named(*laws: type) -> dict[str, type]:
@@ -33,7 +37,7 @@ def _named(*laws: type) -> dict[str, type]:
 
 MATERIALS = Kind(Material, "a Material", _named(Ogden, NeoHooke, SaintVenant), Material.check)
 FRICTION_LAWS = Kind(Friction, "a Friction", _named(Coulomb, Derjaguin), Friction.check)
-CLOSURES = Kind(closure.Closure, "a Closure", _named(BearingArea), closure.check)
+CLOSURES = Kind(closure.Closure, "a Closure", _named(BearingArea, BoundaryElements, Persson), closure.check)
 """Laws of the package by kind: a new one is a line here."""
 LAYERS = {name.replace(" ", "_"): tag for name, tag in tags.LAYERS.items()}
 """Tag of each layer by its key in the scene."""
@@ -94,17 +98,16 @@ class Topography(Table):
     """Mark of missing pixels besides nan and empty places: a number, in a plain matrix also a word. Without it a value
     far from all other heights is refused; "nan" takes all values as measured."""
 
-    def roughness(self) -> dict[str, float]:
-        """Return h_rms and wavelength (m) of the map.
+    def roughness(self, law: type[BearingArea | TabulatedClosure]) -> dict[str, Any]:
+        """Return the parameters of a law that the map gives.
 
         Raises:
             ValueError: the file cannot be read, or is no height map.
         """
         from variational.roughness.heightfile import scan
-        from variational.roughness.spectrum import roughness_table
 
         try:
-            return roughness_table(scan(**dict(self)).map)
+            return law.of_map(scan(**dict(self)).map, _solved if sys.stderr.isatty() else None)
         except OSError as error:
             raise ValueError(f"topography.file is {show(self.file)}: {error.strerror or error}") from None
         except (ValueError, ImportError) as error:
@@ -112,14 +115,21 @@ class Topography(Table):
             raise ValueError(f"topography: {text}") from None
 
 
-class RoughnessKey(LawKey):
-    """The key of the model of roughness, whose bearing area can be that of a height map."""
+def _solved(done: int, of: int) -> None:
+    """Print how many contacts of a height map are solved, in one line of a terminal."""
+    sys.stderr.write(f"\rcontacts of the height map: {done} of {of}" + "\n" * (done == of))
 
-    tables = (Topography,)
+
+class RoughnessKey(LawKey):
+    """The key of the model of roughness, which can be that of a height map."""
+
+    def tables(self, law: type) -> tuple[type[BaseModel], ...]:
+        """Return the height map, for a law that has its parameters of one."""
+        return (Topography,) if hasattr(law, "of_map") else ()
 
     def completed(self, table: dict[str, Any], law: type) -> dict[str, Any]:
         """Return a table of parameters with those of its height map."""
-        topography = table.pop("topography", None) if law is BearingArea else None
+        topography = table.pop("topography", None) if self.tables(law) else None
         if topography is not None:
             for name in ("h_rms", "wavelength"):
                 if name in table:
@@ -127,7 +137,7 @@ class RoughnessKey(LawKey):
                         f"is {show(table[name])} and roughness.topography is given too, which has it; give one", name
                     )
             try:
-                table |= Topography.model_validate(topography).roughness()
+                table |= Topography.model_validate(topography).roughness(law)  # type: ignore[arg-type]
             except ValidationError as error:
                 raise inside(error, "topography") from None
             except ValueError as error:
@@ -137,13 +147,15 @@ class RoughnessKey(LawKey):
     def check(self, law: Any) -> None:
         """Refuse a floor of the pressure that is no floor, or holds the gap of an unloaded ridge at over a metre."""
         super().check(law)
-        if not isinstance(law, BearingArea):
+        if not isinstance(law, BearingArea | TabulatedClosure):
             return
-        if law.p_floor >= law.full_pressure:
-            raise ValueError(
-                f"p_floor is {show(law.p_floor)}; it must be below the pressure at zero separation, "
-                f"{law.full_pressure:.4g} Pa"
-            )
+        most, where = (
+            (law.full_pressure, "at zero separation")
+            if isinstance(law, BearingArea)
+            else (law.pressures[1], "of the table's end")
+        )
+        if law.p_floor >= most:
+            raise ValueError(f"p_floor is {show(law.p_floor)}; it must be below the pressure {where}, {most:.4g} Pa")
         with np.errstate(all="ignore"):  # infinite where the surfaces no longer see each other
             gap = float(law(law.p_floor).d_eq)
         if not gap < LARGEST_GAP:
@@ -160,7 +172,7 @@ def _insulators(data: Mapping[str, Any]) -> dict[str, Any]:
 
 
 BEARING_AREA = BearingArea(Electric().h_0(Fingertip().sc_thickness))
-ROUGHNESS = RoughnessKey(CLOSURES, BEARING_AREA, of_scene=_insulators)
+ROUGHNESS = RoughnessKey(CLOSURES, BEARING_AREA, of_scene=_insulators, several=True)
 FRICTION = LawKey(FRICTION_LAWS, Coulomb(0.25), number="mu_f")
 
 

@@ -29,6 +29,7 @@ _OF_SECTION = {  # whose relative error each has; the external force is prescrib
 }
 _RELATIVE_STEP = 1e-3  # of the largest indentation: its change for the slope over the force
 MESH, ESTIMATED, POINTS = "mesh of the cross-section", "estimate beside the centre", "points of the traces"
+COARSE = "coarser mesh of the traces"
 """Parts of an error, as they are printed."""
 ESTIMATE = {
     "charged": {"f_electrostatic": 0.051, "contact_area": 0.026, "gross_area": 0.086, "indentation": 0.006},

@@ -1,12 +1,13 @@
-"""Traces of the cross-section for a force in newtons, as ordinary scenes.
+"""Traces of the cross-section for a force in newtons.
 
 The full model follows three histories. The finger is pressed without voltage. It is pressed lightly, charged and
-pressed on. It is pressed lightly, charged, slid to full slip and pressed on while it slides; every accepted step at
-full slip is then a point of the trace. A model without a path has :data:`FORCES` points. A trace that ends before the
-force is reached is made again to a larger one.
+pressed on. It is pressed lightly, charged, slid to full slip and pressed on while it slides. Where full slip does not
+depend on the path, one simulation has all of them (``fingerpad.runs.newtons``). Elsewhere they are ordinary scenes,
+and every accepted step at full slip is a point of the trace. A model without a path has :data:`FORCES` points. A trace
+that ends before the force is reached is made again to a larger one.
 """
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import fields, replace
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -20,7 +21,7 @@ from fingerpad.scene.messages import SceneError
 from fingerpad.scene.parameters import LINE, POINT, POWER
 from fingerpad.slices import errors
 from fingerpad.slices.finger import WholeFinger, in_order
-from fingerpad.slices.total import BeyondTrace, Profile, Total, at_force, profile
+from fingerpad.slices.total import BeyondTrace, Total, at_force, profile
 from fingerpad.slices.trace import Trace, TraceError, trace
 from geometry.units import computed
 from variational.state import ContactState, Errors
@@ -37,9 +38,11 @@ LIGHT = 1 / 30
 _SMALLEST, _LARGEST = 1e-3, 5e3  # N/m, of a scene
 _SHORTEST = 1.01 * _SMALLEST / LIGHT  # N/m, largest force of a trace whose light one a scene can have
 _TRIES = 4  # of a trace, each time to a larger force
-_MORE, _MARGIN = 1.8, 1.1  # factors on the largest force: of the next try, and beyond the expected one
+_MORE = 1.8  # factor on the largest force of the next try
+MARGIN = 1.1
+"""Largest force of a trace over the one expected at the centre."""
 CONSTANTS = {
-    "light": LIGHT, "forces": FORCES, "margin": _MARGIN, "more": _MORE, "tries": _TRIES,
+    "light": LIGHT, "forces": FORCES, "margin": MARGIN, "more": _MORE, "tries": _TRIES,
     "shortest": _SHORTEST, "smallest": _SMALLEST, "largest": _LARGEST,
     "start": {"line": LINE, "point": POINT, "power": POWER},
 }  # fmt: skip
@@ -56,6 +59,10 @@ class Traced(NamedTuple):
     """That ends at its largest force; None of a model without a path."""
     total: Total | None = None
     """The finger under the force, once it was found on the trace."""
+    end: ContactState | None = None
+    """The section at its largest force, where it is no run's."""
+    carried: Mapping[str, dict[str, float]] = {}
+    """Relative errors of the sum by part and quantity, where they are not those of a run's section."""
 
 
 def whole(scene: Scene, model: "Model", solve: Solve) -> Result:
@@ -73,11 +80,12 @@ def whole(scene: Scene, model: "Model", solve: Solve) -> Result:
     Raises:
         SceneError: a profile that does not fit, or a force that no trace reached.
     """
+    reach = Reach(scene, lambda name, top, tries: _made(scene, model, solve, name, top, tries))
     try:
-        found = _followed(scene, model, solve)
+        found = {name: reach.follow(name) for name in states(scene)}
     except _Stopped as stopped:
         return stopped.result
-    finger = _summed(scene, model, found)
+    finger = summed(scene, model.traces, found)
     if model.path:
         return _of_path(scene, finger, found)
     centre = list(found.values())[-1].total.centre / profile(scene.slices).centre_scale  # type: ignore[union-attr]
@@ -123,45 +131,38 @@ def points(result: Result, name: str) -> list[ContactState]:
     return [state for state in result.steps if state.load in ("charge", "raise") and state.voltage == voltage]
 
 
-def _followed(scene: Scene, model: "Model", solve: Solve) -> dict[str, Traced]:
-    """Return the traces of a scene with a force by state, that of the result last; collective."""
-    reach = _Reach(scene, profile(scene.slices), model, solve)
-    found = {"uncharged": reach.follow("uncharged")}
-    if scene.volts:
-        found["charged"] = reach.follow("charged")
-    if scene.friction_law() is not None:
-        found["full_slip"] = reach.follow("full_slip")
-    return found
+def states(scene: Scene) -> list[str]:
+    """Return the names of the states whose traces a scene needs, in the order of its loads."""
+    charged, slips = bool(scene.volts), scene.friction_law() is not None
+    return ["uncharged", *["charged"] * charged, *["full_slip"] * slips]
 
 
-def _summed(scene: Scene, model: "Model", found: dict[str, Traced]) -> WholeFinger:
-    """Return the finger on its traces."""
+def summed(scene: Scene, words: str, found: Mapping[str, Traced]) -> WholeFinger:
+    """Return the finger on its traces.
+
+    Args:
+        scene: with a force.
+        words: what the traces are of.
+        found: the traces by state.
+    """
     totals = {name: each.total for name, each in found.items() if each.total is not None}
-    known = {name: {errors.MESH: errors.discretisation(_end(each, name))} for name, each in found.items()}
-    states = {name: each.trace for name, each in found.items()}
+    known = {name: dict(each.carried) or {errors.MESH: _shares(each, name)} for name, each in found.items()}
+    of = {name: each.trace for name, each in found.items()}
     tops = (f"{each.trace.end[1]:.4g} N/m ({name.replace('_', ' ')})" for name, each in found.items())
     if not scene.volts:  # normal contact is one state then, with two names
-        for values in (totals, known, states):
+        for values in (totals, known, of):
             values["charged"] = values["uncharged"]  # type: ignore[assignment]
-    return WholeFinger(in_order(totals), f"{model.traces} to {', '.join(tops)}", known, states, scene.slices)
+    return WholeFinger(in_order(totals), f"{words} to {', '.join(tops)}", known, of, scene.slices)
 
 
 def _of_path(scene: Scene, finger: WholeFinger, found: dict[str, Traced]) -> Result:
     """Return the result of traces that are runs."""
     runs = [each.result for each in found.values() if each.result is not None]
-    lowest, scale = profile(scene.slices).lowest[1], profile(scene.slices).centre_scale
-    named = {
-        name: _section(each, name, (each.total.delta - lowest) / scale)
-        for name, each in found.items()
-        if each.total is not None
-    }
-    if not scene.volts:
-        named["charged"] = named["uncharged"]
     return replace(
         runs[-1],
         scene=scene,
         record={key: value for key, value in runs[-1].record.items() if key != "steps"},
-        **{name: named.get(name) for name in WORDS},  # type: ignore[arg-type]
+        **sections(scene, found),
         steps=(),
         loads=(),
         drawing=None,
@@ -172,6 +173,19 @@ def _of_path(scene: Scene, finger: WholeFinger, found: dict[str, Traced]) -> Res
         cautions=tuple(dict.fromkeys(caution for run in runs for caution in run.cautions)),
         finger=finger,
     )
+
+
+def sections(scene: Scene, found: Mapping[str, Traced]) -> dict[str, Any]:
+    """Return the section at the centre of the finger by state; None in states without a trace."""
+    lowest, scale = profile(scene.slices).lowest[1], profile(scene.slices).centre_scale
+    named = {
+        name: _section(each, name, (each.total.delta - lowest) / scale)
+        for name, each in found.items()
+        if each.total is not None
+    }
+    if not scene.volts:
+        named["charged"] = named["uncharged"]
+    return {name: named.get(name) for name in WORDS}
 
 
 def _section(traced: Traced, name: str, depth: float) -> ContactState:
@@ -185,7 +199,7 @@ def _section(traced: Traced, name: str, depth: float) -> ContactState:
     at: dict[str, Any] = {key: float(values[0]) for key, values in traced.trace.at(np.array([depth])).items()}
     near = min(traced.states, key=lambda state: abs(state.bone_height + depth))
     mu_app = at["f_t"] / at["f_ext"]
-    shares, end = errors.discretisation(_end(traced, name)), _end(traced, name)
+    shares, end = _shares(traced, name), _end(traced, name)
     known = {key: shares[key] * at[key] for key in ("f_t", "f_electrostatic") if key in shares}
     known |= {"mu_app": shares["mu_app"] * mu_app} if "mu_app" in shares else {}
     known |= {"contact_length": shares["contact_area"] * at["contact_length"]} if "contact_area" in shares else {}
@@ -207,8 +221,15 @@ def _section(traced: Traced, name: str, depth: float) -> ContactState:
 
 def _end(traced: Traced, name: str) -> ContactState | None:
     """Return the state at the largest force of a trace, None of a model without discretisation errors."""
+    if traced.end is not None:
+        return traced.end
     named = {} if traced.result is None else traced.result.named
     return named.get("charged" if name == "uncharged" else name)
+
+
+def _shares(traced: Traced, name: str) -> dict[str, float]:
+    """Return the relative errors of a sum by the mesh of the cross-section."""
+    return traced.carried.get(errors.MESH) or errors.discretisation(_end(traced, name))
 
 
 def _together(costs: Iterable[Cost]) -> Cost:
@@ -228,15 +249,26 @@ class _Stopped(Exception):  # noqa: N818
         self.result = replace(result, failure=failure)
 
 
-class _Reach:
-    """Follows traces to forces that are large enough."""
+class Reach:
+    """Has traces made to forces that are large enough."""
 
-    def __init__(self, scene: Scene, finger: Profile, model: "Model", solve: Solve) -> None:
+    def __init__(self, scene: Scene, make: Callable[[str, float, int], Traced]) -> None:
+        """Expect the force of the default finger at the centre.
+
+        Args:
+            scene: with a force.
+            make: makes the trace of a state to a largest force (N/m); takes how often it was made before, too.
+        """
         assert scene.force is not None
-        self._scene, self._force = scene.replace(force=None), scene.force
-        self._finger, self._model, self._solve = finger, model, solve
-        self._scale = finger.centre_scale  # refuses a finger that is lowest at its end
-        self._top = scene.centre_force * _MARGIN
+        self._force, self._count, self._make = scene.force, scene.slices.count, make
+        self._finger = profile(scene.slices)
+        self._scale = self._finger.centre_scale  # refuses a finger that is lowest at its end
+        self._top = scene.centre_force * MARGIN
+
+    @property
+    def top(self) -> float:
+        """Largest force (N/m) of the next trace."""
+        return min(max(self._top, _SHORTEST), _LARGEST)
 
     def follow(self, name: str) -> Traced:
         """Return the trace of a state, long enough for the force.
@@ -245,10 +277,10 @@ class _Reach:
             SceneError: it could not be made so long.
         """
         for tries in range(_TRIES):
-            top = min(max(self._top, _SHORTEST), _LARGEST)
-            made = self._run(name, top, tries) if self._model.path else self._points(name, top)
+            top = self.top
+            made = self._make(name, top, tries)
             try:
-                total = at_force(self._finger, made.trace, self._force, self._scene.slices.count)
+                total = at_force(self._finger, made.trace, self._force, self._count)
             except BeyondTrace as error:
                 failure = "" if made.result is None else made.result.failure
                 if failure or tries == _TRIES - 1 or top == _LARGEST:
@@ -256,26 +288,36 @@ class _Reach:
                     raise SceneError(f"{error}{why}") from None
                 self._top *= _MORE
                 continue
-            self._top = total.centre / self._scale * _MARGIN  # of the next trace
+            self._top = total.centre / self._scale * MARGIN  # of the next trace
             return made._replace(total=total)
         raise AssertionError("every try returns or raises")
 
-    def _run(self, name: str, top: float, tries: int) -> Traced:
-        """Return a trace of a run; each try has a folder of its own, from which another command goes on."""
-        result = self._solve(history(self._scene, name, top), f"{name}_{tries + 1}" if tries else name)
-        if result.interrupted:
-            raise _Stopped(result, name)
-        states = points(result, name)
-        try:
-            return Traced(trace(states, self._scene.geometry.ridge_wavelength), states, result)
-        except TraceError as error:
-            why = f": {result.failure}" if result.failure else ""
-            raise SceneError(f"the force on the finger is {self._force:.4g} N; {error}{why}") from None
 
-    def _points(self, name: str, top: float) -> Traced:
-        """Return a trace of a model without a path."""
-        forces = [float(each) for each in np.geomspace(top * LIGHT, top, FORCES)]
-        kind = "full_slip" if name == "full_slip" else "charged"
-        scene = self._scene.model_copy(update={"voltage": 0.0}) if name == "uncharged" else self._scene
-        states = self._model.over_forces(scene, forces, kind, lambda each: self._solve(each, name))
-        return Traced(trace(states, scene.geometry.ridge_wavelength), states)
+def _made(scene: Scene, model: "Model", solve: Solve, name: str, top: float, tries: int) -> Traced:
+    """Return a trace as ordinary scenes have it; arguments as of :class:`Reach` and :func:`whole`."""
+    here = scene.replace(force=None)
+    if model.path:
+        return _run(here, scene.force or 0.0, solve, name, top, tries)
+    return _points(here, model, solve, name, top)
+
+
+def _run(scene: Scene, force: float, solve: Solve, name: str, top: float, tries: int) -> Traced:
+    """Return a trace of a run; each try has a folder of its own, from which another command goes on."""
+    result = solve(history(scene, name, top), f"{name}_{tries + 1}" if tries else name)
+    if result.interrupted:
+        raise _Stopped(result, name)
+    found = points(result, name)
+    try:
+        return Traced(trace(found, scene.geometry.ridge_wavelength), found, result)
+    except TraceError as error:
+        why = f": {result.failure}" if result.failure else ""
+        raise SceneError(f"the force on the finger is {force:.4g} N; {error}{why}") from None
+
+
+def _points(scene: Scene, model: "Model", solve: Solve, name: str, top: float) -> Traced:
+    """Return a trace of a model without a path."""
+    forces = [float(each) for each in np.geomspace(top * LIGHT, top, FORCES)]
+    kind = "full_slip" if name == "full_slip" else "charged"
+    scene = scene.model_copy(update={"voltage": 0.0}) if name == "uncharged" else scene
+    found = model.over_forces(scene, forces, kind, lambda each: solve(each, name))
+    return Traced(trace(found, scene.geometry.ridge_wavelength), found)

@@ -11,14 +11,18 @@ contact pressure p_c it is closed form, single valued and free of the voltage.
 """
 
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
 
 import numpy as np
+import scipy  # its parts are imported where they are used first: to read a scene needs none
 from numpy.typing import ArrayLike, NDArray
-from scipy.optimize import brentq, minimize_scalar
-from scipy.special import erfc, log_ndtr
 
 from variational.coefficients import OF_SCENE, parameter
-from variational.roughness.closure import AirGap, Closure
+from variational.roughness.closure import AirGap, Closure, Progress
+from variational.roughness.statistics import Slopes, Statistics, breaking_gaps
+
+if TYPE_CHECKING:
+    from variational.roughness.topography import HeightMap
 
 Array = NDArray[np.float64]
 _EPS_0 = 8.854e-12  # F/m, Table 3
@@ -55,6 +59,11 @@ class BearingArea(Closure):
         """Contact pressure (Pa) at zero mean separation, where the repulsion law ends."""
         return self.beta * 4 / 3 * self.young * 2 * np.pi / self.wavelength * self.h_rms
 
+    @property
+    def pressures(self) -> tuple[float, float]:
+        """Range of mean contact pressures (Pa) in which the air gap follows the pressure."""
+        return self.p_floor, self.full_pressure
+
     def separation(self, p_c: ArrayLike) -> Array:
         """Return the mean separation u_bar (m) at contact pressure ``p_c`` (Pa), inverse of Eq. 9's first term."""
         return np.asarray(-self.gamma * self.h_rms * np.log(np.asarray(p_c, dtype=float) / self.full_pressure))
@@ -69,7 +78,7 @@ class BearingArea(Closure):
         width = np.sqrt(2) * self.h_rms
         near, far = (u_bar - self.h_0) / width, u_bar / width
         slope = -2 / np.sqrt(np.pi) / width * (np.exp(-(near**2)) - np.exp(-(far**2)))
-        return np.asarray(erfc(near) - erfc(far)), np.asarray(slope)
+        return np.asarray(scipy.special.erfc(near) - scipy.special.erfc(far)), np.asarray(slope)
 
     def air_gap(self, u_bar: ArrayLike) -> Array:
         """Return d_eq (m) at mean separation ``u_bar`` (m), Eq. 13."""
@@ -83,7 +92,7 @@ class BearingArea(Closure):
 
         .. math:: A_c / A_0 = \tfrac12 \operatorname{erfc}(\bar u / \sqrt2 h_{rms}).
         """
-        return np.asarray(erfc(np.asarray(u_bar, dtype=float) / (np.sqrt(2) * self.h_rms)) / 2)
+        return np.asarray(scipy.special.erfc(np.asarray(u_bar, dtype=float) / (np.sqrt(2) * self.h_rms)) / 2)
 
     def attraction(self, u_bar: ArrayLike, voltage: float) -> Array:
         """Return the attraction (Pa) at mean separation ``u_bar`` (m) and ``voltage`` (V): sigma_0 A_att / A_0."""
@@ -103,6 +112,39 @@ class BearingArea(Closure):
         d_eq = self.h_0 * (np.sqrt(2 / area) - 1)
         gradient = -self.h_0 / 2 * np.sqrt(2 / area) / area * slope * (-self.gamma * self.h_rms / held)
         return AirGap(d_eq, np.where(held == p_c, gradient, 0.0))
+
+    def statistics(self, p_c: ArrayLike, voltage: float = 0.0) -> Statistics:
+        """Return the gaps at mean contact pressures (Pa), and their breakdown at a voltage (V).
+
+        Heights are Gaussian and undeformed: the contact is the bearing area, where they are above the separation.
+
+        Raises:
+            ValueError: a pressure outside of p_floor to full_pressure; in one sentence.
+        """
+        p_c = np.asarray(p_c, dtype=float)
+        if (out := (p_c < self.p_floor * (1 - 1e-9)) | (p_c > self.full_pressure * (1 + 1e-9))).any():
+            raise ValueError(
+                f"the contact pressure is {p_c[out].flat[0]:g} Pa; {type(self).__name__} has {self.p_floor:.4g} to "
+                f"{self.full_pressure:.4g} Pa"
+            )
+        p_c = np.clip(p_c, self.p_floor, self.full_pressure)
+        u_bar, (d_eq, slope) = self.separation(p_c), self(p_c)
+        assert slope is not None
+        per_pressure = -self.gamma * self.h_rms / p_c
+        narrows = -np.exp(-((u_bar / self.h_rms) ** 2) / 2) / (np.sqrt(2 * np.pi) * self.h_rms)
+        square = (self.h_0 + d_eq) ** -2
+        slopes = Slopes(narrows * per_pressure, per_pressure, -2 * square / (self.h_0 + d_eq) * slope, slope)
+        broken = np.zeros_like(p_c)
+        for low, high in breaking_gaps(voltage, self.h_0):
+            broken += self.contact_area(u_bar - high) - self.contact_area(u_bar - low)
+        return Statistics(self.contact_area(u_bar), u_bar, square, d_eq, broken, slopes)
+
+    @classmethod
+    def of_map(cls, measured: "HeightMap", progress: Progress | None = None) -> dict[str, float]:
+        """Return the parameters that a measured height map gives: see :func:`.spectrum.roughness_table`."""
+        from variational.roughness.spectrum import roughness_table
+
+        return roughness_table(measured)
 
     def state(self, p_c: float, voltage: float) -> str:
         """Return where a ridge is on the closure; empty where the air gap closes as the pressure rises.
@@ -129,13 +171,13 @@ class BearingArea(Closure):
         # p_ext falls up to h_0 / 2, where the attraction is largest. From there on the logarithm of the repulsion's
         # slope over the attraction's is a convex function of u_bar, which is zero at the fold.
         first, last = self.h_0 / 2 * (1 + 1e-9), self.h_0 + (1 + 1 / self.gamma) * self.h_rms
-        least = brentq(lambda u: self._steeper(u, voltage)[1], first, last)
+        least = scipy.optimize.brentq(lambda u: self._steeper(u, voltage)[1], first, last)
         if self._steeper(least, voltage)[0] >= 0:
             return None
         if self._steeper(first, voltage)[0] <= 0:
             return first
         error = _SEPARATION * self.h_rms
-        return float(brentq(lambda u: self._steeper(u, voltage)[0], first, least, xtol=error))
+        return float(scipy.optimize.brentq(lambda u: self._steeper(u, voltage)[0], first, least, xtol=error))
 
     def _steeper(self, u_bar: float, voltage: float) -> tuple[float, float]:
         """Return the logarithm of the repulsion's slope over the attraction's beyond h_0 / 2, and its slope (1/m)."""
@@ -159,7 +201,9 @@ class BearingArea(Closure):
         highest, lowest = self.external_pressure(0.0, voltage), self.external_pressure(end, voltage)
         if not lowest < p_ext <= highest:
             raise ValueError(f"p_ext is {p_ext:g} Pa; at {voltage:g} V contact needs {lowest:.4g} to {highest:.4g} Pa")
-        found = brentq(lambda v: self.external_pressure(v, voltage) - p_ext, 0.0, end, xtol=_SEPARATION * self.h_rms)
+        found = scipy.optimize.brentq(
+            lambda v: self.external_pressure(v, voltage) - p_ext, 0.0, end, xtol=_SEPARATION * self.h_rms
+        )
         return float(self.air_gap(found))
 
     def threshold(self, approximate: bool = False) -> float:
@@ -188,11 +232,11 @@ class BearingArea(Closure):
             held = np.log(stress / self.full_pressure)
 
         def ratio(u_bar: float) -> float:
-            near, far = (log_ndtr((end - u_bar) / self.h_rms) for end in (self.h_0, 0.0))
+            near, far = (scipy.special.log_ndtr((end - u_bar) / self.h_rms) for end in (self.h_0, 0.0))
             pressures = np.logaddexp(-u_bar / (self.gamma * self.h_rms), held)
             return float(pressures - near - np.log1p(-np.exp(far - near)))
 
         end, error = self.h_0 + (1 + 1 / self.gamma) * self.h_rms, {"xatol": 1e-9 * self.h_rms}
-        found = minimize_scalar(ratio, bounds=(0.0, end), method="bounded", options=error)
+        found = scipy.optimize.minimize_scalar(ratio, bounds=(0.0, end), method="bounded", options=error)
         constant = self.full_pressure * 2 * self.h_0**2 / _EPS_0
         return float(np.sqrt(constant * np.exp(min(found.fun, ratio(0.0)))))

@@ -11,12 +11,15 @@ Your own closure is one class, here a gap that no pressure changes::
 """
 
 from abc import ABC, abstractmethod
+from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 Array = NDArray[np.float64]
+Progress = Callable[[int, int], None]
+"""Called with the number of contacts that are solved and of all."""
 _PRESSURES = np.array([0.0, 1.0, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7])  # Pa, at which a closure is examined
 
 

@@ -68,12 +68,18 @@ class SelfAffine:
     """lambda_0 (m), where the power law ends; the largest wavelength if there is no plateau."""
     plateau: bool = True
     """Whether wavelengths above lambda_0 are there, with the spectrum of lambda_0."""
+    shortest: float = 0.0
+    """Smallest wavelength (m), 0 for none. The prefactor is that of an unlimited surface; :meth:`modes` scales."""
 
     def __post_init__(self) -> None:
         if not (self.h_rms > 0 and self.wavelength > 0):
             raise ValueError(f"h_rms and wavelength must be positive, not {self.h_rms:g} and {self.wavelength:g} m")
         if not 0 < self.hurst <= 1:
             raise ValueError(f"the Hurst exponent must be above 0 and at most 1, not {self.hurst:g}")
+        if not 0 <= self.shortest < self.wavelength:
+            raise ValueError(
+                f"the shortest wavelength must be below {self.wavelength:g} m and at least 0, not {self.shortest:g} m"
+            )
 
     @property
     def q_0(self) -> float:
@@ -87,6 +93,7 @@ class SelfAffine:
         above = ratio > 1 - 1e-9
         below = np.where(ratio > 0, float(self.plateau), 0.0)
         shape = np.where(above, np.where(above, ratio, 1.0) ** (-2 - 2 * self.hurst), below)
+        shape = np.where(ratio * self.shortest < self.wavelength * (1 + 1e-9), shape, 0.0)
         return np.asarray(prefactor(self.hurst, self.plateau) * (self.h_rms / self.q_0) ** 2 * shape)
 
     def modes(self, shape: tuple[int, int], size: tuple[float, float]) -> Array:

@@ -92,6 +92,10 @@ class Place:
     surface: "SurfaceState"
     slip: tuple[float, bool]
     """See :class:`variational.solvers.continuation.Continuation`."""
+    gain: Array
+    """See :class:`variational.solvers.coupling.Coupling`, shape (ridges,)."""
+    time: float
+    """(s)"""
 
 
 def return_to_onset(solver: "Solver", observer: "Observer", way: float) -> float:

@@ -124,11 +124,12 @@ class Continuation:
 
     def place(self) -> Place:
         """Return the accepted state, to come back to by :meth:`go_to`."""
-        return Place(self._now, self.surface_state, self.slip)
+        return Place(self._now, self.surface_state, self.slip, self.coupling.gain.copy(), self.time)
 
     def go_to(self, place: Place) -> None:
         """Accept a state again that was accepted before, under the same laws; collective."""
         self._now, self.surface_state, self.slip = place.accepted, place.surface, place.slip
+        self.coupling.gain, self.time = place.gain.copy(), place.time
         self._restore()
 
     # -- targets ---------------------------------------------------------------------------------------

@@ -1,0 +1,64 @@
+"""Tables of gaps that come with the package: exact contacts of random surfaces, over pressure and shortest wave.
+
+environment/run python3 -m benchmarks.gap_tables [RATIO ...]     ten minutes on one core, half of it for ratio 64
+
+Each ratio of the longest to the shortest wave has one file in variational/roughness/data/. Six surfaces are four
+longest waves wide, for the ratio 64 twelve are two waves wide. They have four pixels to the shortest wave, or 256 in
+all. Seeds are counted from 0: the files are the same each time.
+"""
+
+import argparse
+import sys
+import time
+from collections.abc import Sequence
+
+import numpy as np
+
+from variational.roughness.contacts import gap_table
+from variational.roughness.gaps import GapTable
+from variational.roughness.spectrum import SelfAffine
+from variational.roughness.tables import HURST, RATIOS, save, shipped_file
+from variational.roughness.topography import HeightMap
+
+PIXELS, LEAST, WIDE = 4, 256, 512  # pixels to the shortest wave; in a side, least and most
+
+
+def surfaces(ratio: float, count: int = 0, waves: int = 0, pixels: int = PIXELS) -> list[HeightMap]:
+    """Return random surfaces of a spectrum without roll-off; h_rms and q_0 are about 1.
+
+    Args:
+        ratio: of the longest wave to the shortest.
+        count: of surfaces; by default that of a table.
+        waves: longest waves in the side of a surface; by default those of a table.
+        pixels: to a shortest wave, at least.
+    """
+    narrow = 4 * ratio * pixels > WIDE
+    waves, count = waves or (2 if narrow else 4), count or (12 if narrow else 6)
+    longest, n = 2 * np.pi, max(round(waves * ratio * pixels), LEAST)
+    spectrum = SelfAffine(1.0, HURST, longest, plateau=False, shortest=longest / ratio)
+    return [spectrum.surface((n, n), (waves * longest, waves * longest), seed) for seed in range(count)]
+
+
+def computed(ratio: float) -> GapTable:
+    """Return the table of a ratio."""
+
+    def progress(done: int, of: int) -> None:
+        if done % 28 == 0:
+            print(f"ratio {ratio:g}: {done} of {of} contacts", flush=True)
+
+    return gap_table(surfaces(ratio), 2 * np.pi, progress=progress)
+
+
+def main(given: Sequence[str] | None = None) -> int:
+    """Compute the tables of the ratios named, or all."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("ratios", nargs="*", type=float, metavar="RATIO", help="longest over shortest wave")
+    for ratio in parser.parse_args(given).ratios or RATIOS:
+        start = time.process_time()
+        save(shipped_file(ratio), computed(ratio))
+        print(f"{shipped_file(ratio)}: {time.process_time() - start:.0f} s of processor time")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

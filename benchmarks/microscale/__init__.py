@@ -1,0 +1,1 @@
+"""The page on the microscale: closures side by side, and what they make of friction."""

@@ -1,0 +1,47 @@
+"""The targets of a load: one, or those between the samples of a voltage over time."""
+
+from dataclasses import replace
+from functools import partial
+from itertools import pairwise
+from typing import TYPE_CHECKING
+
+from fingerpad.scene.waveform import Sample, Waveform
+from variational.solvers.target import Target
+
+if TYPE_CHECKING:
+    from fingerpad.scene import Load
+
+_BEGIN = 60e-6  # m, with which a slide begins
+
+
+def targets(load: "Load", x: float, step_scale: float) -> list[Target]:
+    """Return what to reach for a load, one after the other.
+
+    Args:
+        load: the load.
+        x: where the bone is (m).
+        step_scale: see ``numerics.step_scale``.
+    """
+    place = load.place(x)
+    seconds = load.seconds(0.0 if place is None else place - x)
+    if load.wave is None:
+        until = load.until_full_slip
+        return [Target(load.name, load.f_ext, load.bone_height, load.level, place, until, duration=seconds)]
+    samples = load.wave.samples(seconds, step_scale)
+    found = [Target(load.name, voltage=samples[0][1])]
+    for sample, after in pairwise(samples):
+        (before, _), (time, voltage) = sample, after
+        aim = place
+        if place is not None and time < seconds:
+            aim = x + time / seconds * (place - x)
+        begins = len(found) == 1 and aim is not None and abs(aim - x) > step_scale * _BEGIN
+        continues = time > before and not begins  # what jumps, or begins with a long slide, is cut into steps
+        inside = partial(_voltage, load.wave, sample, after) if time > before else None
+        piece = Target(load.name, voltage=voltage, bone_x=aim, voltage_at=inside, continues=continues)
+        found.append(replace(piece, duration=time - before))
+    return found
+
+
+def _voltage(wave: Waveform, before: Sample, after: Sample, part: float) -> float:
+    """Return the voltage (V) at a part of the time between two samples."""
+    return wave.between(before, after, before[0] + part * (after[0] - before[0]))

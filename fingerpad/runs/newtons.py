@@ -1,0 +1,240 @@
+"""A force on the whole finger by the full model: traces on coarse elements, corrected on the scene's own.
+
+One simulation has all traces (:mod:`fingerpad.runs.branches`). All sizes of its elements are twice those of the scene,
+but that facets are not made longer than :data:`LONGEST`. The state of each trace about at the centre of the finger is
+solved for again on the scene's own mesh, and so is full slip at a quarter of the largest force. These correct the
+traces (:mod:`fingerpad.slices.correction`).
+
+Where full slip depends on its past, where an accuracy is asked for, or where a state is not found this way, the traces
+are runs of their own (:mod:`fingerpad.slices.traces`).
+"""
+
+import itertools
+from collections.abc import Sequence
+from contextlib import closing
+from dataclasses import replace
+from typing import Any
+
+import fingerpad.startup  # noqa: F401
+from fingerpad.model import cautions
+from fingerpad.model.finger import Step
+from fingerpad.model.options import FingerModel, by_rule, plan
+from fingerpad.model.report import Clock
+from fingerpad.model.simulation import Simulation
+from fingerpad.model.state import broken
+from fingerpad.results.checkpoint import Checkpoint, CheckpointError
+from fingerpad.results.interrupt import Interrupt, Interrupted, all_together
+from fingerpad.results.provenance import check_options, provenance
+from fingerpad.results.result import Result
+from fingerpad.results.states import WORDS
+from fingerpad.results.terminal import Console
+from fingerpad.runs.branches import Again, Branches, Followed
+from fingerpad.runs.checkpoints import checkpoint_of, read
+from fingerpad.runs.context import RunContext
+from fingerpad.scene import Scene
+from fingerpad.scene.reading import DEFAULT_MODEL
+from fingerpad.scene.remarks import coefficient, leakage, remarks, used
+from fingerpad.slices import errors, traces
+from fingerpad.slices.correction import Pair, corrected, correction_errors, mesh_errors
+from fingerpad.slices.total import at_force, profile
+from fingerpad.slices.traces import Traced
+from fingerpad.startup import MPI
+from geometry.profiles import GeometryError
+from variational.solvers.continuation import StepFailed
+from variational.solvers.transfer import StateSnapshot
+from variational.state import ContactState
+
+LONGEST = 10e-6
+"""Facets (m) up to which those of the traces are made longer than the scene's: longer ones trap a charged edge."""
+_SIZES = ("growth", "interface", "coarsest", "receptor")
+_WORDS = "traces of the full model on coarser elements, corrected on those of the scene,"
+
+
+class Unsuited(Exception):  # noqa: N818
+    """Why the traces must be runs of their own, in words."""
+
+
+def run(scene: Scene, context: RunContext) -> Result:
+    """Return the result of a force on the whole finger; collective.
+
+    Args:
+        scene: with a force.
+        context: ranks, folder and console. Traces that an earlier command finished in the folder are taken from there.
+
+    Returns:
+        The whole finger, and the section at its centre as named states; neither, with ``interrupted``, where a signal
+        stopped it.
+
+    Raises:
+        SceneError: a profile that does not fit, or a force that no trace reached.
+        Unsuited: the traces must be runs of their own.
+    """
+    if scene.accuracy is not None:
+        raise Unsuited("an accuracy is asked for")
+    if scene.supply is not None and not scene.supply.circuit.lossless:
+        raise Unsuited("the voltage is a drive in a circuit with losses, where each ridge has its own share of it")
+    comm = context.comm or MPI.COMM_WORLD
+    all_together(comm)
+    check_options(comm, scene.numerics.element)
+    checkpoint = None if context.folder is None else checkpoint_of(scene, context.folder, ())
+    with closing(Console(comm, context.lines, context.bar)) as console, Interrupt(comm) as interrupt:
+        made = _Newtons(scene, comm, console, interrupt, checkpoint)
+        try:
+            return made.result()
+        except Interrupted as stopped:
+            failure = f"{str(stopped).partition(';')[0]} of the {made.doing}; the same command goes on with it"
+            bare = Result(scene, DEFAULT_MODEL, None, None, None, failure=failure, interrupted=stopped.signal.name)
+            return replace(bare, cost=made.clock.cost(made.branches.counts, 0))
+        except (StepFailed, GeometryError, ValueError) as error:
+            raise Unsuited(str(error)) from error
+
+
+class _Newtons:
+    """A force on the whole finger while it is worked on.
+
+    Attributes:
+        doing: what is being followed, in words.
+        clock: of the run.
+        branches: the traces.
+    """
+
+    def __init__(
+        self, scene: Scene, comm: MPI.Comm, console: Console, interrupt: Interrupt, checkpoint: Checkpoint | None
+    ) -> None:
+        self._scene, self._comm, self._console, self._interrupt = scene, comm, console, interrupt
+        self._checkpoint, self.clock, self.doing = checkpoint, Clock(comm), "light press"
+        self._restarts: list[str] = []
+        self.branches = Branches(scene, comm, self._on_step, self._on_trace, self._earlier())
+
+    def result(self) -> Result:
+        """Return the result; collective."""
+        section, states = self.branches.section, traces.states(self._scene)
+        model = FingerModel(by_rule(section), replace(plan(section), receptors=False, errors=False))
+        loads = model.loads[: 1 + bool(self._scene.volts) + ("full_slip" in states)]
+        model = model.changed(loads=loads, mesh=model.mesh.model_copy(update=coarser(model)))
+        self._console.expect(1 + len(states))
+        self._console.head()
+        while True:
+            self._console.phase("meshing the finger and setting up its equations")
+            try:
+                self.branches.follow(model)
+                break
+            except Again as again:
+                self._restarts.append(again.restart.reason)
+                self._console.show(f"fingerpad: {again.restart.reason}; all traces again")
+                self.branches.kept, model = {}, again.restart.model
+        result = self._corrected(model)
+        if self._checkpoint is not None and self._comm.rank == 0:
+            self._checkpoint.delete()
+        return result
+
+    # -- on the way ------------------------------------------------------------------------------------
+    def _on_step(self, step: Step, done: float) -> None:
+        self._console.step(step.state, min(len(self.branches.found) / (1 + len(traces.states(self._scene))), 1.0))
+        self._interrupt.stop_if_asked(step.state.step)
+
+    def _on_trace(self, name: str) -> None:
+        self.doing = f"trace of {WORDS[name]}" if name else "way to the next trace"
+        if name:
+            self._console.show(f"\nTrace of the cross-section, {name.replace('_', ' ')}")
+            return
+        seconds = self.clock.present()
+        if self._checkpoint is not None and self._comm.rank == 0:
+            self._checkpoint.write({"traces": self.branches.kept, "seconds": seconds})
+
+    def _earlier(self) -> dict[str, Followed]:
+        """Return the traces that an earlier command finished; collective."""
+        if self._checkpoint is None:
+            return {}
+        try:
+            kept = read(self._checkpoint, self._comm, (Followed,))
+        except CheckpointError:  # nothing to go on from
+            return {}
+        self.clock.earlier(*kept["seconds"])
+        found: dict[str, Followed] = kept["traces"]
+        return found
+
+    # -- on the scene's own mesh -----------------------------------------------------------------------
+    def _corrected(self, model: FingerModel) -> Result:
+        """Return the result of the traces; collective.
+
+        Args:
+            model: with their mesh.
+        """
+        self.doing = "correction of the traces"
+        self._console.phase("states of the traces, on the scene's own mesh")
+        arc = {"touching_half_arc": model.mesh.touching_half_arc}
+        own, branches = by_rule(self.branches.section).mesh.model_copy(update=arc), self.branches
+        found, notes, unknowns, least = dict[str, Traced](), [*leakage(self._scene)], 0, 0.0
+        for half, names in itertools.groupby(branches.found, lambda name: branches.kept[name].half):
+            options = replace(model.options, both_halves=not half, symmetric_start=False)
+            simulation = Simulation(model.changed(mesh=own, options=options), self._comm, self._on_step)
+            finger = simulation.finger
+            try:
+                for name in names:
+                    kept = branches.kept[name]
+                    fine = [_again(simulation, each, name) for each in kept.snapshots]
+                    pairs = [Pair(*pair) for pair in zip(kept.anchors, fine, strict=True)]
+                    found[name] = self._total(branches.found[name], pairs)
+                    notes += _differences(name, pairs)
+            finally:
+                branches.counts.add(finger.solver.counts)
+                finger.solver.iteration.free()
+            unknowns, least = max(unknowns, finger.unknowns), max(least, finger.force_error)
+        states = [state for each in found.values() for state in each.states]
+        slip = found["full_slip"].end if "full_slip" in found else None
+        return Result(
+            self._scene,
+            DEFAULT_MODEL,
+            **traces.sections(self._scene, found),
+            cost=self.clock.cost(branches.counts, unknowns),
+            failure=broken(slip, least, coefficient(self._scene)),
+            notes=tuple(notes),
+            cautions=(*remarks(self._scene), *cautions.on_states(states, self._scene.closure(), model.contact)),
+            record=self._record(model) | {"force_error": least},
+            finger=traces.summed(self._scene, _WORDS, found),
+        )
+
+    def _total(self, each: Traced, pairs: Sequence[Pair]) -> Traced:
+        """Return a trace as on the scene's own mesh, with the finger on it and its errors."""
+        scene = self._scene
+        finger, force, count, wavelength = profile(scene.slices), scene.force, scene.slices.count, _wavelength(scene)
+        assert force is not None
+        made = corrected(each.trace, pairs, wavelength)
+        carried = {
+            errors.MESH: mesh_errors(pairs[-1], wavelength),
+            errors.COARSE: correction_errors(finger, each.trace, pairs, wavelength, force, count),
+        }
+        return Traced(made, each.states, None, at_force(finger, made, force, count), pairs[-1].fine, carried)
+
+    def _record(self, model: FingerModel) -> dict[str, Any]:
+        """Return what the summary holds besides, ready for JSON."""
+        mesh = {"path_mesh": model.mesh.model_dump(), "restarts": self._restarts}
+        return mesh | {"laws": used(self._scene), "provenance": provenance()}
+
+
+def coarser(model: FingerModel) -> dict[str, float]:
+    """Return the sizes of elements on which a model's traces are followed."""
+    sizes = {name: 2 * getattr(model.mesh, name) for name in _SIZES}
+    return sizes | {"contact": min(2 * model.mesh.contact, max(model.mesh.contact, LONGEST))}
+
+
+def _again(simulation: Simulation, snapshot: StateSnapshot, name: str) -> ContactState:
+    """Return a state of a trace on the mesh of a simulation; collective."""
+    before = len(simulation.states)
+    simulation.re_equilibrate(snapshot, WORDS[name], 1 if name == "full_slip" else 0)
+    return simulation.states[before]
+
+
+def _differences(name: str, pairs: Sequence[Pair]) -> list[str]:
+    """Return notes on states in which other ridges touch on the two meshes."""
+    return [
+        f"{WORDS[name].capitalize()} at {fine.f_ext:.3g} N/m has {fine.ridges_in_contact} ridges in contact on the "
+        f"scene's mesh, and {coarse.ridges_in_contact} on that of the traces."
+        for coarse, fine in ((pair.coarse, pair.fine) for pair in pairs)
+        if fine.ridges_in_contact != coarse.ridges_in_contact
+    ]
+
+
+def _wavelength(scene: Scene) -> float:
+    return scene.geometry.ridge_wavelength

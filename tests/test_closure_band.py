@@ -1,0 +1,84 @@
+"""The band of friction over models of roughness: its numbers, its words, and where there is none."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+import pytest
+
+import fingerpad as fp
+from fingerpad.reduced import closure_band
+from fingerpad.report.trust import GOOD, Finding, verdict
+from fingerpad.results.closures import RECORD, in_words
+from fingerpad.scene import from_data
+
+
+@dataclass(frozen=True)
+class Held(fp.Closure):
+    def __call__(self, p_c):
+        return fp.AirGap(2e-6 + 0 * np.asarray(p_c, dtype=float))
+
+
+@pytest.fixture(scope="module")
+def result():
+    return fp.run(fp.Scene(voltage=70.7), model="cylinders")
+
+
+def test_band_is_that_of_runs_with_these_closures(result):
+    """Each value is that of charged cylinders with that closure, to roundoff, its own among them."""
+    kept = result.record[RECORD]["mu_app"]
+    assert kept["bearing area"] == pytest.approx(result.full_slip.mu_app, rel=1e-12)
+    for words, law in closure_band.closures(result.scene.roughness).items():
+        other = fp.run(result.scene.replace(roughness=law), model="cylinders")
+        assert kept[words] == pytest.approx(other.full_slip.mu_app, rel=1e-9), words
+    assert len(kept) == 5
+
+
+def test_band_scales_the_result(result):
+    """A result with twice the friction has twice the band."""
+    twice = replace(result, full_slip=replace(result.full_slip, mu_app=2 * result.full_slip.mu_app))
+    found, kept = closure_band.band(twice)["mu_app"], result.record[RECORD]["mu_app"]
+    assert found == {words: pytest.approx(2 * value) for words, value in kept.items()}
+
+
+def test_own_closure_is_in_the_band():
+    """With boundary elements of another shortest wave the others have it too."""
+    given = {"law": "BoundaryElements", "shortest_wave": 4e-6, "field_in_contact": False}
+    found = fp.run(fp.Scene(voltage=100.0, roughness=given), model="cylinders")
+    assert found.record[RECORD]["mu_app"]["boundary elements, no field in contact"] == pytest.approx(
+        found.full_slip.mu_app
+    )
+
+
+def test_text_and_files_have_the_band(result):
+    text = str(result)
+    assert "Models of roughness: µ_app 0.28 (bearing area) to 0.41 (boundary elements) at full slip" in text
+    again = fp.Result.from_dict(result.to_dict())
+    assert again.closures == result.closures != {}
+
+
+def test_verdict_has_the_band():
+    kind, words = verdict([Finding("mesh", GOOD, "Fine.")], "0.001", "µ_app 0.3 to 0.7")
+    assert kind == GOOD and "± 0.001, the error of the mesh alone" in words and "Not in it: µ_app 0.3 to 0.7." in words
+
+
+def test_closure_without_an_equilibrium():
+    """It is named in the words, and not in the numbers."""
+    words = in_words({"mu_app": {"bearing area": 0.5, "boundary elements": None, "Persson's theory": 0.9}})
+    assert "0.50 (bearing area) to 0.90 (Persson's theory)" in words and "no equilibrium by boundary elements" in words
+    assert in_words({}) == ""
+
+
+def test_no_band_without_voltage_or_friction():
+    for scene in (fp.Scene(voltage=0.0), fp.Scene(friction=0.0)):
+        assert RECORD not in fp.run(scene, model="cylinders").record
+
+
+def test_no_band_with_a_law_of_ones_own():
+    scene = from_data({"roughness": {"law": "tests.test_closure_band:Held"}})
+    assert RECORD not in fp.run(scene, model="cylinders").record
+
+
+def test_closures_without_a_table(result):
+    """A ratio of waves that the package has no table of leaves the other closures."""
+    found = closure_band.closures(fp.Persson(0.5e-6, shortest_wave=20e-6))
+    assert list(found) == ["bearing area", "Persson's theory", "Persson's theory, no field in contact"]

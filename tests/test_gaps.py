@@ -1,0 +1,163 @@
+"""Tables of gaps: bins against the pixels themselves, what comes with the package, measured maps and refusals."""
+
+import numpy as np
+import pytest
+
+from variational.roughness import contacts, gaps, tables
+from variational.roughness.contacts import gap_table, measured_table
+from variational.roughness.gaps import GapTable, bins
+from variational.roughness.halfspace import press
+from variational.roughness.spectrum import SelfAffine
+from variational.roughness.topography import HeightMap
+
+RATIO, WIDTH = 8.0, 8 * np.pi
+PRESSURES = tuple(np.geomspace(0.02, 0.4, 8))
+
+
+@pytest.fixture(scope="module")
+def surface() -> HeightMap:
+    spectrum = SelfAffine(1.0, 0.75, 2 * np.pi, plateau=False, shortest=2 * np.pi / RATIO)
+    return spectrum.surface((128, 128), (WIDTH, WIDTH), 0)
+
+
+@pytest.fixture(scope="module")
+def table(surface) -> GapTable:
+    return gap_table([surface], 2 * np.pi, PRESSURES)
+
+
+def test_bins_have_the_moments_of_the_gaps():
+    """Area, mean and mean square to roundoff, whatever is in a bin."""
+    gap = np.abs(np.random.default_rng(0).standard_normal((40, 50))) * 3
+    gap[:10] = 0.0
+    contact = gap == 0
+    area, weight, mean, deviation = bins(gap, contact)
+    assert area == 0.25 and weight.sum() == pytest.approx(0.75)
+    assert (weight * mean).sum() == pytest.approx(gap.mean())
+    assert (weight * (mean**2 + deviation**2)).sum() == pytest.approx((gap**2).mean())
+
+
+@pytest.mark.parametrize("h_0", [0.03, 0.166, 1.0])
+def test_table_is_the_surface(surface, table, h_0):
+    """<(h_0 + g)^-2> of the pixels, with and without contact, within 1e-4: two points for a bin lose its skewness."""
+    k, h_rms = 3, surface.heights.std()
+    found = press(surface, PRESSURES[k] * h_rms, 1.0)
+    touching, square = found.pressure > 0, (h_0 + found.gap / h_rms) ** -2
+    assert table.inverse_square(h_0, True)[0, k] == pytest.approx(square.mean(), rel=1e-4)
+    assert table.inverse_square(h_0, False)[0, k] == pytest.approx(square[~touching].sum() / square.size, rel=1e-4)
+    assert table.mean_gap()[0, k] == pytest.approx(found.gap.mean() / h_rms, rel=1e-5)
+    near = np.mean((found.gap > 0) & (found.gap < 0.5 * h_rms))
+    assert table.closer(0.5)[0, k] == pytest.approx(near, rel=0.02)  # bins are 20 % wide, and inside even
+
+
+def test_units_do_not_matter(surface, table):
+    """The same map in micrometres, of three times the height: one table, to the contacts' tolerance."""
+    other = HeightMap(3e-6 * surface.heights, (WIDTH * 1e-6, WIDTH * 1e-6))
+    found = gap_table([other], 2e-6 * np.pi, PRESSURES)
+    np.testing.assert_allclose(found.area, table.area, rtol=1e-2)
+    np.testing.assert_allclose(found.mean_gap(), table.mean_gap(), rtol=1e-5)
+
+
+@pytest.mark.parametrize("ratio", tables.RATIOS)
+def test_tables_of_the_package(ratio):
+    """Six realisations, twelve smaller ones of the last; all of the area is in contact or in a bin.
+
+    Contact grows and gaps close with pressure.
+    """
+    ((part, found),) = tables.of_ratio(ratio)
+    assert part == 1 and len(found.area) == (12 if ratio == 64 else 6)
+    np.testing.assert_allclose(found.area + found.weight.sum(axis=-1), 1, rtol=1e-5)
+    assert (np.diff(found.area) > 0).all() and (np.diff(found.mean_gap()) < 0).all()
+    assert (found.area[:, 0] < 0.005).all() and (found.area[:, -1] > 0.5).all()
+
+
+@pytest.mark.slow
+def test_table_of_the_package_is_made_again():
+    """The first surface of the ratio 16 at two of its pressures, to what another library of transforms rounds."""
+    from benchmarks.gap_tables import surfaces
+
+    kept = tables.of_ratio(16.0)[0][1]
+    for k in (10, 20):
+        ((_, found),) = contacts.over_pressure(surfaces(16.0, 1)[0], 2 * np.pi, [kept.pressure[k]])
+        assert found.area == pytest.approx(kept.area[0, k], rel=1e-3)
+        assert found.weight @ found.mean == pytest.approx(kept.mean_gap()[0, k], rel=1e-4)
+
+
+def test_ratio_between():
+    """Parts of the two neighbours add to one, by the ratio's logarithm; beyond both ends it is refused."""
+    (low, _), (high, _) = tables.of_ratio(16 * np.sqrt(2))
+    assert low == pytest.approx(0.5) and high == pytest.approx(0.5)
+    for ratio in (7.0, 65.0):
+        with pytest.raises(ValueError, match=rf"{ratio:g} times the shortest one; tables .* for 8 to 64 times"):
+            tables.of_ratio(ratio)
+
+
+# -- measured maps -----------------------------------------------------------------------------------------
+@pytest.fixture
+def cache(tmp_path, monkeypatch):
+    monkeypatch.setenv("FINGERPAD_CACHE", str(tmp_path))
+    return tmp_path
+
+
+def test_measured_map_is_computed_once(cache, surface):
+    """The second time nothing is solved; the table is found by its name; another height makes another name."""
+    measured = HeightMap(1e-6 * surface.heights, (100e-6, 100e-6)).cut((0, 0), (64, 64)).detrended("curvature")
+    done: list[tuple[int, int]] = []
+    name, h_rms, wavelength = tables.keep(measured, lambda *each: done.append(each))
+    assert done[-1] == (len(gaps.PRESSURES), len(gaps.PRESSURES)) and wavelength == pytest.approx(50e-6)
+    again: list[tuple[int, int]] = []
+    assert tables.keep(measured, lambda *each: again.append(each))[0] == name and not again
+    ((_, found),) = tables.of_map(name)
+    whole = measured_table(measured)[0]
+    np.testing.assert_allclose(found.mean_gap(), whole.mean_gap(), rtol=1e-6)
+    other = measured.heights.copy()
+    other[3, 3] += 1e-9
+    assert tables.keep(HeightMap(other, measured.size))[0] != name
+    assert h_rms == measured.h_rms
+
+
+def test_map_that_is_not_there(cache):
+    with pytest.raises(ValueError, match="surface is 'abc', and .* has no table of that name .*; give the height map"):
+        tables.of_map("abc")
+
+
+def test_file_that_is_no_table(cache):
+    (cache / "gaps_abc.npz").write_bytes(b"nothing")
+    with pytest.raises(ValueError, match="surface is 'abc'"):
+        tables.of_map("abc")
+
+
+X = np.linspace(-1, 1, 32)
+
+
+@pytest.mark.parametrize(
+    ("heights", "size", "words"),
+    [
+        (np.ones((32, 32)), (1.0, 1.0), "all heights of the map are the same"),
+        (X[:, None] + np.zeros(32), (1.0, 1.0), "a tilt makes 1e.02 % .* at most 5 % is allowed; remove it first"),
+        (np.cos(7 * X)[:, None] * np.cos(5 * X), (1.0, 1.1), "pixels of the map are .* needs square ones, so resample"),
+    ],
+)
+def test_bad_maps(cache, heights, size, words):
+    with pytest.raises(ValueError, match=words):
+        tables.keep(HeightMap(heights, size))
+
+
+def test_missing_pixels():
+    heights = np.cos(7 * X)[:, None] * np.cos(5 * X)
+    heights[3, 4] = np.nan
+    with pytest.raises(ValueError, match="1 of 1024 heights are missing or infinite; fill them in first"):
+        tables.keep(HeightMap(heights, (1.0, 1.0)))
+
+
+def test_too_few_pixels():
+    """One bump on 8 x 8 pixels never has 20 in contact at six pressures."""
+    bump = np.exp(-((np.arange(8) - 3.5) ** 2))
+    with pytest.raises(
+        ValueError, match="pressures .* have 20 pixels or more in contact .* measure with smaller pixels"
+    ):
+        gap_table([HeightMap(bump[:, None] * bump, (1.0, 1.0))], 1.0)
+
+
+def test_no_surface():
+    with pytest.raises(ValueError, match="at least one surface"):
+        gap_table([], 1.0)

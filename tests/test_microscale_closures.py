@@ -1,0 +1,254 @@
+"""Closures by tables of gaps: boundary elements against independent numbers, Persson's theory, slopes and refusals."""
+
+import re
+
+import numpy as np
+import pytest
+from scipy.integrate import quad
+from scipy.special import erf
+
+import fingerpad as fp
+from fingerpad.cli import roughness as microscale
+from variational.roughness import persson
+from variational.roughness.statistics import breakdown_voltage, breaking_gaps
+
+H_0 = 0.514e-6
+PRESSURES = np.array([5e3, 10e3, 20e3, 50e3, 100e3])
+# Computed by other code: periodic half-space, 4 x 4 lambda_0, 256^2, six surfaces, mean and scatter of one (µm).
+EVERYWHERE = (1.98, 0.08), (1.41, 0.04), (0.967, 0.030), (0.532, 0.017), (0.300, 0.013)
+OUTSIDE = (2.69, 0.11), (2.10, 0.07), (1.65, 0.05), (1.18, 0.03), (0.960, 0.018)
+AREA = (0.0167, 0.0013), (0.0331, 0.0014), (0.0640, 0.0026), (0.150, 0.005), (0.277, 0.010)
+GAP = (5.60, 0.13), (4.69, 0.10), (3.71, 0.08), (2.35, 0.07), (1.37, 0.08)
+CLOSURES = {
+    "boundary elements": fp.BoundaryElements(H_0),
+    "outside": fp.BoundaryElements(H_0, field_in_contact=False),
+    "between": fp.BoundaryElements(H_0, shortest_wave=4e-6),
+    "persson": fp.Persson(H_0),
+    "bearing area": fp.BearingArea(H_0),
+}
+each_closure = pytest.mark.parametrize("closure", CLOSURES.values(), ids=CLOSURES)
+
+
+@pytest.mark.parametrize(
+    ("found", "known"),
+    [
+        (CLOSURES["boundary elements"](PRESSURES).d_eq * 1e6, EVERYWHERE),
+        (CLOSURES["outside"](PRESSURES).d_eq * 1e6, OUTSIDE),
+        (CLOSURES["outside"].statistics(PRESSURES).area, AREA),
+        (CLOSURES["outside"].statistics(PRESSURES).u_bar * 1e6, GAP),
+    ],
+    ids=["everywhere", "outside", "area", "gap"],
+)
+def test_independent_numbers(found, known):
+    """Within the scatter of one surface, which is more than twice that of the mean of either six."""
+    for value, (mean, scatter) in zip(found, known, strict=True):
+        assert abs(value - mean) <= scatter
+
+
+def test_spread_is_of_the_order_of_the_independent_one():
+    """A standard deviation of six is good to a third: within a factor of two."""
+    found = CLOSURES["boundary elements"].spread(PRESSURES) * 1e6
+    for value, (_, scatter) in zip(found, EVERYWHERE, strict=True):
+        assert scatter / 2 < value < 2 * scatter
+    assert not CLOSURES["persson"].spread(PRESSURES).any()
+
+
+@each_closure
+def test_slopes(closure):
+    """Against central differences, to their error of 1e-8 and what roundoff makes of it; across nodes, too."""
+    p, step = np.geomspace(1.5e3, 2e5, 101), 1e-5
+    more, less, here = (closure.statistics(p * factor) for factor in (1 + step, 1 - step, 1.0))
+    for name in ("area", "u_bar", "inverse_square", "d_eq"):
+        difference = (getattr(more, name) - getattr(less, name)) / (2 * step * p)
+        scale = np.abs(getattr(here, name)) / p
+        assert np.max(np.abs(difference - getattr(here.slopes, name)) / scale) < 1e-6
+    np.testing.assert_array_equal(closure(p).derivative, here.slopes.d_eq)
+
+
+@pytest.mark.parametrize("name", ["boundary elements", "between", "persson"])
+def test_monotone(name):
+    """Contact grows, gaps close, at ten thousand pressures: no oscillation between the nodes."""
+    found = CLOSURES[name].statistics(np.geomspace(1.01e3, 5e5, 10_000))
+    assert (np.diff(found.area) > 0).all() and (np.diff(found.u_bar) < 0).all() and (np.diff(found.d_eq) < 0).all()
+
+
+def test_between_nodes():
+    """Half way between two pressures of the table the curve is the theory itself: to 0.1 %, near full contact 0.5 %."""
+    closure = CLOSURES["persson"]
+    half = np.sqrt(persson.PRESSURES[1:] * persson.PRESSURES[:-1])[5:]
+    table = persson.gap_table(persson.Spectrum(0.75, 16.0), half)
+    exact = table.inverse_square(H_0 / closure.h_rms, True)[0] ** -0.5 * closure.h_rms - H_0
+    np.testing.assert_allclose(closure(table.pressure * closure.unit_pressure).d_eq, exact, rtol=5e-3)
+    np.testing.assert_allclose(closure(table.pressure[:-4] * closure.unit_pressure).d_eq, exact[:-4], rtol=1e-3)
+
+
+@each_closure
+def test_statistics_agree_with_the_air_gap(closure):
+    found = closure.statistics(PRESSURES)
+    np.testing.assert_allclose(found.inverse_square, (H_0 + closure(PRESSURES).d_eq) ** -2, rtol=1e-12)
+    assert ((0 < found.area) & (found.area < 1) & (found.u_bar > 0)).all()
+
+
+@each_closure
+def test_pressures_outside_are_refused_by_statistics_and_held_by_the_closure(closure):
+    low, high = closure.pressures
+    for p in (low / 2, high * 2):
+        with pytest.raises(ValueError, match=re.escape(f"contact pressure is {p:g} Pa; {type(closure).__name__} has ")):
+            closure.statistics(p)
+        assert closure.state(p, 0.0)
+    assert closure(0.0).d_eq == pytest.approx(float(closure(low).d_eq), rel=1e-9)
+    assert closure(high * 2).d_eq == pytest.approx(float(closure(high).d_eq), rel=1e-9)
+    assert closure.state(2e4, 0.0) == ""
+
+
+def test_self_similar():
+    """Twice the height and the insulator, half the modulus: the same pressures, twice the gap, to roundoff."""
+    other = fp.BoundaryElements(2 * H_0, h_rms=6.2e-6, young=0.5e6)
+    np.testing.assert_allclose(other(PRESSURES).d_eq, 2 * CLOSURES["boundary elements"](PRESSURES).d_eq, rtol=1e-12)
+
+
+@each_closure
+def test_sticking(closure):
+    """At this voltage the attraction exceeds the pressure by 1 kPa at one pressure, and just below it at none."""
+    p = np.geomspace(*closure.pressures, 4001)
+    d_eq, voltage = closure(p).d_eq, closure.sticking_voltage()
+    pull = [(8.854e-12 * (part * voltage) ** 2 / 2 / (H_0 + d_eq) ** 2 - p).max() for part in (1.001, 0.999)]
+    assert pull[0] > 1e3 > pull[1]
+
+
+def test_past_the_fold():
+    """Where the attraction grows faster than the pressure, p_ext falls as p_c rises."""
+    closure = CLOSURES["boundary elements"]
+    p = np.geomspace(1.1e3, 3e5, 200)
+    external = p - closure.attraction(p, 100.0)
+    falls = np.gradient(external, p) < 0
+    named = np.array([closure.state(float(each), 100.0) == "past the fold" for each in p])
+    assert np.count_nonzero(falls != named) <= 2  # at the fold itself the difference is one of neighbours
+    assert falls.any() and not falls.all()
+
+
+# -- breakdown ---------------------------------------------------------------------------------------------
+def test_gaps_that_break_down():
+    """The voltage over the air of each is above what the air bears, by sampling; none at 100 V."""
+    assert breaking_gaps(100.0, H_0) == []
+    gap = np.geomspace(1e-10, 1e-4, 5000)
+    for voltage in (200.0, -300.0, 400.0, 1000.0):
+        breaks = abs(voltage) * gap / (H_0 + gap) > breakdown_voltage(gap)
+        inside = np.zeros_like(breaks)
+        for low, high in breaking_gaps(voltage, H_0):
+            inside |= (gap > low) & (gap < high)
+        np.testing.assert_array_equal(inside, breaks)
+
+
+@each_closure
+def test_share_that_breaks_down(closure):
+    """None at 100 V, little at 200 V, more at 1 kV; with the contact never more than the whole area."""
+    shares = [closure.statistics(2e4, voltage) for voltage in (100.0, 200.0, 1e3)]
+    assert shares[0].broken_down == 0 < shares[1].broken_down < shares[2].broken_down
+    assert shares[2].broken_down + shares[2].area <= 1 + 1e-9
+
+
+# -- Persson's theory --------------------------------------------------------------------------------------
+def test_spectrum_of_persson():
+    """Mean square height and slope are its integrals, by quadrature."""
+    spectrum = persson.Spectrum(0.7, 20.0)
+    exponent = -2 - 2 * 0.7
+    height = quad(lambda q: 2 * np.pi * q * spectrum.level * q**exponent, 1, 20)[0]
+    slope = quad(lambda q: 2 * np.pi * q**3 * spectrum.level * q**exponent, 1, 7)[0]
+    assert height == pytest.approx(1) == spectrum.height(np.array(1.0))
+    assert spectrum.slope_squared(np.array(7.0)) == pytest.approx(slope)
+
+
+def test_separation_of_persson():
+    """The double integral at the whole area, by adaptive quadrature of both, to 1e-4 of it."""
+    spectrum, p, gamma = persson.Spectrum(0.75, 16.0), 0.05, 0.45
+
+    def inner(x: float) -> float:
+        return quad(lambda z: (gamma + 3 * (1 - gamma) * erf(np.exp(z)) ** 2) * np.exp(-np.exp(2 * z)), np.log(x), 2)[0]
+
+    def outer(t: float) -> float:
+        q = np.exp(t**2)
+        w = np.sqrt(2 / spectrum.slope_squared(np.array(q)))
+        return float(spectrum.level * q ** (1 - 1.5) * w * inner(w * p) * 2 * t)
+
+    exact = np.sqrt(np.pi) * quad(outer, 1e-6, np.sqrt(np.log(16)), epsrel=1e-8)[0]
+    found = persson.separation(np.array([p]), spectrum, np.array([1.0]))[0, 0]
+    assert found == pytest.approx(exact, rel=1e-4)
+
+
+def test_distribution_of_persson():
+    """All of the area is in contact or in a bin, and contact is proportional to small pressures, 1.6 p / (E* slope)."""
+    table = persson.table_of(0.75, 16.0)
+    np.testing.assert_allclose(table.area + table.weight.sum(axis=-1), 1, rtol=1e-9)
+    slope = np.sqrt(persson.Spectrum(0.75, 16.0).slope_squared(np.array(16.0)))
+    assert table.area[0, 0] == pytest.approx(np.sqrt(8 / np.pi) * table.pressure[0] / slope, rel=1e-4)
+
+
+def test_persson_is_near_boundary_elements():
+    """Air gaps within 30 %: between 5 and 100 kPa, theory and contacts of six surfaces."""
+    gaps = [CLOSURES[name](PRESSURES).d_eq for name in ("persson", "boundary elements")]
+    np.testing.assert_allclose(*gaps, rtol=0.3)
+
+
+# -- scenes ------------------------------------------------------------------------------------------------
+@pytest.mark.parametrize("law", ["BoundaryElements", "Persson"])
+def test_scene_and_back(law):
+    scene = fp.Scene(roughness={"law": law, "h_rms": "2 um", "field_in_contact": False})
+    assert isinstance(scene.roughness, getattr(fp, law)) and scene.roughness.h_rms == 2e-6
+    assert scene.roughness.h_0 == scene.h_0
+    assert fp.Scene(**scene.parameters()).roughness == scene.roughness
+
+
+@pytest.mark.parametrize(
+    ("table", "words"),
+    [
+        ({"shortest_wave": 1e-6}, "roughness.shortest_wave is 1e-06 m; .* so take 1.563e-06 to 1.25e-05 m"),
+        ({"p_floor": 1e6}, "roughness.p_floor is 1000000; it must be below the pressure of the table's end"),
+        ({"surface": "abc"}, "roughness.surface is 'abc', and .* has no table of that name"),
+        ({"field_in_contact": 2}, "roughness.field_in_contact is 2; it must be true or false"),
+        ({"gamma": 0.4}, "roughness.gamma"),
+    ],
+)
+def test_refused_in_a_scene(table, words, tmp_path, monkeypatch):
+    monkeypatch.setenv("FINGERPAD_CACHE", str(tmp_path))
+    with pytest.raises(fp.SceneError, match=words):
+        fp.Scene(roughness={"law": "BoundaryElements"} | table)
+
+
+def test_persson_needs_shorter_waves():
+    with pytest.raises(fp.SceneError, match="roughness.shortest_wave is 9e-05 m; it must be below two thirds"):
+        fp.Scene(roughness={"law": "Persson", "shortest_wave": 90e-6})
+
+
+def test_height_map_of_a_scene(tmp_path, monkeypatch):
+    """The table of a map is that of the map as boundary elements have it; a map with non-square pixels is refused."""
+    monkeypatch.setenv("FINGERPAD_CACHE", str(tmp_path))
+    from variational.roughness.spectrum import SelfAffine
+
+    file = tmp_path / "skin.npy"
+    np.save(file, SelfAffine(2.0, 0.8, 40.0, shortest=12.0).surface((48, 48), (100.0, 100.0), 1).heights)
+    given = {"file": str(file), "unit": "um", "size": ["100 um", "100 um"]}
+    scene = fp.Scene(roughness={"law": "BoundaryElements", "topography": given})
+    law = scene.roughness
+    assert law.surface and law.wavelength == pytest.approx(100e-6)
+    assert fp.Scene(roughness={"law": "BearingArea", "topography": given}).roughness.h_rms == pytest.approx(law.h_rms)
+    assert 0 < law(2e4).d_eq < law(5e3).d_eq
+    with pytest.raises(fp.SceneError, match="roughness.topography: pixels of the map are .* needs square ones"):
+        fp.Scene(roughness={"law": "BoundaryElements", "topography": given | {"size": ["100 um", "90 um"]}})
+
+
+@pytest.mark.parametrize("law", ["BoundaryElements", "Persson"])
+def test_microscale_table(law):
+    scene = fp.Scene(roughness={"law": law})
+    for row in microscale.table(scene, [100.0], [5e3, 5e4]):
+        assert row["p_el"] == pytest.approx(float(scene.roughness.attraction(row["p_c"], 100.0)), rel=1e-4)
+        assert row["p_ext"] == pytest.approx(row["p_c"] - row["p_el"])
+
+
+def test_sweep_over_closures():
+    """Cylinders, 75 N/m at 70.7 V: more attraction by boundary elements, least without a field where it touches."""
+    curve = fp.sweep(
+        fp.Scene(voltage=70.7), model="cylinders", **{"roughness.law": ["BearingArea", "BoundaryElements"]}
+    )
+    bearing, exact = (run.full_slip.mu_app for run in curve)
+    assert 0.25 < bearing < exact - 0.05

@@ -1,0 +1,58 @@
+r"""Exact linear-elastic contact of a rough ridge as a closure: a periodic half-space on a hard wall.
+
+:mod:`~variational.roughness.halfspace` solves the contact, attraction does not deform it (Derjaguin, Muller and
+Toporov, as in the paper's model), and the equivalent air gap has the attraction of all gaps that are found. By linear
+elasticity one table, :mod:`~variational.roughness.gaps`, serves every modulus, height, wavelength, insulator and
+voltage. The package has tables of self-affine Gaussian surfaces with the paper's Hurst exponent of 0.75; a measured
+height map has its own.
+"""
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from variational.roughness import tables
+from variational.roughness.closure import Progress
+from variational.roughness.gaps import GapTable
+from variational.roughness.tabulated import TabulatedClosure
+
+if TYPE_CHECKING:
+    from variational.roughness.topography import HeightMap
+
+
+@dataclass(frozen=True)
+class BoundaryElements(TabulatedClosure):
+    """A rough ridge on a hard wall, by boundary elements; SI units."""
+
+    surface: str = ""
+    """Name of a measured map's table, which ``topography`` computes; empty for the package's Gaussian surfaces. With
+    it ``shortest_wave`` is that of the map, and the key is not read."""
+
+    def tables(self) -> list[tuple[float, GapTable]]:
+        """Return the tables of the ratio of waves, or that of the measured map.
+
+        Raises:
+            ValueError: there is none; in one sentence.
+        """
+        if self.surface:
+            return tables.of_map(self.surface)
+        try:
+            return tables.of_ratio(self.wavelength / self.shortest_wave)
+        except ValueError as error:
+            low, high = (self.wavelength / ratio for ratio in (tables.RATIOS[-1], tables.RATIOS[0]))
+            raise ValueError(
+                f"shortest_wave is {self.shortest_wave:g} m; {error}, so take {low:.4g} to {high:.4g} m"
+            ) from None
+
+    @classmethod
+    def of_map(cls, measured: "HeightMap", progress: Progress | None = None) -> dict[str, Any]:
+        """Return the parameters that a measured map gives, whose table is computed once and kept.
+
+        Args:
+            measured: heights (m).
+            progress: is told of each contact that is solved.
+
+        Raises:
+            ValueError: a map that is flat or has too few pixels or pixels that are not square; in one sentence.
+        """
+        name, h_rms, wavelength = tables.keep(measured.detrended("curvature"), progress)
+        return {"h_rms": h_rms, "wavelength": wavelength, "surface": name}

@@ -1,0 +1,120 @@
+"""Tables of gaps from contacts: of surfaces of one spectrum, and of a measured height map."""
+
+from collections.abc import Iterable, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from variational.roughness.closure import Progress
+from variational.roughness.gaps import FULL, PRESSURES, Bins, GapTable, bins
+from variational.roughness.halfspace import press
+from variational.roughness.topography import HeightMap, polynomials
+
+Array = NDArray[np.float64]
+FEWEST_PIXELS = 20
+"""In contact, below which a contact is not resolved."""
+_FEWEST_PRESSURES = 6
+_SQUARE, _LEVEL = 0.01, 0.05  # differences of pixels' sides; part of the mean square that a tilt may be
+
+
+def over_pressure(surface: HeightMap, wavelength: float, pressures: Sequence[float]) -> Iterable[tuple[float, Bins]]:
+    """Yield pressures and gaps of one surface, from the lowest that is resolved up to nearly full contact.
+
+    Args:
+        surface: periodic.
+        wavelength: lambda_0 in the surface's unit of length.
+        pressures: increasing.
+    """
+    h = surface.heights - surface.heights.mean()
+    h_rms, q_0 = float(h.std()), 2 * np.pi / wavelength
+    # Heights, lengths and pressures in the units of the table: the modulus is 1 / (q_0 h_rms) h_rms / (1 / q_0) = 1.
+    scaled = HeightMap(h / h_rms, (surface.size[0] * q_0, surface.size[1] * q_0))
+    start = None
+    for pressure in pressures:
+        found = press(scaled, float(pressure), 1.0, start)
+        start = found.pressure
+        yield float(pressure), bins(found.gap, found.pressure > 0)
+
+
+def gap_table(
+    surfaces: Sequence[HeightMap],
+    wavelength: float,
+    pressures: Sequence[float] = tuple(PRESSURES),
+    progress: Progress | None = None,
+) -> GapTable:
+    """Return the table of several surfaces of one spectrum.
+
+    Pressures are left out at which less than :data:`FEWEST_PIXELS` pixels of a surface touch, or nearly all do.
+
+    Args:
+        surfaces: periodic.
+        wavelength: lambda_0, in the surfaces' unit of length.
+        pressures: over E* q_0 h_rms, increasing by equal steps of the logarithm.
+        progress: is told of each contact.
+
+    Raises:
+        ValueError: no surface, or one without enough pixels in contact.
+    """
+    if not surfaces:
+        raise ValueError("a table of gaps needs at least one surface")
+    rows: list[list[Bins]] = []
+    for k, surface in enumerate(surfaces):
+        rows.append([])
+        for j, (_, found) in enumerate(over_pressure(surface, wavelength, pressures)):
+            rows[k].append(found)
+            if progress is not None:
+                progress(k * len(pressures) + j + 1, len(surfaces) * len(pressures))
+    area = np.array([[each.area for each in row] for row in rows])
+    pixels = np.array([surface.heights.size for surface in surfaces])[:, None]
+    kept = np.flatnonzero(((area * pixels >= FEWEST_PIXELS) & (area <= FULL)).all(axis=0))
+    if len(kept) < _FEWEST_PRESSURES:
+        raise ValueError(
+            f"of {len(pressures)} pressures {len(kept)} have {FEWEST_PIXELS} pixels or more in contact and gaps left; "
+            "a table needs 6: measure with smaller pixels or over a larger area"
+        )
+    inside = slice(kept[0], kept[-1] + 1)
+    columns = (np.array([[each[n] for each in row] for row in rows])[:, inside] for n in range(1, 4))
+    return GapTable(np.asarray(pressures, dtype=float)[inside], area[:, inside], *columns)
+
+
+def measured_table(measured: HeightMap, progress: Progress | None = None) -> tuple[GapTable, float, float]:
+    """Return the table of a measured height map, its h_rms and the wavelength of its pressures' unit (m).
+
+    The map is continued by its mirror images, which are periodic without steps (*assumption*). The wavelength is the
+    map's shorter side: it is a unit alone, and drops out of what the table gives.
+
+    Args:
+        measured: heights, positive towards the plane, without their tilt or curvature.
+        progress: is told of each contact.
+
+    Raises:
+        ValueError: a flat map, one with a tilt or with pixels that are not square, or of too few pixels; one sentence.
+    """
+    refuse_map(measured)
+    h = measured.heights
+    both = np.concatenate([h, h[::-1]], axis=0)
+    whole = HeightMap(np.concatenate([both, both[:, ::-1]], axis=1), (2 * measured.size[0], 2 * measured.size[1]))
+    wavelength = min(measured.size)
+    return gap_table([whole], wavelength, progress=progress), measured.h_rms, wavelength
+
+
+def refuse_map(measured: HeightMap) -> None:
+    """Refuse a height map whose contact would not be that of its roughness.
+
+    Raises:
+        ValueError: a flat map, one with a tilt or with pixels that are not square; in one sentence.
+    """
+    (a, b), h = measured.pixel, measured.heights - measured.heights.mean()
+    if not h.any():
+        raise ValueError("all heights of the map are the same; there is no roughness to press")
+    if abs(a - b) > _SQUARE * max(a, b):
+        raise ValueError(
+            f"pixels of the map are {a:.4g} m x {b:.4g} m; a contact needs square ones, so resample the map"
+        )
+    basis = polynomials(h.shape, 1)
+    tilt = float(np.sum((basis.T @ h.ravel()) ** 2) / np.sum(h**2))
+    if tilt > _LEVEL:
+        raise ValueError(
+            f"a tilt makes {100 * tilt:.2g} % of the map's mean square height, at most {100 * _LEVEL:g} % is allowed; "
+            "remove it first, by detrended('tilt') or detrended('curvature')"
+        )

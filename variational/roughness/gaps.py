@@ -1,0 +1,97 @@
+r"""Distribution of the gaps between a rough surface and a plane over pressure: what a closure of a surface needs.
+
+Linear elasticity leaves one number of the load. With heights and gaps in units of h_rms and pressures in units of
+:math:`E^* q_0 h_{rms}`, one table of a spectrum's shape serves every modulus, h_rms, wavelength, insulator and voltage.
+A table has, for each pressure and realisation, the part A of the area in contact, and the rest sorted by gap: for each
+bin of gaps its part w of the area, the mean m and the standard deviation s of its gaps. Two points of equal weight,
+m - s and m + s, stand for a bin. They have its first three moments but for skewness, so that means of smooth functions
+of the gap are those of the surface to some 1e-5:
+
+.. math:: \Big\langle \frac1{(h_0 + g)^2} \Big\rangle = \frac{A}{h_0^2}
+          + \sum_k \frac{w_k}2 \Big( \frac1{(h_0 + m_k - s_k)^2} + \frac1{(h_0 + m_k + s_k)^2} \Big)
+"""
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+PRESSURES: Array = np.asarray(np.geomspace(1e-3, 2.0, 28), dtype=np.float64)
+"""Mean contact pressures of a table over E* q_0 h_rms; equal steps of the logarithm."""
+EDGES: Array = np.concatenate([[0.0], np.geomspace(1e-3, 16.0, 52)])
+"""Edges of the bins of gaps over h_rms; larger gaps are in the last bin."""
+FULL = 0.99
+"""Part of the area in contact, from which hardly a gap is left."""
+
+
+class Bins(NamedTuple):
+    """Gaps of one contact."""
+
+    area: float
+    """Part of the area in contact."""
+    weight: Array
+    """Part of the area of each bin, shape (bins,)."""
+    mean: Array
+    """Mean gap of each bin."""
+    deviation: Array
+    """Standard deviation of the gaps of each bin."""
+
+
+@dataclass(frozen=True, eq=False)
+class GapTable:
+    """Gaps over pressure; in units of h_rms and E* q_0 h_rms."""
+
+    pressure: Array
+    """Mean contact pressures, increasing by equal steps of the logarithm; shape (pressures,)."""
+    area: Array
+    """Part of the area in contact, shape (realisations, pressures)."""
+    weight: Array
+    """Parts of the area by gap, shape (realisations, pressures, bins)."""
+    mean: Array
+    """Mean gap of each bin, of the same shape."""
+    deviation: Array
+    """Standard deviation of the gaps of each bin, of the same shape."""
+
+    def mean_gap(self) -> Array:
+        """Return the mean gap, shape (realisations, pressures)."""
+        return np.asarray((self.weight * self.mean).sum(axis=-1))
+
+    def inverse_square(self, h_0: float, touching: bool) -> Array:
+        """Return <(h_0 + g)^-2>, shape (realisations, pressures).
+
+        Args:
+            h_0: over h_rms.
+            touching: whether the area in contact counts, with a gap of zero.
+        """
+        points = 1 / (h_0 + self.mean - self.deviation) ** 2 + 1 / (h_0 + self.mean + self.deviation) ** 2
+        found = (self.weight * points).sum(axis=-1) / 2
+        return np.asarray(found + self.area / h_0**2 if touching else found)
+
+    def closer(self, gap: float) -> Array:
+        """Return the part of the area out of contact with a gap below ``gap``, shape (realisations, pressures).
+
+        Inside a bin gaps are taken as evenly spread over three deviations about the mean.
+        """
+        width = np.sqrt(3) * self.deviation
+        low = self.mean - width
+        part = np.divide(gap - low, 2 * width, out=(gap > self.mean).astype(float), where=width > 0)
+        return np.asarray((self.weight * np.clip(part, 0, 1)).sum(axis=-1))
+
+
+def bins(gap: Array, contact: NDArray[np.bool_]) -> Bins:
+    """Return the gaps of a contact, in units of h_rms, by bin.
+
+    Args:
+        gap: of each pixel.
+        contact: whether a pixel is in contact.
+    """
+    outside = gap[~contact]
+    where = np.clip(np.searchsorted(EDGES, outside, side="right") - 1, 0, len(EDGES) - 1)
+    count, first, second = (np.bincount(where, weights=outside**k, minlength=len(EDGES)) for k in range(3))
+    some = np.maximum(count, 1)
+    mean = first / some
+    return Bins(
+        float(np.mean(contact)), count / gap.size, mean, np.sqrt(np.maximum(second / some - mean**2, 0.0))
+    )  # fmt: skip

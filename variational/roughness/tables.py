@@ -1,0 +1,135 @@
+"""Tables of gaps: those that come with the package, by ratio of waves, and those of measured maps, in a cache.
+
+The files in ``data/`` are made by ``python3 -m benchmarks.gap_tables``: self-affine Gaussian surfaces without roll-off,
+Hurst exponent 0.75. Between two ratios of the longest to the shortest wave the logarithm of the ratio interpolates. A
+measured map's table is kept in a folder of the user's, under a hash of heights, size and method; ``FINGERPAD_CACHE``
+names another folder.
+"""
+
+import hashlib
+import io
+import os
+from functools import lru_cache
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from variational import files
+from variational.roughness.closure import Progress
+from variational.roughness.gaps import GapTable
+
+if TYPE_CHECKING:
+    from variational.roughness.topography import HeightMap
+
+HURST = 0.75
+"""Hurst exponent of the tables that come with the package."""
+RATIOS = (8.0, 16.0, 32.0, 64.0)
+"""Ratios of the longest to the shortest wave of these tables."""
+_FIELDS = ("pressure", "area", "weight", "mean", "deviation")
+_METHOD = "1"  # of a measured map's table; another one makes other files
+_SHOWN = 16  # digits of a hash
+_ROUNDOFF = 1e-6
+
+
+def shipped_file(ratio: float) -> Path:
+    """Return the path of the table of a ratio in :data:`RATIOS`."""
+    return Path(__file__).parent / "data" / f"gaps_{ratio:g}.npz"
+
+
+def save(path: Path, table: GapTable) -> None:
+    """Write a table, whole or not at all."""
+    content = io.BytesIO()
+    arrays = {name: getattr(table, name) for name in _FIELDS}
+    small = {name: a.astype(np.float32) if a.ndim == 3 else a for name, a in arrays.items()}
+    np.savez_compressed(content, **small)  # type: ignore[arg-type]
+    path.parent.mkdir(parents=True, exist_ok=True)
+    own = path.with_suffix(f".{os.getpid()}")
+    own.write_bytes(content.getvalue())
+    own.replace(path)
+
+
+def read(path: Path) -> GapTable:
+    """Return a table of a file.
+
+    Raises:
+        OSError: the file cannot be opened.
+        ValueError: it holds no table.
+    """
+    try:
+        with np.load(io.BytesIO(files.read(path)), allow_pickle=False) as found:
+            return GapTable(*(found[name].astype(float) for name in _FIELDS))
+    except (KeyError, EOFError) as error:
+        raise ValueError(f"{path} holds no table of gaps: {error}") from None
+
+
+@lru_cache(maxsize=len(RATIOS))
+def _shipped(ratio: float) -> GapTable:
+    return read(shipped_file(ratio))
+
+
+def of_ratio(ratio: float) -> list[tuple[float, GapTable]]:
+    """Return the tables of a ratio of the longest to the shortest wave, one or two, and their parts of the whole.
+
+    Raises:
+        ValueError: there is none for the ratio; in one sentence.
+    """
+    low, high = RATIOS[0], RATIOS[-1]
+    if not low * (1 - _ROUNDOFF) <= ratio <= high * (1 + _ROUNDOFF):
+        raise ValueError(
+            f"the largest wavelength is {ratio:.4g} times the shortest one; tables of the package are for {low:g} to "
+            f"{high:g} times"
+        )
+    for each in RATIOS:
+        if abs(ratio - each) <= _ROUNDOFF * each:
+            return [(1.0, _shipped(each))]
+    k = int(np.searchsorted(RATIOS, ratio))
+    part = float(np.log(ratio / RATIOS[k - 1]) / np.log(RATIOS[k] / RATIOS[k - 1]))
+    return [(1 - part, _shipped(RATIOS[k - 1])), (part, _shipped(RATIOS[k]))]
+
+
+# -- measured maps ------------------------------------------------------------------------------------------
+def cache() -> Path:
+    """Return the folder of tables of measured maps."""
+    given = os.environ.get("FINGERPAD_CACHE")
+    return Path(given) if given else Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "fingerpad"
+
+
+def keep(measured: "HeightMap", progress: Progress | None = None) -> tuple[str, float, float]:
+    """Return the name of a measured map's table, its h_rms and its wavelength (m); the table is computed once.
+
+    Args:
+        measured: heights, without tilt or curvature.
+        progress: is told of each contact of a table that is computed.
+
+    Raises:
+        ValueError: as :func:`variational.roughness.contacts.measured_table`.
+    """
+    from variational.roughness.contacts import measured_table, refuse_map
+
+    refuse_map(measured)
+    content = np.ascontiguousarray(measured.heights).tobytes() + repr((measured.size, _METHOD)).encode()
+    name = hashlib.sha256(content).hexdigest()[:_SHOWN]
+    if not _file(name).exists():
+        save(_file(name), measured_table(measured, progress)[0])
+    return name, measured.h_rms, min(measured.size)
+
+
+def of_map(name: str) -> list[tuple[float, GapTable]]:
+    """Return the table of a measured map by its name, as :func:`of_ratio`.
+
+    Raises:
+        ValueError: it is not in the cache; in one sentence.
+    """
+    try:
+        return [(1.0, read(_file(name)))]
+    except (OSError, ValueError) as error:
+        reason = error.strerror if isinstance(error, OSError) else error
+        raise ValueError(
+            f"surface is {name!r}, and {cache()} has no table of that name ({reason}); give the height map again, as "
+            "topography"
+        ) from None
+
+
+def _file(name: str) -> Path:
+    return cache() / f"gaps_{''.join(c for c in name if c.isalnum())}.npz"

@@ -1,0 +1,218 @@
+r"""A closure by the gaps of one kind of surface: values at the pressures of a table, a smooth monotone curve between.
+
+The logarithms of air gap, mean separation and contact area are piecewise cubic in the logarithm of the pressure, with
+the slopes of Fritsch and Butland (1984, doi:10.1137/0905021), which make no oscillation between the table's pressures:
+each is monotone where the table is. Of several realisations the attractions are averaged, as over the many patches of a
+ridge; :meth:`TabulatedClosure.spread` has the scatter from one to the next.
+"""
+
+from abc import abstractmethod
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import scipy  # its parts are imported where they are used first: to read a scene needs none
+from numpy.typing import ArrayLike, NDArray
+
+from variational.coefficients import OF_SCENE, parameter
+from variational.roughness.closure import AirGap, Closure, Progress
+from variational.roughness.gaps import GapTable
+from variational.roughness.statistics import Slopes, Statistics, breaking_gaps
+
+if TYPE_CHECKING:
+    from variational.roughness.topography import HeightMap
+
+Array = NDArray[np.float64]
+_EPS_0 = 8.854e-12  # F/m, Table 3
+_STICKING = 1e3
+
+
+class Curve:
+    """A piecewise cubic through values at equal steps of an abscissa; flat beyond its ends."""
+
+    def __init__(self, x: Array, y: Array) -> None:
+        """Take abscissas, shape (n,) and increasing by equal steps, and values of the same shape."""
+        self._low, self._step, self._last = float(x[0]), float((x[-1] - x[0]) / (len(x) - 1)), len(x) - 2
+        self._c = scipy.interpolate.PchipInterpolator(x, y).c
+
+    def __call__(self, x: Array) -> tuple[Array, Array]:
+        """Return values and derivatives at abscissas inside the range, of any shape."""
+        k = np.clip(((x - self._low) / self._step).astype(np.int64), 0, self._last)
+        t = x - (self._low + k * self._step)
+        a, b, c, d = self._c.take(k, axis=1)
+        return ((a * t + b) * t + c) * t + d, (3 * a * t + 2 * b) * t + c
+
+
+@dataclass(frozen=True)
+class TabulatedClosure(Closure):
+    """A rough ridge whose gaps over pressure are a table; SI units."""
+
+    h_0: float = field(metadata=OF_SCENE)
+    """Effective insulator thickness (m)."""
+    h_rms: float = parameter(1e-9, 1e-3, "m", default=3.1e-6)
+    """Root mean square height of the roughness (m)."""
+    wavelength: float = parameter(1e-8, 1e-2, "m", default=100e-6)
+    """Largest wavelength lambda_0 of the roughness (m); q_0 = 2 pi / lambda_0."""
+    young: float = parameter(1.0, 1e12, "Pa", default=1e6)
+    """Elastic modulus of the stratum corneum on the microscale (Pa)."""
+    shortest_wave: float = parameter(1e-10, 1e-2, "m", default=6.25e-6)
+    """Shortest wavelength of the roughness (m) (*assumption*). Shorter waves lower the contact area and open the air
+    gap a little."""
+    field_in_contact: bool = True
+    """Whether the field acts where asperities touch (*assumption*): insulators meet there, and bear the highest field.
+    If false, the area in contact does not attract."""
+    p_floor: float = parameter(1e-3, 1e9, "Pa", default=1e3)
+    """Mean contact pressure (Pa) below which the air gap is held constant (*assumption*)."""
+
+    @abstractmethod
+    def tables(self) -> list[tuple[float, GapTable]]:
+        """Return tables of the surface, of the same pressures, and the part of each in the whole.
+
+        Raises:
+            ValueError: there is none for these parameters; in one sentence.
+        """
+
+    @classmethod
+    def of_map(cls, measured: "HeightMap", progress: Progress | None = None) -> dict[str, Any]:
+        """Return the parameters that a measured height map gives; ``progress`` is told of each contact that is solved.
+
+        Raises:
+            ValueError: a map without roughness, or one that does not resolve it; in one sentence.
+        """
+        from variational.roughness.spectrum import roughness_table
+
+        return dict(roughness_table(measured))
+
+    @property
+    def unit_pressure(self) -> float:
+        """E* q_0 h_rms (Pa), the unit of the table's pressures; E* = 4/3 E."""
+        return 4 / 3 * self.young * 2 * np.pi / self.wavelength * self.h_rms
+
+    @cached_property
+    def pressures(self) -> tuple[float, float]:
+        """Range of mean contact pressures (Pa) in which the air gap follows the pressure."""
+        nodes = self._nodes
+        return max(self.p_floor, float(nodes[0]) * (1 + 1e-12)), float(nodes[-1]) * (1 - 1e-12)
+
+    # -- from the table --------------------------------------------------------------------------------
+    @cached_property
+    def _tables(self) -> list[tuple[float, GapTable]]:
+        return self.tables()
+
+    @cached_property
+    def _nodes(self) -> Array:
+        """Pressures (Pa) of the table."""
+        first, *others = (table.pressure for _, table in self._tables)
+        shared = [p for p in first if all(np.isclose(p, other).any() for other in others)]
+        return np.array(shared) * self.unit_pressure
+
+    def _mean(self, name: str, *arguments: float) -> Array:
+        """Return the mean over tables and realisations of what a table has by this name, at the nodes."""
+        found = np.zeros(len(self._nodes))
+        for part, table in self._tables:
+            values = getattr(table, name)
+            values = values(*arguments) if callable(values) else values
+            same = np.isclose(table.pressure[:, None] * self.unit_pressure, self._nodes).any(axis=1)
+            found += part * values[:, same].mean(axis=0)
+        return found
+
+    @cached_property
+    def _gaps(self) -> Curve:
+        """Logarithm of d_eq (m) over that of the pressure."""
+        square = self._mean("inverse_square", self.h_0 / self.h_rms, self.field_in_contact) / self.h_rms**2
+        return Curve(np.log(self._nodes), np.log(square**-0.5 - self.h_0))
+
+    @cached_property
+    def _separation(self) -> Curve:
+        return Curve(np.log(self._nodes), np.log(self._mean("mean_gap") * self.h_rms))
+
+    @cached_property
+    def _area(self) -> Curve:
+        return Curve(np.log(self._nodes), np.log(self._mean("area")))
+
+    # -- answers ---------------------------------------------------------------------------------------
+    def __call__(self, p_c: ArrayLike) -> AirGap:
+        """Return the air gap at mean contact pressures (Pa), held below p_floor and beyond the table's pressures."""
+        p_c = np.asarray(p_c, dtype=float)
+        held = np.clip(p_c, *self.pressures)
+        value, slope = self._gaps(np.log(held))
+        d_eq = np.exp(value)
+        return AirGap(d_eq, np.where(held == p_c, d_eq * slope / held, 0.0))
+
+    def statistics(self, p_c: ArrayLike, voltage: float = 0.0) -> Statistics:
+        """Return the gaps at mean contact pressures (Pa) inside :attr:`pressures`; their breakdown is at a voltage (V).
+
+        Raises:
+            ValueError: a pressure outside of the table; in one sentence.
+        """
+        p_c, (low, high) = np.asarray(p_c, dtype=float), self.pressures
+        if (out := (p_c < low * (1 - 1e-9)) | (p_c > high * (1 + 1e-9))).any():
+            raise ValueError(
+                f"the contact pressure is {p_c[out].flat[0]:g} Pa; {type(self).__name__} has {low:.4g} to {high:.4g} Pa"
+            )
+        p_c = np.clip(p_c, low, high)
+        x = np.log(p_c)
+        curves = (np.array(curve(x)) for curve in (self._area, self._separation))
+        (area, d_area), (u_bar, d_u) = ((np.exp(y), np.exp(y) * slope / p_c) for y, slope in curves)
+        d_eq, slope = self(p_c)
+        assert slope is not None
+        square = (self.h_0 + d_eq) ** -2
+        slopes = Slopes(d_area, d_u, -2 * square / (self.h_0 + d_eq) * slope, slope)
+        return Statistics(area, u_bar, square, d_eq, self._broken_down(x, voltage), slopes)
+
+    def _broken_down(self, x: Array, voltage: float) -> Array:
+        """Return the part of the area that breaks down at logarithms of the pressure."""
+        found = np.zeros(len(self._nodes))
+        for low, high in breaking_gaps(voltage, self.h_0):
+            found += self._mean("closer", high / self.h_rms) - self._mean("closer", low / self.h_rms)
+        return np.clip(Curve(np.log(self._nodes), found)(x)[0], 0.0, 1.0)
+
+    def spread(self, p_c: ArrayLike) -> Array:
+        """Return the standard deviation of d_eq (m) from one realisation to the next; zero of one surface alone.
+
+        Args:
+            p_c: mean contact pressures (Pa), held as in a call.
+        """
+        found = np.zeros(len(self._nodes))
+        for part, table in self._tables:
+            same = np.isclose(table.pressure[:, None] * self.unit_pressure, self._nodes).any(axis=1)
+            square = table.inverse_square(self.h_0 / self.h_rms, self.field_in_contact)[:, same] / self.h_rms**2
+            gaps = square**-0.5 - self.h_0
+            found += part * (gaps.std(axis=0, ddof=1) if len(gaps) > 1 else 0.0)
+        held = np.clip(np.asarray(p_c, dtype=float), *self.pressures)
+        return Curve(np.log(self._nodes), found)(np.log(held))[0]
+
+    def attraction(self, p_c: ArrayLike, voltage: float) -> Array:
+        """Return the attraction (Pa) at mean contact pressures (Pa) and a voltage (V)."""
+        return np.asarray(_EPS_0 * voltage**2 / 2 / (self.h_0 + self(p_c).d_eq) ** 2)
+
+    def state(self, p_c: float, voltage: float) -> str:
+        """Return where a ridge is on the closure; empty where it is stable and within the table."""
+        if p_c <= 0:
+            return ""
+        low, high = self.pressures
+        if p_c < low:
+            return "below p_floor" if low == self.p_floor else f"below the table's pressures, {low * 1e-3:.3g} kPa on"
+        if p_c > high:
+            return f"beyond the table's pressures, up to {high * 1e-3:.3g} kPa"
+        d_eq, slope = self(p_c)
+        assert slope is not None
+        grows = -_EPS_0 * voltage**2 / (self.h_0 + float(d_eq)) ** 3 * float(slope)
+        return "past the fold" if grows > 1 else ""
+
+    def sticking_voltage(self, stress: float = _STICKING) -> float:
+        """Return the voltage (V) from which a flat ridge adheres without a load, by a pull-off stress ``stress`` (Pa).
+
+        The attraction exceeds the contact pressure by that stress at one pressure of the table at least.
+        """
+
+        def squared(x: float) -> float:
+            p_c = np.exp(x)
+            return float(2 * (p_c + stress) * (self.h_0 + self(p_c).d_eq) ** 2 / _EPS_0)
+
+        low, high = (float(np.log(p)) for p in self.pressures)
+        grid = np.linspace(low, high, 200)
+        k = int(np.argmin([squared(x) for x in grid]))
+        bounds = grid[max(k - 1, 0)], grid[min(k + 1, len(grid) - 1)]
+        return float(np.sqrt(scipy.optimize.minimize_scalar(squared, bounds=bounds, method="bounded").fun))
