@@ -1,5 +1,8 @@
 """Sweeps of full slip from point to point: order, chains, both sides of two states, paths in between, and tables."""
 
+import json
+from dataclasses import replace
+from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
@@ -7,12 +10,15 @@ import pytest
 from mpi4py import MPI
 
 import fingerpad as fp
-from fingerpad.model.full_slip import Solved
+from fingerpad.model.full_slip import Conditions, Solved
 from fingerpad.runs import chain
-from fingerpad.runs.chain import Chain, chains
+from fingerpad.runs import chains as of_sweep
+from fingerpad.runs.chain import Chain
+from fingerpad.runs.chains import chains
 from fingerpad.runs.sweep import _neighbours
 from fingerpad.scene import SceneError, from_data
 from tests.small_finger import NINE
+from variational.contact.friction import Coulomb
 from variational.solvers.continuation import StepFailed
 from variational.solvers.outcome import Counts
 from variational.state import ContactState
@@ -107,6 +113,41 @@ def test_two_states_are_found_from_both_sides(monkeypatch):
     assert results[1].record["reached"] == "full slip from voltage 100 V"
 
 
+def test_ends_are_solved_for_from_beyond(monkeypatch):
+    """From 100 V no state is lost at 70 V; beyond its end at 50 V, as far as from 70 V to 65 V, three ridges touch."""
+    results, written = followed(monkeypatch, Skin(), [100.0, 82.0, 70.0, 65.0])
+    assert [r.full_slip.ridges_in_contact for r in results] == [5, 5, 5, 5]
+    assert written == [0, 1, 2, 3, 3, 2]
+    others = [r.record.get(chain.OTHER, {}) for r in results]
+    assert [other.get("ridges_in_contact") for other in others] == [None, None, 3, 3]
+    assert others[3]["reached"].startswith("full slip from voltage 59.58")
+
+
+def test_begin_is_solved_for_from_beyond(monkeypatch):
+    """The path ends with five ridges at 62 V, and three touch beyond."""
+    results, written = followed(monkeypatch, Skin(), [62.0, 70.0, 90.0])
+    assert written == [0, 1, 2, 0, 1]
+    assert [r.record.get(chain.OTHER, {}).get("ridges_in_contact") for r in results] == [3, 3, None]
+
+
+@pytest.mark.parametrize(
+    ("end", "neighbour", "f_ext", "voltage"),
+    [
+        ((20.0, 100.0), (10.0, 100.0), 40.0, 100.0), ((10.0, 100.0), (20.0, 100.0), 5.0, 100.0),
+        ((10.0, 200.0), (10.0, 0.0), 10.0, 80000**0.5), ((10.0, 100.0), (10.0, 150.0), 10.0, 0.0),
+        ((10.0, -200.0), (10.0, -100.0), 10.0, -(70000**0.5)),
+    ],
+)  # fmt: skip
+def test_state_beyond_an_end_is_as_far_as_the_neighbour(end, neighbour, f_ext, voltage):
+    of = Conditions(1.0, 0.0, Coulomb(0.25), None, 1e-6)
+    a, b = (replace(of, f_ext=f, voltage=u) for f, u in (end, neighbour))
+    found = chain._beyond(a, b)
+    assert (found.f_ext, found.voltage) == (pytest.approx(f_ext), pytest.approx(voltage))
+    assert chain._beyond(a, a) is None
+    assert chain._beyond(a, replace(b, friction=Coulomb(0.3))) is None
+    assert chain._beyond(replace(of, voltage=0.0), replace(of, voltage=50.0)) is None, "at 0 V there is nothing beyond"
+
+
 def test_point_not_found_from_its_neighbour_has_a_path(monkeypatch):
     skin = Skin()
     results, _ = followed(monkeypatch, skin, [100.0, 90.0, 75.0, 70.0])
@@ -163,10 +204,43 @@ def test_sweep_of_full_slip_is_that_of_paths(tmp_path, monkeypatch):
     assert not any(column.startswith(("uncharged", "charged")) for column in row)
     assert "--states full_slip" in (tmp_path / "direct" / "report.html").read_text(encoding="utf-8")
 
-    started, run = [], chain.run
-    monkeypatch.setattr(chain, "run", lambda *args: started.append(args) or run(*args))
+    started, run = [], of_sweep.run
+    monkeypatch.setattr(of_sweep, "run", lambda *args: started.append(args) or run(*args))
     again = fp.sweep(scene, tmp_path / "direct", states="full_slip", quiet=True, **axes)
     assert not started
     assert again.array("f_t")[1] == pytest.approx(direct.array("f_t")[1], rel=0, abs=0)
     more = fp.sweep(scene, tmp_path / "direct", states="full_slip", quiet=True, friction=[0.25], voltage=[0, 60, 80])
     assert len(started) == 1 and not any(r.failure for r in more)
+
+
+@pytest.mark.slow
+def test_chain_that_was_stopped_goes_on(tmp_path, monkeypatch):
+    """Of its points those that are missing are followed, the first of them by a path; numbers as in one go."""
+    voltages = [100.0, 80.0, 60.0, 40.0, 20.0]
+    scene, write, written = from_data(SCENE), chain.kept, []
+    every = scenes(voltage=voltages)
+    file = tmp_path / "asked.json"
+    file.write_text(json.dumps({"half_arc": None, "scenes": [each.parameters() for each in every.values()]}))
+
+    def stopped(*given):
+        if len(written) == 2:
+            raise KeyboardInterrupt
+        written.append(write(*given))
+
+    with monkeypatch.context() as patch, pytest.raises(KeyboardInterrupt):
+        patch.setattr(chain, "kept", stopped)
+        chain.main(file, tmp_path / "cut" / "full_slip")
+    asked, run = [], of_sweep.run
+
+    def seen(module, given, *more):
+        asked.append(json.loads(Path(given[0]).read_text()))
+        return run(module, given, *more)
+
+    monkeypatch.setattr(of_sweep, "run", seen)
+    cut = fp.sweep(scene, tmp_path / "cut", states="full_slip", quiet=True, voltage=voltages)
+    assert [[each["voltage"] for each in given["scenes"]] for given in asked] == [voltages[2:]]
+    whole = fp.sweep(scene, tmp_path / "whole", states="full_slip", quiet=True, voltage=voltages)
+    reached = [r.full_slip.reached for r in cut]
+    assert reached[::2] == ["path", "path", "full slip from voltage 40 V"]
+    for quantity in ("f_t", "f_electrostatic", "contact_length"):
+        assert cut.array(quantity) == pytest.approx(whole.array(quantity), rel=1e-5), quantity

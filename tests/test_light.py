@@ -75,3 +75,10 @@ def test_closed_form_works_without_finite_elements(tmp_path):
 def test_what_is_blocked_is_blocked():
     """Without this the tests above would hold of any module."""
     assert "ModuleNotFoundError" in without("import ufl", *HEAVY).stderr
+
+
+def test_scene_is_read_without_parts_of_scipy():
+    """They take longer to import than all the rest that a command starts with."""
+    code = "import sys, fingerpad.cli; print(*sys.modules.keys() & {'scipy.optimize', 'scipy.special', 'scipy.linalg'})"
+    done = python("-c", code)
+    assert done.returncode == 0 and done.stdout.strip() == "", done.stdout + done.stderr

@@ -16,7 +16,7 @@ from PIL import Image
 
 import fingerpad as fp
 from fingerpad.results import style
-from fingerpad.results.curves import SurfaceProfile, history, saw_teeth, surface
+from fingerpad.results.curves import SurfaceProfile, history, over_time, saw_teeth, surface
 from fingerpad.results.finger_picture import finger, scales
 from fingerpad.scene import from_data
 from geometry import tags
@@ -169,12 +169,15 @@ def test_file_has_the_colours_that_were_drawn(tmp_path):
     assert np.abs(found - expected).mean() < 0.5
 
 
+PROFILES = [
+    profile("normal contact", 0.0, 0.2),
+    profile("partial slip", 1e-4, -0.6),
+    profile("full slip", 3e-4, -1.0),
+]
+
+
 def test_surface(tmp_path):
-    states = [
-        profile("normal contact", 0.0, 0.2),
-        profile("partial slip", 1e-4, -0.6),
-        profile("full slip", 3e-4, -1.0),
-    ]
+    states = PROFILES
     figure = surface(tmp_path / "surface.png", states, TITLE)
     assert_picture(tmp_path / "surface.png", figure)
     titles = [ax.get_title(loc="left") for ax in figure.axes[::2]]
@@ -250,6 +253,28 @@ def test_history_shows_estimated_errors(tmp_path):
     assert bar == pytest.approx(np.array([[1.4, 1.38], [1.4, 1.42]]))
     bare = {name: replace(state, error=Errors()) for name, state in states.items()}
     assert not history(None, rows, TITLE, named=bare).axes[1].containers
+
+
+@pytest.mark.parametrize("scale", [1e-3, 1.0, 1e3])
+def test_nothing_is_cut_off(snapshot, scale):
+    """Parts have fixed places: labels of small and of large numbers, and titles of two lines, are in the figure."""
+    words = TITLE + "\npath on the starting mesh, contact size 5 µm"
+    rows = [
+        replace(row, f_t=scale * row.f_t, f_ext=scale * row.f_ext, time=0.01 * k)
+        for k, row in enumerate(steps(12 * [75.0]))
+    ]
+    error = Errors(f_t=scale, contact_length=2e-5)
+    named = {"full_slip": replace(rows[-1], error=error), "charged": replace(rows[3], error=error)}
+    states = [replace(each, p=scale * each.p, note="final mesh, contact size 2.5 µm") for each in PROFILES]
+    sites = np.array([[-0.4e-3, 0.5e-3]])
+    drawn = [
+        finger(None, snapshot, sites, words, {0: 0.0}), surface(None, states, words), over_time(None, rows, words),
+        history(None, rows[3:], words, 0.25, named),
+    ]  # fmt: skip
+    for figure in drawn:
+        box = figure.get_tightbbox(FigureCanvasAgg(figure).get_renderer())
+        wide, high = figure.get_size_inches()
+        assert box.x0 >= 0 and box.y0 >= 0 and box.x1 <= wide and box.y1 <= high, figure.get_suptitle()
 
 
 def test_names_are_shown_as_they_are(tmp_path):

@@ -226,8 +226,9 @@ def _fill(ax: Any, found: Section, view: tuple[float, float] | None, middle: flo
     tagged = list(tags.LAYERS.values())
     colours = [LAYER_COLOURS[tag] for tag in tagged]
     width = 0.25 if view is not None else 0.05 if len(outline) < _FINEST_EDGES else 0.0
+    corners: Any = 1e3 * outline
     shapes = PolyCollection(
-        list(1e3 * outline), array=np.searchsorted(tagged, layer).astype(float), cmap=ListedColormap(colours),
+        corners, array=np.searchsorted(tagged, layer).astype(float), cmap=ListedColormap(colours),
         edgecolors="k" if width else "face", linewidths=width,
     )  # fmt: skip
     shapes.set_clim(-0.5, len(tagged) - 0.5)

@@ -205,7 +205,7 @@ def _finger(file: Path, view: list[float]) -> dict[str, Any] | None:
     image = np.append(level[cells], _EMPTY)[cells_at(corners, x, y)].astype("<i2")
     points = xy[kept["lines"]]
     low, high = np.array([left, bottom]), np.array([right, top])
-    inside = ((points >= low) & (points <= high)).all(axis=(1, 2))
+    inside = ((points.max(axis=1) > low) & (points.min(axis=1) < high)).all(axis=1)
     segments = np.round(_PLACES * along(xy, kept["lines"][inside], _NEAR)).astype(int)
     known = image[image != _EMPTY]
     return {

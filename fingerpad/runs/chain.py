@@ -3,154 +3,41 @@
 Points that share a mesh are followed in chains: the first one by its path, each further one from the full slip of the
 one before (:mod:`fingerpad.model.full_slip`), or by a path of its own where it is not found from there. Neighbours in
 a chain differ in one value of one key. Where another number of ridges touches than at the neighbour, the chain also
-goes back: skin may have two states of full slip, and each of them is found from one side. Both are then reported.
+goes back: skin may have two states of full slip, and each of them is found from one side. Both are then reported. An
+end of a chain has a neighbour on one side alone; from the other side it is solved for from a state a step beyond, if
+other ridges touch there.
 
 Each point is written when it is solved. A process is ``python3 -m fingerpad.runs.chain ASKED.json FOLDER LIMIT``.
 """
 
-import fcntl
-import itertools
 import json
+import math
 import sys
-import threading
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from fingerpad.results.answer import Cost
-from fingerpad.results.files import below, lock_file, replace_json
+from fingerpad.results.files import below
 from fingerpad.results.result import Result
 from fingerpad.runs import batch
 from fingerpad.runs.context import RunContext
-from fingerpad.runs.processes import End, Pool, limit_processor_time, run
-from fingerpad.runs.solve import Summary, kept
+from fingerpad.runs.processes import limit_processor_time
+from fingerpad.runs.solve import kept
 from fingerpad.runs.sweep_columns import OTHER
-from fingerpad.scene import Scene, SceneError, from_data
-from fingerpad.scene.messages import show
+from fingerpad.scene import Scene, from_data
 from fingerpad.scene.reading import DEFAULT_MODEL
 from variational.state import ContactState
 
 if TYPE_CHECKING:
-    from fingerpad.model.full_slip import FullSlips, Solved
+    from fingerpad.model.full_slip import Conditions, FullSlips, Solved
     from fingerpad.model.options import FingerModel
     from fingerpad.startup import MPI
 
-_FREE = ("f_ext", "voltage", "friction", "roughness", "electric", "slide_length", "output")
-"""Keys in which neighbours may differ: they change neither the mesh nor the layers."""
 _SAME = 1e-5  # relative difference of f_t up to which two states are one; air gaps are solved to 1e-6
-_SHORTEST = 8  # points of a chain, of which the first takes the time of some fifteen others
-_LIMIT = 4 * 3600.0  # s of processor time for a chain
-_LOOK = 1.0  # s between two looks for points that are finished
 
 
-def refuse_others(scene: Scene) -> None:
-    """Refuse a scene of which full slip is not that of press, charge and slide under a force per length.
-
-    Raises:
-        SceneError: in one sentence.
-    """
-    for key in ("history", "force", "accuracy"):
-        if (value := getattr(scene, key)) is not None:
-            given = show(value) if key == "force" else "given"
-            raise SceneError(f"{key} is {given}; with states='full_slip' it must be left out, or give states='all'")
-    if scene.supply is not None and not scene.supply.circuit.lossless:
-        raise SceneError(
-            "voltage is a drive in a circuit with losses, where each ridge has its own share of it; with "
-            "states='full_slip' it must be a number, or give states='all'"
-        )
-
-
-def sweep(scenes: Mapping[str, Scene], folder: Path, jobs: int, quiet: bool) -> dict[str, Summary]:
-    """Solve what has not been solved yet, with a progress bar.
-
-    Args:
-        scenes: by name, each beside the one before.
-        folder: of all results.
-        jobs: processes at a time.
-        quiet: whether to print nothing, and show no bar.
-
-    Returns:
-        The summaries by name; of a point whose process ended before, with its ``failure`` alone.
-    """
-    folder.mkdir(parents=True, exist_ok=True)
-    with lock_file(folder / "lock") as lock:
-        fcntl.flock(lock, fcntl.LOCK_EX)  # another sweep may be at it
-        missing = [name for name in scenes if batch.result(scenes[name], folder) is None]
-        asked = list(chains({name: scenes[name] for name in missing}, jobs))
-        ends = _followed(scenes, asked, missing, folder, jobs, quiet)
-    lost = {"failure": next((f"{end.reason}: {end.message}" for end in ends if end.reason), "INTERRUPTED")}
-    return {name: batch.result(scene, folder) or lost for name, scene in scenes.items()}
-
-
-def chains(scenes: Mapping[str, Scene], jobs: int) -> Iterator[list[str]]:
-    """Yield the names of the scenes of each chain: those that share a mesh, in as many parts as there are jobs."""
-    groups = dict[str, list[str]]()
-    for name, scene in scenes.items():
-        fixed = {key: value for key, value in scene.parameters().items() if key not in _FREE}
-        law = type(scene.friction_law()).__name__
-        groups.setdefault(json.dumps([fixed, law], sort_keys=True), []).append(name)
-    for names in groups.values():
-        parts = max(1, min(jobs, len(names) // _SHORTEST))
-        ends = [len(names) * k // parts for k in range(parts + 1)]
-        yield from (names[a:b] for a, b in itertools.pairwise(ends))
-
-
-def _followed(
-    scenes: Mapping[str, Scene], asked: list[list[str]], missing: list[str], folder: Path, jobs: int, quiet: bool
-) -> list[End]:
-    """Follow chains in processes of their own; return how these ended."""
-    ends: list[End] = []
-    files = [folder / f"chain_{k}.json" for k in range(len(asked))]
-    half_arc = _half_arc([scenes[name] for name in missing])
-    for file, names in zip(files, asked, strict=True):
-        replace_json(file, {"half_arc": half_arc, "scenes": [scenes[name].parameters() for name in names]})
-
-    def job(k: int) -> End:
-        folders = sorted({place for name in asked[k] for place in scenes[name].law_folders()})
-        return run("fingerpad.runs.chain", [str(files[k]), str(folder), str(_LIMIT)], _LIMIT, folders)
-
-    stop = threading.Event()
-    with batch.progress(quiet) as bar:
-        task, left = bar.add_task("states of full slip", total=len(missing)), list(missing)
-
-        def look() -> None:
-            for name in [*left]:
-                found = batch.result(scenes[name], folder)
-                if found is None:
-                    continue
-                left.remove(name)
-                if not quiet:
-                    words = found.get("failure") or f"µ_app {found['full_slip_mu_app']:.4f}"
-                    bar.console.print(f"{name}: {words}", highlight=False, markup=False, soft_wrap=True)
-                bar.update(task, advance=1)
-
-        def watch() -> None:
-            while not stop.wait(_LOOK):
-                look()
-
-        watcher = threading.Thread(target=watch, daemon=True)
-        watcher.start()
-        try:
-            Pool[int, End](job, jobs).run(range(len(asked)), lambda k, end, left: ends.append(end))
-        finally:
-            stop.set()
-            watcher.join()
-        look()
-    for file in files:
-        file.unlink(missing_ok=True)
-    return ends
-
-
-def _half_arc(scenes: Sequence[Scene]) -> float | None:
-    """Return the ``mesh.touching_half_arc`` (m) of all scenes of a sweep that give none, that of the widest contact."""
-    from fingerpad.model.options import by_rule
-
-    free = [scene for scene in scenes if scene.geometry.file is None and scene.mesh.touching_half_arc is None]
-    return max((by_rule(scene).mesh.touching_half_arc or 0.0 for scene in free), default=None)
-
-
-# -- in the process ------------------------------------------------------------------------------------
 class Chain:
     """Full slip of scenes that share a mesh.
 
@@ -181,6 +68,7 @@ class Chain:
             self.results.append(self._next(scene))
             yield k
             yield from self._back(k)
+        yield from self._ends()
 
     def model(self, scene: Scene) -> "FingerModel":
         """Return the model of a scene, with the parts and the ridges of all."""
@@ -244,20 +132,40 @@ class Chain:
 
     def _back(self, k: int) -> Iterator[int]:
         """Solve for the scenes before a scene from there, where another number of ridges touches, while they differ."""
+        start, before = self._solved[k], self._solved[k - 1] if k else None
+        if start is None or before is None or start.state.ridges_in_contact == before.state.ridges_in_contact:
+            return
+        yield from self._others(start, range(k - 1, -1, -1))
+
+    def _ends(self) -> Iterator[int]:
+        """Solve for the scenes at the ends from a step beyond, where another number of ridges touches."""
         from variational.solvers.continuation import StepFailed
 
-        start, slips = self._solved[k], self._slips
-        before = self._solved[k - 1] if k else None
-        if start is None or slips is None or before is None:
-            return
-        if start.state.ridges_in_contact == before.state.ridges_in_contact:
-            return
-        for j in range(k - 1, -1, -1):
+        count = len(self._solved)
+        for order in (range(count), range(count - 1, -1, -1)):
+            end, neighbour = (self._solved[k] for k in order[:2]) if count > 1 else (None, None)
+            if end is None or neighbour is None or self._slips is None:
+                continue
+            beyond = _beyond(end.conditions, neighbour.conditions)
+            if beyond is None:
+                continue
+            try:
+                start = self._slips.solve(beyond, end)
+            except StepFailed:
+                continue
+            if start.state.ridges_in_contact != end.state.ridges_in_contact:
+                yield from self._others(start, order)
+
+    def _others(self, start: "Solved", order: Sequence[int]) -> Iterator[int]:
+        """Solve for scenes, one from the other, while another state than theirs is found; yield their numbers."""
+        from variational.solvers.continuation import StepFailed
+
+        for j in order:
             mine = self._solved[j]
-            if mine is None:
+            if mine is None or self._slips is None:
                 return
             try:
-                start = slips.solve(mine.conditions, start)
+                start = self._slips.solve(mine.conditions, start)
             except StepFailed:
                 return
             if _one(start.state, mine.state):
@@ -304,6 +212,19 @@ class Chain:
             ),
             record={"reached": state.reached, "force_error": finger.force_error, "provenance": provenance()},
         )
+
+
+def _beyond(end: "Conditions", neighbour: "Conditions") -> "Conditions | None":
+    """Return conditions as far beyond an end as its neighbour is on this side; None where there are none.
+
+    Steps are of the logarithm of the force, or of the square of the voltage, which the attraction follows.
+    """
+    if replace(end, f_ext=0.0, voltage=0.0) != replace(neighbour, f_ext=0.0, voltage=0.0):
+        return None
+    square = 2 * end.voltage**2 - neighbour.voltage**2
+    voltage = math.copysign(max(square, 0.0) ** 0.5, end.voltage)
+    found = replace(end, f_ext=end.f_ext**2 / neighbour.f_ext, voltage=voltage)
+    return None if found in (end, neighbour) else found
 
 
 def _one(a: ContactState, b: ContactState) -> bool:

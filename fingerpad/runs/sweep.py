@@ -92,7 +92,7 @@ def sweep(
     scenes = [_with(scene, point) for point in _points(axes)]
     values = _values(scenes, axes)
     if states != STATES[0]:
-        from fingerpad.runs.chain import refuse_others
+        from fingerpad.runs.chains import refuse_others
 
         for each in scenes:
             refuse_others(each)
@@ -225,7 +225,7 @@ def _in_processes(
     states: str,
 ) -> list[Result]:
     """Return the results of points, those that can be run in processes of their own, kept by their parameters."""
-    from fingerpad.runs import batch, chain
+    from fingerpad.runs import batch, chains
 
     chained = states != STATES[0]
     place = below(folder, states if chained else model.name)
@@ -244,7 +244,7 @@ def _in_processes(
             order.append(None)
     if chained:
         along = [order[k] for k in _neighbours(axes)]
-        found = chain.sweep({name: named[name] for name in along if name is not None}, place, jobs, quiet)
+        found = chains.sweep({name: named[name] for name in along if name is not None}, place, jobs, quiet)
     else:
         found = batch.sweep(named, place, jobs, _LIMIT, model.name, quiet)
     for name, scene in named.items():

@@ -25,8 +25,8 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
+import scipy  # its parts are imported where they are used first: to read a scene needs none
 from numpy.typing import ArrayLike, NDArray
-from scipy.optimize import brentq, minimize_scalar
 
 from variational.attraction.dielectric import TISSUES, VACUUM_PERMITTIVITY, ColeCole, Tissue
 
@@ -157,7 +157,7 @@ class GapCircuit:
         best = int(np.argmin([less(each) for each in grid]))
         if best in (0, len(grid) - 1):
             return float(np.exp(grid[best]))
-        found = minimize_scalar(
+        found = scipy.optimize.minimize_scalar(
             less, bounds=(grid[best - 1], grid[best + 1]), method="bounded", options={"xatol": 1e-9}
         )
         return float(np.exp(found.x))
@@ -198,4 +198,4 @@ def fit_leak(peak: float, tissue: str | Tissue, gap: float, d_i: float, eps_i: f
     low, high = (float(np.log(end)) for end in _LEAKS)
     if not (peak > 0 and beyond(low) > 0 > beyond(high)):
         raise ValueError(f"peak is {peak:g} Hz; no leak through a gap of {gap:g} m has its peak there")
-    return float(np.exp(brentq(beyond, low, high, xtol=1e-6)))
+    return float(np.exp(scipy.optimize.brentq(beyond, low, high, xtol=1e-6)))

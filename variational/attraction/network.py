@@ -19,8 +19,8 @@ jump of U adds to every mode what U jumps by.
 from dataclasses import dataclass
 
 import numpy as np
+import scipy  # its parts are imported where they are used first: to read a scene needs none
 from numpy.typing import ArrayLike, NDArray
-from scipy.linalg import eigh
 
 from variational.attraction.circuit import GapCircuit
 from variational.attraction.dielectric import VACUUM_PERMITTIVITY, ColeCole, Debye
@@ -50,7 +50,7 @@ class Network:
         if not isinstance(tissue, ColeCole):
             raise ValueError("tissue is a table, which has no equations in time; give 'lossless', 'dry' or 'moist'")
         capacitance, conductance, inlet = _assembled(circuit, tissue.debye(), (gap, d_i / eps_i, d_sc))
-        rate, vectors = eigh(conductance, capacitance)
+        rate, vectors = scipy.linalg.eigh(conductance, capacitance)
         weight = (vectors[0] - vectors[1]) * (inlet * vectors[0])
         kept = np.abs(weight) > _LEAST * np.abs(weight).sum()
         rate = rate[kept]

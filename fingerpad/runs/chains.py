@@ -1,0 +1,127 @@
+"""Sweeps of ``states="full_slip"``: which points are followed in one chain, and the processes that follow them."""
+
+import fcntl
+import itertools
+import json
+import threading
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
+
+from fingerpad.results.files import lock_file, replace_json
+from fingerpad.runs import batch
+from fingerpad.runs.processes import End, Pool, run
+from fingerpad.runs.solve import Summary
+from fingerpad.scene import Scene, SceneError
+from fingerpad.scene.messages import show
+
+_FREE = ("f_ext", "voltage", "friction", "roughness", "electric", "slide_length", "output")
+"""Keys in which neighbours may differ: they change neither the mesh nor the layers."""
+_SHORTEST = 8  # points of a chain, of which the first takes the time of some fifteen others
+_LIMIT = 4 * 3600.0  # s of processor time for a chain
+_LOOK = 1.0  # s between two looks for points that are finished
+
+
+def refuse_others(scene: Scene) -> None:
+    """Refuse a scene of which full slip is not that of press, charge and slide under a force per length.
+
+    Raises:
+        SceneError: in one sentence.
+    """
+    for key in ("history", "force", "accuracy"):
+        if (value := getattr(scene, key)) is not None:
+            given = show(value) if key == "force" else "given"
+            raise SceneError(f"{key} is {given}; with states='full_slip' it must be left out, or give states='all'")
+    if scene.supply is not None and not scene.supply.circuit.lossless:
+        raise SceneError(
+            "voltage is a drive in a circuit with losses, where each ridge has its own share of it; with "
+            "states='full_slip' it must be a number, or give states='all'"
+        )
+
+
+def sweep(scenes: Mapping[str, Scene], folder: Path, jobs: int, quiet: bool) -> dict[str, Summary]:
+    """Solve what has not been solved yet, with a progress bar.
+
+    Args:
+        scenes: by name, each beside the one before.
+        folder: of all results.
+        jobs: processes at a time.
+        quiet: whether to print nothing, and show no bar.
+
+    Returns:
+        The summaries by name; of a point whose process ended before, with its ``failure`` alone.
+    """
+    folder.mkdir(parents=True, exist_ok=True)
+    with lock_file(folder / "lock") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)  # another sweep may be at it
+        missing = [name for name in scenes if batch.result(scenes[name], folder) is None]
+        asked = list(chains({name: scenes[name] for name in missing}, jobs))
+        ends = _followed(scenes, asked, missing, folder, jobs, quiet)
+    lost = {"failure": next((f"{end.reason}: {end.message}" for end in ends if end.reason), "INTERRUPTED")}
+    return {name: batch.result(scene, folder) or lost for name, scene in scenes.items()}
+
+
+def chains(scenes: Mapping[str, Scene], jobs: int) -> Iterator[list[str]]:
+    """Yield the names of the scenes of each chain: those that share a mesh, in as many parts as there are jobs."""
+    groups = dict[str, list[str]]()
+    for name, scene in scenes.items():
+        fixed = {key: value for key, value in scene.parameters().items() if key not in _FREE}
+        law = type(scene.friction_law()).__name__
+        groups.setdefault(json.dumps([fixed, law], sort_keys=True), []).append(name)
+    for names in groups.values():
+        parts = max(1, min(jobs, len(names) // _SHORTEST))
+        ends = [len(names) * k // parts for k in range(parts + 1)]
+        yield from (names[a:b] for a, b in itertools.pairwise(ends))
+
+
+def _followed(
+    scenes: Mapping[str, Scene], asked: list[list[str]], missing: list[str], folder: Path, jobs: int, quiet: bool
+) -> list[End]:
+    """Follow chains in processes of their own; return how these ended."""
+    ends: list[End] = []
+    files = [folder / f"chain_{k}.json" for k in range(len(asked))]
+    half_arc = _half_arc([scenes[name] for name in missing])
+    for file, names in zip(files, asked, strict=True):
+        replace_json(file, {"half_arc": half_arc, "scenes": [scenes[name].parameters() for name in names]})
+
+    def job(k: int) -> End:
+        folders = sorted({place for name in asked[k] for place in scenes[name].law_folders()})
+        return run("fingerpad.runs.chain", [str(files[k]), str(folder), str(_LIMIT)], _LIMIT, folders)
+
+    stop = threading.Event()
+    with batch.progress(quiet) as bar:
+        task, left = bar.add_task("states of full slip", total=len(missing)), list(missing)
+
+        def look() -> None:
+            for name in [*left]:
+                found = batch.result(scenes[name], folder)
+                if found is None:
+                    continue
+                left.remove(name)
+                if not quiet:
+                    words = found.get("failure") or f"µ_app {found['full_slip_mu_app']:.4f}"
+                    bar.console.print(f"{name}: {words}", highlight=False, markup=False, soft_wrap=True)
+                bar.update(task, advance=1)
+
+        def watch() -> None:
+            while not stop.wait(_LOOK):
+                look()
+
+        watcher = threading.Thread(target=watch, daemon=True)
+        watcher.start()
+        try:
+            Pool[int, End](job, jobs).run(range(len(asked)), lambda k, end, left: ends.append(end))
+        finally:
+            stop.set()
+            watcher.join()
+        look()
+    for file in files:
+        file.unlink(missing_ok=True)
+    return ends
+
+
+def _half_arc(scenes: Sequence[Scene]) -> float | None:
+    """Return the ``mesh.touching_half_arc`` (m) of all scenes of a sweep that give none, that of the widest contact."""
+    from fingerpad.model.options import by_rule
+
+    free = [scene for scene in scenes if scene.geometry.file is None and scene.mesh.touching_half_arc is None]
+    return max((by_rule(scene).mesh.touching_half_arc or 0.0 for scene in free), default=None)
