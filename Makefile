@@ -11,6 +11,7 @@
 # make verify every number with a known answer, some minutes; docs/verification.md
 # make paper  the statements of the paper beside this model's numbers; docs/paper.md, a quarter of an hour or more
 # make measured  measured fingers beside this model's numbers; docs/measured.md, two minutes
+# make drive  friction over frequency and waveform of the voltage; docs/drive.md, a minute
 # make performance  counts, ratios and seconds, part by part, on an idle machine; docs/performance.md, half an hour
 # make chart  error over work, one numerical setting after the other; docs/chart.md, hours
 #
@@ -19,7 +20,7 @@
 
 run := environment/run
 
-.PHONY: help demo lint test check test-pip test-order fuzz docs pages stale verify paper measured chart performance
+.PHONY: help demo lint test check test-pip test-order fuzz docs pages stale verify paper measured drive chart performance
 
 help:
 	@sed -n 's/^# make/make/p' Makefile
@@ -72,6 +73,9 @@ paper:
 
 measured:
 	$(run) python3 -m benchmarks.measured
+
+drive:
+	$(run) python3 -m benchmarks.drive
 
 chart:
 	$(run) python3 -m benchmarks.errors

@@ -34,6 +34,7 @@ PAGES = {
     "accuracy": "benchmarks.accuracy",
     "assumptions": "benchmarks.assumptions",
     "chart": "benchmarks.chart",
+    "drive": "benchmarks.drive",
     "errors": "benchmarks.errors",
     "hero": "benchmarks.hero",
     "measured": "benchmarks.measured.__main__",

@@ -19,7 +19,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from benchmarks.harness import cells, keep, kept, made, main, page, picture, run
-from benchmarks.measured import fingers, rows, rules
+from benchmarks.measured import drives, fingers, rows, rules
 from benchmarks.measured.rules import BUILT, HIT
 from benchmarks.runs import VOLTAGES, Run
 from fingerpad.results import style
@@ -47,7 +47,7 @@ def numbers(runs: dict[str, Any], docs: Path) -> dict[str, Any]:
     known: dict[str, rows.Row] = {text["key"]: ({}, text["verdict"]) for text in _read("rows") if text["verdict"]}
     judged = {
         key: {"numbers": {name: float(value) for name, value in found.items()}, "verdict": verdict}
-        for key, (found, verdict) in (rows.numbers(grid, runs) | known).items()
+        for key, (found, verdict) in (rows.numbers(grid, runs) | drives.numbers() | known).items()
     }
     return {"runs": runs, "rows": judged, "curves": rows.curves(grid)}
 

@@ -74,6 +74,11 @@ def line(x: Array, start: float) -> Array:
     return np.asarray(start + (1 - start) * x / x.max())
 
 
+def high_pass(x: Array, cut: float) -> Array:
+    """Return the square of a first-order high-pass, with a cut-off in units of the largest x."""
+    return np.asarray(x**2 / (x**2 + (cut * x.max()) ** 2))
+
+
 def paraboloid(x: Array, a: float) -> Array:
     """Return 1 - (x / a)², with a half width in units of the largest |x|; 0 outside."""
     return np.asarray(np.clip(1 - (x / (a * np.abs(x).max())) ** 2, 0, None))
@@ -89,6 +94,7 @@ BOUNDS: dict[Form, tuple[float, float]] = {
     exponential: (1e-3, 50.0),
     power: (0.05, 10.0),
     line: (0.0, 0.99),
+    high_pass: (1e-4, 1.0),
     paraboloid: _WIDTHS,
     ellipse: _WIDTHS,
 }

@@ -29,8 +29,8 @@ if TYPE_CHECKING:
     from fingerpad.scene.waveform import Waveform
 
 NOTE = (
-    "Loads over time are quasi-static: no inertia, no viscous skin, and no leakage of charge, which lowers the "
-    "attraction of a real finger below about 1 kHz. A frequency only sets how far the finger slides in a period."
+    "Loads over time are quasi-static: no inertia, no viscous skin, and no leakage of charge but that of the scene's "
+    "electric.leak. A frequency only sets how far the finger slides in a period, and what the circuit of the gap loses."
 )
 """What a result with a load over time says of it."""
 HARMONICS, SAMPLED = 6, 4

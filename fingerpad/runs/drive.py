@@ -22,6 +22,7 @@ from fingerpad.scene import Scene
 from fingerpad.scene.messages import SceneError
 from fingerpad.scene.remarks import leakage, remarks
 from fingerpad.scene.supply import REFERENCE, Supply
+from geometry.units import computed
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -174,7 +175,8 @@ def _curve(scene: Scene, supply: Supply) -> tuple[Array, Array, Array]:
     model, context = Cylinders(), RunContext()
 
     def at(voltage: float) -> tuple[float, float]:
-        found = solved(scene.replace(voltage=voltage), model, context)
+        with computed():  # a part of a small amplitude may be less than a scene can have
+            found = solved(scene.replace(voltage=voltage), model, context)
         state = found.full_slip
         assert state is not None
         force = state.f_t if found.finger is None else float(found.finger.values("full_slip")["f_t"])

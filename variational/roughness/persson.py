@@ -26,9 +26,8 @@ from dataclasses import dataclass, field
 from functools import lru_cache
 
 import numpy as np
+import scipy  # its parts are imported where they are used first: to read a scene needs none
 from numpy.typing import NDArray
-from scipy.integrate import cumulative_simpson
-from scipy.special import erf, exp1, ndtr
 
 from variational.coefficients import parameter
 from variational.roughness.gaps import EDGES, FULL, PRESSURES, GapTable
@@ -98,7 +97,7 @@ def contact_area(pressure: Array, spectrum: Spectrum, q: Array) -> Array:
     """Return the part of the area that seems in contact at wavevectors q, shape (pressures, wavevectors)."""
     slope = np.sqrt(spectrum.slope_squared(q))
     with np.errstate(divide="ignore"):
-        return np.asarray(erf(np.sqrt(2) * pressure[:, None] / slope))
+        return np.asarray(scipy.special.erf(np.sqrt(2) * pressure[:, None] / slope))
 
 
 @lru_cache(maxsize=1)
@@ -106,7 +105,7 @@ def _inner() -> tuple[Array, Array]:
     """Return the logarithm of x and the integral from x on of 3 erf^2 exp(-x^2) / x."""
     ln_x = np.linspace(np.log(_LEAST), np.log(_MOST), 6001)
     x = np.exp(ln_x)
-    up = cumulative_simpson(3 * erf(x) ** 2 * np.exp(-(x**2)), x=ln_x, initial=0.0)
+    up = scipy.integrate.cumulative_simpson(3 * scipy.special.erf(x) ** 2 * np.exp(-(x**2)), x=ln_x, initial=0.0)
     return ln_x, up[-1] - up
 
 
@@ -128,7 +127,7 @@ def separation(pressure: Array, spectrum: Spectrum, q: Array) -> Array:
     w = np.sqrt(2 / between)
     outer = spectrum.level * there ** (1 - 2 * spectrum.hurst) * w * 2 * root * weight
     x = np.clip(w * p[:, :, None], _LEAST, None)
-    inner = _GAMMA * exp1(x**2) / 2 + (1 - _GAMMA) * np.interp(np.log(x), *_inner(), right=0.0)
+    inner = _GAMMA * scipy.special.exp1(x**2) / 2 + (1 - _GAMMA) * np.interp(np.log(x), *_inner(), right=0.0)
     return np.asarray(np.sqrt(np.pi) * (outer * inner).sum(axis=-1))
 
 
@@ -174,7 +173,7 @@ def _moments(u: Array, h: Array) -> Array:
     found = np.zeros((*u.shape, 3, len(EDGES)))
     for mean in (u[:, :, None], -u[:, :, None]):
         z = (EDGES - mean) / s
-        below, density = ndtr(z), np.exp(-(z**2) / 2) / np.sqrt(2 * np.pi)
+        below, density = scipy.special.ndtr(z), np.exp(-(z**2) / 2) / np.sqrt(2 * np.pi)
         at = (below, mean * below - s * density, (mean**2 + s**2) * below - s * (EDGES + mean) * density)
         ends = (np.ones_like(mean), mean, mean**2 + s**2)
         for k, (values, end) in enumerate(zip(at, ends, strict=True)):

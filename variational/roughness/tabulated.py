@@ -12,9 +12,8 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+import scipy  # its parts are imported where they are used first: to read a scene needs none
 from numpy.typing import ArrayLike, NDArray
-from scipy.interpolate import PchipInterpolator
-from scipy.optimize import minimize_scalar
 
 from variational.coefficients import OF_SCENE, parameter
 from variational.roughness.closure import AirGap, Closure, Progress
@@ -35,7 +34,7 @@ class Curve:
     def __init__(self, x: Array, y: Array) -> None:
         """Take abscissas, shape (n,) and increasing by equal steps, and values of the same shape."""
         self._low, self._step, self._last = float(x[0]), float((x[-1] - x[0]) / (len(x) - 1)), len(x) - 2
-        self._c = PchipInterpolator(x, y).c
+        self._c = scipy.interpolate.PchipInterpolator(x, y).c
 
     def __call__(self, x: Array) -> tuple[Array, Array]:
         """Return values and derivatives at abscissas inside the range, of any shape."""
@@ -216,4 +215,4 @@ class TabulatedClosure(Closure):
         grid = np.linspace(low, high, 200)
         k = int(np.argmin([squared(x) for x in grid]))
         bounds = grid[max(k - 1, 0)], grid[min(k + 1, len(grid) - 1)]
-        return float(np.sqrt(minimize_scalar(squared, bounds=bounds, method="bounded").fun))
+        return float(np.sqrt(scipy.optimize.minimize_scalar(squared, bounds=bounds, method="bounded").fun))
