@@ -22,7 +22,7 @@ PICTURES = ((finger_picture, "finger"), (curves, "surface"), (curves, "history")
 
 @contextmanager
 def no_pictures() -> Iterator[None]:
-    """Leave the files of a run's pictures empty: to draw them takes two seconds, more than a small finger does."""
+    """Leave the files of a run's pictures empty: to draw them takes a second, as much as a small finger does."""
     with ExitStack() as stack:
         for module, name in PICTURES:
             stack.enter_context(patch.object(module, name, touch))

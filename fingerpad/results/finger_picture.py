@@ -123,7 +123,7 @@ def finger(
             near.plot(x, y, **_SITES, zorder=5)
         for number, x in (ridges or {}).items():
             if left < _MM * x < right:
-                near.text(_MM * x, 0.6 * bottom, str(number), ha="center", va="center", fontsize=8)
+                near.text(_MM * x, 0.6 * bottom, str(number), ha="center", va="center", fontsize=8, clip_on=True)
         return style.save(figure, path)
 
 
@@ -132,7 +132,8 @@ def _empty(snapshot: "Snapshot", scale: Scales, sites: bool, title: str) -> Figu
     figure = style.sheet(_HEIGHT, title)
     for box, view in ((_ABOVE, scale.whole), (_NEAR, scale.near)):
         ax = style.panel(figure, *_fitted(box, view))
-        ax.set(xlim=view[:2], ylim=view[2:], aspect="equal", xlabel="x (mm)", ylabel="height y (mm)")
+        ax.set(xlim=view[:2], ylim=view[2:], xlabel="x (mm)", ylabel="height y (mm)")
+        ax.set_aspect("equal", adjustable="datalim")  # the panel stays where it is when a reader looks closer
         ax.xaxis.set_major_locator(MaxNLocator(10, steps=[1, 2, 5, 10]))
     above, near = figure.axes
     above.set_title("Deformed cross-section; dashed: part below")
