@@ -9,6 +9,7 @@ from fingerpad.accuracy.refinement import Refinement, with_errors
 from fingerpad.accuracy.solves import Solves
 from fingerpad.accuracy.states import StateRecorder
 from fingerpad.model import cautions
+from fingerpad.model.adhesion import adhering
 from fingerpad.model.finger import Step, meshed
 from fingerpad.model.options import FingerModel
 from fingerpad.model.report import Clock, Report
@@ -167,7 +168,9 @@ class Attempt:
             return self._affordable(self._refinement.run())
         except StepFailed as error:
             tip = hint(error) if self._model.mesh_file is None else ""
-            self._ended["failure"] = "; ".join(filter(None, (str(error), tip)))
+            last, closure = self.report.record.states[-1:], self._model.closure
+            sticks = adhering(last[0], closure) if last and not isinstance(error, Interrupted) else ""
+            self._ended["failure"] = "; ".join(filter(None, (str(error), sticks or tip)))
             if isinstance(error, Interrupted):
                 self._ended["interrupted"] = error.signal.name
             return None if reached else finer(self._model, error, self._comm)

@@ -31,7 +31,7 @@ from fingerpad.results.terminal import Console
 from fingerpad.runs.branches import Again, Branches, Followed
 from fingerpad.runs.checkpoints import checkpoint_of, read
 from fingerpad.runs.context import RunContext
-from fingerpad.scene import Scene
+from fingerpad.scene import Scene, SceneError
 from fingerpad.scene.reading import DEFAULT_MODEL
 from fingerpad.scene.remarks import coefficient, leakage, remarks, used
 from fingerpad.slices import errors, traces
@@ -40,6 +40,7 @@ from fingerpad.slices.total import at_force, profile
 from fingerpad.slices.traces import Traced
 from fingerpad.startup import MPI
 from geometry.profiles import GeometryError
+from variational.coefficients import LawError
 from variational.solvers.continuation import StepFailed
 from variational.solvers.transfer import StateSnapshot
 from variational.state import ContactState
@@ -85,6 +86,8 @@ def run(scene: Scene, context: RunContext) -> Result:
             failure = f"{str(stopped).partition(';')[0]} of the {made.doing}; the same command goes on with it"
             bare = Result(scene, DEFAULT_MODEL, None, None, None, failure=failure, interrupted=stopped.signal.name)
             return replace(bare, cost=made.clock.cost(made.branches.counts, 0))
+        except (SceneError, LawError):  # a run of its own would be refused as well
+            raise
         except (StepFailed, GeometryError, ValueError) as error:
             raise Unsuited(str(error)) from error
 
