@@ -2,6 +2,7 @@
 
 import math
 import tomllib
+from html import escape
 from itertools import pairwise
 from pathlib import Path
 
@@ -261,7 +262,7 @@ def test_results_of_a_run(tmp_path):
     assert f"  wave: µ_app {mu.min:.4f} to {mu.max:.4f}, mean {mean:.4f}; {amplitude}\n" in str(found)
     assert f"<h1>µ<sub>app</sub> from {mu.min:.4f} to {mu.max:.4f}</h1>" in shown
     assert "in the load wave, over time" in shown
-    assert "Loads over time" in shown and "sine of 80 V about 20 V at 60 Hz" in shown and NOTE in shown
+    assert "Loads over time" in shown and "sine of 80 V about 20 V at 60 Hz" in shown and escape(NOTE) in shown
 
 
 @pytest.mark.long

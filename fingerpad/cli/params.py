@@ -79,7 +79,7 @@ def toml(found: Sequence[Key]) -> str:
             plain = where.replace("[]", "")
             lines += ["", f"# [[{plain}]]" if many else f"[{plain}]" if _read(found, where) else f"# [{plain}]"]
         lines += textwrap.wrap(key.meaning, _WIDTH, initial_indent="# ", subsequent_indent="# ")
-        off = key.default is None or bool(key.law) or "[]" in key.name
+        off = key.default is None or bool(key.law) or not _read(found, where)
         given = f"{'# ' * off}{name} ={'' if key.default is None else ' ' + _value(key.default)}"
         lines.append(f"{given}  # {', '.join(filter(None, (key.unit, key.allowed)))}")
     return "\n".join(lines)
@@ -107,8 +107,9 @@ def _short(key: Key) -> str:
 
 
 def _read(found: Sequence[Key], table: str) -> bool:
-    """Return whether a file of the defaults has a table: one with a value, and in no list."""
-    return "[]" not in table and any(key.default is not None for key in found if key.name.rpartition(".")[0] == table)
+    """Return whether a file of the defaults has a table: one with a value, in no list and in no value's place."""
+    given = any(key.default is not None for key in found if key.name.rpartition(".")[0] == table)
+    return "[]" not in table and given and all(key.name != table for key in found)
 
 
 def _default(key: Key) -> str:
