@@ -32,18 +32,20 @@ _FINE = 0.02  # mm, between the points of a drawn outline
 def main(folder: str) -> None:
     """Keep the numbers of a default run with those of docs/models.json, and draw."""
     summary = json.loads((Path(folder) / "summary.json").read_text(encoding="utf-8"))
-    a = finger_of(Path(folder) / "finger_slide.npz")
+    a = finger_of(Path(folder) / "finger_full_slip.npz")
     xy, outlines = _MM * (a["x"] + a["u"]), []
     for tag in tags.LAYERS.values():
         for loop in loops(a["lines"], a["beside"], a["tag"], tag):
             points = xy[loop[:, :2]].reshape(-1, 2)  # the begin and the middle of each line
             outlines.append({"layer": int(tag), "points": _rows(_thinned(points))})
-    with np.load(Path(folder) / "surface_slide.npz") as a:
-        ridge = {name: a[f"end_{name}"][a["end_ridge"] == RIDGE] for name in ("x", "y", "p", "p_el", "d_eq")}
+    with np.load(Path(folder) / "surface.npz") as a:
+        ridge = {name: a[f"full_slip_{name}"][a["full_slip_ridge"] == RIDGE] for name in ("x", "y", "p", "p_el", "d_eq")}
     full = {name: scene["full"].get("summary") for name, scene in kept("models").numbers["scenes"].items()}
     friction = {str(f): [[u, full[f"{f} N/m, {u} V"]["full_slip_mu_app"]] for u in range(0, 201, 50)] for f in FORCES}
     along = {name: _rows([float(f"{v:.6g}") for v in values]) for name, values in ridge.items()}
-    keep("hero", {"finger": outlines, "ridge": along, "friction": friction}, made([summary]))
+    default = {name: summary[name] for name in ("full_slip_mu_app", "full_slip_mu_app_error")}
+    numbers = {"default": default, "finger": outlines, "ridge": along, "friction": friction}
+    keep("hero", numbers, made([summary]))
     draw(DOCS)
 
 
