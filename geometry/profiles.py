@@ -15,9 +15,8 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
+import scipy  # its parts are imported where they are used first: to read a scene needs none
 from numpy.typing import ArrayLike, NDArray
-from scipy.integrate import cumulative_simpson
-from scipy.optimize import minimize_scalar
 
 if TYPE_CHECKING:
     from geometry.parameters import Fingertip
@@ -42,7 +41,7 @@ class Profiles:
         a, b = self.finger.width / 2, self.finger.height / 2
         phi: Array = np.linspace(0.0, np.pi, 20001, dtype=np.float64)
         speed = np.sqrt((a * np.cos(phi)) ** 2 + (b * np.sin(phi)) ** 2)
-        return phi, np.asarray(cumulative_simpson(speed, x=phi, initial=0.0), dtype=float)
+        return phi, np.asarray(scipy.integrate.cumulative_simpson(speed, x=phi, initial=0.0), dtype=float)
 
     def _angle(self, s: ArrayLike) -> Array:
         phi, arc = self._arc_table
@@ -109,7 +108,7 @@ class Profiles:
         for k in np.flatnonzero((padded[1:-1] >= padded[:-2]) & (padded[1:-1] >= padded[2:])):
             theta, height = float(_PHASES[k]), float(values[k])
             if 0 < k < len(_PHASES) - 1:
-                inside = minimize_scalar(
+                inside = scipy.optimize.minimize_scalar(
                     lambda t: -float(self._wave(t)),
                     bounds=(_PHASES[k - 1], _PHASES[k + 1]),
                     method="bounded",
@@ -173,7 +172,11 @@ class Profiles:
         k = int(np.argmin(height(s)))
         ends = s[max(k - 1, 0)], s[min(k + 1, len(s) - 1)]
         options = {"xatol": 1e-9 * f.ridge_wavelength}
-        return float(minimize_scalar(lambda at: float(height(at)), bounds=ends, method="bounded", options=options).fun)
+        return float(
+            scipy.optimize.minimize_scalar(
+                lambda at: float(height(at)), bounds=ends, method="bounded", options=options
+            ).fun
+        )
 
     def skin(self, s: ArrayLike) -> Array:
         """Return the depth of the outer surface."""
