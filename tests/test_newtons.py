@@ -142,6 +142,14 @@ def test_force_that_was_interrupted_goes_on(tmp_path, last):
         fp.run(scene().replace(force=1.1 * FORCE), out=out)
 
 
+def test_profile_that_does_not_fit_is_refused_at_once(monkeypatch):
+    """Runs of their own are not tried: they would be refused as well."""
+    monkeypatch.setattr(traces, "whole", None)
+    short = scene().replace(slices={"radius": 6e-3, "length": 1e-3})
+    with pytest.raises(SceneError, match="the finger ends at z"):
+        fp.run(short)
+
+
 def test_accuracy_takes_runs_of_their_own():
     with pytest.raises(newtons.Unsuited, match="an accuracy is asked for"):
         newtons.run(scene(accuracy={"mu_app": 0.05}), None)

@@ -9,7 +9,7 @@ import pytest
 from benchmarks.harness import DOCS, Made, keep, kept
 from benchmarks.limits import Limit
 from benchmarks.paper import __main__ as command
-from benchmarks.paper import fields, friction
+from benchmarks.paper import fields, friction, states
 from benchmarks.paper.statement import BUILT, HOLDS, NOT
 from fingerpad.scene import Scene
 
@@ -118,3 +118,34 @@ def test_page_in_git_is_of_its_numbers(tmp_path):
         assert asdict(found) | {"numbers": None} == told | {"numbers": None}
         assert found.numbers == pytest.approx(told["numbers"], rel=1e-9)
     assert command.draw(tmp_path).read_text(encoding="utf-8").count("| **") == len(numbers["statements"])
+
+
+def test_states_without_paths_are_compared_with_paths(tmp_path):
+    """Equal to one of a load's states, or listed with all of them; a path that failed is left out."""
+    rows = [
+        {"f_ext": 5.0, "voltage": u, "f_t": f_t, "ridges": 7, "reached": reached, "other": other, "factorisations": n,
+         "processor_seconds": seconds}
+        for u, f_t, reached, other, n, seconds in (
+            (200.0, 7.4, "path", None, 90, 30.0), (150.0, 4.0, "full slip from voltage 200 V", 3.9, 6, 2.0),
+            (100.0, 2.0, "full slip from voltage 150 V", None, 3, 1.0), (50.0, 1.4, "path", None, 80, 30.0),
+        )
+    ]  # fmt: skip
+    of_paths = {200.0: 7.4 * (1 + 1e-7), 150.0: 3.9, 100.0: 2.1, 50.0: None}
+    found = {
+        (5.0, u): {"full_slip_f_t": f_t, "full_slip_ridges_in_contact": 7, "processor_seconds": 10.0}
+        for u, f_t in of_paths.items()
+    }
+    listed = states.beside(rows, found)
+    assert [each["voltage"] for each in listed] == [200.0, 150.0, 100.0]
+    numbers = {"default": rows, "larger": rows, "beside": listed, "seconds_of_paths": [10.0]}
+    assert states.shown(tmp_path) is None
+    keep("paper_states", numbers, MADE, tmp_path)
+    shown = states.shown(tmp_path)
+    assert [each.voltage for each in shown["equal"]] == [200.0, 150.0]
+    assert [each.voltage for each in shown["two"]] == [150.0, 100.0]
+    assert (shown["direct"], shown["factorisations"], shown["seconds"]) == (2, 4.5, 63.0)
+    keep("paper", command.collect(tmp_path / "runs"), MADE, tmp_path)
+    page = command.draw(tmp_path).read_text(encoding="utf-8")
+    assert "2 of 3 states have the path's friction force to 1e-6" in page
+    assert "| 5 | 150 | 3.900000 | 7 | 4.000000, 3.900000 |" in page
+    assert "| 5 | 100 | 2.100000 | 7 | 2.000000 |" in page

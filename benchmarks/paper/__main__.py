@@ -19,7 +19,7 @@ import numpy as np
 from benchmarks import newtons
 from benchmarks.errors import known
 from benchmarks.harness import keep, kept, made, main, page, picture, run
-from benchmarks.paper import energy, fields, friction, scenes
+from benchmarks.paper import energy, fields, friction, scenes, states
 from benchmarks.paper.statement import BUILT, HOLDS, IN_PART, NOT, Statement
 from benchmarks.runs import FORCES, VOLTAGES, Run
 from fingerpad.slices import errors
@@ -101,6 +101,7 @@ def draw(docs: Path) -> Path:
         "sites": _sites(statements),
         "grid": {key: np.array(values) for key, values in numbers.get("grid", {}).items()},
         "middle": None,
+        "states": states.shown(docs),
     }
     if names["grid"]:
         picture(docs / "paper_friction.png", (10, 4), lambda figure: friction.paint(figure, names["grid"]))
@@ -108,7 +109,8 @@ def draw(docs: Path) -> Path:
         found = kept("newtons", docs).numbers
         newtons.picture(found, docs)
         names |= newtons.compared(found)
-    return page(docs, "paper", "make paper", globals() | names, *["newtons"] * sums)
+    further = ["newtons"] * sums + ["paper_states"] * (names["states"] is not None)
+    return page(docs, "paper", "make paper", globals() | names, *further)
 
 
 if __name__ == "__main__":
