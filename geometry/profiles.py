@@ -19,6 +19,8 @@ import scipy  # its parts are imported where they are used first: to read a scen
 from numpy.typing import ArrayLike, NDArray
 
 if TYPE_CHECKING:
+    from scipy.spatial import cKDTree
+
     from geometry.parameters import Fingertip
 
 Array = NDArray[np.float64]
@@ -184,7 +186,7 @@ class Profiles:
         return self._mean_depth - self._ridge_height(s)
 
     @cached_property
-    def _along(self) -> tuple[Array, Array, cKDTree]:
+    def _along(self) -> tuple[Array, Array, "cKDTree"]:
         count = _ALONG * self.finger.ridge_count + 1
         s: Array = np.linspace(-self.ridged_arc, self.ridged_arc, count, dtype=np.float64)
         xy = self.point(s, self.skin(s))
