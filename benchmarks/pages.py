@@ -38,6 +38,7 @@ PAGES = {
     "errors": "benchmarks.errors",
     "hero": "benchmarks.hero",
     "measured": "benchmarks.measured.__main__",
+    "microscale": "benchmarks.microscale.__main__",
     "models": "benchmarks.models",
     "newtons": "benchmarks.newtons",
     "paper": "benchmarks.paper.__main__",

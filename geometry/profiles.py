@@ -18,11 +18,13 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.integrate import cumulative_simpson
 from scipy.optimize import minimize_scalar
+from scipy.spatial import cKDTree
 
 if TYPE_CHECKING:
     from geometry.parameters import Fingertip
 
 Array = NDArray[np.float64]
+_ALONG = 400  # places a ridge, between which the skin is straight
 _PHASES = np.linspace(0, np.pi, 2001)  # rad, half a period of a ridge's profile, which is even
 
 
@@ -178,6 +180,21 @@ class Profiles:
     def skin(self, s: ArrayLike) -> Array:
         """Return the depth of the outer surface."""
         return self._mean_depth - self._ridge_height(s)
+
+    @cached_property
+    def _along(self) -> tuple[Array, Array, cKDTree]:
+        count = _ALONG * self.finger.ridge_count + 1
+        s: Array = np.linspace(-self.ridged_arc, self.ridged_arc, count, dtype=np.float64)
+        xy = self.point(s, self.skin(s))
+        return s, xy, cKDTree(xy)
+
+    def along_skin(self, points: Array) -> Array:
+        """Return the arc lengths (m) of points on the ridged skin, shape (n,), from their places (m), shape (n, 2)."""
+        s, xy, tree = self._along
+        nearest = np.clip(tree.query(points)[1], 1, len(s) - 2)
+        before, after = xy[nearest - 1], xy[nearest + 1]
+        part = ((points - before) * (after - before)).sum(axis=1) / ((after - before) ** 2).sum(axis=1)
+        return np.asarray(s[nearest - 1] + part * (s[nearest + 1] - s[nearest - 1]))
 
     def sc_ve(self, s: ArrayLike) -> Array:
         """Return the depth of the junction of stratum corneum and viable epidermis, parallel to the skin."""

@@ -10,7 +10,7 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from benchmarks import newtons
 from benchmarks.runs import VOLTAGES, plain
@@ -18,6 +18,9 @@ from fingerpad.scene import Scene
 from fingerpad.scene.parameters import Slices
 from fingerpad.slices.total import at_force
 from fingerpad.slices.trace import trace
+from variational.roughness.bam import BearingArea
+from variational.roughness.boundary_elements import BoundaryElements
+from variational.state import ContactState
 
 FORCE = 75.0  # N/m
 SIZES = (40e-6, 20e-6)  # m, contact sizes; the difference of their numbers is the stated error
@@ -51,7 +54,25 @@ NEWTONS = (0.05, 0.1, 0.2, 0.3, 0.5, 0.75, 1.0, 1.2)  # N; the traces end at som
 HIGH = 200.0  # V
 STATES = (("charged", 0.0), ("charged", HIGH), ("full_slip", 0.0), ("full_slip", HIGH))
 Sums = Mapping[str, Array]
-"""``gross_area``, ``contact_area`` (m²) and ``depth`` (m) at :data:`NEWTONS`, as ``charged_0_gross_area``."""
+"""``gross_area``, ``contact_area``, ``exact_area``, ``bearing_area`` (m²) and ``depth`` (m) at :data:`NEWTONS`, as
+``charged_0_gross_area``: gross contact, that of the ridges, and that of asperities on them by two closures."""
+CLOSURES: dict[str, BearingArea | BoundaryElements] = {
+    "exact": BoundaryElements(Scene().h_0),
+    "bearing": BearingArea(Scene().h_0),
+}
+"""Closures that give the area of asperities at the pressures of the runs, whose own one is the second."""
+
+
+def asperities(closure: str, contact_length: ArrayLike, f_contact: ArrayLike) -> Array:
+    """Return the length (m) of asperities in contact, by the mean pressure over the ridges' contact.
+
+    Args:
+        closure: a name of :data:`CLOSURES`.
+        contact_length: of the ridges (m).
+        f_contact: contact force per length (N/m), of the same shape.
+    """
+    law, length = CLOSURES[closure], np.asarray(contact_length, dtype=float)
+    return length * law.statistics(np.clip(np.asarray(f_contact) / length, *law.pressures)).area
 
 
 def sums(known: Mapping[str, Any], fine: Mapping[str, Array] | None = None) -> Sums:
@@ -72,9 +93,22 @@ def sums(known: Mapping[str, Any], fine: Mapping[str, Array] | None = None) -> S
                 replace(point, contact_length=float(length), ridges_in_contact=int(ridges))
                 for point, length, ridges in zip(points, *other, strict=True)
             ]
+        for closure in CLOSURES:
+            real = [
+                replace(point, contact_length=float(asperities(closure, point.contact_length, _contact(point))))
+                for point in points
+            ]
+            of_real = trace(real, Scene().geometry.ridge_wavelength)
+            areas = [at_force(newtons.finger(), of_real, force, Slices().count) for force in NEWTONS]
+            found[f"{state}_{voltage:g}_{closure}_area"] = np.array([total.totals["contact_area"] for total in areas])
         traced = trace(points, Scene().geometry.ridge_wavelength)
         totals = [at_force(newtons.finger(), traced, force, Slices().count) for force in NEWTONS]
         for name in ("gross_area", "contact_area"):
             found[f"{state}_{voltage:g}_{name}"] = np.array([total.totals[name] for total in totals])
         found[f"{state}_{voltage:g}_depth"] = np.array([total.delta for total in totals])
     return found
+
+
+def _contact(point: ContactState) -> float:
+    """Return what the screen bears (N/m)."""
+    return point.f_ext + (point.f_electrostatic if point.voltage else 0.0)

@@ -89,6 +89,20 @@ def _power(g: Grid, name: str, *ranges: tuple[float, ...]) -> Row:
     return numbers | {"other_high": found[-1].max()}, by_share(float(near.mean()))
 
 
+def _real_area(g: Grid) -> Row:
+    """Judge the area of asperities at full slip, by exact contact; the numbers have that of whole fingers in mm²."""
+
+    def lengths(a: Mapping[str, Array]) -> Mapping[str, Array]:
+        force = a["full_slip_f_t"] / (coefficient(Scene()) or 1.0)
+        return {"real": fingers.asperities("exact", a["full_slip_contact_length"], force)}
+
+    numbers, verdict = _power(g._replace(fine=lengths(g.fine), coarse=lengths(g.coarse)), "real", *AMPLITUDES)
+    for name in fingers.CLOSURES:
+        area = 1e6 * g.full_finger[f"full_slip_200_{name}_area"]
+        numbers |= {f"{name}_least": float(area.min()), f"{name}_most": float(area.max())}
+    return numbers, verdict
+
+
 def _trend(g: Grid, holds: Callable[[Mapping[str, Array]], NDArray[np.bool_]], **more: float) -> Row:
     """Return at how many loads a statement holds, on either mesh, and the verdict by the finer one."""
     fine, coarse = holds(g.fine), holds(g.coarse)
@@ -249,6 +263,7 @@ def numbers(g: Grid, runs: Mapping[str, Any]) -> dict[str, Row]:
         "friction_voltage": _power(g, "full_slip_f_t", VOLTAGES[1:]),
         "friction_range": _power(g, "full_slip_f_t", *AMPLITUDES),
         "area_voltage": _power(g, "full_slip_contact_length", *AMPLITUDES),
+        "real_area": _real_area(g),
         "friction_slip": _friction_slip(g),
         "area_before": _apparent(g, "charged_200", "charged_0", _same),
         "area_after": _apparent(g, "full_slip_200", "full_slip_0", _falls),

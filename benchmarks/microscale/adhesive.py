@@ -22,10 +22,10 @@ from variational.roughness.halfspace import NoContactError, press
 from variational.roughness.topography import HeightMap
 
 Array = NDArray[np.float64]
-_TOLERANCE = 1e-3  # of the mean attraction: what the gaps would change it by
+_TOLERANCE = 3e-3  # of the mean attraction: what the gaps would change it by
 _IN_A_ROW = 3  # iterations within it
 _PART = 0.5
-_ITERATIONS = 60
+_ITERATIONS = 150
 
 
 class Adhered(NamedTuple):

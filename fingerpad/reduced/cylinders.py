@@ -27,6 +27,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from fingerpad.model.adhesion import sticking
 from fingerpad.model.cautions import breakdown, on_states
 from fingerpad.reduced import cylinder_errors
 from fingerpad.reduced.model import STATES, Model, reduced_state, refuse_others
@@ -304,7 +305,8 @@ def _solved(
             moduli = hertz_modulus(radius, forces, length)
             found = Cylinder(radius, moduli, scene.h_0, closure).under_loads(forces, voltage)
     except NoEquilibriumError as error:
-        raise SceneError(f"{WORDS[state]} of the model 'cylinders': {error}") from None
+        why = "; ".join(filter(None, (str(error), sticking(closure, scene.volts))))
+        raise SceneError(f"{WORDS[state]} of the model 'cylinders': {why}") from None
     states = []
     for each, count, ridge in zip(f_ext, ridges, found, strict=True):
         n = int(count)

@@ -38,7 +38,7 @@ class Curve:
 
     def __call__(self, x: Array) -> tuple[Array, Array]:
         """Return values and derivatives at abscissas inside the range, of any shape."""
-        k = np.clip(((x - self._low) / self._step).astype(np.int64), 0, self._last)
+        k = np.minimum(((x - self._low) / self._step).astype(np.int64), self._last)
         t = x - (self._low + k * self._step)
         a, b, c, d = self._c.take(k, axis=1)
         return ((a * t + b) * t + c) * t + d, (3 * a * t + 2 * b) * t + c
@@ -135,7 +135,8 @@ class TabulatedClosure(Closure):
     def __call__(self, p_c: ArrayLike) -> AirGap:
         """Return the air gap at mean contact pressures (Pa), held below p_floor and beyond the table's pressures."""
         p_c = np.asarray(p_c, dtype=float)
-        held = np.clip(p_c, *self.pressures)
+        low, high = self.pressures
+        held = np.minimum(np.maximum(p_c, low), high)
         value, slope = self._gaps(np.log(held))
         d_eq = np.exp(value)
         return AirGap(d_eq, np.where(held == p_c, d_eq * slope / held, 0.0))

@@ -1,0 +1,268 @@
+"""Closures of rough contact side by side, and what they make of friction.
+
+environment/run python3 -m benchmarks.microscale [--jobs 2] [--draw]     some ten minutes: contacts, a few full runs
+
+Air gap, area and attraction over pressure of every closure; µ_app of charged cylinders over force and voltage with
+each, and of a few full runs; the independent numbers that the tables of gaps must reproduce; and the contact whose
+attraction deforms. Writes docs/microscale.json, and from it docs/microscale.md and its picture.
+"""
+
+import argparse
+import sys
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from benchmarks import harness
+from benchmarks.microscale import contacts
+from fingerpad.reduced import cylinders
+from fingerpad.results import style
+from fingerpad.scene import Scene
+from fingerpad.scene.messages import SceneError
+from variational.attraction.electroadhesion import VACUUM_PERMITTIVITY
+from variational.roughness.bam import BearingArea
+from variational.roughness.boundary_elements import BoundaryElements
+from variational.roughness.persson import Persson
+from variational.roughness.tabulated import TabulatedClosure
+
+_LIMIT = 3600.0  # s of processor time for one run
+PRESSURES = (2e3, 5e3, 10e3, 20e3, 50e3, 100e3, 200e3)
+FORCES, VOLTAGES = (25.0, 75.0, 150.0), tuple(float(u) for u in range(0, 201, 10))
+NUMBER = 200.0  # V, of the paper's screen
+READINGS = {"rms": 1.0, "amplitude": 0.5**0.5, "peak to peak": 0.125**0.5}
+"""Effective voltage of a sine over the number that is read in this way."""
+CIRCUIT = {
+    f"{name}, circuit": {"waveform": "sine", key: NUMBER, "frequency": 1e3}
+    for name, key in (("rms", "rms"), ("amplitude", "amplitude"), ("peak to peak", "peak_to_peak"))
+}
+"""Drives of a sine of 1 kHz over screen, leaking gap and skin, the electric table below."""
+ELECTRIC = {"tissue": "dry", "leak": "sliding dry"}
+PAPER, NEAR = 0.55, 0.1  # µ_app at 75 N/m; what counts as equal to it
+GAPS = (1.5e-6, 2.5e-6)  # m, published equivalent air gaps
+_FINE = 100e-6 / 64
+Law = BearingArea | TabulatedClosure
+
+
+def laws() -> dict[str, Law]:
+    """Return the closures of the page by words."""
+    h_0 = Scene().h_0
+    return {
+        "bearing area": BearingArea(h_0),
+        "boundary elements": BoundaryElements(h_0),
+        "boundary elements, no field in contact": BoundaryElements(h_0, field_in_contact=False),
+        "boundary elements, waves to 1.6 µm": BoundaryElements(h_0, shortest_wave=_FINE),
+        "boundary elements, waves to 1.6 µm, no field in contact": BoundaryElements(
+            h_0, shortest_wave=_FINE, field_in_contact=False
+        ),
+        "Persson's theory": Persson(h_0),
+        "Persson's theory, no field in contact": Persson(h_0, field_in_contact=False),
+    }
+
+
+FULL = {  # words: closure and effective voltage
+    "bearing area, rms": ("bearing area", NUMBER),
+    "boundary elements, peak to peak": ("boundary elements", round(NUMBER * READINGS["peak to peak"], 1)),
+    "boundary elements, no field in contact, amplitude": (
+        "boundary elements, no field in contact",
+        round(NUMBER * READINGS["amplitude"], 1),
+    ),
+}
+
+
+def full_scenes() -> dict[str, Scene]:
+    """Return the scenes of the full runs by words."""
+    mesh = {"contact": 10e-6, "receptor": 20e-6}
+    output = {"errors": False, "receptors": False}
+    return {
+        words: Scene(roughness=laws()[law], voltage=voltage, mesh=mesh, output=output)
+        for words, (law, voltage) in FULL.items()
+    }
+
+
+# -- numbers -------------------------------------------------------------------------------------------------
+def over_pressure(law: Law) -> dict[str, Any]:
+    """Return what a closure has at the pressures of the page, and from which voltage a ridge would stick."""
+    p = np.array(PRESSURES)
+    gaps = law.statistics(p, NUMBER)
+    spread = law.spread(p) if isinstance(law, TabulatedClosure) else np.zeros_like(p)
+    found = {"d_eq": gaps.d_eq, "spread": spread, "area": gaps.area, "u_bar": gaps.u_bar, "broken": gaps.broken_down}
+    found["pull"] = VACUUM_PERMITTIVITY / 2 * gaps.inverse_square  # Pa/V²
+    return {name: values.tolist() for name, values in found.items()} | {"sticking": law.sticking_voltage()}
+
+
+def friction(law: Law, f_ext: float, voltage: float | Mapping[str, Any]) -> dict[str, float] | None:
+    """Return full slip of the charged cylinders under a voltage (V) or a drive, None without an equilibrium."""
+    electric: dict[str, Any] = ELECTRIC if isinstance(voltage, Mapping) else {}
+    try:
+        scene = Scene(roughness=law, f_ext=f_ext, voltage=voltage, electric=electric)  # type: ignore[arg-type]
+        found = cylinders.solve(scene)
+    except SceneError:
+        return None
+    slip = found.full_slip
+    assert slip is not None
+    p_c = found.record["full_slip_p_c"]
+    inside = law.statistics(np.clip(p_c, *law.pressures))
+    length = slip.contact_length
+    return {
+        "mu_app": slip.mu_app, "p_c": p_c, "d_eq": found.record["full_slip_d_eq"], "area": float(inside.area),
+        "length": length, "beyond": float(not law.pressures[0] <= p_c <= law.pressures[1]),
+    }  # fmt: skip
+
+
+def _given() -> dict[str, float | Mapping[str, Any]]:
+    """Return the effective voltage (V) or the drive of each reading of the paper's number."""
+    return {**{name: NUMBER * part for name, part in READINGS.items()}, **CIRCUIT}
+
+
+def compute(args: argparse.Namespace) -> None:
+    """Compute and keep the numbers."""
+    exact = {"direct": contacts.direct(), "grids": contacts.grids(), "adhesive": contacts.adhesive()}
+    full = harness.run(full_scenes(), args, _LIMIT)
+    closures = laws()
+    keys = ("full_slip_mu_app", "full_slip_contact_length", "full_slip_f_electrostatic", "failure")
+    found = {
+        "closures": {words: over_pressure(law) for words, law in closures.items()},
+        "read": {
+            words: {reading: friction(law, 75.0, given) for reading, given in _given().items()}
+            for words, law in closures.items()
+        },
+        "curves": {
+            words: {f"{f:g}": [_mu(friction(law, f, u)) for u in VOLTAGES] for f in FORCES}
+            for words, law in closures.items()
+        },
+        "full": {words: {key: summary.get(key) for key in keys} for words, summary in full.items()},
+    }
+    harness.keep("microscale", found | exact, harness.made(full.values()), args.docs)
+
+
+def _mu(found: Mapping[str, float] | None) -> float | None:
+    return None if found is None else found["mu_app"]
+
+
+# -- page ----------------------------------------------------------------------------------------------------
+FULL_OF = {words: (words.rpartition(", ")[0], words.rpartition(", ")[2]) for words in FULL}
+"""Closure and reading of each full run."""
+
+
+def _agrees(found: Mapping[str, float] | None) -> dict[str, bool]:
+    """Return whether air gap and friction are those that were published."""
+    if found is None:
+        return {"gap": False, "friction": False}
+    gap = GAPS[0] <= found["d_eq"] <= GAPS[1]
+    return {"gap": gap, "friction": abs(found["mu_app"] / PAPER - 1) <= NEAR}
+
+
+def _line(found: Mapping[str, float] | None) -> str:
+    """Return friction, pressure, air gap and area of a state as cells."""
+    if found is None:
+        return harness.cells(None, None, None, None)
+    more = ">" * bool(found["beyond"])
+    area = f"{100 * found['area']:.0f}"
+    return f"{more}{found['mu_app']:.2f} | {found['p_c'] * 1e-3:.0f} | {found['d_eq'] * 1e6:.2f} | {more}{area}"
+
+
+def _reaches(values: list[float | None]) -> float | None:
+    """Return the voltage (V) at which a curve over VOLTAGES passes the paper's friction."""
+    known = [(u, mu) for u, mu in zip(VOLTAGES, values, strict=True) if mu is not None]
+    u, mu = (np.array(each) for each in zip(*known, strict=True))
+    return float(np.interp(PAPER, mu, u)) if mu.max() >= PAPER else None
+
+
+def _pair(found: tuple[float, float], known: tuple[float, float | None]) -> str:
+    other = f"{known[0]:g}" + (f" ± {known[1]:g}" if known[1] is not None else "")
+    return f"{found[0]:.3g} ± {found[1]:.2g} | {other}"
+
+
+def _compared(numbers: Mapping[str, Any]) -> tuple[list[tuple[str, float, str]], list[bool]]:
+    """Return the rows of independent numbers, and whether each with a scatter lies within it."""
+    rows, inside = [], []
+    for size, words in (("wide", "4, 6.25 µm"), ("narrow", "1, 1.56 µm")):
+        found, known = numbers["direct"][size], contacts.KNOWN[size]
+        for k, p in enumerate(contacts.PRESSURES):
+            rows.append((words, p, " | ".join(_pair(found[n][k], known[n][k]) for n in range(3))))
+        for one, other in zip(found, known, strict=False):
+            pairs = zip(one, other, strict=True)
+            inside += [abs(mine[0] - mean) <= scatter for mine, (mean, scatter) in pairs if scatter is not None]
+    return rows, inside
+
+
+def draw(docs: Path) -> Path:
+    """Draw the page and its picture from the kept numbers."""
+    numbers = harness.kept("microscale", docs).numbers
+    harness.picture(docs / "microscale.png", (10, 5), lambda figure: _paint(figure, numbers))
+    read = [
+        (words, reading, found, _agrees(found))
+        for words, row in numbers["read"].items()
+        for reading, found in row.items()
+    ]
+    solved = [found for words, _, found, _ in read if words != "bearing area" and found]
+    rows, inside = _compared(numbers)
+    needed = [_reaches(curves["75"]) for words, curves in numbers["curves"].items() if words != "bearing area"]
+    deformed = [row for row in numbers["adhesive"] if row["in_contact"] and row["voltage"] >= 70]
+    areas = {row["pixels"]: row["values"][2] for row in numbers["grids"] if row["p_c"] == PRESSURES[1]}
+    gaps = [mean for mean, _ in numbers["direct"]["wide"][3]]
+    names = {
+        "read": read,
+        "both": [f"{words} ({reading})" for words, reading, _, agrees in read if all(agrees.values())],
+        "friction_only": [f"{w} ({r})" for w, r, _, agrees in read if agrees["friction"] and not agrees["gap"]],
+        "exact": [found["d_eq"] * 1e6 for found in solved],
+        "loads": [found["p_c"] * 1e-3 for found in solved],
+        "others": lambda reading: _ends(
+            [row[reading]["mu_app"] for words, row in numbers["read"].items() if words != "bearing area"]
+        ),
+        "mu": lambda words, reading: numbers["read"][words][reading]["mu_app"],
+        "gap": lambda found, k: _gap(found["d_eq"][k] * 1e6, found["spread"][k] * 1e6),
+        "line": _line, "reaches": _reaches, "compared": rows, "inside": sum(inside), "known_pairs": inside,
+        "least_voltage": min(u for u in needed if u), "most_voltage": max(u for u in needed if u),
+        "broken": [part for found in numbers["closures"].values() for part in found["broken"]],
+        "first_off": deformed[0], "area_error": areas[min(areas)] / areas[max(areas)],
+        "gap_span": f"{max(gaps):.2f} to {min(gaps):.2f} µm; other code has 5.60 to 1.37 µm", "kPa": 1e-3,
+    }  # fmt: skip
+    return harness.page(docs, "microscale", "python3 -m benchmarks.microscale", globals() | names)
+
+
+def _ends(values: list[float]) -> tuple[float, float]:
+    return min(values), max(values)
+
+
+def _gap(value: float, spread: float) -> str:
+    return f"{value:.2f}" + (f" ± {spread:.2f}" if spread else "")
+
+
+def _paint(figure: Figure, numbers: Mapping[str, Any]) -> None:
+    gap, area, mu = figure.subplots(1, 3)
+    p = np.array(PRESSURES) * 1e-3
+    for k, (words, found) in enumerate(numbers["closures"].items()):
+        look = {"color": style.CATEGORIES[k], "marker": style.MARKERS[k], "ms": 4}
+        d_eq, spread = (np.array(found[name]) * 1e6 for name in ("d_eq", "spread"))
+        gap.plot(p, d_eq, label=words, **look)
+        gap.fill_between(p, d_eq - spread, d_eq + spread, color=look["color"], alpha=0.25, lw=0)
+        area.plot(p, 100 * np.array(found["area"]), **look)
+        values = [np.nan if value is None else value for value in numbers["curves"][words]["75"]]
+        mu.plot(VOLTAGES, values, color=look["color"])
+    gap.axhspan(GAPS[0] * 1e6, GAPS[1] * 1e6, color="0.85", zorder=0)
+    gap.set(xscale="log", yscale="log", ylabel="equivalent air gap (µm)", title="A  grey: published gaps")
+    area.set(xscale="log", yscale="log", ylabel="area in contact (% of the ridge's)", title="B")
+    for ax, marks in ((gap, (0.2, 0.5, 1, 2, 5)), (area, (0.5, 1, 2, 5, 10, 20, 50))):
+        ax.set_yticks(marks, [f"{mark:g}" for mark in marks])
+        ax.set_xticks((2, 5, 10, 20, 50, 100, 200), ("2", "5", "10", "20", "50", "100", "200"))
+        ax.minorticks_off()
+        ax.grid(alpha=0.3)
+    mu.grid(alpha=0.3)
+    mu.axhline(PAPER, color="0.5", ls="--", zorder=0)
+    mu.set(
+        xlabel="effective voltage (V)",
+        ylabel="µ_app at full slip (–)",
+        ylim=(0.2, 1.2),
+        title="C  75 N/m; dashed: 0.55",
+    )
+    for ax in (gap, area):
+        ax.set(xlabel="mean contact pressure (kPa)")
+    figure.legend(*gap.get_legend_handles_labels(), loc="outside lower center", ncols=2)
+
+
+if __name__ == "__main__":
+    sys.exit(harness.main(__doc__, compute, draw))

@@ -1,0 +1,52 @@
+"""Contact whose attraction deforms: without deformation it is the closure's, and a weak attraction hardly deforms."""
+
+import numpy as np
+import pytest
+
+from benchmarks.microscale.adhesive import attraction_of, pressed
+from variational.roughness.halfspace import NoContactError, press
+from variational.roughness.spectrum import SelfAffine
+
+H_0, MODULUS = 0.514e-6, 4 / 3 * 1e6
+
+
+@pytest.fixture(scope="module")
+def rough():
+    spectrum = SelfAffine(3.1e-6, 0.75, 100e-6, plateau=False, shortest=12.5e-6)
+    return spectrum.surface((64, 64), (200e-6, 200e-6), 2)
+
+
+@pytest.mark.parametrize("in_contact", [True, False])
+def test_balance(rough, in_contact):
+    """The screen bears external pressure and attraction, to the iteration's 3e-3 of the attraction."""
+    found = pressed(rough, 20e3, MODULUS, H_0, 50.0, in_contact, deforms=False)
+    assert found.p_c == pytest.approx(20e3 + found.attraction, abs=6e-3 * found.attraction)
+
+
+def test_undeformed_attraction_is_that_of_the_contact(rough):
+    """Eq. 3 over the gaps of the contact under the whole pressure, to what 3e-3 of the attraction changes of it."""
+    found = pressed(rough, 20e3, MODULUS, H_0, 70.0, True, deforms=False)
+    alone = press(rough, found.p_c, MODULUS)
+    exact = attraction_of(alone.gap, alone.pressure > 0, 70.0, H_0, True).mean()
+    assert found.attraction == pytest.approx(float(exact), rel=5e-3)
+
+
+def test_weak_attraction_hardly_deforms(rough):
+    """At 10 V both agree within 1 %; at 70 V the deformed one attracts less: contact balances it on the spot."""
+    weak = [pressed(rough, 20e3, MODULUS, H_0, 10.0, True, deforms).attraction for deforms in (False, True)]
+    assert weak[1] == pytest.approx(weak[0], rel=0.01)
+    strong = [pressed(rough, 20e3, MODULUS, H_0, 70.0, True, deforms).attraction for deforms in (False, True)]
+    assert strong[1] < 0.95 * strong[0]
+
+
+def test_gap_of_a_wave_under_uniform_attraction(rough):
+    """A uniform attraction deforms nothing but the mean."""
+    even = np.full(rough.heights.shape, 5e3)
+    found = press(rough, 20e3, MODULUS, attraction=even)
+    np.testing.assert_array_equal(found.gap, press(rough, 20e3, MODULUS).gap)
+
+
+def test_no_rest(rough, monkeypatch):
+    monkeypatch.setattr("benchmarks.microscale.adhesive._ITERATIONS", 2)
+    with pytest.raises(NoContactError, match="attraction and gaps do not settle at 20000 Pa and 50 V"):
+        pressed(rough, 20e3, MODULUS, H_0, 50.0, True, deforms=True)
