@@ -129,6 +129,7 @@ def test_tail_of_the_pressure_of_a_point():
     assert u[near, 0] - u[far, 0] == pytest.approx(exact, rel=0.05)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("mean", [0.02, 0.1, 0.4])
 def test_same_as_contact_mechanics(rough, mean):
     """Area, mean gap and pressures of another program on the same map (MIT licence), where it is installed.
