@@ -30,7 +30,8 @@ import numpy as np
 from mpi4py import MPI
 
 from benchmarks import harness
-from fingerpad.accuracy.solves import Solve, StateRecorder, solve_again
+from fingerpad.accuracy.solves import solve_again
+from fingerpad.accuracy.states import Solve, StateRecorder
 from fingerpad.model.finger import Step
 from fingerpad.model.options import FingerModel, plan
 from fingerpad.model.simulation import Simulation

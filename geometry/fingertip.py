@@ -19,10 +19,13 @@ Array = NDArray[np.float64]
 _MM = 1e3  # gmsh's tolerances suit models in mm
 _HALF_ARC = 5e-3  # m
 _SAMPLES = 32  # spline points a ridge
+_FROM_EDGES = 0.5  # growth of the element size from where contact ends
 _SHARP_SAMPLES = 128  # of the VE-D junction, whose tips have a radius of some um
 
 
-def build(finger: Fingertip, size: MeshSize, receptors: bool = True, half: bool = False) -> float:
+def build(
+    finger: Fingertip, size: MeshSize, receptors: bool = True, half: bool = False, edges: tuple[float, ...] = ()
+) -> float:
     """Mesh the fingertip in the current gmsh session, with physical groups from :mod:`geometry.tags`.
 
     Args:
@@ -30,6 +33,7 @@ def build(finger: Fingertip, size: MeshSize, receptors: bool = True, half: bool 
         size: of its elements.
         receptors: whether elements are small at the tips of the intermediate ridges, just below the Merkel sites.
         half: leave it at the half at x >= 0, with half of ridge 0; else its mirror image is added.
+        edges: arc lengths (m) >= 0 where contact ends, about which facets have the size ``edge``.
 
     Returns:
         The length of gmsh's unit in m.
@@ -37,18 +41,18 @@ def build(finger: Fingertip, size: MeshSize, receptors: bool = True, half: bool 
     Raises:
         GeometryError: see :mod:`geometry.sizing`.
     """
-    _half(finger, size, receptors).put("meshed finger", whole=not half)
+    _half(finger, size, receptors, edges).put("meshed finger", whole=not half)
     return 1 / _MM
 
 
 @lru_cache(maxsize=4)  # a path's half and whole, and after meshes for three errors the one for the penalty's effect
-def _half(finger: Fingertip, size: MeshSize, receptors: bool) -> HalfMesh:
+def _half(finger: Fingertip, size: MeshSize, receptors: bool, edges: tuple[float, ...]) -> HalfMesh:
     """Mesh the half at x >= 0 in the current gmsh session, see :func:`build`."""
     profiles = check(finger, size)
     touching = [j for j in touching_ridges(finger, size) if j >= 0]
     curves = _curves(profiles, touching)
     _surfaces(curves)
-    _sizes(profiles, size, curves, touching, receptors)
+    _sizes(profiles, size, curves, touching, receptors, np.array(edges))
     gmsh.model.mesh.generate(2)
     swap_corners()
     gmsh.model.mesh.setOrder(2)
@@ -234,7 +238,7 @@ def _surfaces(c: _Curves) -> None:
             gmsh.model.addPhysicalGroup(1, curves, tags.ridge(j), f"ridge {j}")
 
 
-def _sizes(p: Profiles, size: MeshSize, c: _Curves, touching: list[int], receptors: bool) -> None:
+def _sizes(p: Profiles, size: MeshSize, c: _Curves, touching: list[int], receptors: bool, edges: Array) -> None:
     """Set the element size: smallest of several cones, each growing from what needs fine elements."""
     f = p.finger
     fields = gmsh.model.mesh.field
@@ -244,8 +248,11 @@ def _sizes(p: Profiles, size: MeshSize, c: _Curves, touching: list[int], recepto
         for key, value in what.items():
             fields.setNumbers(distance, key, value)
         fields.setNumber(distance, "Sampling", 40)
-        growth = fields.add("MathEval")
-        fields.setString(growth, "F", f"{smallest * _MM} + {slope} * F{distance}")
+        growth, largest = fields.add("Threshold"), max(size.coarsest, smallest)
+        values = {"SizeMin": smallest * _MM, "SizeMax": largest * _MM, "DistMin": 0.0}
+        values["DistMax"] = max(largest - smallest, 1e-9) / slope * _MM
+        for key, value in {"InField": distance, **values}.items():
+            fields.setNumber(growth, key, value)
         return int(growth)
 
     # The tips that can touch, as points half a facet apart.
@@ -257,6 +264,8 @@ def _sizes(p: Profiles, size: MeshSize, c: _Curves, touching: list[int], recepto
         tips = _mesh_points(p.point(middles, p.ve_d(middles)))
         cones.append(cone(size.receptor, growth_from_tips(size), PointsList=tips))
     cones.append(cone(size.interface, size.growth, CurvesList=c.wavy))
+    if len(edges):
+        cones.append(cone(size.edge, _FROM_EDGES, PointsList=_mesh_points(p.point(edges, p.skin(edges)))))
     cap = fields.add("MathEval")
     fields.setString(cap, "F", str(size.coarsest * _MM))
     smallest = fields.add("Min")

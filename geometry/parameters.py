@@ -101,9 +101,10 @@ class Fingertip(Table):
 class MeshSize(Table):
     """Element sizes of the fingertip's mesh (m); elements grow linearly with the distance from the finest ones."""
 
-    contact: ElementSize = 5e-6
+    contact: ElementSize = 10e-6
     """Length of surface facets where ridges can touch: a quarter of the wavelength at most, and twice the least radius
-    of curvature of the skin there. Range: below 10 nm skin is no continuum; 10 mm is the finger itself."""
+    of curvature of the skin there. Where contact ends, facets of named states are a sixteenth of it. Range: below 10 nm
+    skin is no continuum; 10 mm is the finger itself."""
     receptor: ElementSize = 5e-6
     """Element size at the tips of the intermediate ridges, just below the Merkel sites, of ridges that can touch. These
     tips have a radius of 6 µm, and energy densities at the sites need an element of that size. Friction and contact
@@ -122,3 +123,16 @@ class MeshSize(Table):
     ridges."""
     touching_fraction: Annotated[Finite, within(1e-3, 1)] = 0.4
     """Part of a ridge's period, around its crest, that can touch. Grooves have coarser facets."""
+
+    @property
+    def edge(self) -> float:
+        """Length (m) of facets where contact ends, of states whose ends are known.
+
+        The pressure falls as a root there, and the error of a length in contact is of first order in these facets.
+        """
+        return self.contact / 16
+
+    def scaled(self, factor: float) -> "MeshSize":
+        """Return sizes, and the growth of the elements, times a factor."""
+        sizes = {name: getattr(self, name) * factor for name in ("contact", "receptor", "interface", "coarsest")}
+        return self.model_copy(update=sizes | {"growth": min(self.growth * factor, 1.0)})

@@ -3,8 +3,8 @@
 import math
 
 import numpy as np
+import scipy  # its parts are imported where they are used first: to read a scene needs none
 from numpy.typing import NDArray
-from scipy.spatial import cKDTree
 
 from geometry.parameters import Fingertip, MeshSize
 from geometry.profiles import GeometryError, Profiles
@@ -52,14 +52,26 @@ def check(finger: Fingertip, size: MeshSize) -> Profiles:
             f"contact size {size.contact:g} m is too large for a ridge of {finger.ridge_wavelength:g} m: "
             f"at most a quarter of it, {finger.ridge_wavelength / 4:g} m"
         )
-    arcs = profiles.touching_arcs(size.touching_fraction, finger.ridge_wavelength / _SAMPLES)
-    radius = float(profiles.radius(arcs).min())
+    radius = _least_radius(profiles, size)
     if size.contact > _TURN * radius:
         raise GeometryError(
             f"contact size {size.contact:g} m is too large for skin that has a radius of curvature of {radius:.3g} m "
             f"where it can touch, by ridge_profile and ridge_amplitude: at most {_rounded_down(_TURN * radius):g} m"
         )
     return profiles
+
+
+def _least_radius(profiles: Profiles, size: MeshSize) -> float:
+    """Return the least radius of curvature (m) of the skin where it can touch."""
+    arcs = profiles.touching_arcs(size.touching_fraction, profiles.finger.ridge_wavelength / _SAMPLES)
+    return float(profiles.radius(arcs).min())
+
+
+def coarser(finger: Fingertip, size: MeshSize, factor: float) -> MeshSize:
+    """Return element sizes times a factor, as far as the ridges can have them."""
+    largest = min(finger.ridge_wavelength / 4, _TURN * _least_radius(Profiles(finger), size))
+    coarse = size.scaled(factor)
+    return coarse.model_copy(update={"contact": max(size.contact, min(coarse.contact, largest))})
 
 
 def least_triangles(finger: Fingertip, size: MeshSize, receptors: bool = True, half: bool = False) -> float:
@@ -232,6 +244,6 @@ def _rounded_down(value: float) -> float:
 
 def _signed_distance(points: Array, curve: Array, inward: Array) -> tuple[NDArray[np.intp], Array]:
     """Return the index of the nearest curve point and the distance, positive on the side of ``inward``."""
-    distance, nearest = cKDTree(curve).query(points)
+    distance, nearest = scipy.spatial.cKDTree(curve).query(points)
     side = ((points - curve[nearest]) * (inward - curve)[nearest]).sum(axis=-1)
     return nearest, np.sign(side) * distance

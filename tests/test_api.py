@@ -41,9 +41,9 @@ def test_every_name_is_there():
 # -- a run -------------------------------------------------------------------------------------------------
 @pytest.mark.mpi
 def test_run_without_a_folder_writes_nothing(ran, tmp_path, monkeypatch):
-    """And its result is that of the run with a folder, bit for bit on one rank; errors are estimated after it."""
+    """And its result is that of the run with a folder, bit for bit on one rank."""
     monkeypatch.chdir(tmp_path)
-    found = fp.run(from_data(SMALL).replace(output={"errors": False}))
+    found = fp.run(from_data(SMALL))
     assert list(tmp_path.iterdir()) == []
     assert found.full_slip.mu_app == pytest.approx(ran[0].full_slip.mu_app, rel=1e-12)
 

@@ -301,7 +301,7 @@ def process(kind: str, number: int, *words: str) -> int:
     return done.returncode
 
 
-MOMENTS = [("solve", 9), ("part", 3), ("row", 40), *(("solve", n) for n in random.Random(1).sample(range(2, 36), 7))]
+MOMENTS = [("solve", 9), ("part", 3), ("row", 40), *(("solve", n) for n in random.Random(1).sample(range(2, 21), 7))]
 
 
 @pytest.fixture(scope="module")

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 
-from fingerpad.accuracy.solves import StateRecorder
+from fingerpad.accuracy.states import StateRecorder
 from fingerpad.model.checks import FullSlip
 from fingerpad.scene import from_data
 from geometry.bodies import block

@@ -20,7 +20,8 @@ from variational.history import BodyField, History, SkinField
 from variational.problem import Problem
 from variational.solvers.continuation import Continuation, StepFailed, Target
 from variational.solvers.outcome import NotConverged
-from variational.solvers.transfer import restore, take_snapshot
+from variational.solvers.snapshot import take_snapshot
+from variational.solvers.transfer import restore
 
 pytestmark = pytest.mark.mpi
 DT = 0.5

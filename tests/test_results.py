@@ -9,7 +9,7 @@ import pytest
 from mpi4py import MPI
 from petsc4py import PETSc
 
-from fingerpad.accuracy.solves import StateRecorder
+from fingerpad.accuracy.states import StateRecorder
 from fingerpad.model import report
 from fingerpad.model.checks import FullSlip
 from fingerpad.model.state import force_error
@@ -242,7 +242,7 @@ def test_refined_states_come_with_their_errors(refined):
     assert set(found["quantities"]["charged_contact_length"]["shares"]) == {"contact", "bulk"}
     assert set(found["quantities"]["full_slip_mu_app"]["shares"]) == {"contact", "bulk"}
     again = found["solves"][1]
-    assert again["factorisations"] < found["solves"][0]["factorisations"] / 2
+    assert again["factorisations"] < found["solves"][0]["factorisations"]
     assert summary["full_slip_f_t"] == pytest.approx(0.25 * summary["full_slip_f_contact"], rel=1e-6)
 
 
@@ -251,9 +251,10 @@ def test_headline_states_are_shown_on_the_final_mesh(refined):
     folder, summary, titles = refined
     final = summary["accuracy"]["mesh"]["contact"]
     assert summary["path_mesh"]["contact"] == 40e-6 > final
-    assert summary["unknowns_path"] < summary["unknowns"] == summary["accuracy"]["solves"][-1]["unknowns"]
+    *_, last, _ = summary["accuracy"]["solves"]  # that of the penalty's effect is the last one
+    assert summary["unknowns_path"] < summary["unknowns"] == last["unknowns"]
     assert {float(row["mesh_contact"]) for row in rows_of(folder)} == {40e-6}
-    path, end = "path on the starting mesh, contact size 40 µm", f"final mesh, contact size {final * 1e6:.3g} µm"
+    path, end = "path on its own mesh, contact size 40 µm", f"final mesh, contact size {final * 1e6:.3g} µm"
     for name in ("finger_press", "finger_charge", "finger_slide", "history", "Partial slip"):
         assert path in titles.get(name, path), name
     for name in ("finger_charged_normal_contact", "finger_full_slip", "Charged normal contact", "Full slip"):

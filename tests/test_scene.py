@@ -24,7 +24,7 @@ SCENES = Path(__file__).parent.parent / "demos/scenes"
 def test_default_scene():
     scene = scenes.load()
     assert scene == Scene()
-    assert (scene.f_ext, scene.voltage, scene.friction, scene.mesh.contact) == (75.0, 200.0, 0.25, 5e-6)
+    assert (scene.f_ext, scene.voltage, scene.friction, scene.mesh.contact) == (75.0, 200.0, 0.25, 10e-6)
     assert scene.loads() == (
         Load(name="press", f_ext=75.0),
         Load(name="charge", voltage=200.0),

@@ -13,7 +13,8 @@ from tests.measures import straightened
 from tests.test_contact import MU_F, over
 from variational.solvers.continuation import Continuation, StepFailed, Target
 from variational.solvers.outcome import NotConverged
-from variational.solvers.transfer import interpolate, restore, take_snapshot
+from variational.solvers.snapshot import take_snapshot
+from variational.solvers.transfer import interpolate, restore
 
 pytestmark = pytest.mark.mpi
 H_0, FORCE, VOLTAGE = 0.514e-6, 4.4, 150.0
@@ -326,5 +327,5 @@ def test_another_body_and_other_ridges_are_refused(bodies, reached):
     with pytest.raises(ValueError, match="of another body"):
         restore(reached[COARSE][1], other.coupling)
     state = reached[COARSE][1]
-    with pytest.raises(ValueError, match="ridges 0 to 1 that can touch and the mesh 0 to 0"):
-        restore(replace(state, d_eq=state.d_eq | {1: 1e-6}), prepare(bodies[FINE]).coupling)
+    with pytest.raises(ValueError, match="ridges 1 to 1 that can touch and the mesh 0 to 0"):
+        restore(replace(state, d_eq={1: 1e-6}), prepare(bodies[FINE]).coupling)

@@ -148,6 +148,11 @@ class Problem:
         self._h_0 = h_0 = constant(interface.h_0)
         self.share = None if interface.share is None else fem.Function(cellwise)
         voltage = self.voltage if self.share is None else self.voltage * self.share
+        self._springs: list[fem.Constant] = []
+
+        def of_springs(value: float) -> fem.Constant:
+            self._springs.append(constant(value))
+            return self._springs[-1]
 
         w, v = self.w, ufl.TestFunction(self.V)
         H = ufl.grad(w)
@@ -187,9 +192,10 @@ class Problem:
             cache(lambda: self._skin_stress(F) * normal),
             self.p_el * self.area,
             lambda: self._skin_stiffness(solids, cellwise),
-            constant,
+            of_springs,
         )
         formulation = interface.formulation
+        self._skin = skin
         self.contact = Contact(skin, formulation.springs(skin), friction, self.guess, self.ease)
         self.opening = formulation.opening(skin, self.contact)
         dS = surface.measure
@@ -288,6 +294,23 @@ class Problem:
                 getattr(self._friction, name).value = getattr(friction, name)
         self._h_0.value = h_0
         self.interface = replace(self.interface, friction=friction, h_0=h_0)
+
+    def set_formulation(self, formulation: "Formulation") -> None:
+        """Give the contact's formulation other numbers.
+
+        Args:
+            formulation: of the present kind.
+
+        Raises:
+            ValueError: it is of another kind, so that the forms would be others.
+        """
+        if type(formulation) is not type(self.interface.formulation):
+            raise ValueError(f"contact is {formulation}; it must be {self.interface.formulation} with other numbers")
+        values: list[float] = []
+        formulation.springs(replace(self._skin, constant=values.append))
+        for constant, value in zip(self._springs, values, strict=True):
+            constant.value = value
+        self.interface = replace(self.interface, formulation=formulation)
 
     def set_air_gaps(self, d_eq: np.ndarray) -> None:
         """Give each ridge its equivalent air gap (m), shape (ridges,), and its share of the voltage."""

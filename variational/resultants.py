@@ -116,6 +116,11 @@ class Observer:
             one_way = total[0] == total[1] == total[2]
         return float(total[3] / total[0]), bool(one_way)
 
+    def highest_pressure(self, state: SurfaceState) -> float:
+        """Return the highest contact pressure (Pa of current area) at all ranks' points."""
+        highest = float(np.max(state.p_n / np.hypot(state.area_x, state.area_y), initial=0.0))
+        return float(np.max(self.problem.mesh.comm.allgather(highest)))
+
     def penetration(self, state: SurfaceState) -> float:
         """Return how deep the skin is in the screen where it bears pressure (m), the largest of all ranks' points."""
         deepest = float(np.max(-state.y, where=state.p_n > 0, initial=0.0))

@@ -24,6 +24,7 @@ class Errors:
     mu_app: float = math.nan
     f_t: float = math.nan
     contact_length: float = math.nan
+    p_max: float = math.nan
     f_contact: float = math.nan
     f_electrostatic: float = math.nan
     bone_height: float = math.nan
@@ -137,6 +138,8 @@ class ContactState:
     ridges_in_contact: int
     contact_length: float
     """Sum over the ridges (m)."""
+    p_max: float = math.nan
+    """Highest contact pressure on the skin (Pa of current area); NaN where a model has none."""
     slipping: float = math.nan
     """Part of the points in contact that slip."""
     all_slip: bool = False
@@ -217,7 +220,16 @@ class ContactState:
 
 
 CONDITIONS = ("step", "load", "f_ext", "voltage", "bone_x")
-RESULTS = ("f_t", "mu_app", "f_electrostatic", "f_contact", "bone_height", "ridges_in_contact", "contact_length")
+RESULTS = (
+    "f_t",
+    "mu_app",
+    "f_electrostatic",
+    "f_contact",
+    "bone_height",
+    "ridges_in_contact",
+    "contact_length",
+    "p_max",
+)
 _FIELDS = fields(ContactState)[: [f.name for f in fields(ContactState)].index("record")]
 _LAST = tuple(f for f in fields(ContactState) if f.name in ("mesh_contact", "time"))  # columns where they are known
 

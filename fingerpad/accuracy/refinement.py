@@ -1,20 +1,26 @@
-r"""Results with their discretisation error, refined until the error is within the accuracy of a scene.
+r"""Named states on a final mesh with their discretisation errors, refined until these are within what a scene asks for.
 
-The whole path of the loads is run once, on the mesh that the scene gives (a coarse one where it has an accuracy and
-no sizes). Two of its states are then restored on other meshes and solved for again
-(:mod:`variational.solvers.transfer`): normal contact, the last state before the bone moves, and full slip. Changing one
-mesh parameter at a time gives each its share of the error (:mod:`fingerpad.richardson`):
+**Two meshes.** Full slip does not depend on the path of the loads where the same ridges touch. So a path is followed on
+elements twice as large as those that the scene gives, and its named states, normal contact and full slip, are restored
+on the final mesh and solved for again (:mod:`variational.solvers.transfer`). That mesh has the scene's sizes, and
+facets of a sixteenth where the contact of its states ends (:mod:`fingerpad.accuracy.edges`). The difference of the two
+meshes makes the estimated error (:func:`fingerpad.richardson.of_two_meshes`), without a further solve. Where other
+ridges touch on the final mesh, or a state is not found there, the path is followed on the scene's sizes, and states on
+elements twice as large are solved for instead.
 
-* ``contact``: size of the facets that can touch,
+**An accuracy** that a scene asks for is met on one mesh after the other. The path is followed once, on the mesh that
+the scene gives (a coarse one where it gives no sizes). Changing one mesh parameter at a time gives each its share of
+the error (:mod:`fingerpad.richardson`):
+
+* ``contact``: size of the facets that can touch, and of those where contact ends,
 * ``bulk``: growth of the elements, their size on the junctions, and the coarsest,
 * ``receptor``: size at the tips below the Merkel sites; left out where only other quantities are asked for,
 * ``steps``: of the loads, which matters where friction keeps a history, to normal contact; from a path with steps
   twice as long, up to there, on the first mesh. Full slip does not depend on the path.
 
-Where errors are asked for, each parameter is halved in turn and the states go on from there; then those with the
-largest shares again, until the estimate is within what is allowed, or the run reports that it is not. Where only an
-estimate is wanted, the mesh stays and each size is doubled: that costs less than the states did. A state in which
-another number of ridges touches is noted; it appears as a large share.
+Each parameter is halved in turn and the states go on from there; then those with the largest shares again, until the
+estimate is within what is allowed, or the run reports that it is not. A state in which another number of ridges touches
+is noted; it appears as a large share.
 
 The result is the *estimated discretisation error*: the estimate with its factors of safety, which in whole runs
 covers the known errors of nine of ten numbers (``docs/accuracy.md``). It is of the mesh, over the screen as it is. The
@@ -26,20 +32,19 @@ Not estimated: the effect on normal contact of a friction history that is the fi
 import math
 from collections.abc import Mapping
 from dataclasses import fields, replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-from fingerpad.accuracy.solves import Solve, Solves, quantities
+from fingerpad.accuracy.solves import Solves
+from fingerpad.accuracy.states import Solve, quantities
+from fingerpad.model.simulation import RestartRequired
 from fingerpad.results.interrupt import Interrupted
 from fingerpad.results.quantities import QUANTITIES, Output
 from fingerpad.results.states import WORDS
-from fingerpad.richardson import MeshParameter, errors, plus_minus, rigid, to_refine
+from fingerpad.richardson import TWO, MeshParameter, errors, of_two_meshes, plus_minus, rigid, to_refine
 from geometry.profiles import GeometryError
 from variational.element import ELEMENTS
 from variational.solvers.continuation import StepFailed
 from variational.state import RESULTS, ContactState, Errors
-
-if TYPE_CHECKING:
-    from fingerpad.model.simulation import RestartRequired
 
 _SIZES = {"contact": ("contact",), "bulk": ("growth", "interface", "coarsest"), "receptor": ("receptor",)}
 _ROUNDS = 6  # of refinement
@@ -83,25 +88,28 @@ class Refinement:
             )
         if self.asked and not path.states:
             raise StepFailed("accuracy is given and the history has neither normal contact nor full slip")
+        if self.asked:
+            path = replace(path, states={name: state for name, state in path.states.items() if name != "uncharged"})
         self.base = self._stepped = path
         self.failure, self.notes = "", list[str]()
+        self._two: dict[str, float] = {}
         self._met = not self.asked
         self.penalty: dict[str, float] = {}
         self.stiffer = model.contact.over_stiffer_screen()
-        self.to_come = 0
+        self.to_come = 1
         receptors = "sed" in self.asked or (not self.asked and model.options.receptors)
-        keys = [key for key in _SIZES if key != "receptor" or receptors]
+        keys = [key for key in _SIZES if key != "receptor" or receptors] if self.asked else []
         if model.options.friction and "charged" in path.states and {"contact_length", "sed"} & set(self.asked):
             keys.append("steps")
-        degree = ELEMENTS[model.numerics.element].degree
-        self.parameters = {key: MeshParameter(degree=degree) for key in keys}
+        self.degree = ELEMENTS[model.numerics.element].degree
+        self.parameters = {key: MeshParameter(degree=self.degree) for key in keys}
         self.refinements = dict.fromkeys(keys, 0)
 
-    def run(self) -> "RestartRequired | None":
+    def run(self) -> RestartRequired | None:
         """Estimate, and refine until what is asked for is met or cannot be; collective.
 
         Returns:
-            What must be added to the model and why, where a path with other steps turns out to need it.
+            What must be changed of the model and why, where the path turns out to need it.
 
         Raises:
             Interrupted: ``pause`` stopped the run.
@@ -110,9 +118,11 @@ class Refinement:
             if self.asked:
                 self._refine()
             elif self.base.states:
-                for key in self.parameters:
-                    self._record(key, self._on_mesh({key: -1}), self.base)
+                restart = self._sharpen()
+                if restart is not None:
+                    return restart
                 self._report()
+                self._penalty(self.base)
         except Interrupted:
             raise
         except (StepFailed, GeometryError) as error:
@@ -120,20 +130,46 @@ class Refinement:
                 self.failure = f"the accuracy asked for could not be established: {error}"
             else:
                 self._note(f"discretisation errors could not be estimated: {error}")
-        if self.solves.restart is None and self.stiffer is not None and self.base.states:
-            self.to_come = 1
-            self._stiffen()
         return self.solves.restart
 
-    def _stiffen(self) -> None:
-        """Solve again over a screen of twice the stiffness."""
-        assert self.stiffer is not None
+    def _sharpen(self) -> RestartRequired | None:
+        """Solve the states again on the mesh that the scene gives, finest where their contact ends.
+
+        Returns:
+            That the path must be followed on that mesh, where other ridges touch than on the path's.
+        """
+        path, model, solves = self.base, self.model, self.solves
+        final = model.mesh if model.final is None else model.final
+        reason = ""
         try:
-            found = self.solves.over_stiffer_screen(self.base, self.stiffer)
-        except (StepFailed, GeometryError) as error:
-            self._note(f"the effect of the penalty could not be estimated: {error}")
+            sharp = solves.on_mesh(final, path.states, True, self.stiffer)
+            others = [name for name in path.states if _ridges(path, name) != _ridges(sharp, name)]
+            if others:
+                name = others[0]
+                reason = (
+                    f"{_ridges(sharp, name)} ridges touch at {WORDS[name]} on the final mesh, and on that of the path "
+                )
+                reason += f"{_ridges(path, name)}"
+        except StepFailed as error:
+            if model.mesh == final:
+                raise
+            reason = str(error)
+        if reason and model.mesh != final:
+            return RestartRequired(f"{reason}; the path is followed on the final mesh", model.changed(mesh=final))
+        coarser = model.coarser(final)
+        coarse = path if path.mesh == coarser else solves.on_mesh(coarser, path.states)
+        facets = {name: (coarse.states[name].facet, state.facet) for name, state in sharp.states.items()}
+        self._two = of_two_meshes(coarse.parts(), sharp.parts(), facets, self.degree)
+        self.base = sharp
+        return None
+
+    def _penalty(self, solve: Solve) -> None:
+        """Estimate what a rigid screen would change, from states over one of twice the stiffness."""
+        if solve.stiffer is None:
+            if solve.soft:
+                self._note(f"the effect of the penalty could not be estimated: {solve.soft}")
             return
-        self.penalty = rigid(self.base.values(), found.values())
+        self.penalty = rigid(solve.values(), solve.stiffer.values())
         listed = []
         for name, value in self.penalty.items():
             if "_sed_" not in name:
@@ -155,8 +191,12 @@ class Refinement:
             todo = to_refine(self.parameters, self.allowed())
             if not todo:
                 self._met = True
-                return
-        self.failure = f"the estimate is not within the accuracy asked for after {_ROUNDS} refinements"
+                break
+        else:
+            self.failure = f"the estimate is not within the accuracy asked for after {_ROUNDS} refinements"
+        if self.stiffer is not None and self.solves.restart is None:
+            self.to_come = 1
+            self._penalty(self.solves.on_mesh(self.base.mesh, self.base.states, stiffer=self.stiffer))
 
     def allowed(self) -> dict[str, float]:
         """Return the largest error allowed of each quantity that is asked for, in its unit."""
@@ -172,6 +212,8 @@ class Refinement:
 
     def estimates(self) -> dict[str, float]:
         """Return the estimated error of each quantity, in its unit; none before every parameter was changed."""
+        if not self.asked:
+            return self._two
         if not all(parameter.changes for parameter in self.parameters.values()):
             return {}
         return errors(self.parameters, list(self.base.values()))
@@ -203,7 +245,7 @@ class Refinement:
         """Return the states in use on the scene's mesh with sizes halved so often."""
         first = self.model.mesh
         sizes = {size: getattr(first, size) / 2**n for key, n in refinements.items() for size in _SIZES.get(key, ())}
-        return self.solves.on_mesh(first.model_copy(update=sizes), self.base.states)
+        return self.solves.on_mesh(first.model_copy(update=sizes), self.base.states, True)
 
     def _step_scale(self, refinements: int) -> float:
         return self.model.numerics.step_scale * 0.5**refinements
@@ -222,6 +264,8 @@ class Refinement:
         """Return how errors were found, ready for JSON; collective."""
         values, found, allowed = self.base.values(), self.estimates(), self.allowed()
         shares = {name: {k: p.share(name) for k, p in self.parameters.items() if p.acts_on(name)} for name in found}
+        if not self.asked:
+            shares = {name: {"mesh": error / TWO} for name, error in found.items()}
         quantities_ = {
             name: {
                 "value": values[name],
@@ -265,6 +309,10 @@ def errors_of(name: str, changes: Mapping[str, float]) -> Errors:
     """Return the changes of a named state's quantities, of those by key; densities at receptors are left out."""
     known = {field.name for field in fields(Errors)}
     return Errors(**{k: v for key, v in changes.items() if (k := key.removeprefix(f"{name}_")) in known and k != key})
+
+
+def _ridges(solve: Solve, name: str) -> int:
+    return solve.states[name].state.ridges_in_contact
 
 
 def _named(key: str) -> tuple[Output, str]:

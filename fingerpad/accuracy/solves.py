@@ -1,27 +1,27 @@
 """The states of a path solved for again: on other meshes, with other steps, over a stiffer screen; and their cost."""
 
-import math
-import time
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field, replace
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from mpi4py import MPI
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
+from fingerpad.accuracy import edges
+from fingerpad.accuracy.states import Solve, State, StateRecorder
+from fingerpad.model.checks import FingerExceeded
 from fingerpad.model.options import FingerModel
 from fingerpad.model.record import Viewer
 from fingerpad.model.simulation import RestartRequired, Simulation
-from fingerpad.results.drawing import View
-from fingerpad.results.states import WORDS, before_sliding
+from fingerpad.results.states import SLIDE_ON, WORDS
 from fingerpad.scene import Load
 from geometry.parameters import MeshSize
+from geometry.profiles import Profiles
 from variational.contact.formulation import Formulation
-from variational.output import Receptors
 from variational.solvers.continuation import StepFailed
-from variational.solvers.transfer import StateSnapshot, take_snapshot
-from variational.state import ContactState
+from variational.solvers.snapshot import StateSnapshot
+from variational.solvers.transfer import restore
 
 if TYPE_CHECKING:
     from fingerpad.model.finger import Step
@@ -29,140 +29,138 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 
 
-@dataclass(frozen=True)
-class State:
-    """A state that can be solved again, the same on every rank."""
+class StateSolver(Simulation):
+    """A finger on a mesh of its own, on which states from elsewhere are solved for, without a path."""
 
-    snapshot: StateSnapshot
-    direction: int
-    """The way the bone slides at full slip, zero in normal contact."""
-    state: ContactState
-    lengths: Array
-    """Length in contact (m) of every ridge of the finger, shape (ridges,)."""
-    sed: dict[int, float]
-    """Strain energy density (J/m^3) at the Merkel sites of the ridges that can touch."""
+    def re_equilibrate(self, snapshot: StateSnapshot, name: str, direction: int = 0) -> None:
+        """Solve again for a state that was reached on another mesh of the same finger; collective.
 
+        Args:
+            snapshot: the state.
+            name: what it is called in a failure.
+            direction: 1 or -1 for a state of full slip, the way the bone slides; zero for another.
 
-@dataclass(frozen=True)
-class Solve:
-    """States on one mesh, and what they cost."""
+        Raises:
+            StepFailed: no equilibrium was found from there, or it is none (forces out of balance, skin where it was not
+                expected to touch), or full slip is no longer full or not steady.
+        """
+        restore(snapshot, self.finger.coupling, direction * SLIDE_ON)
+        self._balance(name)
+        again = f"{name}, solved again with a contact size of {self.finger.contact_size:g} m"
+        try:
+            steady = not direction or self._slip.slides_on(name, direction)
+        except FingerExceeded as error:
+            raise StepFailed(f"{again}: {error}") from error
+        if self._restart is not None:
+            raise StepFailed(f"{again}: {self._restart.reason}")
+        if not steady:
+            raise StepFailed(f"{again}, is not steady")
 
-    states: dict[str, State]
-    """By ``charged`` and ``full_slip``."""
-    mesh: MeshSize
-    unknowns: int
-    factorisations: int
-    processor_seconds: float
-    """Of this rank."""
-    views: dict[str, View] = field(default_factory=dict)
-    """What tables and pictures show of states that were solved again, by name."""
+    def over_stiffer_screen(self, formulation: Formulation, name: str, direction: int = 0) -> None:
+        """Solve the present state again over springs of twice the stiffness, which bear the same friction; collective.
 
-    def values(self) -> dict[str, float]:
-        """Return the quantities of interest, by the prefix of the state and the name of the quantity."""
-        return {
-            f"{name}_{quantity}": value
-            for name, state in self.states.items()
-            for quantity, value in quantities(name, state).items()
-        }
+        Args:
+            formulation: the contact over that screen.
+            name: of the state.
+            direction: as in :meth:`re_equilibrate`.
 
-    def parts(self) -> dict[str, ArrayLike]:
-        """Return the same, contact lengths by ridge, shape (ridges,)."""
-        lengths = {f"{name}_contact_length": state.lengths for name, state in self.states.items()}
-        return {**self.values(), **lengths}
+        Raises:
+            StepFailed: no equilibrium was found from there.
+        """
+        problem = self.finger.problem
+        place = problem.history.followed(self.finger.continuation.surface_state.history)["anchor"]
+        elastic = problem.history.accepted["anchor"] - place
+        problem.history.accept({"anchor": place + elastic / 2 - direction * SLIDE_ON})
+        problem.set_formulation(formulation)
+        self._balance(name)
 
-
-def quantities(name: str, state: State) -> dict[str, float]:
-    """Return the quantities of interest of a named state, in SI; friction is that of full slip.
-
-    Without a force that presses the finger there is no coefficient.
-    """
-    wanted = ("f_t", "mu_app", "contact_length") if name == "full_slip" else ("contact_length",)
-    values = {quantity: float(getattr(state.state, quantity)) for quantity in wanted}
-    found = {quantity: value for quantity, value in values.items() if not math.isnan(value)}
-    return found | {f"sed_{j}": value for j, value in state.sed.items()}
-
-
-class StateRecorder:
-    """Keeps the two states of a path as it goes: normal contact, and the last full slip that was held."""
-
-    def __init__(self, simulation: Simulation) -> None:
-        """Find the Merkel sites of the ridges that can touch."""
-        self._simulation = simulation
-        self._start = time.process_time()
-        finger = simulation.finger
-        ridges, profiles = finger.problem.surface.ridge_numbers, finger.profiles
-        sites = profiles.merkel_sites()[[profiles.ridges.index(j) for j in ridges]]
-        self._sites = Receptors(finger.problem, sites)
-        self._begun: State | None = None  # the last full slip, held or not
-        self.states: dict[str, State] = {}
-        self.views: dict[str, View] = {}
-
-    def record(self, step: "Step") -> None:
-        """Record an accepted step; collective."""
-        states, state = self._simulation.states, step.state
-        if state.ridges_in_contact > 0 and not step.touches and len(before_sliding(states)) == len(states):
-            self.keep("charged")
-        if state.slip_began == state.step:
-            self._begun = self._state(1 if state.f_t >= 0 else -1)
-        if state.slip_held and self._begun is not None:
-            self.states["full_slip"] = self._begun
-
-    def kept(self) -> dict[str, Any]:
-        """Return what another process needs to go on with the path."""
-        return {"states": self.states, "begun": self._begun}
-
-    def resume(self, kept: Mapping[str, Any]) -> None:
-        """Go on from what another process kept."""
-        self.states, self._begun = kept["states"], kept["begun"]
-
-    def keep(self, name: str) -> None:
-        """Keep the present state; collective."""
-        direction = 1 if self._simulation.finger.solver.reaction[0] <= 0 else -1
-        self.states[name] = self._state(direction * (name == "full_slip"))
-
-    def _state(self, direction: int) -> State:
-        f = self._simulation.finger
-        loads = f.ridge_loads()
-        lengths = np.zeros(f.profiles.finger.ridge_count)
-        lengths[np.array(f.ridges) + len(lengths) // 2] = loads.length
-        sed = {j: float(density) for j, density in zip(f.problem.surface.ridge_numbers, self._sites.sed(), strict=True)}
-        present = self._simulation.present(loads).state
-        return State(take_snapshot(f.coupling, f.continuation.surface_state), direction, present, lengths, sed)
-
-    def solve(self) -> Solve:
-        """Return what was kept."""
-        f, seconds = self._simulation.finger, time.process_time() - self._start
-        return Solve(self.states, f.size, f.unknowns, f.solver.counts.factorisations, seconds, self.views)
+    def _balance(self, name: str) -> None:
+        """Solve for an equilibrium from the present fields, and accept it."""
+        finger = self.finger
+        self._load = name
+        finger.continuation.re_equilibrate(name)
+        self.energy = finger.book()  # what was dissipated on the way is not known
+        loads = finger.ridge_loads()
+        finger.check_balance(loads, name)
+        self.states.append(self._slip.placed(self.states, self.present(loads).state, probe=False))
+        try:
+            self._restart = self._zone_exceeded(loads)
+        except FingerExceeded as error:
+            raise StepFailed(f"{name}: {error}") from error
+        if self._restart is not None:
+            raise StepFailed(f"{name}: {self._restart.reason}")
 
 
-def over_stiffer(snapshot: StateSnapshot) -> StateSnapshot:
-    """Return a state whose springs, of twice the stiffness, bear the same friction."""
-    halved = {j: {**ridge.history, "anchor": ridge.history["anchor"] / 2} for j, ridge in snapshot.skin.items()}
-    skin = {j: replace(ridge, history=halved[j]) for j, ridge in snapshot.skin.items()}
-    return replace(snapshot, skin=skin)
+def solve_again(
+    model: FingerModel,
+    states: Mapping[str, State],
+    comm: MPI.Comm,
+    views: bool = False,
+    stiffer: Formulation | None = None,
+) -> Solve:
+    """Solve for states of a finger on meshes that are finest where their contact ends; collective.
 
-
-def solve_again(model: FingerModel, states: Mapping[str, State], comm: MPI.Comm, views: bool = False) -> Solve:
-    """Solve for states of a finger on a model's mesh; collective.
+    Normal contact and full slip have a mesh each, that of a normal contact which is symmetric is of half the finger.
 
     Args:
-        model: with the mesh, and the parts that the states have.
+        model: with the element sizes, and the parts that the states have.
         states: as they were found on another mesh.
         comm: communicator of the mesh.
         views: whether tables and pictures are to show the states (:attr:`Solve.views`).
+        stiffer: the contact over a screen of twice the stiffness, where the states are wanted over that too.
 
     Raises:
-        StepFailed: see :meth:`fingerpad.model.simulation.Simulation.re_equilibrate`.
+        StepFailed: see :meth:`StateSolver.re_equilibrate`.
     """
-    simulation = Simulation(model, comm)
-    recorder, finger = StateRecorder(simulation), simulation.finger
+    normal = {name: state for name, state in states.items() if not state.direction}
+    options = replace(model.options, both_halves=model.options.both_halves and not model.options.symmetric_start)
+    slips = {name: state for name, state in states.items() if state.direction}
+    solves = [_solve(model.changed(options=options), normal, comm, views, stiffer)] if normal else []
+    solves += [_solve(model, slips, comm, views, stiffer)] if slips else []
+    return together(solves)
+
+
+def _solve(
+    model: FingerModel, states: Mapping[str, State], comm: MPI.Comm, views: bool, stiffer: Formulation | None
+) -> Solve:
+    profiles = Profiles(model.geometry)
+    ends = ((edges.ends(state.snapshot, profiles, state.facet), state.facet) for state in states.values())
+    found = edges.about(ends, model.mesh)
+    simulation = StateSolver(model.changed(edges=found), comm)
+    recorder, over, finger = StateRecorder(simulation), StateRecorder(simulation), simulation.finger
+    springs, soft = finger.problem.interface.formulation, ""
     for name, state in states.items():
         simulation.re_equilibrate(state.snapshot, WORDS[name], state.direction)
         recorder.keep(name)
         if views:
             recorder.views[name] = Viewer(finger).view(simulation.present(finger.ridge_loads()))
+        if stiffer is not None:
+            try:
+                simulation.over_stiffer_screen(stiffer, WORDS[name], state.direction)
+                over.keep(name)
+            except StepFailed as error:
+                soft = str(error)
+            finger.problem.set_formulation(springs)
     finger.solver.iteration.free()
-    return recorder.solve()
+    return replace(recorder.solve(), stiffer=over.solve() if over.states and not soft else None, soft=soft)
+
+
+def together(solves: Sequence[Solve]) -> Solve:
+    """Return the states of solves on meshes of the same sizes as those of one."""
+    first, *others = solves
+    if not others:
+        return first
+    over = [solve.stiffer for solve in solves if solve.stiffer is not None]
+    return replace(
+        first,
+        states={name: state for solve in solves for name, state in solve.states.items()},
+        views={name: view for solve in solves for name, view in solve.views.items()},
+        unknowns=max(solve.unknowns for solve in solves),
+        factorisations=sum(solve.factorisations for solve in solves),
+        processor_seconds=sum(solve.processor_seconds for solve in solves),
+        stiffer=together(over) if len(over) == len(solves) else None,
+        soft=next((solve.soft for solve in solves if solve.soft), ""),
+    )
 
 
 class Solves:
@@ -197,36 +195,23 @@ class Solves:
         self.found = [path]
         self.restart: RestartRequired | None = None
 
-    def on_mesh(self, mesh: MeshSize, states: Mapping[str, State]) -> Solve:
+    def on_mesh(
+        self, mesh: MeshSize, states: Mapping[str, State], views: bool = False, stiffer: Formulation | None = None
+    ) -> Solve:
         """Return states on a mesh; collective.
 
         Args:
             mesh: element sizes.
             states: as they were found on another mesh.
+            views: whether tables and pictures are to show the states.
+            stiffer: see :func:`solve_again`.
 
         Raises:
             GeometryError: the mesh needs too much memory.
             StepFailed: a state was not found.
         """
-        return self._again(self.model.changed(mesh=mesh), states)
-
-    def over_stiffer_screen(self, base: Solve, contact: Formulation) -> Solve:
-        """Return states over a screen of twice the stiffness; collective.
-
-        Args:
-            base: the states.
-            contact: over that screen.
-
-        Raises:
-            StepFailed: a state was not found.
-        """
-        model = self.model.changed(mesh=base.mesh, contact=contact)
-        states = {name: replace(s, snapshot=over_stiffer(s.snapshot)) for name, s in base.states.items()}
-        return self._again(model, states)
-
-    def _again(self, model: FingerModel, states: Mapping[str, State]) -> Solve:
         self._pause()
-        return self._keep(solve_again(model, states, self._comm, bool(model.asked)))
+        return self._keep(solve_again(self.model.changed(mesh=mesh), states, self._comm, views, stiffer))
 
     def with_steps(self, step_scale: float) -> Solve:
         """Return normal contact on the first mesh from a path with other steps; collective.

@@ -381,5 +381,5 @@ const closedForm = (function () {
     return { mu_app: f_t / p.force, f_t, ...total, indentation: delta, centre, section: solve({ ...p, f_ext: centre }) };
   }
 
-  return { NoEquilibriumError, solve, given, whole, refuse, show, erfc };
+  return { NoEquilibriumError, solve, given, whole, refuse, show, erfc, pchip };
 })();

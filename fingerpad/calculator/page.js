@@ -265,6 +265,7 @@
     find("always").textContent = text ? "No answer at this point." : `${of}µ_app ${find("value_mu_app").textContent}${sure}`;
     find("command").textContent = command(values, given);
     draw(values, given, text ? null : found);
+    drivePage.update(values, given, (here) => answer(here, given));
   }
 
   let waiting = 0;
@@ -279,6 +280,7 @@
   for (const id of ["finger_default", "finger_given", "load_metre", "load_whole"]) find(id).onchange = update;
   for (const id of ["fields", "answers", "always"]) find(id).hidden = false;
   fields.forEach(slide);
+  drivePage.begin(later);
   update();
   addEventListener("resize", later);
 })();

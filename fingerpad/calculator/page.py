@@ -25,7 +25,8 @@ from fingerpad.scene.materials import BEARING_AREA, LARGEST_GAP
 from fingerpad.scene.remarks import LEAKAGE, skin_modulus
 from fingerpad.slices import traces
 from geometry.units import Range
-from variational.attraction.dielectric import VACUUM_PERMITTIVITY
+from variational.attraction.circuit import LEAKS
+from variational.attraction.dielectric import TISSUES, VACUUM_PERMITTIVITY
 
 _TABLE = (20.0, 50.0, 75.0, 100.0, 150.0), (0.0, 50.0, 100.0, 150.0, 200.0)  # N/m, V
 
@@ -120,17 +121,30 @@ def data() -> dict[str, Any]:
         "slices": {"radius": scene.slices.radius, "length": scene.slices.length, "nodes": nodes, "weights": weights},
         "traces": traces.CONSTANTS,
         "words": {state: WORDS[state] for state in STATES},
+        "circuits": circuits(),
         "known": {"error": error, "runs": cylinder_errors.KNOWN_RUNS}
         | {"forces": cylinder_errors.KNOWN_FORCES, "voltages": cylinder_errors.KNOWN_VOLTAGES},
     }
 
 
+def circuits() -> dict[str, Any]:
+    """Return the choices of losses by name: words, tissue and leak (ohm m²); without a tissue there are none."""
+    found: dict[str, Any] = {"lossless": {"words": "No losses (Eq. 3), at every frequency."}}
+    for name, leak in LEAKS.items():
+        tissue = "moist" if name == "moist" else "dry"
+        words = (
+            f"{tissue.capitalize()} skin, R_gap {leak.value:g} ohm m². It is likely from {leak.low:g} to {leak.high:g}."
+        )
+        found[name] = {"words": words, "tissue": asdict(TISSUES[tissue]), "leak": leak.value}
+    return found
+
+
 def page() -> str:
     """Return the page."""
     own = files("fingerpad.calculator")
-    style, closed_form, plot, program = (
+    style, closed_form, plot, drive, drive_page, program = (
         (own / name).read_text(encoding="utf-8").rstrip()
-        for name in ("page.css", "closed_form.js", "plot.js", "page.js")
+        for name in ("page.css", "closed_form.js", "plot.js", "drive.js", "drive_page.js", "page.js")
     )
     values = {
         "error": f"{100 * cylinder_errors.KNOWN_ERROR['full_slip']['mu_app']:.1f} %",
@@ -146,6 +160,8 @@ def page() -> str:
         "data": json.dumps(data(), ensure_ascii=False).replace("</", "<\\/"),
         "closed_form": closed_form,
         "plot": plot,
+        "drive": drive,
+        "drive_page": drive_page,
         "page": program,
     }
     template = (own / "page.html").read_text(encoding="utf-8")

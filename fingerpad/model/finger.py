@@ -39,6 +39,8 @@ class Step:
     attempt: Attempt
     touches: bool = False
     """Whether the bone was lowered to a first touch."""
+    ends: bool = False
+    """Whether its load is reached."""
 
 
 class Finger:
@@ -194,7 +196,7 @@ def meshed(model: "FingerModel", comm: MPI.Comm, half: bool | None = None) -> me
         return mesh.load(comm, meshfile.file(model.mesh_file, model.mesh_sha256 or ""))
     half = not model.options.both_halves if half is None else half
     refuse_sizes(model.geometry, model.mesh, model.numerics, model.options)
-    build = partial(fingertip.build, model.geometry, model.mesh, model.options.receptors, half)
+    build = partial(fingertip.build, model.geometry, model.mesh, model.options.receptors, half, model.edges)
     found = mesh.load(comm, build, tags.LAYERS.values())
     points, triangles = (found.mesh.topology.index_map(dimension).size_global for dimension in (0, 2))
     refuse_mesh(points, triangles, model)

@@ -37,6 +37,8 @@ from variational.materials.material import Material
 if TYPE_CHECKING:
     from fingerpad.scene import Load, Numerics, Scene
 
+COARSER = 2.0
+"""Sizes of the elements on which a path is followed over those with which its named states are solved again."""
 PROGRAM = 0.23e9
 """Bytes of the program itself."""
 PER_UNKNOWN = 6.3e3
@@ -126,6 +128,8 @@ class FingerModel:
         options: the parts of the model.
         geometry: shape of the finger.
         mesh: element sizes, and how many ridges can touch.
+        final: element sizes with which the named states are solved again; None where they are not.
+        edges: arc lengths (m) >= 0 about which facets are small, since contact ends there.
         mesh_file: file of a mesh, in the place of one with these sizes.
         mesh_sha256: hash of that file, as it was when the scene was given it.
         solids: material of each layer's tag.
@@ -164,12 +168,30 @@ class FingerModel:
         self.share = followed.share(scene)
         self.numerics: Numerics = scene.numerics
         self.asked: Mapping[str, float] = {} if scene.accuracy is None else scene.accuracy.tolerances()
+        self.final: MeshSize | None = None
+        self.edges: tuple[float, ...] = ()
+
+    def of_path(self) -> "FingerModel":
+        """Return the model that is led along the loads: coarser, where the named states are solved again anyway.
+
+        Full slip does not depend on the path where the same ridges touch, and a path on elements twice as large finds
+        them. The difference of the two meshes is then what the estimated error is made of.
+        """
+        if self.asked or not self.options.errors:
+            return self
+        return self.changed(mesh=self.coarser(self.mesh), final=self.mesh)
+
+    def coarser(self, mesh: MeshSize) -> MeshSize:
+        """Return element sizes :data:`COARSER` as large, as far as ridges can have them."""
+        return sizing.coarser(self.geometry, mesh, COARSER)
 
     def changed(
         self,
         *,
         options: ModelOptions | None = None,
         mesh: MeshSize | None = None,
+        final: MeshSize | None = None,
+        edges: tuple[float, ...] | None = None,
         contact: Formulation | None = None,
         loads: tuple["Load", ...] | None = None,
         numerics: "Numerics | None" = None,
@@ -178,6 +200,10 @@ class FingerModel:
         found = copy(self)
         found.options = self.options if options is None else options
         found.mesh = self.mesh if mesh is None else mesh
+        found.final = self.final if final is None else final
+        if found.final is not None:  # the same ridges can touch
+            found.final = found.final.model_copy(update={"touching_half_arc": found.mesh.touching_half_arc})
+        found.edges = self.edges if edges is None else edges
         found.contact = self.contact if contact is None else contact
         found.loads = self.loads if loads is None else loads
         found.numerics = self.numerics if numerics is None else numerics

@@ -225,7 +225,7 @@ class Report:
         """Write the tables of states on the mesh that the run ended with, by name."""
         if views:
             words = "; ".join(f"{states.WORDS[name]}: contact size {v.size:g} m" for name, v in views.items())
-            path = "steps.csv, history.png and *.bp are of the path on the starting mesh; %s"
+            path = "steps.csv, history.png and *.bp are of the mesh of the path; %s"
             self._writer.log.info(path, words)
         for state, view in views.items():
             self._tables("_final", {"of": state}, view.state, view.size)

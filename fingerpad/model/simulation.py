@@ -13,14 +13,14 @@ from fingerpad.model.checks import Checked, ContactZone, FingerExceeded, FullSli
 from fingerpad.model.finger import Finger, HalfFinger, Step
 from fingerpad.model.schedule import targets
 from fingerpad.model.state import refuse_strained, step_record
-from fingerpad.results.states import FIRST_TOUCH, SLIDE_ON
+from fingerpad.results.states import FIRST_TOUCH
 from fingerpad.scene import Load
 from variational.resultants import RidgeLoads
 from variational.solvers import checkpoint
 from variational.solvers.continuation import Attempt, Continuation, StepFailed
+from variational.solvers.snapshot import StateSnapshot, take_snapshot
 from variational.solvers.stability import Stability
 from variational.solvers.target import Target
-from variational.solvers.transfer import StateSnapshot, restore, take_snapshot
 from variational.state import ContactState
 
 if TYPE_CHECKING:
@@ -42,7 +42,8 @@ class Simulation:
     Attributes:
         finger: the finger.
         checks: stability of the state at the end of each load, at first full slip and after each jump, by step.
-        states: the accepted states so far, and states from elsewhere, which have no record of a step.
+        states: the accepted states so far. States solved for again (:mod:`fingerpad.accuracy.solves`) have no record of
+            a step.
     """
 
     def __init__(
@@ -60,7 +61,8 @@ class Simulation:
             on_step: called on every rank after each accepted step with the part of the whole history that is done.
             on_load: called on every rank when a load has been reached.
         """
-        self._model, self._comm = model, comm
+        self.model = model
+        self._comm = comm
         self.on_step, self.on_load = on_step, on_load
         self.finger = finger = Finger(model, comm, self._accepted)
         self.energy = finger.book()
@@ -88,11 +90,11 @@ class Simulation:
         Raises:
             StepFailed: a load that could not be reached; everything accepted before was reported.
         """
-        loads = self._model.loads
+        loads = self.model.loads
         moves = next((k for k, load in enumerate(loads) if load.moves), len(loads))
         first = self._loads_done
-        if moves > first and self._model.options.symmetric_start:
-            self._half = HalfFinger(self._model, self.finger, self._comm, self._accepted)
+        if moves > first and self.model.options.symmetric_start:
+            self._half = HalfFinger(self.model, self.finger, self._comm, self._accepted)
             if self._half_kept is not None:
                 checkpoint.put(self._half.path, self._half_kept)
                 self.finger.continuation.resumes = False
@@ -140,7 +142,7 @@ class Simulation:
         """
         for load in loads:
             self._load = load.name
-            for target in targets(load, self._x, self._model.numerics.step_scale):
+            for target in targets(load, self._x, self.model.numerics.step_scale):
                 if self._restart is None:
                     (self._half or self.finger.continuation).run(target)
             if self._restart is not None:
@@ -205,7 +207,7 @@ class Simulation:
         if not self._passed:
             x, self._began = float(path.solver.control.x), self._time
             self._x = x
-        *before, target = targets(load, x, self._model.numerics.step_scale)
+        *before, target = targets(load, x, self.model.numerics.step_scale)
         end = x if target.bone_x is None else target.bone_x
         direction = float(np.sign(end - x))
         seconds = load.seconds(end - x)
@@ -246,36 +248,6 @@ class Simulation:
             if self._restart is None:
                 self._restart = self._symmetry_lost()
 
-    def re_equilibrate(self, snapshot: StateSnapshot, name: str, direction: int = 0) -> None:
-        """Solve again for a state that was reached on another mesh of the same finger; collective.
-
-        Args:
-            snapshot: the state.
-            name: what it is called in a failure.
-            direction: 1 or -1 for a state of full slip, the way the bone slides; zero for another.
-
-        Raises:
-            StepFailed: no equilibrium was found from there, or it is none (forces out of balance, skin where it was not
-                expected to touch), or full slip is no longer full or not steady.
-        """
-        finger, again = self.finger, f"{name}, solved again with a contact size of {self.finger.contact_size:g} m"
-        restore(snapshot, finger.coupling, direction * SLIDE_ON)
-        self._load = name
-        finger.continuation.re_equilibrate(name)
-        self.energy = finger.book()  # what was dissipated on the way is not known
-        loads = finger.ridge_loads()
-        finger.check_balance(loads, name)
-        self.states.append(self._slip.placed(self.states, self.present(loads).state, probe=False))
-        try:
-            self._restart = self._zone_exceeded(loads)
-            steady = self._restart is not None or not direction or self._slip.slides_on(name, direction)
-        except FingerExceeded as error:
-            raise StepFailed(f"{again}: {error}") from error
-        if self._restart is not None:
-            raise StepFailed(f"{again}: {self._restart.reason}")
-        if not steady:
-            raise StepFailed(f"{again}, is not steady")
-
     def slip_to(self, target: Target) -> ContactState:
         """Return the state of another full slip, solved for from the present one; collective.
 
@@ -305,16 +277,16 @@ class Simulation:
     def _symmetry_lost(self) -> RestartRequired | None:
         """Check the stability of the present state; return that the whole finger is needed where a half is unstable."""
         stable = self.checks.check(self._load).frozen.stable
-        options = self._model.options
+        options = self.model.options
         if options.both_halves or stable:
             return None
         reason = "the half of the finger is not stable, so that the whole may not be symmetric"
-        return RestartRequired(reason, self._model.changed(options=options.with_both_halves()))
+        return RestartRequired(reason, self.model.changed(options=options.with_both_halves()))
 
     def _zone_exceeded(self, loads: RidgeLoads) -> RestartRequired | None:
         """Return that more ridges must be able to touch, where they must; collective."""
         wider = self._zone.check(loads)
-        return None if wider is None else RestartRequired(wider[1], self._model.with_ridges(wider[0]))
+        return None if wider is None else RestartRequired(wider[1], self.model.with_ridges(wider[0]))
 
     def _accepted(self, target: Target, part: float, attempt: Attempt) -> bool:
         """Check and report an accepted state; return whether the path must stop here."""
@@ -339,8 +311,8 @@ class Simulation:
         state = replace(state, record=record, time=self._time if self._timed else math.nan)
         self.states.append(state)
         part = 0.0 if touches else self._done(part)
-        done = min((self._loads_done + part) / len(self._model.loads), 1.0)
-        self.on_step(replace(step, state=state, touches=touches), done)
+        done = min((self._loads_done + part) / len(self.model.loads), 1.0)
+        self.on_step(replace(step, state=state, touches=touches, ends=part >= 1), done)
         try:
             self._restart = self._zone_exceeded(loads)
         except FingerExceeded as error:

@@ -117,8 +117,8 @@ def _listed(result: Result) -> Iterator[_Frame]:
         yield frame
     for name in ("charged", "full_slip"):
         stem = f"finger_{_file(WORDS[name])}"
-        if result.folder is not None and (result.folder / f"{stem}.npz").is_file():
-            state = result.named[name]
+        state = result.named.get(name)
+        if state is not None and result.folder is not None and (result.folder / f"{stem}.npz").is_file():
             words = f"{called(name, state.voltage)}, final mesh"
             yield _Frame(words, state, stem, "surface", name)
 

@@ -55,9 +55,9 @@ class Drawing:
     ends: Mapping[str, View]
     """The finger at the end of a load, by load."""
     finer: Mapping[str, View]
-    """Normal contact and full slip on another mesh than the path's, by names of :mod:`fingerpad.results.states`."""
+    """Named states on another mesh than the path's, by names of :mod:`fingerpad.results.states`."""
     starting_size: float | None
-    """Contact size (m) of the mesh of the path, where an accuracy was asked for."""
+    """Contact size (m) of the mesh of the path, where named states are on another one."""
     named: Mapping[str, ContactState]
     """Named states with their estimated errors, by their names in :mod:`fingerpad.results.states`."""
 
@@ -115,16 +115,16 @@ class Drawing:
         return curves.history(path, states, self._title(style.conditions(states, self.mu_0)), self.mu_0, self.named)
 
     def _title(self, words: str, view: View | None = None) -> str:
-        """Return words with a line for the mesh below, where an accuracy was asked for."""
+        """Return words with a line for the mesh below, where there are two."""
         note = self._note(view)
         return f"{words}\n{note}" if note else words
 
     def _note(self, view: View | None = None) -> str:
-        """Return what mesh it is, the final one of a view or the path's; empty where no accuracy was asked for."""
+        """Return what mesh it is, the final one of a view or the path's; empty where there is one."""
         if view is not None and view.size is not None:
             return f"final mesh, contact size {view.size * 1e6:.3g} µm"
         size = self.starting_size
-        return "" if size is None else f"path on the starting mesh, contact size {size * 1e6:.3g} µm"
+        return "" if size is None else f"path on its own mesh, contact size {size * 1e6:.3g} µm"
 
     # -- skin ----------------------------------------------------------------------------------------
     def _skin(self, path: Path | None, skins: Mapping[str, SurfaceProfile], on: Figure | None = None) -> Figure:
@@ -266,8 +266,8 @@ def read(
         states: accepted states.
         named: named states.
         mu_0: friction coefficient; None where the law of friction is not Coulomb's.
-        starting_size: contact size (m) of the mesh of the path, where an accuracy was asked for.
-        final_size: contact size (m) of the final mesh, where an accuracy was asked for.
+        starting_size: contact size (m) of the mesh of the path, where named states are on another one.
+        final_size: contact size (m) of the final mesh, where there is one.
     """
     skins = dict[int, Any]()
     ends, finer = dict[str, View](), dict[str, View]()
@@ -280,7 +280,7 @@ def read(
     for name, (_, state, _) in drawing._shown().items():
         skin = skin_of(folder / "surface.npz", name)
         finger = finger_of(folder / f"finger_{_file(WORDS.get(name, ''))}.npz")
-        if skin and finger and final_size is not None:
+        if skin and finger and final_size is not None and name in named:
             there = replace(named[name], bone_x=float(finger.get("bone_x", state.bone_x)))
             finer[name] = _view(there, final_size, skin, finger)
         elif skin:

@@ -143,6 +143,7 @@ STEPS = _listed(
     ("f_electrostatic", "N/m", "electrostatic attraction per metre of finger", "attraction f_el", 3),
     ("ridges_in_contact", "", "number of ridges in contact", "ridges in contact", 0),
     ("contact_length", "mm", "sum of the lengths in contact", "contact length L_R", 4),
+    ("p_max", "kPa", "highest contact pressure on the skin per current area", "highest pressure p_max", 1),
     ("slipping", "", "part of the points in contact that slip"),
     ("all_slip", "", "whether all points in contact slip one way"),
     ("slip_began", "", "first step of the full slip that the state belongs to; 0 without full slip"),
@@ -232,7 +233,7 @@ OUTPUTS: tuple[Output, ...] = ()
 """Outputs of the package that are computed from a state, as those of a user are. A new one is an entry here."""
 
 _SI = {"N/m", "V", "N", "m", "Pa", "J/m", "J/m^3", "s", "Hz", "Pa/m"}
-_PRINTED_FIRST = ("f_ext", "voltage", "mu_app", "f_t", "f_electrostatic", "f_contact", "contact_length")
+_PRINTED_FIRST = ("f_ext", "voltage", "mu_app", "f_t", "f_electrostatic", "f_contact", "contact_length", "p_max")
 QUANTITIES = {name: STEPS[name] for name in (*_PRINTED_FIRST, "ridges_in_contact", "bone_height")}
 """The quantities of a state that are printed, in this order."""
 CHANGES = {"error": "estimated discretisation error", "penalty": "estimated change for a rigid screen"}

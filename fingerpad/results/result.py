@@ -225,7 +225,7 @@ def _drawing(result: Result, folder: Path) -> "Drawing":
     from fingerpad.results.drawing import read  # Matplotlib
 
     meshes = (result.record.get("path_mesh"), result.record.get("accuracy", {}).get("mesh"))
-    path, final = (mesh["contact"] if mesh and result.scene.accuracy is not None else None for mesh in meshes)
+    path, final = (mesh["contact"] if mesh and all(meshes) else None for mesh in meshes)
     mu_0 = None if "laws" in result.record.get("parameters", {}) else coefficient(result.scene)
     return read(folder, result.steps, result.named, mu_0, path, final)
 

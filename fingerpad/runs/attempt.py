@@ -6,7 +6,8 @@ from dataclasses import asdict, dataclass, replace
 from typing import Any
 
 from fingerpad.accuracy.refinement import Refinement, with_errors
-from fingerpad.accuracy.solves import Solves, StateRecorder
+from fingerpad.accuracy.solves import Solves
+from fingerpad.accuracy.states import StateRecorder
 from fingerpad.model import cautions
 from fingerpad.model.adhesion import adhering
 from fingerpad.model.finger import Step, meshed
@@ -152,9 +153,7 @@ class Attempt:
             text = f"states on other meshes, to the accuracy asked for: solve {self._solves}, {number} or more to come"
             self._console.phase(f"{text}; {in_words(number * least)} or more left" if least else text)
             return
-        number = len(self._refinement.parameters) + (self._refinement.stiffer is not None)
-        text = f"estimating discretisation errors: solve {self._solves} of {number}"
-        self._console.phase(text, (self._solves - 1) / number)
+        self._console.phase("named states on the final mesh, and their discretisation errors")
 
     def follow(self) -> RestartRequired | None:
         """Reach every load, and estimate or refine; return what must be added to the model, if anything; collective."""
@@ -210,7 +209,7 @@ class Attempt:
         failure = self._ended.get("failure", "" if refinement is None else refinement.failure)
         mu_0 = coefficient(scene)
         with self._clock.phase("output"):
-            size = self._model.mesh.contact if self._model.asked else None
+            size = None if refinement is None else self._model.mesh.contact
             drawing = record.drawing(mu_0, final, size, named)
             if drawing is not None and self._writer.folder is not None:
                 drawing.write(self._writer.folder, scene.output.each_load)

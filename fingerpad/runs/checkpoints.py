@@ -5,15 +5,15 @@ from pathlib import Path
 from typing import Any
 
 import fingerpad.startup  # noqa: F401
-from fingerpad.accuracy.solves import State
+from fingerpad.accuracy.states import State
 from fingerpad.results.checkpoint import Checkpoint, CheckpointError
 from fingerpad.results.provenance import provenance
 from fingerpad.results.quantities import Output
 from fingerpad.scene import Scene
 from fingerpad.startup import MPI
 from variational.solvers.outcome import Counts
+from variational.solvers.snapshot import SkinState, StateSnapshot
 from variational.solvers.target import Control, Progress
-from variational.solvers.transfer import SkinState, StateSnapshot
 from variational.state import ContactState, Errors, RidgeStates, Skin, StepRecord
 
 _KEPT = (

@@ -75,7 +75,7 @@ def _run(scene: Scene, session: Session, kept: dict[str, Any] | None) -> Result:
     comm, writer, console = session.comm, session.writer, session.console
     clock, restarts, checkpoint = session.clock, session.restarts, session.checkpoint
     writer.log.info("scene %s", json.dumps(scene.parameters()))
-    model = FingerModel(by_rule(scene), plan(scene))
+    model = FingerModel(by_rule(scene), plan(scene)).of_path()
     if kept is not None:
         clock.earlier(*kept["seconds"])
         restarts.resume(kept["restarts"])

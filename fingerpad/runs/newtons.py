@@ -16,11 +16,11 @@ from dataclasses import replace
 from typing import Any
 
 import fingerpad.startup  # noqa: F401
+from fingerpad.accuracy.solves import StateSolver
 from fingerpad.model import cautions
 from fingerpad.model.finger import Step
 from fingerpad.model.options import FingerModel, by_rule, plan
 from fingerpad.model.report import Clock
-from fingerpad.model.simulation import Simulation
 from fingerpad.model.state import broken
 from fingerpad.results.checkpoint import Checkpoint, CheckpointError
 from fingerpad.results.interrupt import Interrupt, Interrupted, all_together
@@ -171,7 +171,7 @@ class _Newtons:
         found, notes, unknowns, least = dict[str, Traced](), [*leakage(self._scene)], 0, 0.0
         for half, names in itertools.groupby(branches.found, lambda name: branches.kept[name].half):
             options = replace(model.options, both_halves=not half, symmetric_start=False)
-            simulation = Simulation(model.changed(mesh=own, options=options), self._comm, self._on_step)
+            simulation = StateSolver(model.changed(mesh=own, options=options), self._comm, self._on_step)
             finger = simulation.finger
             try:
                 for name in names:
@@ -222,7 +222,7 @@ def coarser(model: FingerModel) -> dict[str, float]:
     return sizes | {"contact": min(2 * model.mesh.contact, max(model.mesh.contact, LONGEST))}
 
 
-def _again(simulation: Simulation, snapshot: StateSnapshot, name: str) -> ContactState:
+def _again(simulation: StateSolver, snapshot: StateSnapshot, name: str) -> ContactState:
     """Return a state of a trace on the mesh of a simulation; collective."""
     before = len(simulation.states)
     simulation.re_equilibrate(snapshot, WORDS[name], 1 if name == "full_slip" else 0)

@@ -125,18 +125,23 @@ def finer_mesh_may_help(error: "StepFailed", coarse_start: bool) -> bool:
 
 
 def finer(model: "FingerModel", error: "StepFailed", comm: "MPI.Comm") -> RestartRequired | None:
-    """Return a restart with half the contact size, where that may help and is possible; collective.
+    """Return a restart with smaller elements, where that may help and is possible; collective.
+
+    A path whose elements are twice as large as those of the final mesh is followed on that mesh. Else the contact size
+    is halved.
 
     Args:
         model: whose loads were not reached.
         error: why not.
         comm: communicator of the run.
     """
-    helps = model.mesh_file is None and finer_mesh_may_help(error, bool(model.asked))
+    coarse = model.final is not None and model.mesh.contact > model.final.contact
+    helps = model.mesh_file is None and finer_mesh_may_help(error, bool(model.asked) or coarse)
     contact = model.mesh.contact / 2
-    if not helps or contact < FINEST:
+    if not helps or (contact < FINEST and not coarse):
         return None
-    finer = model.changed(mesh=model.mesh.model_copy(update={"contact": contact}))
+    mesh = model.final if coarse else model.mesh.model_copy(update={"contact": contact})
+    finer = model.changed(mesh=mesh)
     try:
         meshed(finer, comm)
     except GeometryError:  # more than the memory allowed

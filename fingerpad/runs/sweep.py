@@ -109,7 +109,8 @@ def sweep(
         (folder / name).unlink(missing_ok=True)
     asked = {"version": version(), "model": model, "parameters": scene.parameters()}
     asked |= {"outputs": [each.to_dict() for each in done.outputs]}
-    leaks = next((note for each in done for note in leakage(each.scene)), "")
+    said = list(dict.fromkeys(note for each in done for note in leakage(each.scene)))
+    leaks = f"{'First point: ' * (len(said) > 1)}{said[0]}" if said else ""
     replace_json(folder / FILES[-1], asked | {"cautions": done.cautions(), "notes": [leaks] if leaks else []})
     done.to_csv(folder / FILES[0])
     kept = folder / (model if states == STATES[0] else states)

@@ -17,8 +17,8 @@ from fingerpad.scene.wavefile import Volts
 from fingerpad.scene.waveform import MOST, Waveform
 from geometry.units import Finite, Switch, Table, within
 
-FINAL_STATES = ("charged normal contact", "full slip")
-"""States that have files of their own where an accuracy is asked for."""
+FINAL_STATES = ("uncharged normal contact", "charged normal contact", "full slip")
+"""States that have files of their own where errors are estimated."""
 _MAX_BYTES = 100  # of a name; a file system allows 255, of which the files take some
 _EITHER = (
     ("f_ext", "bone_height", "at most one of the two can be prescribed"),
@@ -182,24 +182,24 @@ def drives(voltage: float | Waveform, history: Sequence[Load]) -> dict[str, Wave
 
 
 # -- several ---------------------------------------------------------------------------------------------
-def refuse_contradictions(history: Sequence[Load], given: Mapping[str, Any], accurate: bool, step_scale: float) -> None:
+def refuse_contradictions(history: Sequence[Load], given: Mapping[str, Any], errors: bool, step_scale: float) -> None:
     """Refuse the first contradiction between loads, or of them with other keys.
 
     Args:
         history: the loads of a scene.
         given: the values of :data:`fingerpad.scene.changes.DEFAULT_HISTORY` that are given.
-        accurate: whether an accuracy is asked for.
+        errors: whether errors are estimated.
         step_scale: key of the numerics.
 
     Raises:
         ValueError: the keys, their values and the remedy.
     """
     _refuse_history(history, given)
-    for k, load in enumerate(history) if accurate else ():
+    for k, load in enumerate(history) if errors else ():
         if first_clash([*FINAL_STATES, load.name]) is not None:
             raise ValueError(
-                f"history[{k}].name is {show(load.name)} and accuracy is given, with which the state of that name has "
-                "files of its own; take another name"
+                f"history[{k}].name is {show(load.name)}, and the state of that name has files of its own; take "
+                "another name"
             )
     _refuse_times(history, step_scale)
     _refuse_floating(history)

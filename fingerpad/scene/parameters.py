@@ -202,8 +202,9 @@ class Output(Table):
     """Whether strain energy densities at the Merkel and Meissner sites are computed, with elements of size
     ``mesh.receptor`` below the Merkel sites."""
     errors: Switch = True
-    """Whether discretisation errors are estimated; see :mod:`fingerpad.accuracy.refinement`. With an accuracy they
-    always are."""
+    """Whether discretisation errors are estimated; see :mod:`fingerpad.accuracy.refinement`. Then the loading path is
+    followed on elements twice as large, and the named states are solved again on the mesh that is given, finest where
+    contact ends. With an accuracy errors are always estimated."""
     each_load: Switch = True
     """Whether the finger and its skin are drawn at the end of each load. A load over time has one end."""
 

@@ -105,7 +105,7 @@ class Scene(Table):
             self.accuracy.refuse(self.output.receptors, self.friction)
         if self.history is not None:
             steps = math.inf if self.electric.follows == "mean" else self.numerics.step_scale
-            refuse_contradictions(self.history, given, self.accuracy is not None, steps)
+            refuse_contradictions(self.history, given, self.output.errors, steps)
         refuse_thickness(self.roughness, self.h_0)
         refuse_drives(self.drives(), self.electric, self.geometry.sc_thickness)
         return self

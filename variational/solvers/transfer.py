@@ -26,97 +26,27 @@ state of full slip itself, of which the old mesh's history is no part. In a stat
 remain the old mesh's, interpolated, with the error that its path made.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import basix
+import dolfinx
 import numpy as np
 from mpi4py import MPI
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from variational import compat
-from variational.contact.formulation import SurfaceState
 from variational.problem import Problem
 from variational.reference import reference_places
 from variational.solvers.coupling import Coupling
-from variational.solvers.target import Control
+from variational.solvers.snapshot import SkinState, StateSnapshot, gauss, reference_of_points
 
 Array = NDArray[np.float64]
-_CANDIDATES = 32  # triangles about a point, by their centroids; sizes of neighbours differ by far less
+_CANDIDATES = 8  # triangles about a point, those of the nearest centroids, by distance over size
 _CURVED = 4  # of these, those that are looked into as the curved triangles that they are
-_TURNS_BACK = 1.5  # way of the skin along an axis over its extent: 1 where it goes one way, 2 there and back
 _NEWTON = 4  # iterations that find a place on a facet by its place on the chord
+_FOLDED, _UNFOLD = 0.1, 3  # least det F of a restored displacement, and how often it is made so
 _OUTSIDE = 1.0  # altitudes of a triangle that a point of the same body may be outside of it
-
-
-@dataclass(frozen=True)
-class SkinState:
-    """History of one ridge's skin, sorted along its chord; shape (points,) each."""
-
-    origin: Array
-    """A point of the chord (m), shape (2,)."""
-    chord: Array
-    """Its direction, shape (2,)."""
-    along: Array
-    """Place on the chord (m)."""
-    position: Array
-    """Current place (m), by facet, shape (facets, points on each, 2)."""
-    history: dict[str, Array]
-    """Fields of history less what they follow (:class:`variational.history.SkinField`): of the anchor s - u_x (m)."""
-
-
-@dataclass(frozen=True)
-class StateSnapshot:
-    """An accepted state, the same on every rank and free of its mesh."""
-
-    x: Array
-    """Nodes of the geometry of all triangles (m), shape (cells, 3 or 6, 2)."""
-    u: Array
-    """Displacement at their nodes (m), shape (cells, nodes, 2)."""
-    skin: dict[int, SkinState]
-    """By the ridge's number."""
-    history: dict[str, Array]
-    """History of the body by field, shape (cells, nodes, components)."""
-    d_eq: dict[int, float]
-    """Equivalent air gap (m) by the ridge's number."""
-    gain: dict[int, float]
-    """See :attr:`variational.solvers.coupling.Coupling.gain`, by the ridge's number."""
-    bone: Array
-    """The bone's translation (m), shape (2,)."""
-    control: Control
-    voltage: float
-
-
-def take_snapshot(coupling: Coupling, state: SurfaceState) -> StateSnapshot:
-    """Take the accepted state of a coupling; collective.
-
-    Args:
-        coupling: whose fields and controls are those of the state.
-        state: its surface.
-    """
-    problem, solver = coupling.solver.problem, coupling.solver
-    mesh, surface, numbers = problem.mesh, problem.surface, problem.surface.ridge_numbers
-    cells = np.arange(mesh.topology.index_map(2).size_local)
-    x = mesh.geometry.x[compat.cell_geometry(mesh)[cells]][:, :, :2]
-    u = problem.displacement()[problem.V.dofmap.list[cells]]
-    history = problem.history
-    followed = history.followed(state.history)
-    relative = {name: state.history[name] - base for name, base in followed.items()}
-    here = np.stack([*_reference(problem, state), state.x, state.y, *relative.values()])
-    points, ridge = _all(mesh.comm, here, 1), _all(mesh.comm, surface.ridge, 0)
-    names, on_facet = list(relative), here.shape[2]
-    skin = {j: _ridge(points[:, ridge == k].reshape(len(here), -1), on_facet, names) for k, j in enumerate(numbers)}
-    return StateSnapshot(
-        _all(mesh.comm, x, 0),
-        _all(mesh.comm, u, 0),
-        skin,
-        {field.name: _all(mesh.comm, field.by_cell(history.accepted[field.name]), 0) for field in history.body},
-        {j: float(d) for j, d in zip(numbers, coupling.d_eq, strict=True)},
-        {j: float(g) for j, g in zip(numbers, coupling.gain, strict=True)},
-        solver.bone,
-        replace(solver.control),
-        float(problem.voltage.value),
-    )
 
 
 def restore(snapshot: StateSnapshot, coupling: Coupling, slide: float = 0.0) -> None:
@@ -133,10 +63,10 @@ def restore(snapshot: StateSnapshot, coupling: Coupling, slide: float = 0.0) -> 
     """
     problem, solver = coupling.solver.problem, coupling.solver
     numbers = problem.surface.ridge_numbers
-    if numbers != list(snapshot.d_eq):
+    if not set(numbers) <= set(snapshot.d_eq):
         raise ValueError(
             f"the state has ridges {min(snapshot.d_eq)} to {max(snapshot.d_eq)} that can touch and the mesh "
-            f"{min(numbers)} to {max(numbers)}; they must be the same"
+            f"{min(numbers)} to {max(numbers)}; the state must have all of them"
         )
     nodes = problem.V.tabulate_dof_coordinates()[:, :2]
     u, outside = interpolate(snapshot, nodes)
@@ -148,6 +78,7 @@ def restore(snapshot: StateSnapshot, coupling: Coupling, slide: float = 0.0) -> 
         there = place(skin, skin.position, nodes[on_ridge]) - nodes[on_ridge]
         lower = there[:, 1] < u[on_ridge, 1]
         u[on_ridge[lower]] = there[lower]
+    u = unfolded(problem, u)
     shift = np.array([slide, 0.0])
     solver.set_displacement(u + shift, snapshot.bone + shift)
     solver.control = replace(snapshot.control, x=snapshot.control.x + slide)
@@ -156,7 +87,7 @@ def restore(snapshot: StateSnapshot, coupling: Coupling, slide: float = 0.0) -> 
     coupling.gain = np.array([snapshot.gain[j] for j in numbers])
 
     state = coupling.observer.state()
-    reference = np.stack(_reference(problem, state), axis=-1)
+    reference = np.stack(reference_of_points(problem, state), axis=-1)
     restored = {}
     for inner in problem.history.body:
         places, inside = inner.places()
@@ -183,6 +114,40 @@ def interpolate(snapshot: StateSnapshot, points: Array) -> tuple[Array, float]:
     return _evaluate(snapshot.u, cell, X), outside
 
 
+def unfolded(problem: Problem, u: Array) -> Array:
+    """Return a displacement (m), shape (nodes, 2), that turns no element inside out, or nearly; collective.
+
+    Where an interpolated one does, as beside the tip of a junction that the old mesh did not resolve, the nodes between
+    the corners take what lies between the displacements of the corners.
+    """
+    mesh, dofs = problem.mesh, problem.V.dofmap
+    cells = dofs.list[: mesh.topology.index_map(2).size_local]
+    x = mesh.geometry.x[compat.cell_geometry(mesh)[: len(cells)]][:, :, :2]
+    element = problem.V.element.basix_element
+    places = np.asarray(element.points)
+    inside = np.vstack([basix.make_quadrature(basix.CellType.triangle, 4)[0], places[:3]])
+    slopes = np.asarray(element.tabulate(1, inside))[1:, :, :, 0]
+    order = 1 if x.shape[1] == 3 else 2
+    geometry = basix.create_element(basix.ElementFamily.P, basix.CellType.triangle, order)
+    X = np.einsum("dpk,nki->npid", np.asarray(geometry.tabulate(1, inside))[1:, :, :, 0], x)
+    between = np.column_stack([1 - places.sum(axis=1), places])[3:]
+    folded = dolfinx.la.vector(dofs.index_map, 1, np.int8)
+    for _ in range(_UNFOLD):
+        moved = X + np.einsum("dpk,nki->npid", slopes, u[cells])
+        bad = (np.linalg.det(moved) / np.linalg.det(X)).min(axis=1, initial=1.0) < _FOLDED
+        if not mesh.comm.allreduce(bool(bad.any()), op=MPI.LOR):
+            break
+        folded.array[:] = 0
+        folded.array[cells[bad, 3:]] = 1
+        folded.scatter_reverse(dolfinx.la.InsertMode.add)
+        folded.scatter_forward()
+        straight = np.einsum("ek,nki->nei", between, u[cells[:, :3]])
+        mine = folded.array[cells[:, 3:]] > 0
+        u = u.copy()
+        u[cells[:, 3:][mine]] = straight[mine]
+    return u
+
+
 def _restored(snapshot: StateSnapshot, values: Array, nodes: Array, inside: Array) -> Array:
     """Return values by cell at reference points (m), of the cells of the snapshot that points beside them are in."""
     cell, _, _ = _locate(snapshot, inside)
@@ -193,9 +158,8 @@ def _locate(snapshot: StateSnapshot, points: Array) -> tuple[NDArray[np.int64], 
     """Return each point's triangle, its coordinates there, shape (n, 2), and how far one is outside at most."""
     if len(points) == 0:
         return np.zeros(0, dtype=np.int64), np.zeros((0, 2)), 0.0
-    a, b, c = np.moveaxis(snapshot.x[:, :3], 1, 0)
-    tree = cKDTree((a + b + c) / 3)
-    near = tree.query(points, min(_CANDIDATES, len(a)))[1].reshape(len(points), -1)
+    a, b, c = corners = np.moveaxis(snapshot.x[:, :3], 1, 0)
+    near = _near(corners, points)
     edges = np.stack([b - a, c - a], axis=-1)
     to_reference = np.linalg.inv(edges)
     local = np.einsum("nkij,nkj->nki", to_reference[near], points[:, None] - a[near])
@@ -206,6 +170,31 @@ def _locate(snapshot: StateSnapshot, points: Array) -> tuple[NDArray[np.int64], 
     inside = _least(local)
     best = inside.argmax(axis=1)
     return near[row, best], local[row, best], float(max(0.0, -inside[row, best].min()))
+
+
+def _near(corners: Array, points: Array) -> NDArray[np.int64]:
+    """Return triangles about points, shape (n, candidates): a point may be in a large one beside many small ones.
+
+    Args:
+        corners: of the triangles (m), shape (3, cells, 2).
+        points: the points (m), shape (n, 2).
+    """
+    size = np.linalg.norm(corners - np.roll(corners, 1, axis=0), axis=2).max(axis=0)
+    centroids, level = corners.mean(axis=0), np.frexp(size)[1]
+    near, far = [], []
+    for each in np.unique(level):
+        mine = np.flatnonzero(level == each)
+        largest = size[mine].max()
+        tree = cKDTree(centroids[mine])
+        distance, found = tree.query(points, range(1, 1 + _CANDIDATES), distance_upper_bound=largest)
+        near.append(np.append(mine, 0)[found])
+        far.append(distance / largest)
+    together, distance = np.hstack(near), np.hstack(far)
+    nearest = np.argpartition(distance, _CANDIDATES - 1, axis=1)[:, :_CANDIDATES]
+    found = np.take_along_axis(together, nearest, axis=1)
+    outside = np.flatnonzero(np.isinf(distance.min(axis=1)))  # of a boundary, by more than a triangle
+    found[outside] = cKDTree(centroids).query(points[outside])[1][:, None]
+    return found
 
 
 def _least(X: Array) -> Array:
@@ -231,7 +220,7 @@ def place(ridge: SkinState, position: Array, nodes: Array) -> Array:
     Both have the shape (n, 2).
     """
     n = position.shape[1]
-    to_powers = np.linalg.inv(np.vander(_gauss(n), n))
+    to_powers = np.linalg.inv(np.vander(gauss(n), n))
     points, along = ridge.along.reshape(-1, n) @ to_powers.T, (nodes - ridge.origin) @ ridge.chord
     start, end = points[:, -1], points.sum(axis=1)
     facet = np.clip(np.searchsorted(start, along, side="right") - 1, 0, len(start) - 1)
@@ -241,37 +230,3 @@ def place(ridge: SkinState, position: Array, nodes: Array) -> Array:
         off = np.einsum("nk,nk->n", np.vander(xi, n), points[facet]) - along
         xi = xi - off / np.einsum("nk,nk->n", np.vander(xi, n - 1), slopes[facet])
     return np.einsum("nk,nki->ni", np.vander(xi, n) @ to_powers, position[facet])
-
-
-def _gauss(n: int) -> Array:
-    """Return the places of n Gauss points on a facet of length 1, shape (n,)."""
-    return (1 + np.polynomial.legendre.leggauss(n)[0]) / 2
-
-
-def _reference(problem: Problem, state: SurfaceState) -> tuple[Array, Array]:
-    """Return the reference positions (m) of this rank's Gauss points, shape (facets, points) each."""
-    u_x, u_y = problem.surface.evaluate(problem.surface.compile([problem.u[0], problem.u[1]]))
-    return state.x - u_x, state.y - u_y
-
-
-def _all(comm: MPI.Comm, values: NDArray, axis: int) -> NDArray:
-    return np.concatenate(comm.allgather(values), axis=axis)
-
-
-def _ridge(points: Array, on_facet: int, names: list[str]) -> SkinState:
-    """Sort the points of a ridge along its chord; rows x, y, current x and y, and history by names."""
-    xy = points[:2]
-    origin = xy.mean(axis=1)
-    # The chord is the first principal direction, in which most ridges are wide, unless the skin turns back on the way.
-    axes = np.linalg.svd(xy - origin[:, None], full_matrices=False)[0]
-    chord = axes[:, 0]
-    along = chord @ (xy - origin[:, None])
-    on_facets = along.reshape(-1, on_facet)
-    span = _gauss(on_facet)[-1] - _gauss(on_facet)[0]  # of the points on a facet, whose length is 1
-    if np.abs(on_facets[:, -1] - on_facets[:, 0]).sum() > _TURNS_BACK * span * np.ptp(along):
-        chord = axes[:, 1]
-        along = chord @ (xy - origin[:, None])
-    order = np.argsort(along)
-    position = points[2:4, order].T.reshape(-1, on_facet, 2)
-    history = {name: points[4 + k, order] for k, name in enumerate(names)}
-    return SkinState(origin, chord, along[order], position, history)

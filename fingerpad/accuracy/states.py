@@ -1,0 +1,148 @@
+"""The named states of a path, as they are kept to be solved again on other meshes."""
+
+import math
+import time
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from fingerpad.results.drawing import View
+from fingerpad.results.states import before_sliding
+from geometry.parameters import MeshSize
+from variational.output import Receptors
+from variational.solvers.snapshot import StateSnapshot, take_snapshot
+from variational.state import ContactState
+
+if TYPE_CHECKING:
+    from fingerpad.model.finger import Step
+    from fingerpad.model.simulation import Simulation
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class State:
+    """A state that can be solved again, the same on every rank."""
+
+    snapshot: StateSnapshot
+    direction: int
+    """The way the bone slides at full slip, zero in normal contact."""
+    state: ContactState
+    lengths: Array
+    """Length in contact (m) of every ridge of the finger, shape (ridges,)."""
+    sed: dict[int, float]
+    """Strain energy density (J/m^3) at the Merkel sites of the ridges that can touch."""
+    facet: float
+    """Length of the facets where contact ends (m)."""
+
+
+@dataclass(frozen=True)
+class Solve:
+    """States on one mesh, and what they cost."""
+
+    states: dict[str, State]
+    """By ``uncharged``, ``charged`` and ``full_slip``."""
+    mesh: MeshSize
+    unknowns: int
+    factorisations: int
+    processor_seconds: float
+    """Of this rank."""
+    stiffer: "Solve | None" = None
+    """The states over a screen of twice the stiffness, on the same mesh."""
+    soft: str = ""
+    """Why they were not found, where they were wanted."""
+    views: dict[str, View] = field(default_factory=dict)
+    """What tables and pictures show of states that were solved again, by name."""
+
+    def values(self) -> dict[str, float]:
+        """Return the quantities of interest, by the prefix of the state and the name of the quantity."""
+        return {
+            f"{name}_{quantity}": value
+            for name, state in self.states.items()
+            for quantity, value in quantities(name, state).items()
+        }
+
+    def parts(self) -> dict[str, ArrayLike]:
+        """Return the same, contact lengths by ridge, shape (ridges,)."""
+        lengths = {f"{name}_contact_length": state.lengths for name, state in self.states.items()}
+        return {**self.values(), **lengths}
+
+
+def quantities(name: str, state: State) -> dict[str, float]:
+    """Return the quantities of interest of a named state, in SI; friction is that of full slip.
+
+    Without a force that presses the finger there is no coefficient.
+    """
+    wanted = ("f_t", "mu_app", "contact_length", "p_max") if name == "full_slip" else ("contact_length", "p_max")
+    values = {quantity: float(getattr(state.state, quantity)) for quantity in wanted}
+    found = {quantity: value for quantity, value in values.items() if not math.isnan(value)}
+    return found | {f"sed_{j}": value for j, value in state.sed.items()}
+
+
+class StateRecorder:
+    """Keeps the named states of a path as it goes; of full slips the last one that was held."""
+
+    def __init__(self, simulation: "Simulation") -> None:
+        """Find the Merkel sites of the ridges that can touch."""
+        self._simulation = simulation
+        self._start = time.process_time()
+        finger = simulation.finger
+        ridges, profiles = finger.problem.surface.ridge_numbers, finger.profiles
+        sites = profiles.merkel_sites()[[profiles.ridges.index(j) for j in ridges]]
+        self._sites = Receptors(finger.problem, sites)
+        self._begun: State | None = None  # the last full slip, held or not
+        self.states: dict[str, State] = {}
+        self.views: dict[str, View] = {}
+
+    def record(self, step: "Step") -> None:
+        """Record an accepted step; collective."""
+        state = step.state
+        if not step.touches and (step.ends or not math.isnan(state.time)):
+            self._normal_contact(state)
+        if state.slip_began == state.step:
+            self._begun = self._state(1 if state.f_t >= 0 else -1)
+        if state.slip_held and self._begun is not None:
+            self.states["full_slip"] = self._begun
+
+    def _normal_contact(self, state: ContactState) -> None:
+        states = self._simulation.states
+        if state.ridges_in_contact > 0 and len(before_sliding(states)) == len(states):
+            self.keep("charged")
+            if not any(each.voltage for each in states):
+                self.states["uncharged"] = self.states["charged"]
+
+    def kept(self) -> dict[str, Any]:
+        """Return what another process needs to go on with the path."""
+        return {"states": self.states, "begun": self._begun}
+
+    def resume(self, kept: Mapping[str, Any]) -> None:
+        """Go on from what another process kept."""
+        self.states, self._begun = kept["states"], kept["begun"]
+
+    def keep(self, name: str) -> None:
+        """Keep the present state; collective."""
+        direction = 1 if self._simulation.finger.solver.reaction[0] <= 0 else -1
+        self.states[name] = self._state(direction * (name == "full_slip"))
+
+    def _state(self, direction: int) -> State:
+        f = self._simulation.finger
+        loads = f.ridge_loads()
+        lengths = np.zeros(f.profiles.finger.ridge_count)
+        lengths[np.array(f.ridges) + len(lengths) // 2] = loads.length
+        sed = {j: float(density) for j, density in zip(f.problem.surface.ridge_numbers, self._sites.sed(), strict=True)}
+        if not f.options.both_halves:
+            sed |= {-j: density for j, density in sed.items()}
+        present = self._simulation.present(loads).state
+        snapshot = take_snapshot(f.coupling, f.continuation.surface_state)
+        facet = f.size.edge if self._simulation.model.edges else f.contact_size
+        return State(snapshot, direction, present, lengths, sed, facet)
+
+    def solve(self) -> Solve:
+        """Return what was kept."""
+        f, seconds = self._simulation.finger, time.process_time() - self._start
+        alike = self.states.get("uncharged") is self.states.get("charged")
+        states = {name: state for name, state in self.states.items() if name != "uncharged" or not alike}
+        return Solve(states, f.size, f.unknowns, f.solver.counts.factorisations, seconds, views=self.views)

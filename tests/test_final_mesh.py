@@ -1,0 +1,128 @@
+"""Named states on the final mesh: their errors from two meshes, and when the path is followed on finer elements."""
+
+import signal
+from pathlib import Path
+
+import pytest
+from mpi4py import MPI
+
+from fingerpad.accuracy import solves
+from fingerpad.model.options import FingerModel, by_rule, plan
+from fingerpad.results.interrupt import Interrupted
+from fingerpad.richardson import TWO, of_two_meshes
+from fingerpad.runs import restarts
+from fingerpad.scene import from_data
+from tests.runs import run
+from tests.small_finger import NINE
+from tests.test_accuracy import change, known, model_of, mu_app, refinement, search
+from variational.solvers.continuation import StepFailed
+from variational.solvers.outcome import NotConverged
+
+pytestmark = pytest.mark.slow
+
+
+# -- errors from two meshes, on a finger whose errors are known --------------------------------------------
+def test_estimate_is_of_the_path_and_the_final_mesh(monkeypatch):
+    """The path's elements are twice as large, and no further mesh is solved on; second order, with a factor of two."""
+    meshes = []
+
+    def noted(model, states, comm, views=False, stiffer=None):
+        meshes.append(model.mesh)
+        return known(model, states, comm)
+
+    found = search(monkeypatch, {}, noted)
+    own, path = found.model.final, found.model.mesh
+    assert meshes == [own] and found.base.mesh == own
+    names = ("contact", "growth", "receptor", "interface", "coarsest")
+    assert [getattr(path, name) / getattr(own, name) for name in names] == [2.0] * 5
+    error = found.estimates()["full_slip_mu_app"]
+    assert error == pytest.approx(TWO * abs(mu_app(path) - mu_app(own)) / 3, rel=1e-12)
+    assert found.summary()["quantities"]["full_slip_mu_app"]["estimate"] == pytest.approx(error / TWO, rel=1e-12)
+
+
+def test_length_has_the_error_of_the_facets_at_its_ends():
+    """Of first order in these: one 16 times shorter leaves a fifteenth of the change. Friction is of all elements."""
+    coarse = {"full_slip_contact_length": [0.9e-3], "full_slip_f_t": 39.0, "full_slip_sed_0": 100.0}
+    fine = {"full_slip_contact_length": [1.05e-3], "full_slip_f_t": 39.3, "full_slip_sed_0": 103.0}
+    found = of_two_meshes(coarse, fine, {"full_slip": (16e-6, 1e-6)})
+    assert found == pytest.approx(
+        {"full_slip_contact_length": TWO * 1e-5, "full_slip_f_t": TWO * 0.1, "full_slip_sed_0": TWO * 1.0}, rel=1e-9
+    )
+
+
+@pytest.mark.parametrize("lost_there", [False, True])
+def test_path_is_followed_on_the_final_mesh_where_other_ridges_touch_there(monkeypatch, lost_there):
+    """Or where a state is not found again. From the finer path a coarser mesh gives the estimate."""
+    meshes, failures = [], ["once"] if lost_there else []
+
+    def other(model, states, comm, views=False, stiffer=None):
+        meshes.append(model.mesh)
+        if failures:
+            failures.clear()
+            raise StepFailed("full slip found no equilibrium")
+        solve = known(model, states, comm)
+        change(solve, ridges_in_contact=16 if model.mesh.contact < 20e-6 else 17)
+        return solve
+
+    monkeypatch.setattr(solves, "solve_again", other)
+    model = model_of({"numerics": {"memory": 1e15}})
+    restart = refinement(model, known(model, {}, None)).run()
+    words = "found no equilibrium" if lost_there else "16 ridges touch at full slip on the final mesh"
+    assert words in restart.reason and restart.reason.endswith("the path is followed on the final mesh")
+    assert restart.model.mesh == restart.model.final == model.final
+    meshes.clear()
+    again = refinement(restart.model, known(restart.model, {}, None))
+    assert again.run() is None and again.estimates()
+    assert meshes == [model.final, model.mesh]
+
+
+# -- from which mesh ---------------------------------------------------------------------------------------
+def test_path_that_is_lost_is_followed_on_the_final_mesh():
+    """Whatever the reason: its elements are twice as large as those that a person gave. Once."""
+    model = model_of({})
+    restart = restarts.finer(model, StepFailed("no equilibrium"), MPI.COMM_SELF)
+    assert restart is not None and restart.model.mesh == model.final
+    assert restarts.finer(restart.model, StepFailed("no equilibrium"), MPI.COMM_SELF) is None
+    assert restarts.finer(model, Interrupted(signal.SIGTERM, 3), MPI.COMM_SELF) is None
+
+
+@pytest.mark.parametrize(("start", "helps", "finer"), [(20e-6, True, 10e-6), (20e-6, False, None), (8e-6, True, None)])
+@pytest.mark.parametrize("asked", [{"mu_app": 0.01}, {}])
+def test_starts_again_finer_where_the_path_is_lost(asked, start, helps, finer):
+    """With half the contact size; not where that cannot help, nor below the limit."""
+    scene = from_data(({"accuracy": asked} if asked else {}) | {"mesh": {"contact": start}})
+    model = FingerModel(by_rule(scene), plan(scene))
+    failed: StepFailed = StepFailed("no equilibrium")
+    failed.__cause__ = NotConverged("DIVERGED_LOCAL_MIN" if helps else "NOT_A_NUMBER", False)
+    if asked and not helps:  # any loss of a mesh to start from may be its coarseness
+        failed = Interrupted(signal.SIGTERM, 3)
+    restart = restarts.finer(model, failed, MPI.COMM_SELF)
+    assert (restart and restart.model.mesh.contact) == finer
+
+
+# -- a small finger ----------------------------------------------------------------------------------------
+SMALL = NINE | {"f_ext": 1.0, "voltage": 100.0}
+
+
+def test_small_finger_tells_what_its_penalty_changes(tmp_path: Path):
+    """Springs make a contact longer, here by a hundredth of it; meshes of twice the sizes have no part in that.
+
+    Facets of 7 um: where a ridge's contact is two or three facets long, springs move its edge by one or by none.
+    """
+    mesh = SMALL["mesh"] | {"contact": 7e-6}
+    summary = run(from_data(SMALL | {"f_ext": 3.0, "mesh": mesh}), tmp_path, MPI.COMM_WORLD)
+    quantities = summary["accuracy"]["quantities"]
+    assert "full_slip_sed_0" in quantities
+    for name in ("full_slip_f_t", "full_slip_mu_app"):
+        assert 0 < summary[f"{name}_error"] == quantities[name]["error"] < quantities[name]["value"]
+    for name in (
+        "charged_contact_length",
+        "full_slip_contact_length",
+    ):  # of few facets
+        assert 0 < summary[f"{name}_error"] == quantities[name]["error"]
+    for state in ("charged", "full_slip"):
+        assert -0.04 < summary[f"{state}_contact_length_penalty"] / summary[f"{state}_contact_length"] < -0.003
+    assert abs(summary["full_slip_mu_app_penalty"]) < 0.01 * summary["full_slip_mu_app"]
+    path, final = summary["accuracy"]["solves"]
+    assert final["mesh"]["contact"] == mesh["contact"] == path["mesh"]["contact"] / 2
+    assert final["factorisations"] < path["factorisations"]
