@@ -39,7 +39,9 @@ def main(folder: str) -> None:
             points = xy[loop[:, :2]].reshape(-1, 2)  # the begin and the middle of each line
             outlines.append({"layer": int(tag), "points": _rows(_thinned(points))})
     with np.load(Path(folder) / "surface.npz") as a:
-        ridge = {name: a[f"full_slip_{name}"][a["full_slip_ridge"] == RIDGE] for name in ("x", "y", "p", "p_el", "d_eq")}
+        ridge = {
+            name: a[f"full_slip_{name}"][a["full_slip_ridge"] == RIDGE] for name in ("x", "y", "p", "p_el", "d_eq")
+        }
     full = {name: scene["full"].get("summary") for name, scene in kept("models").numbers["scenes"].items()}
     friction = {str(f): [[u, full[f"{f} N/m, {u} V"]["full_slip_mu_app"]] for u in range(0, 201, 50)] for f in FORCES}
     along = {name: _rows([float(f"{v:.6g}") for v in values]) for name, values in ridge.items()}

@@ -1,8 +1,8 @@
 """Pages as text: README, CONTRIBUTING and docs/ name what exists, agree with each other, and are in short sentences."""
 
 import ast
-import os
 import json
+import os
 import re
 import shlex
 import subprocess
@@ -52,7 +52,7 @@ def test_closed_form_prints_the_readme(tmp_path, monkeypatch):
 
 
 def test_full_run_of_the_readme_is_the_kept_one():
-    """The default scene's friction and its error are those of the run that docs/hero.json has, to the digits printed."""
+    """The default scene's friction and its error are those of the run in docs/hero.json, to the digits printed."""
     kept = json.loads((ROOT / "docs" / "hero.json").read_text(encoding="utf-8"))["numbers"]["default"]
     found = re.search(r"µ_app = ([0-9.]+) ± ([0-9.]+)", README)
     assert found is not None

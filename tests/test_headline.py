@@ -62,7 +62,10 @@ def test_waveform_with_some_full_slip_says_in_how_much():
 
 
 # -- what ± holds ------------------------------------------------------------------------------------------
-@pytest.mark.parametrize(("error", "words"), [(0.0026, "solved to ± 0.0026, the error of the mesh alone; what"), (math.nan, "holds: solved; what")])
+@pytest.mark.parametrize(
+    ("error", "words"),
+    [(0.0026, "solved to ± 0.0026, the error of the mesh alone; what"), (math.nan, "holds: solved; what")],
+)
 def test_verdict_has_the_error_of_the_headline(monkeypatch, error, words):
     """It is of the solution alone; a link leads to what is not in it."""
     monkeypatch.setattr(trust, "findings", lambda result: [trust.Finding("mesh", trust.GOOD, "small")])
