@@ -15,12 +15,12 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
+import scipy  # its parts are imported where they are used first: to read a scene needs none
 from numpy.typing import ArrayLike, NDArray
-from scipy.integrate import cumulative_simpson
-from scipy.optimize import minimize_scalar
-from scipy.spatial import cKDTree
 
 if TYPE_CHECKING:
+    from scipy.spatial import cKDTree
+
     from geometry.parameters import Fingertip
 
 Array = NDArray[np.float64]
@@ -44,7 +44,7 @@ class Profiles:
         a, b = self.finger.width / 2, self.finger.height / 2
         phi: Array = np.linspace(0.0, np.pi, 20001, dtype=np.float64)
         speed = np.sqrt((a * np.cos(phi)) ** 2 + (b * np.sin(phi)) ** 2)
-        return phi, np.asarray(cumulative_simpson(speed, x=phi, initial=0.0), dtype=float)
+        return phi, np.asarray(scipy.integrate.cumulative_simpson(speed, x=phi, initial=0.0), dtype=float)
 
     def _angle(self, s: ArrayLike) -> Array:
         phi, arc = self._arc_table
@@ -111,7 +111,7 @@ class Profiles:
         for k in np.flatnonzero((padded[1:-1] >= padded[:-2]) & (padded[1:-1] >= padded[2:])):
             theta, height = float(_PHASES[k]), float(values[k])
             if 0 < k < len(_PHASES) - 1:
-                inside = minimize_scalar(
+                inside = scipy.optimize.minimize_scalar(
                     lambda t: -float(self._wave(t)),
                     bounds=(_PHASES[k - 1], _PHASES[k + 1]),
                     method="bounded",
@@ -175,18 +175,22 @@ class Profiles:
         k = int(np.argmin(height(s)))
         ends = s[max(k - 1, 0)], s[min(k + 1, len(s) - 1)]
         options = {"xatol": 1e-9 * f.ridge_wavelength}
-        return float(minimize_scalar(lambda at: float(height(at)), bounds=ends, method="bounded", options=options).fun)
+        return float(
+            scipy.optimize.minimize_scalar(
+                lambda at: float(height(at)), bounds=ends, method="bounded", options=options
+            ).fun
+        )
 
     def skin(self, s: ArrayLike) -> Array:
         """Return the depth of the outer surface."""
         return self._mean_depth - self._ridge_height(s)
 
     @cached_property
-    def _along(self) -> tuple[Array, Array, cKDTree]:
+    def _along(self) -> tuple[Array, Array, "cKDTree"]:
         count = _ALONG * self.finger.ridge_count + 1
         s: Array = np.linspace(-self.ridged_arc, self.ridged_arc, count, dtype=np.float64)
         xy = self.point(s, self.skin(s))
-        return s, xy, cKDTree(xy)
+        return s, xy, scipy.spatial.cKDTree(xy)
 
     def along_skin(self, points: Array) -> Array:
         """Return the arc lengths (m) of points on the ridged skin, shape (n,), from their places (m), shape (n, 2)."""

@@ -3,8 +3,8 @@
 import math
 
 import numpy as np
+import scipy  # its parts are imported where they are used first: to read a scene needs none
 from numpy.typing import NDArray
-from scipy.spatial import cKDTree
 
 from geometry.parameters import Fingertip, MeshSize
 from geometry.profiles import GeometryError, Profiles
@@ -244,6 +244,6 @@ def _rounded_down(value: float) -> float:
 
 def _signed_distance(points: Array, curve: Array, inward: Array) -> tuple[NDArray[np.intp], Array]:
     """Return the index of the nearest curve point and the distance, positive on the side of ``inward``."""
-    distance, nearest = cKDTree(curve).query(points)
+    distance, nearest = scipy.spatial.cKDTree(curve).query(points)
     side = ((points - curve[nearest]) * (inward - curve)[nearest]).sum(axis=-1)
     return nearest, np.sign(side) * distance

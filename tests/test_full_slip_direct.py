@@ -73,6 +73,27 @@ def test_states_are_solved_for_from_any_other(solved):
     assert again.state.f_t == pytest.approx(solved[1][1].state.f_t, rel=1e-6)
 
 
+def test_voltage_that_changes_in_sliding_ends_in_direct_states(solved):
+    """A waveform in steps, each slid on to full slip again: its ends are the states without a path, in its order."""
+    slips, (first, *_) = solved
+    far, voltages = 2e-3, (50.0, 0.0, 80.0)
+    history = [{"name": "press", "f_ext": 1.0}, {"name": "charge", "voltage": 100.0}]
+    history += [{"name": "slide", "bone_x": far, "until_full_slip": True}]
+    for k, voltage in enumerate(voltages):
+        history += [{"name": f"change {k}", "voltage": voltage, "bone_x_by": 0.1e-3}]
+        history += [{"name": f"on {k}", "bone_x_by": 1e-3, "until_full_slip": True}]
+    loads = {key: SCENE[key] for key in SCENE if key not in ("f_ext", "voltage")} | {"history": history}
+    scene = from_data(loads)
+    simulation = Simulation(FingerModel(scene, plan(scene)), MPI.COMM_WORLD)
+    assert simulation.run() is None
+    direct = first
+    for k, voltage in enumerate(voltages):
+        direct = slips.solve(replace(direct.conditions, voltage=voltage), direct)
+        end = [state for state in simulation.states if state.load == f"on {k}"][-1]
+        assert end.slip_held and end.f_t == pytest.approx(direct.state.f_t, rel=1e-6)
+        assert end.ridges_in_contact == direct.state.ridges_in_contact
+
+
 def test_what_is_not_found_is_refused(solved):
     """A ridge that cannot touch on this mesh; another law of friction, whose forms are others; no bad state is kept."""
     slips, (first, *_) = solved

@@ -129,6 +129,28 @@ def test_tail_of_the_pressure_of_a_point():
     assert u[near, 0] - u[far, 0] == pytest.approx(exact, rel=0.05)
 
 
+@pytest.mark.slow
+@pytest.mark.parametrize("mean", [0.02, 0.1, 0.4])
+def test_same_as_contact_mechanics(rough, mean):
+    """Area, mean gap and pressures of another program on the same map (MIT licence), where it is installed.
+
+    Both are solved to 1e-9 of the height; the tolerance of 1e-6 is what the contact's edge amplifies.
+    """
+    other = pytest.importorskip("ContactMechanics")
+    topography = pytest.importorskip("SurfaceTopography")
+    n, length = len(rough.heights), rough.size[0]
+    substrate = other.PeriodicFFTElasticHalfSpace((n, n), 1.0, rough.size)
+    system = other.make_system(
+        substrate=substrate, surface=topography.Topography(rough.heights, rough.size, periodic=True)
+    )
+    system.minimize_proxy(external_force=mean * length**2, pentol=1e-9, maxiter=2000)
+    pressure = np.abs(np.asarray(system.substrate.force)) * (n / length) ** 2
+    gap = np.asarray(system.compute_gap(system.disp, system.offset))
+    found = press(rough, mean, 1.0, tolerance=1e-9)
+    np.testing.assert_allclose(found.pressure, pressure, atol=1e-6 * pressure.max())
+    np.testing.assert_allclose(found.gap, np.maximum(gap - gap[pressure > 0].mean(), 0.0), atol=1e-6)
+
+
 @pytest.mark.parametrize(("pressure", "modulus", "words"), [(0.0, 1.0, "mean pressure"), (1.0, -1.0, "modulus")])
 def test_bad_numbers(rough, pressure, modulus, words):
     with pytest.raises(ValueError, match=f"the {words} of a contact is .* greater than 0"):

@@ -8,6 +8,7 @@ from scipy.integrate import quad
 from scipy.special import erf
 
 import fingerpad as fp
+from fingerpad.cli import main
 from fingerpad.cli import roughness as microscale
 from variational.roughness import persson
 from variational.roughness.statistics import breakdown_voltage, breaking_gaps
@@ -243,6 +244,13 @@ def test_microscale_table(law):
     for row in microscale.table(scene, [100.0], [5e3, 5e4]):
         assert row["p_el"] == pytest.approx(float(scene.roughness.attraction(row["p_c"], 100.0)), rel=1e-4)
         assert row["p_ext"] == pytest.approx(row["p_c"] - row["p_el"])
+
+
+def test_microscale_prints_the_scatter(capsys):
+    """Of boundary elements some per cent; theory and bearing area have none."""
+    for law, said in (("BoundaryElements", True), ("Persson", False), ("BearingArea", False)):
+        assert main(["microscale", "--set", f"roughness.law={law}", "--p", "5e3,1e5"]) == 0
+        assert ("From one surface to the next the air gap scatters by" in capsys.readouterr().out) == said
 
 
 def test_sweep_over_closures():

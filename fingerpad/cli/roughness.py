@@ -70,7 +70,7 @@ def microscale(argv: Sequence[str]) -> int:
     low, high = (p * 1e-3 for p in closure.pressures)
     end = "the pressure at zero separation" if isinstance(closure, BearingArea) else "the end of the table of gaps"
     echo(f"The air gap stays constant below {low:.4g} kPa (roughness.p_floor) and above {high:.4g} kPa, {end}.")
-    echo(_sticking(closure))
+    echo("\n".join([*_scatter(closure, [row["p_c"] for row in rows]), _sticking(closure)]))
     for text in remarks(scene):
         echo(f"{text}.")
     for text in on_closure(closure, [(row["p_c"], 1.0, row["voltage"]) for row in rows], "pressures and voltages"):
@@ -84,6 +84,15 @@ def _pressures(text: str) -> list[float]:
         return [quantity(str(value), "Pa") for value in ranges.read("--p", text)]
     except argparse.ArgumentTypeError as error:
         raise SceneError(f"--p: {error}") from None
+
+
+def _scatter(closure: BearingArea | TabulatedClosure, pressures: Sequence[float]) -> Iterator[str]:
+    """Yield how the air gap scatters from one surface to the next, in a sentence; nothing without a scatter."""
+    if not isinstance(closure, TabulatedClosure):
+        return
+    shares = 100 * closure.spread(pressures) / closure(pressures).d_eq
+    if shares.any():
+        yield f"From one surface to the next the air gap scatters by {shares.min():.2g} to {shares.max():.2g} % (rms)."
 
 
 def _sticking(closure: BearingArea | TabulatedClosure) -> str:

@@ -21,6 +21,7 @@ from fingerpad.scene.waveform import Waveform
 from variational.attraction.circuit import GapCircuit
 from variational.contact.friction import Coulomb, Friction
 from variational.roughness.bam import BearingArea
+from variational.roughness.tabulated import TabulatedClosure
 
 if TYPE_CHECKING:
     from fingerpad.scene.scene import Scene
@@ -85,7 +86,7 @@ def remarks(scene: "Scene") -> list[str]:
     There is none on the roughness of a closure of one's own, or of a mesh of a file.
     """
     found = [*offsets(scene)]
-    if isinstance(scene.roughness, BearingArea) and scene.geometry.file is None:
+    if isinstance(scene.roughness, BearingArea | TabulatedClosure) and scene.geometry.file is None:
         found += ridges_as_roughness(scene.roughness.wavelength, scene.geometry.ridge_wavelength)
         found += missing_waves(scene.roughness.wavelength)
     return found
