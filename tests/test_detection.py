@@ -130,6 +130,12 @@ def test_estimate_takes_a_drive(capsys):
     assert "141.4" in out and "At 75 N/m. Friction force at full slip over a period: mean 28.3" in out
 
 
+def test_microscale_takes_a_drive(capsys):
+    """At the constant voltage that attracts as it does."""
+    assert main(["microscale", "--set", DRIVE, "--p", "1e4"]) == 0
+    assert "141.4" in capsys.readouterr().out
+
+
 def test_constant_voltage_has_no_period(capsys):
     assert main(["drive", "--set", "electric.leak=300"]) == 0
     assert "leaks away with a time constant of 6.83 ms" in capsys.readouterr().out

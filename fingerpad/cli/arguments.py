@@ -192,7 +192,7 @@ def several(args: argparse.Namespace, scene: Scene, key: str) -> list[float]:
     option, text = f"--{key.replace('_', '-')}", getattr(args, key)
     refuse_twice(args, key, option)
     if text is None:
-        return [getattr(scene, key)]
+        return [scene.volts if key == "voltage" else getattr(scene, key)]  # of a drive its mean attraction's
     return [getattr(from_data({key: value}), key) for value in ranges.read(option, text)]
 
 

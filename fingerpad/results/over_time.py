@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from fingerpad.scene.waveform import Waveform
 
 NOTE = (
-    "Loads over time are quasi-static: no inertia, no viscous skin, and no leakage of charge but that of the scene's "
+    "Loads over time are quasi-static: no inertia, no viscous skin, and no leakage of charge but that of the key "
     "electric.leak. A frequency only sets how far the finger slides in a period, and what the circuit of the gap loses."
 )
 """What a result with a load over time says of it."""
