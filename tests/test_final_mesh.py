@@ -9,7 +9,7 @@ from mpi4py import MPI
 from fingerpad.accuracy import solves
 from fingerpad.model.options import FingerModel, by_rule, plan
 from fingerpad.results.interrupt import Interrupted
-from fingerpad.richardson import TWO, of_two_meshes
+from fingerpad.richardson import SITES, TWO, of_two_meshes
 from fingerpad.runs import restarts
 from fingerpad.scene import from_data
 from tests.runs import run
@@ -48,6 +48,16 @@ def test_length_has_the_error_of_the_facets_at_its_ends():
     assert found == pytest.approx(
         {"full_slip_contact_length": TWO * 1e-5, "full_slip_f_t": TWO * 0.1, "full_slip_sed_0": TWO * 1.0}, rel=1e-9
     )
+
+
+def test_site_that_changes_by_accident_less_than_others_has_half_their_error():
+    """Of three sites, two change by 6 % of their densities and one does not. Other states do not count."""
+    fine = {"charged_sed_0": 100.0, "charged_sed_1": 50.0, "charged_sed_2": 10.0, "full_slip_sed_0": 7.0}
+    coarse = {"charged_sed_0": 106.0, "charged_sed_1": 53.0, "charged_sed_2": 10.0, "full_slip_sed_0": 7.0}
+    found = of_two_meshes(coarse, fine, {})
+    assert found["charged_sed_0"] == pytest.approx(TWO * 2.0, rel=1e-9)
+    assert found["charged_sed_2"] == pytest.approx(SITES * TWO * 0.02 * 10.0, rel=1e-9)
+    assert found["full_slip_sed_0"] == 0.0
 
 
 @pytest.mark.parametrize("lost_there", [False, True])
