@@ -160,6 +160,11 @@ def test_half_written_run_is_reported_as_such(copy):
     assert f"has not ended, or was killed, after step {len(rows) - 2}" in write(copy).read_text(encoding="utf-8")
 
 
+def test_ends_of_loads_are_said_to_be_of_the_path(page):
+    """Their friction is not that of the key numbers, which are of the final mesh."""
+    assert page.count("States at the ends of loads are of the path") == 1
+
+
 def test_contact_lengths_of_the_ridges_add_up(page):
     """In every saved state; each length is rounded to 0.05 µm."""
     found = re.search(r'<script type="application/json" id="data">(.*?)</script>', page, re.DOTALL)[1]

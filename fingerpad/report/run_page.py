@@ -91,8 +91,16 @@ def _asked(result: Result) -> str:
         "What was asked",
         html.paragraph(intro),
         html.table(("load", "change", "state at its end"), rows),
-        html.paragraph(PER_LENGTH, "note"),
+        html.paragraph(f"{_of_path(result)}{PER_LENGTH}", "note"),
     )
+
+
+def _of_path(result: Result) -> str:
+    """Return that the ends of loads are of the path's mesh, where the named states are of another one."""
+    final = {state.mesh_contact for state in result.named.values()} - {state.mesh_contact for state in result.steps}
+    if not (final and result.steps):
+        return ""
+    return "States at the ends of loads are of the path, on larger elements than the key numbers below. "
 
 
 def _cell(reached: list[Any]) -> str:
