@@ -13,7 +13,7 @@ from geometry import tags
 from tests.test_problem import D_EQ, H_0, check_jacobian, direction, disturb, make
 from variational.contact.nitsche import Nitsche
 from variational.contact.penalty import Penalty
-from variational.materials.material import Material
+from variational.materials.material import Material, _unloaded
 from variational.materials.neo_hooke import NeoHooke
 from variational.materials.ogden import Ogden
 from variational.materials.saint_venant import SaintVenant
@@ -265,6 +265,21 @@ class InThePlaneAlone(Mine):
 class NoBulk(Material):
     shear_modulus: float = 1.0
     energy = Mine.energy
+
+
+@pytest.mark.parametrize("law", [Ogden, NeoHooke, SaintVenant])
+def test_package_laws_are_natural_whatever_their_numbers(law):
+    """So that their unloaded state is computed here, and not in each run. A derived class is not meant."""
+    assert law.natural and not vars(type("Derived", (law,), {})).get("natural")
+    random = np.random.default_rng(7)
+    for _ in range(3):
+        modulus, poisson = 10 ** random.uniform(0, 9), random.uniform(-0.5, 0.499)
+        more = {"alpha": random.choice([-1, 1]) * 10 ** random.uniform(-1, 1.3)} if law is Ogden else {}
+        name = "young" if law is SaintVenant else "shear_modulus"
+        solid = law(**{name: modulus, "poisson": poisson}, **more)
+        stress, shear = _unloaded(solid)
+        assert max(map(abs, stress)) < 1e-8 * solid.shear_modulus
+        np.testing.assert_allclose(shear, solid.shear_modulus, rtol=1e-6)
 
 
 @dataclass

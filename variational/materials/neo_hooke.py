@@ -10,6 +10,7 @@ deformation, :math:`\bar F = J^{-1/3} F` (Flory 1961, doi 10.1039/TF9615700829).
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import ClassVar
 
 from variational.coefficients import parameter, ufl
 from variational.materials.material import MODULUS, POISSON, Material, bulk_modulus
@@ -18,6 +19,8 @@ from variational.materials.material import MODULUS, POISSON, Material, bulk_modu
 @dataclass(frozen=True)
 class NeoHooke(Material):
     """Neo-Hookean solid."""
+
+    natural: ClassVar[bool] = True
 
     shear_modulus: float = parameter(*MODULUS)
     """Initial shear modulus G (Pa)."""

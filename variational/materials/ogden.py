@@ -18,6 +18,7 @@ series is used below ``SERIES_BELOW`` and the closed form above.
 
 from dataclasses import dataclass, field
 from functools import cached_property
+from typing import ClassVar
 
 from variational.coefficients import OF_SCENE, kinematics, parameter, ufl
 from variational.materials.material import MODULUS, POISSON, Material, bulk_modulus
@@ -96,6 +97,8 @@ def isochoric_sigma_zz(F, shear_modulus, a):
 @dataclass(frozen=True)
 class Ogden(Material):
     """Ogden solid (Eqs. 1 and 2)."""
+
+    natural: ClassVar[bool] = True
 
     shear_modulus: float = parameter(*MODULUS)
     """Initial shear modulus G_0 (Pa). Range: slime to diamond."""

@@ -10,6 +10,7 @@ of F^T F and I would lose six digits, and nodal forces of 1e-11 N/m with them.
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import ClassVar
 
 from variational.coefficients import parameter, ufl
 from variational.materials.material import MODULUS, POISSON, Material
@@ -34,6 +35,8 @@ def sigma_zz(F, lame):
 @dataclass(frozen=True)
 class SaintVenant(Material):
     """Saint Venant-Kirchhoff solid: linear elastic at finite rotation (*assumption*; the paper: linear elastic)."""
+
+    natural: ClassVar[bool] = True
 
     young: float = parameter(*MODULUS)
     """Young's modulus (Pa)."""
