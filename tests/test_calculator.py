@@ -164,54 +164,6 @@ def test_whole_finger_is_that_of_python(tmp_path):
         assert found["section"]["mu_app"] == pytest.approx(result.full_slip.mu_app, rel=SAME)
 
 
-@pytest.mark.parametrize("force", [None, 0.5], ids=["section", "whole finger"])
-def test_drive_is_that_of_python(force, tmp_path):
-    """Mean, extremes and amplitudes within 1 % of the mean: the page has a sixteenth of the samples, and fewer gaps."""
-    default = in_si({key: field.value for key, field in FIELDS.items()})
-    cases = [("sine", 30.0, 50.0, "lossless"), ("square", 30.0, 50.0, "sliding dry"), ("triangle", 250.0, 0.0, "moist")]
-    names = ("waveform", "frequency", "offset", "circuit")
-    asked_for = [dict(zip(names, case, strict=True)) for case in cases]
-    values = default | {"voltage": 150.0, "newtons": force is not None} | ({} if force is None else {"force": force})
-    program = f"""const p = {json.dumps(values)};
-    const answer = (here) => (p.newtons ? closedForm.whole(here) : closedForm.solve(here));
-    console.log(JSON.stringify({json.dumps(asked_for)}.map((asked) => {{
-      const {{ tissue, leak }} = data.circuits[asked.circuit];
-      const found = drive.over_period(p, asked, tissue && {{ tissue, leak }}, answer);
-      return [found.mean, found.low, found.high, found.amplitudes[1], found.amplitudes[2]];
-    }})));"""
-    for asked_one, found in zip(asked_for, by_script(program, tmp_path), strict=True):
-        circuit = asked_one["circuit"]
-        wave = {"waveform": asked_one["waveform"], "amplitude": 150.0, "offset": asked_one["offset"]}
-        tissue = {"lossless": "lossless", "sliding dry": "dry", "moist": "moist"}[str(circuit)]
-        electric = {"tissue": tissue, "leak": "none" if circuit == "lossless" else circuit}
-        scene = Scene(voltage=wave | {"frequency": asked_one["frequency"]}, electric=electric)
-        exact = fp.drive(scene if force is None else scene.replace(force=force))
-        f = float(asked_one["frequency"])
-        expected = [exact.f_t.mean(), exact.f_t.min(), exact.f_t.max(), exact.at(f), exact.at(2 * f)]
-        assert found == pytest.approx(expected, abs=1e-2 * exact.f_t.mean())
-
-
-def test_page_takes_a_drive(whole, tmp_path):
-    """It draws voltage, attraction and friction, and refuses a frequency beside its field."""
-    program = """
-    const find = (id) => document.getElementById("drive_" + id), said = find("said");
-    drivePage.begin(() => {});
-    const of = { newtons: false }, answers = [];
-    for (const input of document.querySelectorAll("#fields input[type=number]")) {
-      const field = data.fields.find(({ key }) => key === input.id);
-      if (field) of[field.key] = Number(input.defaultValue) / field.per;
-    }
-    for (const frequency of ["100", "-5", "x"]) {
-      find("frequency").value = frequency;
-      drivePage.update(of, false, (here) => closedForm.solve(here));
-      answers.push([said.textContent, find("friction").querySelectorAll("svg").length]);
-    }
-    return answers;"""
-    good, low, text = asked(whole, program, tmp_path)
-    assert "amplitude 200 V, peak to peak 400 V, rms 141.4 V" in good[0] and good[1] == 1
-    assert low == ["frequency is -5; it must be from 0.001 to 1e+6 Hz.", 0] and text[0].startswith("frequency is x")
-
-
 def test_numbers_are_those_of_python(whole, tmp_path):
     """To 1e-9, by the fields of the page."""
     program = f"""{SET}
