@@ -181,6 +181,10 @@ def lost_on_stiff_screens(model, states, comm, views=False, stiffer=None):
     return replace(known(model, states, comm), soft="full slip found no equilibrium")
 
 
+def lost_with_stiffer_screens(model, states, comm, views=False, stiffer=None):
+    return known(model, states, comm) if stiffer is None else lost(model, states, comm)
+
+
 def stubborn(model, states, comm, views=False, stiffer=None):
     """Have an error that no refinement lowers."""
     solve = known(model, states, comm)
@@ -195,6 +199,7 @@ def stubborn(model, states, comm, views=False, stiffer=None):
         ({"mu_app": 0.01}, stubborn, "not within the accuracy asked for after", 0),
         ({"mu_app": 0.01}, lost, "the accuracy asked for could not be established: full slip found no equilibrium", 0),
         ({"mu_app": 0.5}, lost_on_stiff_screens, "", 1),
+        ({"mu_app": 0.5}, lost_with_stiffer_screens, "", 1),
         ({}, lost_on_stiff_screens, "", 1),
     ],
 )

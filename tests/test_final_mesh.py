@@ -93,6 +93,10 @@ def test_path_that_is_lost_is_followed_on_the_final_mesh():
     restart = restarts.finer(model, StepFailed("no equilibrium"), MPI.COMM_SELF)
     assert restart is not None and restart.model.mesh == model.final
     assert restarts.finer(restart.model, StepFailed("no equilibrium"), MPI.COMM_SELF) is None
+    lost = StepFailed("no equilibrium")
+    lost.__cause__ = NotConverged("DIVERGED_LOCAL_MIN", False)
+    again = restarts.finer(restart.model, lost, MPI.COMM_SELF)
+    assert again is None or again.model.mesh == again.model.final, "not a path on smaller elements than its states"
     assert restarts.finer(model, Interrupted(signal.SIGTERM, 3), MPI.COMM_SELF) is None
 
 

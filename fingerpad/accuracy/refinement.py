@@ -196,7 +196,12 @@ class Refinement:
             self.failure = f"the estimate is not within the accuracy asked for after {_ROUNDS} refinements"
         if self.stiffer is not None and self.solves.restart is None:
             self.to_come = 1
-            self._penalty(self.solves.on_mesh(self.base.mesh, self.base.states, stiffer=self.stiffer))
+            try:
+                self._penalty(self.solves.on_mesh(self.base.mesh, self.base.states, stiffer=self.stiffer))
+            except (StepFailed, GeometryError) as error:
+                if isinstance(error, Interrupted):
+                    raise
+                self._note(f"the effect of the penalty could not be estimated: {error}")
 
     def allowed(self) -> dict[str, float]:
         """Return the largest error allowed of each quantity that is asked for, in its unit."""

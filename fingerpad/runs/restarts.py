@@ -141,7 +141,7 @@ def finer(model: "FingerModel", error: "StepFailed", comm: "MPI.Comm") -> Restar
     if not helps or (contact < FINEST and not coarse):
         return None
     mesh = model.final if coarse else model.mesh.model_copy(update={"contact": contact})
-    finer = model.changed(mesh=mesh)
+    finer = model.changed(mesh=mesh, final=None if model.final is None else mesh)
     try:
         meshed(finer, comm)
     except GeometryError:  # more than the memory allowed
