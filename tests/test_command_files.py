@@ -137,6 +137,15 @@ def test_mesh_is_counted(tmp_path, capsys):
     assert float(gigabytes) == pytest.approx(memory(int(number)) / 1e9, rel=0.02)
 
 
+@pytest.mark.parametrize("errors", [True, False])
+def test_two_meshes_are_named_where_there_are_two(capsys, tmp_path, errors):
+    """Facets of a sixteenth of 40 µm where contact ends."""
+    words = [*COARSE, "mesh.contact=40e-6", f"output.errors={str(errors).lower()}"]
+    assert main(["check", "--out", str(tmp_path), *(word for text in words for word in ("--set", text))]) == 0
+    said = "with 2.5 µm where their contact ends; the path on elements 2 times as large"
+    assert (said in capsys.readouterr().out) == errors
+
+
 def test_mesh_beyond_the_memory_is_refused(capsys):
     """It is meshed, and passes the bound; the refusal has the number of its unknowns."""
     words = [word for text in (*COARSE, "numerics.memory=0.35e9") for word in ("--set", text)]

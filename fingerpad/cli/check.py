@@ -6,7 +6,7 @@ from pathlib import Path
 
 from fingerpad.cli import mesh as meshes
 from fingerpad.cli.arguments import Parser, echo, scene_of
-from fingerpad.model.options import FingerModel, ModelOptions, by_rule, memory, plan, refuse_mesh, unknowns
+from fingerpad.model.options import COARSER, FingerModel, ModelOptions, by_rule, memory, plan, refuse_mesh, unknowns
 from fingerpad.reduced.cylinder_errors import outside, where
 from fingerpad.results.files import check_folder
 from fingerpad.results.terminal import about
@@ -108,6 +108,11 @@ def _model(scene: Scene, needed: ModelOptions) -> Iterator[str]:
         yield f"elements of {', '.join(f'{value * 1e6:.4g} µm {where}' for where, value in sizes.items())}"
     if scene.accuracy is not None:
         yield "finer meshes follow, to the accuracy asked for"
+    elif needed.errors:
+        yield (
+            f"named states on these, with {scene.mesh.edge * 1e6:.3g} µm where their contact ends; the path on "
+            f"elements {COARSER:g} times as large"
+        )
 
 
 def _size(scene: Scene, mesh: meshes.Section | None) -> Iterator[str]:
