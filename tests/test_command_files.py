@@ -139,10 +139,10 @@ def test_mesh_is_counted(tmp_path, capsys):
 
 @pytest.mark.parametrize("errors", [True, False])
 def test_two_meshes_are_named_where_there_are_two(capsys, tmp_path, errors):
-    """Facets of a sixteenth of 40 µm where contact ends."""
-    words = [*COARSE, "mesh.contact=40e-6", f"output.errors={str(errors).lower()}"]
+    """Facets of a sixteenth of 30 µm where contact ends."""
+    words = [*COARSE, f"output.errors={str(errors).lower()}"]
     assert main(["check", "--out", str(tmp_path), *(word for text in words for word in ("--set", text))]) == 0
-    said = "with 2.5 µm where their contact ends; the path on elements 2 times as large"
+    said = "with 1.88 µm where their contact ends; the path on elements 2 times as large"
     assert (said in capsys.readouterr().out) == errors
 
 
