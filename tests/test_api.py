@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from mpi4py import MPI
 
 import fingerpad as fp
 from fingerpad import runs
@@ -41,11 +42,15 @@ def test_every_name_is_there():
 # -- a run -------------------------------------------------------------------------------------------------
 @pytest.mark.mpi
 def test_run_without_a_folder_writes_nothing(ran, tmp_path, monkeypatch):
-    """And its result is that of the run with a folder, bit for bit on one rank."""
+    """And its result is that of the run with a folder, bit for bit on one rank.
+
+    On more ranks sums have no fixed order, and solves end within their tolerance of 1e-9 of the force.
+    """
     monkeypatch.chdir(tmp_path)
     found = fp.run(from_data(SMALL))
     assert list(tmp_path.iterdir()) == []
-    assert found.full_slip.mu_app == pytest.approx(ran[0].full_slip.mu_app, rel=1e-12)
+    same = 1e-12 if MPI.COMM_WORLD.size == 1 else 1e-8
+    assert found.full_slip.mu_app == pytest.approx(ran[0].full_slip.mu_app, rel=same)
 
 
 def test_summary_is_the_result(ran):
