@@ -13,6 +13,7 @@
 # make measured  measured fingers beside this model's numbers; docs/measured.md, two minutes
 # make drive  friction over frequency and waveform of the voltage; docs/drive.md, a minute
 # make performance  counts, ratios and seconds, part by part, on an idle machine; docs/performance.md, half an hour
+# make calibration  estimated errors beside known ones, scene by scene; docs/two_meshes.md, ten minutes
 # make chart  error over work, one numerical setting after the other; docs/chart.md, hours
 #
 # With SUITE=sid in Debian unstable, that is with a newer dolfinx: make test SUITE=sid
@@ -20,7 +21,7 @@
 
 run := environment/run
 
-.PHONY: help demo lint test check test-pip test-order fuzz docs pages stale verify paper measured drive chart performance
+.PHONY: help demo lint test check test-pip test-order fuzz docs pages stale verify paper measured drive calibration chart performance
 
 help:
 	@sed -n 's/^# make/make/p' Makefile
@@ -76,6 +77,9 @@ measured:
 
 drive:
 	$(run) python3 -m benchmarks.drive
+
+calibration:
+	$(run) python3 -m benchmarks.two_meshes
 
 chart:
 	$(run) python3 -m benchmarks.errors

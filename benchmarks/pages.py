@@ -45,6 +45,7 @@ PAGES = {
     "peers": "benchmarks.peers.__main__",
     "performance": "benchmarks.performance",
     "stability": "benchmarks.stability.__main__",
+    "two_meshes": "benchmarks.two_meshes",
     "verification": "benchmarks.verification.case",
 }
 SAME = "same.json"  # pairs of commits that compute the same numbers
