@@ -18,9 +18,9 @@ def numbers():
 
 @pytest.mark.parametrize("kind", two_meshes.KINDS)
 def test_errors_from_two_meshes_cover_the_known_ones(numbers, kind):
-    """By what half of all sizes changes; and a case for each state of each scene at least, of friction for each."""
+    """By what half of all sizes changes; of friction half of the scenes have an error that is not one of the solves."""
     n, covered = two_meshes.coverage(two_meshes.cases(numbers), kind)
-    assert n >= len(two_meshes.solved(numbers)) * (1 if kind == "friction" else 3)
+    assert n >= len(two_meshes.solved(numbers)) * (0.5 if kind == "friction" else 3)
     assert covered >= COVERED * n
 
 
