@@ -136,15 +136,8 @@ def _kind(name: str) -> str:
     return "" if mirrored else next((kind for kind, part in KINDS.items() if part in name), "")
 
 
-SOLVES = 1e-5
-"""Relative error that is of the solves, not of the mesh: ten times the tolerance of the air gaps."""
-
-
 def cases(numbers: Mapping[str, Any], safety: float = TWO, sites: float = SITES) -> list[Case]:
-    """Return the cases of docs/two_meshes.json whose known error is not one of the solves.
-
-    Factors are as in :func:`~fingerpad.richardson.of_two_meshes`.
-    """
+    """Return the cases of docs/two_meshes.json; factors as in :func:`~fingerpad.richardson.of_two_meshes`."""
     found = []
     for scene, solves in solved(numbers).items():
         coarse, final, finer = (solves[name] for name in MESHES)
@@ -155,8 +148,6 @@ def cases(numbers: Mapping[str, Any], safety: float = TWO, sites: float = SITES)
             state = name.partition("_sed_")[0]
             alike = [abs(limits[other]) for other in limits if other.startswith(f"{state}_sed_")]
             of = 100 / (max(alike) if "_sed_" in name else abs(limits[name]))
-            if of * abs(limits[name] - values[name]) < 100 * SOLVES:
-                continue
             found.append(Case(scene, name, of * estimated[name], of * abs(limits[name] - values[name])))
     return found
 

@@ -14,7 +14,7 @@ from tests.test_contact import MU_F, over
 from variational.solvers.continuation import Continuation, StepFailed, Target
 from variational.solvers.outcome import NotConverged
 from variational.solvers.snapshot import take_snapshot
-from variational.solvers.transfer import interpolate, restore
+from variational.solvers.transfer import _near, interpolate, restore, unfolded
 
 pytestmark = pytest.mark.mpi
 H_0, FORCE, VOLTAGE = 0.514e-6, 4.4, 150.0
@@ -329,3 +329,26 @@ def test_another_body_and_other_ridges_are_refused(bodies, reached):
     state = reached[COARSE][1]
     with pytest.raises(ValueError, match="ridges 1 to 1 that can touch and the mesh 0 to 0"):
         restore(replace(state, d_eq={1: 1e-6}), prepare(bodies[FINE]).coupling)
+
+
+def test_large_triangle_beside_many_small_ones_is_found():
+    """A point in it, beside sixty triangles of a thousandth of its size, all with nearer centroids."""
+    point, angles = np.array([[0.02, 0.02]]), np.linspace(0, 2 * np.pi, 60, endpoint=False)
+    middles = point + 1.1e-3 * np.stack([np.cos(angles), np.sin(angles)], axis=1)
+    unit = np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]])
+    small = middles + 1e-3 * (unit - unit.mean(axis=0))[:, None]
+    corners = np.concatenate([small, unit[:, None]], axis=1)
+    assert 60 in _near(corners, point)[0]
+
+
+def test_element_that_a_displacement_folds_is_unfolded(bodies):
+    """By its middle nodes alone, here between corners at rest. A smooth displacement stays as it is."""
+    problem = prepare(bodies[FINE]).problem
+    cells = problem.V.dofmap.list[: problem.mesh.topology.index_map(2).size_local]
+    smooth = 0.05 * problem.V.tabulate_dof_coordinates()[:, :2]
+    np.testing.assert_array_equal(unfolded(problem, smooth), smooth)
+    folded = np.zeros_like(smooth)
+    if MPI.COMM_WORLD.rank == 0:
+        folded[cells[0, 3]] = 1e-3
+    assert MPI.COMM_WORLD.allreduce(float(np.abs(folded).max()), op=MPI.MAX) > 0
+    np.testing.assert_array_equal(unfolded(problem, folded), np.zeros_like(smooth))
