@@ -88,7 +88,7 @@ class Result(Answer):
         """Return the spikes of mechanoreceptive afferents below the ridges that can touch, over a run in time.
 
         Args:
-            laws: names of :data:`fingerpad.afferents.LAWS`, or laws of one's own; by default SA1, RA1 and PC, of which
+            laws: names of ``fingerpad.afferents.LAWS``, or laws of one's own; by default SA1, RA1 and PC, of which
                 those are left out for which two states are too far apart.
 
         Raises:

@@ -135,9 +135,17 @@ class Spikes:
 
     def plot(self, path: str | Path | None = None) -> "Figure":
         """Draw a raster: each spike over time, unit by unit; write it as PNG where a path is given."""
-        from fingerpad.results.spike_picture import raster  # Matplotlib
+        from fingerpad.results.spike_picture import Panel, raster  # Matplotlib
 
-        return raster(self, None if path is None else Path(path))
+        beside = {"": 0.0, "left": -0.25, "right": 0.25}
+        panels = []
+        for law in self.laws:
+            units = [unit for unit in self.units if unit.law == law]
+            places = [(unit.ridge or 0) + beside[unit.side] for unit in units]
+            population, half = units[0].ridge is None, bool(units[0].side)
+            panels.append(Panel(law, places, [1e3 * train for train in self.of(law)], population, 0.4 if half else 0.8))
+        loads = [(span.name, 1e3 * span.begin, 1e3 * span.end) for span in self.loads]
+        return raster(panels, loads, 1e3 * self.seconds, None if path is None else Path(path))
 
     @property
     def remarks(self) -> tuple[str, ...]:
