@@ -53,11 +53,13 @@ class Chain:
             half_arc: ``mesh.touching_half_arc`` (m) where they give none.
             comm: communicator of the mesh.
         """
+        from fingerpad.model.followed import share
         from fingerpad.model.options import plan
 
         self._scenes, self._half_arc, self._comm = scenes, half_arc, comm
         strongest = max(scenes, key=lambda scene: abs(scene.volts))
         self._options = replace(plan(strongest), errors=False)
+        self._shared = any(share(scene) is not None for scene in scenes)
         self._slips: FullSlips | None = None
         self._solved: list[Solved | None] = []  # of the present mesh, by scene
         self.results: list[Result] = []
@@ -72,12 +74,14 @@ class Chain:
 
     def model(self, scene: Scene) -> "FingerModel":
         """Return the model of a scene, with the parts and the ridges of all."""
+        from fingerpad.model.followed import SAME
         from fingerpad.model.options import FingerModel, by_rule
 
         if self._half_arc is not None and scene.mesh.touching_half_arc is None:
             mesh = scene.mesh.model_copy(update={"touching_half_arc": self._half_arc})
             scene = scene.model_copy(update={"mesh": mesh})
-        return FingerModel(by_rule(scene), self._options)
+        found = FingerModel(by_rule(scene), self._options)
+        return found.changed(share=SAME) if self._shared and found.share is None else found
 
     def _next(self, scene: Scene) -> Result:
         """Return the result of a scene, from the one before or by a path."""
@@ -183,7 +187,7 @@ class Chain:
             before: counts of the solver before this state.
             why: it was not found from its neighbour; empty where it was.
         """
-        from fingerpad.model import cautions
+        from fingerpad.model import breakdown, cautions
         from fingerpad.model.state import broken
         from fingerpad.results.provenance import provenance
         from fingerpad.scene.remarks import coefficient, remarks
@@ -209,6 +213,7 @@ class Chain:
             cautions=(
                 *remarks(scene),
                 *cautions.on_states([state], scene.closure(), finger.problem.interface.formulation),
+                *breakdown.of_states(scene, [state]),
             ),
             record={"reached": state.reached, "force_error": finger.force_error, "provenance": provenance()},
         )
