@@ -66,7 +66,12 @@ class Solved:
 
 
 class FullSlips:
-    """Leads a finger from full slip to full slip."""
+    """Leads a finger from full slip to full slip.
+
+    Attributes:
+        simulation: that leads the finger.
+        finger: the finger.
+    """
 
     def __init__(self, simulation: Simulation) -> None:
         """Take a simulation, whose loads are reached before :meth:`first`.
@@ -74,7 +79,7 @@ class FullSlips:
         Raises:
             ValueError: friction has a memory, so that full slip depends on its past.
         """
-        self._simulation, self.finger = simulation, simulation.finger
+        self.simulation, self.finger = simulation, simulation.finger
         memory = set(self.finger.problem.history.fields) - _FIELDS
         if memory:
             raise ValueError(f"the model has the history {min(memory)!r}, on which full slip may depend")
@@ -88,7 +93,7 @@ class FullSlips:
         Raises:
             StepFailed: it is no full slip that was held.
         """
-        state = self._simulation.states[-1]
+        state = self.simulation.states[-1]
         if not state.slip_held:
             raise StepFailed(f"the path ends without full slip over a further 0.2 mm (step {state.step})")
         return Solved(conditions, state, self.finger.continuation.place())
@@ -121,7 +126,7 @@ class FullSlips:
         path.go_to(start.place)
         name = f"full slip from {before.beside(conditions) or 'itself'}"
         target = Target(name, conditions.f_ext, voltage=conditions.voltage, slips=True, constants=set_laws)
-        state = self._simulation.slip_to(target)
+        state = self.simulation.slip_to(target)
         if not state.slip_held:
             raise StepFailed(f"{name}: {'full slip is not steady' if state.all_slip else 'not every point slips'}")
         return Solved(conditions, replace(state, reached=name), path.place())
@@ -132,7 +137,7 @@ class FullSlips:
         Raises:
             StepFailed: it is not stable.
         """
-        state, checked = solved.state, self._simulation.checks.check(solved.state.reached)
+        state, checked = solved.state, self.simulation.checks.check(solved.state.reached)
         if not checked.stable:
             raise StepFailed(f"{state.reached}: full slip is {checked}")
         state = replace(state, stable=True, lambda_min=checked.frozen.lambda_min, gain=checked.gain)
