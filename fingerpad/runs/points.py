@@ -43,7 +43,7 @@ class Point:
             before: counts of their solver before this one.
             notes: on how the state was found.
         """
-        from fingerpad.model import cautions
+        from fingerpad.model import breakdown, cautions
         from fingerpad.model.state import broken
         from fingerpad.results.provenance import provenance
         from fingerpad.scene.remarks import coefficient, remarks
@@ -75,6 +75,7 @@ class Point:
                 *remarks(self.scene),
                 *self._differences(),
                 *cautions.on_states([state], self.scene.closure(), formulation),
+                *breakdown.of_states(self.scene, [state]),
             ),
             record=record,
         )
