@@ -158,6 +158,7 @@ def together(solves: Sequence[Solve]) -> Solve:
         unknowns=max(solve.unknowns for solve in solves),
         factorisations=sum(solve.factorisations for solve in solves),
         processor_seconds=sum(solve.processor_seconds for solve in solves),
+        newton=sum(solve.newton for solve in solves),
         stiffer=together(over) if len(over) == len(solves) else None,
         soft=next((solve.soft for solve in solves if solve.soft), ""),
     )

@@ -69,7 +69,12 @@ class Solved:
 
 
 class FullSlips:
-    """Leads a finger from full slip to full slip."""
+    """Leads a finger from full slip to full slip.
+
+    Attributes:
+        simulation: that leads the finger.
+        finger: the finger.
+    """
 
     def __init__(self, simulation: Simulation) -> None:
         """Take a simulation, whose loads are reached before :meth:`first`.
@@ -77,7 +82,7 @@ class FullSlips:
         Raises:
             ValueError: friction has a memory, so that full slip depends on its past.
         """
-        self._simulation, self.finger = simulation, simulation.finger
+        self.simulation, self.finger = simulation, simulation.finger
         memory = set(self.finger.problem.history.fields) - _FIELDS
         if memory:
             raise ValueError(f"the model has the history {min(memory)!r}, on which full slip may depend")
@@ -91,7 +96,7 @@ class FullSlips:
         Raises:
             StepFailed: it is no full slip that was held.
         """
-        state = self._simulation.states[-1]
+        state = self.simulation.states[-1]
         if not state.slip_held:
             raise StepFailed(f"the path ends without full slip over a further 0.2 mm (step {state.step})")
         return Solved(conditions, state, self.finger.continuation.place())
@@ -125,7 +130,7 @@ class FullSlips:
         path.go_to(start.place)
         name = f"full slip from {before.beside(conditions) or 'itself'}"
         target = Target(name, conditions.f_ext, voltage=conditions.voltage, slips=True, constants=set_laws)
-        state = self._simulation.slip_to(target)
+        state = self.simulation.slip_to(target)
         if not state.slip_held:
             raise StepFailed(f"{name}: {'full slip is not steady' if state.all_slip else 'not every point slips'}")
         return Solved(conditions, replace(state, reached=name), path.place())
@@ -136,7 +141,7 @@ class FullSlips:
         Raises:
             StepFailed: it is not stable.
         """
-        state, checked = solved.state, self._simulation.checks.check(solved.state.reached)
+        state, checked = solved.state, self.simulation.checks.check(solved.state.reached)
         if not checked.stable:
             raise StepFailed(f"{state.reached}: full slip is {checked}")
         state = replace(state, stable=True, lambda_min=checked.frozen.lambda_min, gain=checked.gain)

@@ -14,7 +14,7 @@ from fingerpad.runs.solve import Summary
 from fingerpad.scene import Scene, SceneError
 from fingerpad.scene.messages import show
 
-_FREE = ("f_ext", "voltage", "friction", "roughness", "electric", "slide_length", "output")
+_FREE = ("f_ext", "voltage", "friction", "roughness", "electric", "slide_length")
 """Keys in which neighbours may differ: they change neither the mesh nor the layers."""
 _SHORTEST = 8  # points of a chain, of which the first takes the time of some fifteen others
 _LIMIT = 4 * 3600.0  # s of processor time for a chain
