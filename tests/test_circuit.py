@@ -250,7 +250,7 @@ def test_no_leak_has_its_peak_there():
 
 
 def test_impedance_of_a_sliding_finger():
-    """Of equal plates it goes with 1 over their length, and hardly changes with a gap that the leak shorts, at 10 Hz."""
+    """Of equal plates it goes with 1 over their length. At 10 Hz it hardly changes with a gap that the leak shorts."""
     gap, length = np.full((2, 3), 1.6e-6), np.full((2, 3), 2e-3)
     numbers, verdict = drives.sliding((gap, length), (gap, length / 2))
     assert_allclose((numbers["low"], numbers["high"]), 1.0)
