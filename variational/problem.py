@@ -275,15 +275,19 @@ class Problem:
         """Return the displacement (m) of this rank's nodes, ghosts included, shape (nodes, 2)."""
         return np.asarray(self.w.x.array.reshape(-1, 2) + self.bone.value)
 
-    def set_laws(self, friction: Friction | None, h_0: float) -> None:
-        """Give the law of friction other numbers, and the screen another insulator.
+    def set_laws(
+        self, friction: Friction | None, h_0: float, share: Callable[[np.ndarray], np.ndarray] | None = None
+    ) -> None:
+        """Give the law of friction other numbers, the screen another insulator, and the ridges another share.
 
         Args:
             friction: of the present law's kind.
             h_0: effective insulator thickness (m).
+            share: see :class:`Interface`; it acts from :meth:`set_air_gaps` on.
 
         Raises:
-            ValueError: the law is of another kind, so that the forms would be others; in one sentence.
+            ValueError: the law is of another kind, or only one of the shares is None, so that the forms would be
+                others; in one sentence.
         """
         before = self.interface.friction
         if friction is None or before is None or friction.kind() != before.kind():
@@ -293,7 +297,9 @@ class Problem:
             for name in friction.names():
                 getattr(self._friction, name).value = getattr(friction, name)
         self._h_0.value = h_0
-        self.interface = replace(self.interface, friction=friction, h_0=h_0)
+        if (share is None) != (self.share is None):
+            raise ValueError("share is None before or now; it must be a function both times, or never")
+        self.interface = replace(self.interface, friction=friction, h_0=h_0, share=share)
 
     def set_formulation(self, formulation: "Formulation") -> None:
         """Give the contact's formulation other numbers.
