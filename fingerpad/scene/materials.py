@@ -58,18 +58,15 @@ class MaterialKey(LawKey):
 
     def read(self, value: Any, info: ValidationInfo) -> Any:
         """Return the law of a value, see :meth:`fingerpad.scene.law_keys.LawKey.read`."""
-        given = value.table if isinstance(value, Kept) else value
+        given: Any = value.table if isinstance(value, Kept) else value
         if isinstance(given, Viscoelastic):
-            viscosity, elastic = given.viscosity, given.elastic
-        elif isinstance(given, Mapping) and given.get("viscosity") is not None:
-            viscosity, elastic = given["viscosity"], {k: each for k, each in given.items() if k != "viscosity"}
-        else:
-            without = isinstance(given, Mapping) and "viscosity" in given
-            return super().read({k: v for k, v in given.items() if k != "viscosity"} if without else value, info)
-        found = super().read(elastic, info)
-        if isinstance(found, Kept):
-            return Kept(given)
-        return self._viscous(found, viscosity)
+            return self._viscous(super().read(given.elastic, info), given.viscosity)
+        if not isinstance(given, Mapping) or "viscosity" not in given:
+            return super().read(value, info)
+        found = super().read({key: each for key, each in given.items() if key != "viscosity"}, info)
+        if given["viscosity"] is None:
+            return found
+        return Kept(given) if isinstance(found, Kept) else self._viscous(found, given["viscosity"])
 
     @staticmethod
     def _viscous(elastic: Material, viscosity: Any) -> Viscoelastic:
