@@ -1,6 +1,7 @@
 """The names of fingerpad: read by type checkers and editors, and by the package, which imports each when it is used."""
 
 import geometry as geometry
+from fingerpad import afferents as afferents
 from fingerpad.measurements.compare import compare as compare
 from fingerpad.model.body import Body as Body
 from fingerpad.results.quantities import Output as Output

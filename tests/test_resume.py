@@ -26,6 +26,8 @@ PRESS, CHARGE = {"name": "press", "f_ext": 2.0}, {"name": "charge", "voltage": 1
 SLIDE = {"name": "slide", "bone_x": 0.5e-3, "until_full_slip": True}
 HELD = {"name": "held", "f_ext": 2.0, "duration": 0.5}
 VISCOUS = {name: {"viscosity": {"preset": "fingerpad"}} for name in ("dermis", "stratum_corneum")}
+DRIVE, LOSSY = {"waveform": "sine", "amplitude": 150.0, "frequency": 100.0}, {"tissue": "dry", "leak": 300.0}
+WAVE = {"name": "wave", "voltage": DRIVE, "duration": 2e-3, "bone_x": 0.1e-3}
 HISTORIES = {
     "charged at rest": ([PRESS, CHARGE, SLIDE], {}),
     "there and back": ([PRESS, SLIDE, CHARGE, {"name": "back", "bone_x": -0.1e-3}], {}),
@@ -34,6 +36,9 @@ HISTORIES = {
     "Nitsche": ([PRESS, CHARGE, SLIDE], {"contact": {"formulation": "nitsche"}}),
     "augmented": ([PRESS, CHARGE, SLIDE], {"contact": {"formulation": "augmented"}}),
     "more ridges": ([PRESS, CHARGE, SLIDE], {"mesh": {"touching_half_arc": 0.5e-3}}),  # all loads again
+    "receptors": ([PRESS, CHARGE, SLIDE], {"output": {"receptors": True, "errors": True}}),
+    "drive": (None, {"f_ext": 2.0, "voltage": DRIVE, "electric": LOSSY}),
+    "drive over time": ([PRESS, WAVE], {"electric": LOSSY}),
     "mixed": ([PRESS, CHARGE, SLIDE], {"numerics": {"element": "P2-P1"}}),
 }
 
@@ -77,10 +82,11 @@ def killed_at(monkeypatch):
 
 
 # -- the same numbers ------------------------------------------------------------------------------------
-LONG = [pytest.param(name, marks=pytest.mark.long) for name in list(HISTORIES)[3:]]
+ALWAYS = ["charged at rest", "there and back", "receptors", "drive over time", "viscous"]
+LONG = [pytest.param(name, marks=pytest.mark.long) for name in HISTORIES if name not in ALWAYS]
 
 
-@pytest.mark.parametrize("history", [*list(HISTORIES)[:3], *LONG])
+@pytest.mark.parametrize("history", [*ALWAYS, *LONG])
 def test_goes_on_to_the_last_bit(history, tmp_path, killed_at):
     """Killed twice on the way; the solves of earlier runs are not done again."""
     whole, cut = tmp_path / "whole", tmp_path / "cut"

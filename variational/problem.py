@@ -35,7 +35,8 @@ from variational.contact.formulation import STICKS, Contact, Formulation, Skin
 from variational.contact.friction import Friction, law_of
 from variational.element import ELEMENTS, Centroid, LayerwisePressure
 from variational.history import History, SkinField
-from variational.relaxation import relaxations
+from variational.layers import grouped
+from variational.relaxation import relaxations, viscous_work
 
 if TYPE_CHECKING:
     from variational.materials.material import Material
@@ -165,7 +166,7 @@ class Problem:
         F = kinematics.deformation_gradient(H)
         dx = ufl.Measure("dx", mesh, subdomain_data=cell_tags, metadata={"quadrature_degree": kind.quadrature_degree})
         centroid = Centroid(mesh) if kind.reduced else None
-        self.laws = self._laws(solids, cellwise)
+        self.laws = grouped(solids, cellwise, cell_tags)
         self.relaxations = relaxations(self.laws, w, self.lapse, cell_tags, kind.quadrature_degree)
         self.shortest_time = min((t for solid in solids.values() for t in solid.times), default=np.inf)
         self.laws |= {tags: each.law for tags, each in self.relaxations.items()}
@@ -237,35 +238,9 @@ class Problem:
         self.history.add(SkinField("anchor", self.contact.new_anchor, self.anchor, follows=self.u[0]))
         self.history.add(SkinField("pressure", self.contact.p_n, self.multiplier))
         self.history.add(SkinField("x", self.x, follows=self.x), unloaded)
-        for each in self.relaxations.values():
-            for field in each.fields:
-                self.history.add(field)
-        self.viscous_work = None
-        if self.relaxations:
-            spent = sum(each.work.function * dx(tags) for tags, each in self.relaxations.items())
-            self.viscous_work = fem.form(spent, jit_options=jit.OPTIONS)
-
-    def _laws(self, solids: Mapping[int, "Material"], cellwise: fem.FunctionSpace) -> dict[tuple[int, ...], "Material"]:
-        """Return the law of each group of layers, one kernel a law: numbers are fields with one value a cell."""
-        groups: list[list[int]] = []
-        for tag, solid in solids.items():
-            solid.check()
-            mine = next((g for g in groups if solids[g[0]].kind() == solid.kind()), None)
-            groups.append([tag]) if mine is None else mine.append(tag)
-
-        def field(values: Mapping[int, float]) -> fem.Function:
-            f = fem.Function(cellwise)
-            for tag, value in values.items():
-                f.x.array[self.cell_tags.find(tag)] = value
-            f.x.scatter_forward()
-            return f
-
-        found: dict[tuple[int, ...], Material] = {}
-        for group in groups:
-            first = solids[group[0]]
-            fields = {name: field({tag: solids[tag].number(name) for tag in group}) for name in first.names()}
-            found[tuple(group)] = first.with_values(fields)
-        return found
+        for field in (field for each in self.relaxations.values() for field in each.fields):
+            self.history.add(field)
+        self.viscous_work = viscous_work(self.relaxations, dx)
 
     def _pressure(self, solids: Mapping[int, "Material"]) -> LayerwisePressure | None:
         """Return the pressure of the layers whose law has a volumetric part, None if there is none."""
@@ -298,15 +273,19 @@ class Problem:
         """Return the displacement (m) of this rank's nodes, ghosts included, shape (nodes, 2)."""
         return np.asarray(self.w.x.array.reshape(-1, 2) + self.bone.value)
 
-    def set_laws(self, friction: Friction | None, h_0: float) -> None:
-        """Give the law of friction other numbers, and the screen another insulator.
+    def set_laws(
+        self, friction: Friction | None, h_0: float, share: Callable[[np.ndarray], np.ndarray] | None = None
+    ) -> None:
+        """Give the law of friction other numbers, the screen another insulator, and the ridges another share.
 
         Args:
             friction: of the present law's kind.
             h_0: effective insulator thickness (m).
+            share: see :class:`Interface`; it acts from :meth:`set_air_gaps` on.
 
         Raises:
-            ValueError: the law is of another kind, so that the forms would be others; in one sentence.
+            ValueError: the law is of another kind, or only one of the shares is None, so that the forms would be
+                others; in one sentence.
         """
         before = self.interface.friction
         if friction is None or before is None or friction.kind() != before.kind():
@@ -316,7 +295,9 @@ class Problem:
             for name in friction.names():
                 getattr(self._friction, name).value = getattr(friction, name)
         self._h_0.value = h_0
-        self.interface = replace(self.interface, friction=friction, h_0=h_0)
+        if (share is None) != (self.share is None):
+            raise ValueError("share is None before or now; it must be a function both times, or never")
+        self.interface = replace(self.interface, friction=friction, h_0=h_0, share=share)
 
     def set_formulation(self, formulation: "Formulation") -> None:
         """Give the contact's formulation other numbers.

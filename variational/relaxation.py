@@ -85,6 +85,13 @@ def relaxations(
     }
 
 
+def viscous_work(found: Mapping[tuple[int, ...], "Relaxation"], dx: ufl.Measure) -> fem.Form | None:
+    """Return the compiled work (J/m) of all viscous stresses so far; None without viscous layers."""
+    if not found:
+        return None
+    return fem.form(sum(each.work.function * dx(tags) for tags, each in found.items()), jit_options=jit.OPTIONS)
+
+
 class Relaxation:
     """The history of a group of viscous layers.
 

@@ -38,6 +38,7 @@ def collect(out: Path) -> dict[str, Any]:
     def of_grid() -> list[Statement]:
         runs = {pair: at(*pair) for pair in grid}
         gathered = friction.gather(runs)
+        numbers["seconds"] = [float(run.summary["processor_seconds"]) for run in runs.values()]
         numbers["grid"] = {name: values.tolist() for name, values in gathered.items()}
         return friction.statements(gathered, friction.paths(runs), known()["full_slip_mu_app"])
 

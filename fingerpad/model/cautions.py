@@ -5,18 +5,13 @@ They belong to a state, whatever computed it: runs, bodies, cheaper models and t
 
 from collections import Counter, defaultdict
 from collections.abc import Iterable, Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from variational.attraction.circuit import breakdown_voltage
 from variational.contact.formulation import Formulation
 from variational.roughness.closure import Closure, air_gaps
 from variational.state import ContactState
-
-if TYPE_CHECKING:
-    from fingerpad.scene import Scene
 
 Array = NDArray[np.float64]
 _SHARE = 0.1  # of the contact force, from which ridges outside of the closure's range are mentioned
@@ -61,27 +56,6 @@ def on_closure(closure: Closure, points: Sequence[tuple[ArrayLike, ArrayLike, fl
         f"in {count} of {len(points)} {noun} the closure is out of its range: the mean pressure of ridges is {place}"
         for place, count in counts.items()
     ]
-
-
-def breakdown(scene: "Scene", points: Iterable[tuple[str, float, float]]) -> list[str]:
-    """Return the caution on the gap in which air is the farthest beyond breakdown, by the field in it.
-
-    Args:
-        scene: with the drive, or a voltage without losses.
-        points: name of a ridge or a state, air gap (m), and voltage (V) of Eq. 3 where the scene has no drive.
-    """
-    found, supply = list[tuple[float, str]](), scene.supply
-    for name, gap, voltage in points:
-        across, when = abs(voltage) * gap / (gap + scene.h_0), ""
-        if supply is not None:
-            period = np.abs(supply.across(gap))
-            across = float(period.max())
-            when = f" {int(period.argmax()) / len(period) / supply.frequency:.3g} s after the start of a period"
-        limit = float(breakdown_voltage(gap))
-        if across > limit:
-            words = f"{across:.4g} V are across a gap of {1e6 * gap:.3g} µm in {name}{when}, and from {limit:.4g} V on"
-            found.append((across / limit, words))
-    return [f"{max(found)[1]} air breaks down there, which is not in this model"] if found else []
 
 
 def _pressures(state: ContactState) -> tuple[Array, Array]:

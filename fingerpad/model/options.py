@@ -36,6 +36,7 @@ from variational.contact.formulation import Formulation
 from variational.materials.material import Material
 
 if TYPE_CHECKING:
+    from fingerpad.model.followed import Share
     from fingerpad.scene import Load, Numerics, Scene
 
 COARSER = 2.0
@@ -199,6 +200,7 @@ class FingerModel:
         contact: Formulation | None = None,
         loads: tuple["Load", ...] | None = None,
         numerics: "Numerics | None" = None,
+        share: "Share | None" = None,
     ) -> "FingerModel":
         """Return a copy with some values changed, as the attributes are described; those left out stay."""
         found = copy(self)
@@ -211,6 +213,7 @@ class FingerModel:
         found.contact = self.contact if contact is None else contact
         found.loads = self.loads if loads is None else loads
         found.numerics = self.numerics if numerics is None else numerics
+        found.share = self.share if share is None else share
         return found
 
     def with_ridges(self, last: int) -> "FingerModel":
