@@ -18,6 +18,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from fingerpad.reduced.closure_band import with_band
 from fingerpad.results.answer import Cost
 from fingerpad.results.files import below
 from fingerpad.results.result import Result
@@ -256,7 +257,7 @@ def main(asked: Path, folder: Path) -> None:
     scenes = [from_data(each) for each in data["scenes"]]
     chain = Chain(scenes, data["half_arc"], MPI.COMM_WORLD)
     for k in chain.follow():
-        kept(chain.results[k], RunContext(below(folder, batch.key(scenes[k])), report=False))
+        kept(with_band(chain.results[k]), RunContext(below(folder, batch.key(scenes[k])), report=False))
 
 
 if __name__ == "__main__":
