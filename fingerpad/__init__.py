@@ -16,7 +16,8 @@ from typing import Any
 
 _LIST = ast.parse(Path(__file__).with_suffix(".pyi").read_text(encoding="utf-8")).body
 _HOMES = {name.name: str(line.module) for line in _LIST if isinstance(line, ast.ImportFrom) for name in line.names}
-__all__ = [*_HOMES, "geometry"]
+_PACKAGES = {"afferents": "fingerpad.afferents", "geometry": "geometry"}
+__all__ = list(dict.fromkeys([*_HOMES, *_PACKAGES]))
 
 
 def __getattr__(name: str) -> Any:
@@ -25,8 +26,8 @@ def __getattr__(name: str) -> Any:
 
     if name == "__version__":
         return version()
-    if name == "geometry":
-        return import_module("geometry")
+    if name in _PACKAGES:
+        return import_module(_PACKAGES[name])
     with needed_by(f"fingerpad.{name}"):
         if name == "Body":  # with the configuration of the user alone, before any other import
             import_module("fingerpad.startup")

@@ -11,9 +11,10 @@ import numpy as np
 
 from geometry import tags
 from geometry.curved import curve_edges
-from geometry.parameters import LEAST_SIZE
+from geometry.parameters import LEAST_SIZE, MeshSize
 from geometry.profiles import GeometryError
 from geometry.shape import shape
+from geometry.sizing import FROM_EDGES
 
 _MM = 1e3  # gmsh's tolerances suit models in mm
 _SAMPLES = 128  # spline points of a curved bottom
@@ -53,7 +54,13 @@ def block(width: float, height: float, size: float, gap: float = 0.0) -> float:
 
 
 @shape(_NEEDED)
-def ridge(size: float, width: float = 483e-6, height: float = 600e-6, amplitude: float = 100e-6) -> float:
+def ridge(
+    size: float,
+    width: float = 483e-6,
+    height: float = 600e-6,
+    amplitude: float = 100e-6,
+    ends: Sequence[float] = (),
+) -> float:
     r"""Return one papillary ridge.
 
     The bottom is :math:`y = \tfrac12 A (1 - \cos 2 \pi x / w)`, lowest at x = 0; groups are those of :func:`block`.
@@ -63,6 +70,8 @@ def ridge(size: float, width: float = 483e-6, height: float = 600e-6, amplitude:
         width: w, one period (m).
         height: of the flat top above the screen (m).
         amplitude: A, height of the grooves above the tip (m).
+        ends: abscissae (m) of the unloaded skin where contact is known to end; facets are a sixteenth of ``size``
+            there, as those of a finger (:attr:`geometry.parameters.MeshSize.edge`).
 
     Raises:
         GeometryError: a length is not positive, the top is not above the grooves, or a facet cannot follow the tip.
@@ -82,7 +91,7 @@ def ridge(size: float, width: float = 483e-6, height: float = 600e-6, amplitude:
     curve = [bottom(x) for x in np.linspace(-width / 2, width / 2, _SAMPLES + 1)]
     half = _TOUCHING * width / 2
     tip = [bottom(x) for x in np.linspace(-half, half, 1 + int(np.ceil(4 * half / size)))]
-    return _graded([(curve, 0)], height, size, tip, _GROWTH)
+    return _graded([(curve, 0)], height, size, tip, _GROWTH, [bottom(x) for x in ends])
 
 
 @shape(_NEEDED)
@@ -138,7 +147,12 @@ _Point = tuple[float, float]
 
 
 def _graded(
-    bottom: Sequence[tuple[Sequence[_Point], int]], height: float, size: float, fine: Sequence[_Point], growth: float
+    bottom: Sequence[tuple[Sequence[_Point], int]],
+    height: float,
+    size: float,
+    fine: Sequence[_Point],
+    growth: float,
+    ends: Sequence[_Point] = (),
 ) -> float:
     """Mesh what lies between curves, each a spline through points (m), and a flat top.
 
@@ -148,6 +162,7 @@ def _graded(
         size: element size at the points ``fine`` (m).
         fine: where elements are smallest.
         growth: increase of the element size per distance from there.
+        ends: points where contact ends, at which elements are smaller still.
     """
     geo = gmsh.model.geo
 
@@ -166,14 +181,20 @@ def _graded(
     corners = [last, right, left, first]
     sides = [geo.addLine(*pair) for pair in zip(corners, corners[1:], strict=False)]
     body = geo.addPlaneSurface([geo.addCurveLoop([*curves, *sides])])
-    points = [add(point) for point in fine]
+    finest = [(size, growth, fine), (MeshSize(contact=size).edge, FROM_EDGES, ends)]
+    cones = [(smallest, slope, [add(point) for point in places]) for smallest, slope, places in finest if places]
     _groups(body, curves, *sides)
 
     fields = gmsh.model.mesh.field
-    distance, slope = fields.add("Distance"), fields.add("MathEval")
-    fields.setNumbers(distance, "PointsList", points)
-    fields.setString(slope, "F", f"{size * _MM} + {growth} * F{distance}")
-    fields.setAsBackgroundMesh(slope)
+    grown = []
+    for smallest, slope, points in cones:
+        distance, field = fields.add("Distance"), fields.add("MathEval")
+        fields.setNumbers(distance, "PointsList", points)
+        fields.setString(field, "F", f"{smallest * _MM} + {slope} * F{distance}")
+        grown.append(field)
+    least = fields.add("Min")
+    fields.setNumbers(least, "FieldsList", grown)
+    fields.setAsBackgroundMesh(least)
     for option in ("MeshSizeExtendFromBoundary", "MeshSizeFromPoints", "MeshSizeFromCurvature"):
         gmsh.option.setNumber(f"Mesh.{option}", 0)
     gmsh.model.mesh.generate(2)

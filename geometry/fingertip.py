@@ -13,13 +13,12 @@ from geometry.parameters import Fingertip, MeshSize
 from geometry.profiles import Profiles
 from geometry.reflection import HalfMesh, swap_corners
 from geometry.shape import shape
-from geometry.sizing import check, growth_from_tips, touching_ridges
+from geometry.sizing import FROM_EDGES, check, growth_from_tips, touching_ridges
 
 Array = NDArray[np.float64]
 _MM = 1e3  # gmsh's tolerances suit models in mm
 _HALF_ARC = 5e-3  # m
 _SAMPLES = 32  # spline points a ridge
-_FROM_EDGES = 0.5  # growth of the element size from where contact ends
 _PRECISION = 1e-3  # of a curve's number of facets; gmsh's 1e-9 takes as long as all the rest of a mesh
 _SHARP_SAMPLES = 128  # of the VE-D junction, whose tips have a radius of some um
 
@@ -266,7 +265,7 @@ def _sizes(p: Profiles, size: MeshSize, c: _Curves, touching: list[int], recepto
         cones.append(cone(size.receptor, growth_from_tips(size), PointsList=tips))
     cones.append(cone(size.interface, size.growth, CurvesList=c.wavy))
     if len(edges):
-        cones.append(cone(size.edge, _FROM_EDGES, PointsList=_mesh_points(p.point(edges, p.skin(edges)))))
+        cones.append(cone(size.edge, FROM_EDGES, PointsList=_mesh_points(p.point(edges, p.skin(edges)))))
     cap = fields.add("MathEval")
     fields.setString(cap, "F", str(size.coarsest * _MM))
     smallest = fields.add("Min")

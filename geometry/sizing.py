@@ -15,6 +15,8 @@ _CLEAR = 1e-7  # m, between two layers, several times what their samples may mis
 _APART = 1e-6  # m, between points that the mesh has where the nail begins
 _TURN = 2.0  # rad, by which the skin turns along a facet at most: a parabola of more is another shape
 _SAMPLES = 512  # points along a ridge at which its curvature is found; the shortest of 16 waves has 32
+FROM_EDGES = 0.5
+"""Growth of the element size from where contact ends."""
 _FASTER = 2.0  # growth from a tip over that elsewhere; at 4 the densities of the default finger are 4 % off
 
 

@@ -49,6 +49,18 @@ def test_one_ridge():
     assert body.ridges() == [0]
 
 
+def test_ridge_with_known_ends_of_contact():
+    """Facets at the ends are a sixteenth of the others, and those farther away as long as without ends."""
+    size, end = 16 * UM, 50 * UM
+    for ends, expected in (((), size), ((-end, end), size / 16)):
+        body = load(MPI.COMM_SELF, ridge(size, ends=ends))
+        x = np.sort(vertices(body, body.facet_tags.find(tags.ridge(0)))[:, 0])
+        middles, facets = (x[1:] + x[:-1]) / 2, np.diff(x)
+        for place in (-end, end):
+            assert facets[abs(middles - place).argmin()] == pytest.approx(expected, rel=0.5)
+        assert facets[abs(middles) < 10 * UM] == pytest.approx(size, rel=0.3)
+
+
 @pytest.mark.mpi
 def test_quarter_tube():
     """Its arcs are on its radii about an axis 4 mm up, its wall the area between.

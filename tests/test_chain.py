@@ -10,18 +10,24 @@ import pytest
 from mpi4py import MPI
 
 import fingerpad as fp
+from fingerpad.accuracy.sharpened import Sharpened
+from fingerpad.accuracy.states import Solve
 from fingerpad.model.full_slip import Conditions, Solved
+from fingerpad.results.answer import Cost
+from fingerpad.results.result import Result
 from fingerpad.runs import chain
 from fingerpad.runs import chains as of_sweep
 from fingerpad.runs.chain import Chain
 from fingerpad.runs.chains import chains
 from fingerpad.runs.sweep import _neighbours
+from fingerpad.runs.sweep_columns import OTHER
 from fingerpad.scene import SceneError, from_data
+from geometry.parameters import MeshSize
 from tests.small_finger import NINE
 from variational.contact.friction import Coulomb
 from variational.solvers.continuation import StepFailed
 from variational.solvers.outcome import Counts
-from variational.state import ContactState
+from variational.state import ContactState, Errors
 
 SCENE = NINE | {"f_ext": 1.0, "voltage": 100.0, "output": {"errors": False, "receptors": False}}
 
@@ -67,7 +73,7 @@ class Skin:
         interface = SimpleNamespace(formulation=None)
         solver = SimpleNamespace(counts=Counts(), iteration=SimpleNamespace(free=lambda: None))
         self.finger = SimpleNamespace(
-            solver=solver, unknowns=7, force_error=1e-9, problem=SimpleNamespace(interface=interface)
+            solver=solver, unknowns=7, force_error=1e-9, problem=SimpleNamespace(interface=interface), size=MeshSize()
         )
 
     def _found(self, conditions, ridges, reached):
@@ -105,8 +111,8 @@ def test_two_states_are_found_from_both_sides(monkeypatch):
     results, written = followed(monkeypatch, Skin(), [100.0, 70.0, 65.0, 50.0])
     assert [r.full_slip.ridges_in_contact for r in results] == [5, 5, 5, 3]
     assert written == [0, 1, 2, 3, 2, 1]
-    assert [r.record.get(chain.OTHER, {}).get("ridges_in_contact") for r in results] == [None, 3, 3, None]
-    assert results[2].record[chain.OTHER]["reached"] == "full slip from voltage 50 V"
+    assert [r.record.get(OTHER, {}).get("ridges_in_contact") for r in results] == [None, 3, 3, None]
+    assert results[2].record[OTHER]["reached"] == "full slip from voltage 50 V"
     caution = "there are two states of full slip: f_T 1.25 N/m with 5 ridges (full slip from voltage 70 V) and f_T 0.75"
     assert results[2].cautions[-1].startswith(caution)
     assert not any("two states" in text for r in (results[0], results[3]) for text in r.cautions)
@@ -118,7 +124,7 @@ def test_ends_are_solved_for_from_beyond(monkeypatch):
     results, written = followed(monkeypatch, Skin(), [100.0, 82.0, 70.0, 65.0])
     assert [r.full_slip.ridges_in_contact for r in results] == [5, 5, 5, 5]
     assert written == [0, 1, 2, 3, 3, 2]
-    others = [r.record.get(chain.OTHER, {}) for r in results]
+    others = [r.record.get(OTHER, {}) for r in results]
     assert [other.get("ridges_in_contact") for other in others] == [None, None, 3, 3]
     assert others[3]["reached"].startswith("full slip from voltage 59.58")
 
@@ -127,7 +133,7 @@ def test_begin_is_solved_for_from_beyond(monkeypatch):
     """The path ends with five ridges at 62 V, and three touch beyond."""
     results, written = followed(monkeypatch, Skin(), [62.0, 70.0, 90.0])
     assert written == [0, 1, 2, 0, 1]
-    assert [r.record.get(chain.OTHER, {}).get("ridges_in_contact") for r in results] == [3, 3, None]
+    assert [r.record.get(OTHER, {}).get("ridges_in_contact") for r in results] == [3, 3, None]
 
 
 @pytest.mark.parametrize(
@@ -163,6 +169,65 @@ def test_point_without_full_slip_has_its_failure(monkeypatch):
     results, _ = followed(monkeypatch, Skin(missing=(90.0,)), [100.0, 90.0, 85.0])
     assert results[1].failure == "no path" and results[1].full_slip is None
     assert results[2].full_slip.reached == "full slip from voltage 100 V"
+
+
+def sharp(state, **changes):
+    """Return a state as on another mesh, and what it took there."""
+    found = replace(state, error=Errors(f_t=0.1), **changes)
+    return Sharpened(found, Solve({}, MeshSize(), 100, 5, 1.0, 9))
+
+
+def test_point_has_the_values_and_errors_of_the_scenes_mesh(monkeypatch):
+    """And what both meshes took; where other ridges touch on the two, a caution gives both."""
+    monkeypatch.setattr(Chain, "_final", lambda self, model, state: sharp(state, ridges_in_contact=4, f_t=0.99))
+    (result,), _ = followed(monkeypatch, Skin(), [100.0])
+    assert (result.full_slip.f_t, result.full_slip.error.f_t) == (0.99, 0.1)
+    cost = result.cost
+    assert (cost.unknowns, cost.factorisations, cost.newton_iterations) == (100, 5, 9)
+    assert result.record["accuracy"]["mesh"] == MeshSize().model_dump() and "path_mesh" in result.record
+    assert any("0.99 N/m with 4 ridges on the scene's mesh, and 1.25 N/m with 5" in text for text in result.cautions)
+    monkeypatch.setattr(Chain, "_final", lambda self, model, state: sharp(state))
+    (result,), _ = followed(monkeypatch, Skin(), [100.0])
+    assert not any("mesh" in text for text in result.cautions)
+
+
+def test_second_state_is_one_of_the_scenes_mesh(monkeypatch):
+    """Two states of the chain's mesh that are one on the scene's are not two; nor is one that is not found there."""
+    monkeypatch.setattr(Chain, "_final", lambda self, model, state: sharp(state, ridges_in_contact=4, f_t=0.99))
+    results, written = followed(monkeypatch, Skin(), [100.0, 70.0, 50.0])
+    assert written == [0, 1, 2] and not any(OTHER in r.record for r in results)
+
+    def missing(self, model, state):
+        if state.reached == "full slip from voltage 50 V":
+            raise StepFailed("not there")
+        return sharp(state, f_t=state.f_t / 2)
+
+    monkeypatch.setattr(Chain, "_final", missing)
+    results, written = followed(monkeypatch, Skin(), [100.0, 70.0, 65.0, 50.0])
+    assert written == [0, 1, 2, 3, 1], "from 65 V, the one that was not found there goes on"
+    assert results[1].record[OTHER]["f_t"] == 0.375
+    assert "f_T 0.625 N/m with 5 ridges (full slip from voltage 100 V) and f_T 0.375 N/m" in results[1].cautions[-1]
+
+
+def test_point_not_found_on_the_scenes_mesh_is_a_run(monkeypatch):
+    """The next one goes on from the state of the chain's mesh."""
+    run = ContactState(
+        f_ext=1.0, voltage=70.0, f_t=0.5, mu_app=0.5, f_contact=2.0, f_electrostatic=1.0, ridges_in_contact=5,
+        contact_length=1e-3,
+    )  # fmt: skip
+    made = Result(from_data(SCENE), "full", None, None, run, cost=Cost(factorisations=70), record={"restarts": []})
+    monkeypatch.setattr("fingerpad.runs.full.run", lambda scene, context: made)
+
+    def missing(self, model, state):
+        if state.voltage == 70.0:
+            raise StepFailed("not there")
+
+    monkeypatch.setattr(Chain, "_final", missing)
+    results, _ = followed(monkeypatch, Skin(), [100.0, 70.0, 65.0])
+    assert results[1].full_slip is run and results[1].cost.factorisations == 70
+    assert results[1].record == {"restarts": [], "reached": "path"}
+    assert results[1].notes[0].endswith("since it was not found from a state on larger elements: not there.")
+    assert results[2].full_slip.reached == "full slip from voltage 70 V"
 
 
 @pytest.mark.parametrize(
@@ -211,6 +276,30 @@ def test_sweep_of_full_slip_is_that_of_paths(tmp_path, monkeypatch):
     assert again.array("f_t")[1] == pytest.approx(direct.array("f_t")[1], rel=0, abs=0)
     more = fp.sweep(scene, tmp_path / "direct", states="full_slip", quiet=True, friction=[0.25], voltage=[0, 60, 80])
     assert len(started) == 1 and not any(r.failure for r in more)
+
+
+@pytest.mark.slow
+def test_states_with_errors_are_those_of_runs(tmp_path):
+    """A point's values and errors are of the meshes that a run has for its full slip.
+
+    Tolerance: the air gaps' of 1e-6, which the ends of contact follow, and with them the places of facets.
+    """
+    scene = from_data(SCENE | {"output": {"errors": True, "receptors": False}})
+    direct = fp.sweep(scene, tmp_path, states="full_slip", quiet=True, voltage=[0, 60])
+    run = fp.run(scene.replace(voltage=60))
+    mine, its = direct[1].full_slip, run.full_slip
+    assert (mine.reached, direct[0].full_slip.reached) == ("path", "full slip from voltage 60 V")
+    assert direct[0].notes[0].startswith("This is full slip alone, solved for again on the scene's mesh;")
+    for name in ("f_t", "mu_app", "contact_length", "f_electrostatic", "p_max"):
+        assert getattr(mine, name) == pytest.approx(getattr(its, name), rel=1e-4), name
+    for name, error in mine.error.known().items():
+        assert error == pytest.approx(its.error.known()[name], rel=1e-2), name
+    assert set(mine.error.known()) == set(its.error.known())
+    assert direct[0].full_slip.error.contact_length > 0
+    assert direct.array("mu_app")[0] == pytest.approx(0.25, rel=1e-9)
+    assert direct[1].record["accuracy"]["mesh"] == run.record["accuracy"]["mesh"]
+    row = direct.rows()[1]
+    assert row["full_slip_f_t_error"] == mine.error.f_t and " ± " in str(direct)
 
 
 @pytest.mark.slow

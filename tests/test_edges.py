@@ -23,6 +23,7 @@ from variational.solvers.snapshot import SkinState, StateSnapshot
 from variational.solvers.target import Control
 
 PROFILES = Profiles(Fingertip())
+ALONG = PROFILES.along_skin
 SCENE = NINE | {"f_ext": 1.0, "voltage": 100.0}
 
 
@@ -38,12 +39,12 @@ def snapshot_of(gaps) -> StateSnapshot:
 
 def test_place_on_the_skin_gives_its_arc_length():
     s = np.random.default_rng(3).uniform(-25, 25, 200) * 483e-6
-    np.testing.assert_allclose(PROFILES.along_skin(PROFILES.point(s, PROFILES.skin(s))), s, rtol=0, atol=1e-8)
+    np.testing.assert_allclose(ALONG(PROFILES.point(s, PROFILES.skin(s))), s, rtol=0, atol=1e-8)
 
 
 def test_ends_are_where_the_gap_is_zero():
     """Of a parabola on one ridge, closed over 81 um, and none on the other. Tolerance: lines between points."""
-    found = edges.ends(snapshot_of({0: lambda s: s**2 - 40.5e-6**2, 2: lambda s: 0 * s + 1e-6}), PROFILES, 10e-6)
+    found = edges.ends(snapshot_of({0: lambda s: s**2 - 40.5e-6**2, 2: lambda s: 0 * s + 1e-6}), ALONG, 10e-6)
     np.testing.assert_allclose(found, [-40.5e-6, 40.5e-6], atol=0.1e-6)
 
 
@@ -54,9 +55,9 @@ def test_gap_of_a_facet_within_a_contact_is_none():
         return (s**2 - 60e-6**2) * (s**2 - 8e-6**2) * -1e8
 
     state = snapshot_of({0: lambda s: -two(s)})
-    wide = edges.ends(state, PROFILES, 5e-6)
+    wide = edges.ends(state, ALONG, 5e-6)
     np.testing.assert_allclose(wide, [-60e-6, -8e-6, 8e-6, 60e-6], atol=0.3e-6)
-    np.testing.assert_allclose(edges.ends(state, PROFILES, 20e-6), [-60e-6, 60e-6], atol=0.1e-6)
+    np.testing.assert_allclose(edges.ends(state, ALONG, 20e-6), [-60e-6, 60e-6], atol=0.1e-6)
 
 
 def test_facets_are_small_outwards_of_ends_on_coarse_facets():

@@ -2,6 +2,7 @@
 
 import errno
 import os
+import posix
 import shutil
 import signal
 import subprocess
@@ -146,6 +147,17 @@ def test_what_is_not_whole_is_compiled_again(cache, tmp_path, monkeypatch, capfd
     assert integral() == 2.5
     assert (UNFINISHED in capfd.readouterr().err) is compiled
     assert (cache / f"{name}.c").exists() is compiled or "source" in left
+
+
+def test_cache_is_not_listed(cache, monkeypatch):
+    """It may have thousands of files, and a run takes some hundred forms from it."""
+
+    def refuse(*_):
+        raise AssertionError("the cache was listed")
+
+    assert integral() == 2.5
+    monkeypatch.setattr(posix, "listdir", refuse)
+    assert integral() == 2.5
 
 
 def test_without_locks(cache, monkeypatch):

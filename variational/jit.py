@@ -12,12 +12,14 @@ import contextlib
 import fcntl
 import functools
 import hashlib
+import importlib.util
 import platform
 import shutil
 import sys
 import tempfile
 import time
 from collections.abc import Callable, Iterator, Sequence
+from importlib.machinery import EXTENSION_SUFFIXES
 from pathlib import Path
 from typing import IO, Any
 
@@ -73,8 +75,24 @@ def _finished(module: str, names: Sequence[str], folder: Path, timeout: int = 0)
         return _get_cached_module(module, names, folder, timeout)
     if (folder / f"{module}.c.cached").exists():
         with contextlib.suppress(ImportError):  # the library was deleted, or is no longer whole
-            return ffcx_jit._load_objects(folder, module, names)
+            return _load(folder, module, names)
     return None, None
+
+
+def _load(folder: Path, module: str, names: Sequence[str]) -> tuple[list[Any], Any]:
+    """Return the objects of a library, and its module; without a list of the cache, which may have thousands of files.
+
+    Raises:
+        ImportError: there is no such library, or it is not whole.
+    """
+    paths = (folder / f"{module}{suffix}" for suffix in EXTENSION_SUFFIXES)
+    library = next((path for path in paths if path.exists()), folder / module)
+    spec = importlib.util.spec_from_file_location(module, library)
+    if spec is None or spec.loader is None:
+        raise ImportError(f"{folder} has no library of {module}")
+    loaded = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(loaded)
+    return [getattr(loaded.lib, name) for name in names], loaded
 
 
 def _compile(

@@ -21,10 +21,11 @@ from benchmarks.runs import FORCES, VOLTAGES, plain
 from fingerpad.runs.batch import Summary
 from fingerpad.runs.sweep_columns import OTHER
 from fingerpad.scene import Scene
+from geometry.parameters import MeshSize
 
 _LIMIT = 3600.0  # s of processor time for one path
 EQUAL = 1e-6  # relative difference of f_T up to which two states are one, the tolerance of the air gaps
-LARGER = {"contact": 10e-6, "growth": 0.5, "interface": 160e-6, "coarsest": 1e-3}
+LARGER = {name: 2 * getattr(MeshSize(), name) for name in ("contact", "growth", "interface", "coarsest")}
 _PARTS = {"output": {"errors": False, "receptors": False}}
 
 
@@ -38,7 +39,9 @@ class Beside:
     """Of the path (N/m), and"""
     ridges: int
     states: tuple[float, ...]
-    """f_T of the sweep's states, one or two (N/m)."""
+    """f_T of the sweep's states, one or two (N/m),"""
+    touching: int
+    """ridges in the first of these."""
     reached: str
 
     @property
@@ -48,8 +51,13 @@ class Beside:
 
     @property
     def bistable(self) -> bool:
-        """Whether two states were found, by the sweep or by the path."""
-        return len(self.states) > 1 or self.apart > EQUAL
+        """Whether two states were found, in which other ridges touch, by the sweep or by the path."""
+        return len(self.states) > 1 or self.ridges != self.touching
+
+    @property
+    def alike(self) -> bool:
+        """Whether the path's state is one of the sweep's, or another one of two."""
+        return self.apart <= EQUAL or self.bistable
 
 
 def widest(mesh: Mapping[str, float]) -> Scene:
@@ -86,7 +94,8 @@ def beside(rows: Sequence[Mapping[str, Any]], found: Mapping[tuple[float, float]
             values = [each for each in (row["f_t"], row["other"]) if each is not None]
             listed.append(
                 {"f_ext": row["f_ext"], "voltage": row["voltage"], "f_t": path["full_slip_f_t"],
-                 "ridges": path["full_slip_ridges_in_contact"], "states": values, "reached": row["reached"]}
+                 "ridges": path["full_slip_ridges_in_contact"], "states": values, "touching": row["ridges"],
+                 "reached": row["reached"]}
             )  # fmt: skip
     return listed
 
@@ -101,18 +110,24 @@ def compute(args: argparse.Namespace) -> None:
     keep("paper_states", numbers, made(found.values()), args.docs)
 
 
+def compared(numbers: Mapping[str, Any]) -> list[Beside]:
+    """Return the paths beside the states of docs/paper_states.json."""
+    return [Beside(**{**each, "states": tuple(each["states"])}) for each in numbers["beside"]]
+
+
 def shown(docs: Path) -> dict[str, Any] | None:
     """Return what docs/paper.md has of the states; None where they were not computed."""
     if not (docs / "paper_states.json").exists():
         return None
     numbers = kept("paper_states", docs).numbers
-    listed = [Beside(**{**each, "states": tuple(each["states"])}) for each in numbers["beside"]]
+    listed = compared(numbers)
     direct = [row for row in numbers["default"] if row["reached"] != "path"]
     larger = [row["processor_seconds"] for row in numbers["larger"] if row["reached"] != "path"]
     return {
         "beside": listed,
         "equal": [each for each in listed if each.apart <= EQUAL],
-        "two": [each for each in listed if each.bistable],
+        "two": [each for each in listed if each.bistable or not each.alike],
+        "unlike": [each for each in listed if not each.alike],
         "count": len(numbers["default"]),
         "direct": len(direct),
         "seconds": sum(row["processor_seconds"] for row in numbers["default"]),

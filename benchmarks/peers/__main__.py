@@ -1,6 +1,7 @@
 """Meshes, cases and fingerpad's answers before the peers run, numbers and page after; benchmarks/peers/run does both.
 
 environment/run python3 -m benchmarks.peers prepare FOLDER SIZE ... | page FOLDER | prepare-timed FOLDER | timed FOLDER
+environment/run python3 -m benchmarks.peers equal
 
 The answers of programs are compared by forces, half-width and peak pressure, the page's picture shows the tractions'.
 Processor times are of all programs along the same ten states, beside their errors.
@@ -16,7 +17,8 @@ import numpy as np
 from matplotlib.figure import Figure
 from numpy.polynomial import Polynomial
 
-from benchmarks.harness import DOCS, keep, kept, made, page, picture, table
+from benchmarks.harness import DOCS, RESULTS, keep, kept, made, page, picture, table
+from benchmarks.peers import at_equal_error
 from benchmarks.peers.exchange import TASKS, TIMED, Answer, Array, Ridge, State, answer_path, cases, timed, write
 from fingerpad.results.style import BLUE, GREEN, ORANGE, VERMILION
 
@@ -221,13 +223,17 @@ def draw(docs: Path) -> Path:
                 np.where(sizes > _ROUNDED, sizes, 0.0), summary.get(row["program"], 0.0)
             )
     picture(docs / "peers.png", (13, 5), lambda figure: paint(figure, found["meshes"][-1]["states"]))
+    rows = found["equal"]["rows"]
+    picture(docs / "peers_equal_error.png", (11, 4), lambda figure: at_equal_error.paint(figure, rows))
     timed = found["speed"]["meshes"]
     names = {
         "summary": summary,
         "speed": found["speed"],
+        "equal": found["equal"],
         "ratios": [{row["program"]: row["seconds"] / m["rows"][0]["seconds"] for row in m["rows"]} for m in timed],
         "spread": max(row["spread"] or 0.0 for m in timed for row in m["rows"]),
         "meshes": "\n\n".join(map(_mesh, found["meshes"])),
+        **at_equal_error.words(rows),
     }
     return page(docs, "peers", "benchmarks/peers/run", globals() | names)
 
@@ -235,22 +241,26 @@ def draw(docs: Path) -> Path:
 def main() -> None:
     """Read the command line."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("action", choices=("prepare", "page", "prepare-timed", "timed"))
-    parser.add_argument("folder", type=Path)
+    parser.add_argument("action", choices=("prepare", "page", "prepare-timed", "timed", "equal"))
+    parser.add_argument("folder", type=Path, nargs="?", default=RESULTS / "peers")
     parser.add_argument("sizes", type=float, nargs="*")
     args = parser.parse_args()
-    old = kept("peers", DOCS)
     if args.action == "prepare":
         prepare(args.folder, args.sizes)
     elif args.action == "prepare-timed":
         prepare_timed(args.folder)
-    elif args.action == "timed":
-        by = made()
-        text = {"made": f"version {by.version} of {by.date} (source {by.source})"}
-        keep("peers", old.numbers | {"speed": speeds(args.folder) | text}, old.made, DOCS)
     else:
-        keep("peers", numbers(args.folder) | {"speed": old.numbers["speed"]}, made(), DOCS)
-    if args.action in ("page", "timed"):
+        old, by = kept("peers", DOCS), made()
+        text = {"made": f"version {by.version} of {by.date} (source {by.source})"}
+        if args.action == "page":
+            found = {name: old.numbers[name] for name in ("speed", "equal")} | numbers(args.folder)
+        elif args.action == "timed":
+            found = old.numbers | {"speed": speeds(args.folder) | text}
+        else:
+            from benchmarks.peers import equal  # needs dolfinx
+
+            found = old.numbers | {"equal": equal.numbers() | text}
+        keep("peers", found, by if args.action == "page" else old.made, DOCS)
         print(draw(DOCS))
 
 

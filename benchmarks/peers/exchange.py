@@ -119,7 +119,7 @@ def answer_path(folder: Path, size: float, name: str, variant: str, program: str
 
 @dataclass(frozen=True)
 class Ridge:
-    """Six-node triangles with straight edges.
+    """Six-node triangles, with straight edges where every program is to take them.
 
     Attributes:
         points: nodes (mm), shape (nodes, 2), vertices first.
@@ -139,6 +139,13 @@ class Ridge:
     def vertices(self) -> int:
         """How many nodes are vertices."""
         return int(self.triangles[:, :3].max()) + 1
+
+    @property
+    def curved(self) -> bool:
+        """Whether an edge's middle is not half-way along it, beyond roundoff."""
+        corners = self.points[self.triangles[:, :3]]
+        middles = (corners + corners[:, [1, 2, 0]]) / 2
+        return bool(np.abs(self.points[self.triangles[:, 3:]] - middles).max() > 1e-12)
 
     @property
     def held(self) -> Array:

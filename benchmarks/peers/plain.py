@@ -11,11 +11,14 @@ from petsc4py import PETSc
 
 from benchmarks.peers.exchange import DELTA, MOST, TOLERANCE, Answer, Case, Ridge, main, nearest
 
+_NODES = [0, 1, 2, 4, 5, 3]  # of a triangle in the order of dolfinx: an edge's middle by the opposite vertex
+
 
 def solve(case: Case, ridge: Ridge) -> Answer:
     """Lead the ridge along the loads."""
     vertices, corners = ridge.points[: ridge.vertices], ridge.triangles[:, :3]
-    msh = mesh.create_mesh(MPI.COMM_SELF, cells=corners, x=vertices, e=element("P", "triangle", 1, shape=(2,)))
+    given, cells, degree = (ridge.points, ridge.triangles[:, _NODES], 2) if ridge.curved else (vertices, corners, 1)
+    msh = mesh.create_mesh(MPI.COMM_SELF, cells=cells, x=given, e=element("P", "triangle", degree, shape=(2,)))
     V = fem.functionspace(msh, ("P", 2, (2,)))
     msh.topology.create_connectivity(1, 2)
     width, height = vertices.max(axis=0)

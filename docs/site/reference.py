@@ -1,6 +1,7 @@
 """Pages of the Python reference: one for each folder of the packages, with the modules in it."""
 
 from pathlib import Path
+from types import ModuleType
 
 import fingerpad
 
@@ -31,8 +32,9 @@ def door() -> dict[str, list[str]]:
     """Return the names that import fingerpad gives, by the module that defines them; api.md describes them."""
     homes: dict[str, list[str]] = {}
     for name in fingerpad.__all__:
-        if name != "geometry":
-            homes.setdefault(getattr(fingerpad, name).__module__, []).append(name)
+        if isinstance(named := getattr(fingerpad, name), ModuleType):
+            continue
+        homes.setdefault(named.__module__, []).append(name)
     return homes
 
 

@@ -5,16 +5,16 @@ there, and hardly any from the others. On coarse facets a contact is too short: 
 it, by some tenth of a facet to a third. So facets are small over that way.
 """
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 
 import numpy as np
 from numpy.typing import NDArray
 
 from geometry.parameters import MeshSize
-from geometry.profiles import Profiles
 from variational.solvers.snapshot import SkinState, StateSnapshot
 
 Array = NDArray[np.float64]
+Along = Callable[[Array], Array]
 _OUTSIDE = 0.3  # of a facet: how far outside of where it is found contact may end
 _APART = 4.0  # small facets between two places about which they are small
 _DIGITS = 0.1  # of a small facet: to what places are rounded, so that roundoff of a state changes no mesh
@@ -36,20 +36,20 @@ def about(ends: Iterable[tuple[Array, float]], size: MeshSize) -> tuple[float, .
     return tuple(float(k * unit) for k in np.unique(np.rint(np.abs(np.concatenate(found)) / unit)))
 
 
-def ends(snapshot: StateSnapshot, profiles: Profiles, facet: float) -> Array:
+def ends(snapshot: StateSnapshot, along: Along, facet: float) -> Array:
     """Return where contact begins and ends, one after the other, as arc lengths (m).
 
     Args:
         snapshot: the state.
-        profiles: of the finger.
+        along: returns the arc lengths (m) of places on the unloaded skin (m), shape (points, 2).
         facet: length of its facets where contact ends (m); gaps within a contact that are shorter are of the facets.
     """
-    found = [_of_ridge(skin, profiles, facet) for skin in snapshot.skin.values() if (skin.gap < 0).any()]
+    found = [_of_ridge(skin, along, facet) for skin in snapshot.skin.values() if (skin.gap < 0).any()]
     return np.concatenate([np.empty(0), *found])
 
 
-def _of_ridge(skin: SkinState, profiles: Profiles, facet: float) -> Array:
-    s = profiles.along_skin(skin.reference)
+def _of_ridge(skin: SkinState, along: Along, facet: float) -> Array:
+    s = along(skin.reference)
     order = np.argsort(s)
     s, gap = s[order], skin.gap[order]
     closed = np.concatenate([[False], gap < 0, [False]])

@@ -35,7 +35,7 @@ from dataclasses import fields, replace
 from typing import Any
 
 from fingerpad.accuracy.solves import Solves
-from fingerpad.accuracy.states import Solve, quantities
+from fingerpad.accuracy.states import Solve, quantities, with_values
 from fingerpad.model.simulation import RestartRequired
 from fingerpad.results.interrupt import Interrupted
 from fingerpad.results.quantities import QUANTITIES, Output
@@ -44,7 +44,7 @@ from fingerpad.richardson import TWO, MeshParameter, errors, of_two_meshes, plus
 from geometry.profiles import GeometryError
 from variational.element import ELEMENTS
 from variational.solvers.continuation import StepFailed
-from variational.state import RESULTS, ContactState, Errors
+from variational.state import ContactState, Errors
 
 _SIZES = {"contact": ("contact",), "bulk": ("growth", "interface", "coarsest"), "receptor": ("receptor",)}
 _ROUNDS = 6  # of refinement
@@ -302,9 +302,8 @@ def with_errors(refinement: Refinement, path: Mapping[str, ContactState]) -> dic
     estimates, found = refinement.estimates(), dict(path)
     for name, kept in refinement.base.states.items():
         if name in found:
-            final = {key: getattr(kept.state, key) for key in (*RESULTS, "f_ext", "ridges", "mesh_contact")}
             parts = (errors_of(name, estimates), errors_of(name, refinement.penalty))
-            found[name] = replace(found[name], **final, error=parts[0], penalty=parts[1])
+            found[name] = replace(with_values(found[name], kept), error=parts[0], penalty=parts[1])
     if {"uncharged", "charged"} <= set(found) and path["uncharged"].step == path["charged"].step:  # at 0 V one state
         found["uncharged"] = found["charged"]
     return found

@@ -124,7 +124,7 @@ def _solve(
     model: FingerModel, states: Mapping[str, State], comm: MPI.Comm, views: bool, stiffer: Formulation | None
 ) -> Solve:
     profiles = Profiles(model.geometry)
-    ends = ((edges.ends(state.snapshot, profiles, state.facet), state.facet) for state in states.values())
+    ends = ((edges.ends(state.snapshot, profiles.along_skin, state.facet), state.facet) for state in states.values())
     found = edges.about(ends, model.mesh)
     simulation = StateSolver(model.changed(edges=found), comm)
     recorder, over, finger = StateRecorder(simulation), StateRecorder(simulation), simulation.finger
@@ -158,6 +158,7 @@ def together(solves: Sequence[Solve]) -> Solve:
         unknowns=max(solve.unknowns for solve in solves),
         factorisations=sum(solve.factorisations for solve in solves),
         processor_seconds=sum(solve.processor_seconds for solve in solves),
+        newton=sum(solve.newton for solve in solves),
         stiffer=together(over) if len(over) == len(solves) else None,
         soft=next((solve.soft for solve in solves if solve.soft), ""),
     )

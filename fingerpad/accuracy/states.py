@@ -3,7 +3,7 @@
 import math
 import time
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -14,7 +14,7 @@ from fingerpad.results.states import before_sliding
 from geometry.parameters import MeshSize
 from variational.output import Receptors
 from variational.solvers.snapshot import StateSnapshot, take_snapshot
-from variational.state import ContactState
+from variational.state import RESULTS, ContactState
 
 if TYPE_CHECKING:
     from fingerpad.model.finger import Step
@@ -50,6 +50,8 @@ class Solve:
     factorisations: int
     processor_seconds: float
     """Of this rank."""
+    newton: int = 0
+    """Newton iterations."""
     stiffer: "Solve | None" = None
     """The states over a screen of twice the stiffness, on the same mesh."""
     soft: str = ""
@@ -80,6 +82,11 @@ def quantities(name: str, state: State) -> dict[str, float]:
     values = {quantity: float(getattr(state.state, quantity)) for quantity in wanted}
     found = {quantity: value for quantity, value in values.items() if not math.isnan(value)}
     return found | {f"sed_{j}": value for j, value in state.sed.items()}
+
+
+def with_values(path: ContactState, final: State) -> ContactState:
+    """Return a state as a path has it, with the results that it has on the final mesh; its errors are as before."""
+    return replace(path, **{key: getattr(final.state, key) for key in (*RESULTS, "f_ext", "ridges", "mesh_contact")})
 
 
 class StateRecorder:
@@ -145,4 +152,5 @@ class StateRecorder:
         f, seconds = self._simulation.finger, time.process_time() - self._start
         alike = self.states.get("uncharged") is self.states.get("charged")
         states = {name: state for name, state in self.states.items() if name != "uncharged" or not alike}
-        return Solve(states, f.size, f.unknowns, f.solver.counts.factorisations, seconds, views=self.views)
+        counts = f.solver.counts
+        return Solve(states, f.size, f.unknowns, counts.factorisations, seconds, counts.newton, views=self.views)

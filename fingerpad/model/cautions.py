@@ -5,21 +5,17 @@ They belong to a state, whatever computed it: runs, bodies, cheaper models and t
 
 from collections import Counter, defaultdict
 from collections.abc import Iterable, Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from variational.attraction.circuit import breakdown_voltage
 from variational.contact.formulation import Formulation
 from variational.roughness.closure import Closure, air_gaps
 from variational.state import ContactState
 
-if TYPE_CHECKING:
-    from fingerpad.scene import Scene
-
 Array = NDArray[np.float64]
 _SHARE = 0.1  # of the contact force, from which ridges outside of the closure's range are mentioned
+_GIVEN = 1e-6  # of the largest viscous work of a point: what another one may give back
 _DEEP = 0.1  # of the air gap: largest penetration that is of no matter
 
 
@@ -30,14 +26,16 @@ def on_states(
 
     Args:
         states: in any order; those without contact have none, and those without a voltage none on the closure.
-        closure: from a ridge's pressure to its air gap; without it there are none.
+        closure: from a ridge's pressure to its air gap; without it there are none on it.
         formulation: of the contact, which has the remedy against deep skin; None of states without a mesh.
     """
+    states = list(states)
+    viscous = _given_back(states)
     touching = [state for state in states if state.contact_length > 0]
     if closure is None or not touching:
-        return []
+        return viscous
     charged = [(*_pressures(state), state.voltage) for state in touching if state.voltage]
-    return [*on_closure(closure, charged, "states"), *_deep(touching, closure, formulation)]
+    return [*on_closure(closure, charged, "states"), *_deep(touching, closure, formulation), *viscous]
 
 
 def on_closure(closure: Closure, points: Sequence[tuple[ArrayLike, ArrayLike, float]], noun: str) -> list[str]:
@@ -58,27 +56,6 @@ def on_closure(closure: Closure, points: Sequence[tuple[ArrayLike, ArrayLike, fl
         f"in {count} of {len(points)} {noun} the closure is out of its range: the mean pressure of ridges is {place}"
         for place, count in counts.items()
     ]
-
-
-def breakdown(scene: "Scene", points: Iterable[tuple[str, float, float]]) -> list[str]:
-    """Return the caution on the gap in which air is the farthest beyond breakdown, by the field in it.
-
-    Args:
-        scene: with the drive, or a voltage without losses.
-        points: name of a ridge or a state, air gap (m), and voltage (V) of Eq. 3 where the scene has no drive.
-    """
-    found, supply = list[tuple[float, str]](), scene.supply
-    for name, gap, voltage in points:
-        across, when = abs(voltage) * gap / (gap + scene.h_0), ""
-        if supply is not None:
-            period = np.abs(supply.across(gap))
-            across = float(period.max())
-            when = f" {int(period.argmax()) / len(period) / supply.frequency:.3g} s after the start of a period"
-        limit = float(breakdown_voltage(gap))
-        if across > limit:
-            words = f"{across:.4g} V are across a gap of {1e6 * gap:.3g} µm in {name}{when}, and from {limit:.4g} V on"
-            found.append((across / limit, words))
-    return [f"{max(found)[1]} air breaks down there, which is not in this model"] if found else []
 
 
 def _pressures(state: ContactState) -> tuple[Array, Array]:
@@ -104,4 +81,17 @@ def _deep(touching: Sequence[ContactState], closure: Closure, formulation: Formu
         f"in {len(deep)} of {len(found)} states the skin is deeper in the screen than a tenth of the air gap, "
         f"{depth * 1e6:.2g} µm where the gap is {gap * 1e6:.2g} µm: attraction and contact length depend on the depth"
         + ("" if formulation is None else f"; {formulation.less_penetration}")
+    ]
+
+
+def _given_back(states: Sequence[ContactState]) -> list[str]:
+    """Return the caution on viscous layers of which a point gave back more energy than it got."""
+    least = [state.record.viscous_least for state in states if state.record is not None]
+    found = [each for each in least if each < -_GIVEN]
+    if not found:
+        return []
+    return [
+        f"in {len(found)} of {len(least)} steps viscous layers had points that gave back more energy than they got, "
+        f"{-min(found):.1g} of the largest at most: quasi-linear viscoelasticity allows that at large strain, and no "
+        "material does"
     ]

@@ -10,14 +10,15 @@ A load begins with the drive switched on across a gap without charge, by the equ
 these are not known, of a table of a tissue or of a carrier, it begins in the steady state.
 """
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from fingerpad.scene.messages import SceneError
-from fingerpad.scene.supply import REFERENCE, Supply, supply_of
+from fingerpad.scene.supply import GAPS, REFERENCE, Supply, supply_of
 from fingerpad.scene.wavefile import POINTS
 from fingerpad.scene.waveform import Waveform
 from geometry.units import computed
@@ -28,10 +29,28 @@ if TYPE_CHECKING:
     from fingerpad.scene import Load, Scene
 
 Array = NDArray[np.float64]
-Share = Callable[[Array], Array]
-"""Voltage at air gaps (m), over that at the reference gap."""
 _FEW, _MANY = 12, 48  # points of a period of the wave
 _JUMP = 1e-6  # of a period, which a jump takes
+
+
+@dataclass(frozen=True)
+class Share:
+    """Voltage of Eq. 3 at air gaps, over that at the reference gap: of one drive, however large it is."""
+
+    ratios: tuple[float, ...]
+    """At :data:`~fingerpad.scene.supply.GAPS`; between them straight in the logarithm of the gap."""
+
+    def __call__(self, gap: ArrayLike) -> Array:
+        """Return the share at air gaps (m), of their shape."""
+        return np.asarray(np.interp(np.log(np.asarray(gap, dtype=float)), np.log(GAPS), self.ratios))
+
+    def toward(self, other: "Share", part: float) -> "Share":
+        """Return the share at a part of the way to another one, from 0 to 1."""
+        return Share(tuple((1 - part) * a + part * b for a, b in zip(self.ratios, other.ratios, strict=True)))
+
+
+SAME = Share((1.0,) * len(GAPS))
+"""That of a voltage without losses: one at every gap."""
 
 
 def share(scene: "Scene") -> Share | None:
@@ -51,7 +70,8 @@ def share(scene: "Scene") -> Share | None:
             "drive; give one drive and 0 V"
         )
     supply = supply_of(next(iter(drives.values())), scene.electric, d_sc)
-    return lambda gap: np.asarray(supply.effective(gap) / supply.reference, dtype=np.float64)
+    # drives that differ in their amplitude alone have one share, but for roundoff
+    return Share(tuple(float(f"{ratio:.12g}") for ratio in supply.effective(GAPS) / supply.reference))
 
 
 def loads(scene: "Scene") -> "tuple[Load, ...]":

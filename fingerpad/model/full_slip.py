@@ -13,6 +13,7 @@ down yet. Then the state depends on the side from which it is reached.
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
+from fingerpad.model.followed import Share
 from fingerpad.model.simulation import Simulation
 from variational.coefficients import between
 from variational.contact.friction import Friction
@@ -40,19 +41,21 @@ class Conditions:
     """None where there is never a voltage."""
     h_0: float
     """Effective insulator thickness (m)."""
+    share: Share | None = None
+    """Of each air gap in a drive; None where no drive of the model has losses."""
 
     @classmethod
     def of(cls, model: "FingerModel") -> "Conditions":
         """Return those at the end of a model's loads."""
         force = [load.f_ext for load in model.loads if load.f_ext is not None]
         voltage = [load.level for load in model.loads if load.level is not None]
-        return cls(force[-1], [0.0, *voltage][-1], model.friction, model.closure, model.h_0)
+        return cls(force[-1], [0.0, *voltage][-1], model.friction, model.closure, model.h_0, model.share)
 
     def beside(self, other: "Conditions") -> str:
         """Return what these have that others have not, in words."""
         words = {"f_ext": f"f_ext {self.f_ext:g} N/m", "voltage": f"voltage {self.voltage:g} V"}
         words |= {"friction": f"friction {self.friction}", "roughness": f"roughness {self.roughness}"}
-        words |= {"h_0": f"an insulator thickness of {self.h_0:g} m"}
+        words |= {"h_0": f"an insulator thickness of {self.h_0:g} m", "share": "another drive"}
         return ", ".join(text for name, text in words.items() if getattr(self, name) != getattr(other, name))
 
 
@@ -66,7 +69,12 @@ class Solved:
 
 
 class FullSlips:
-    """Leads a finger from full slip to full slip."""
+    """Leads a finger from full slip to full slip.
+
+    Attributes:
+        simulation: that leads the finger.
+        finger: the finger.
+    """
 
     def __init__(self, simulation: Simulation) -> None:
         """Take a simulation, whose loads are reached before :meth:`first`.
@@ -74,7 +82,7 @@ class FullSlips:
         Raises:
             ValueError: friction has a memory, so that full slip depends on its past.
         """
-        self._simulation, self.finger = simulation, simulation.finger
+        self.simulation, self.finger = simulation, simulation.finger
         memory = set(self.finger.problem.history.fields) - _FIELDS
         if memory:
             raise ValueError(f"the model has the history {min(memory)!r}, on which full slip may depend")
@@ -88,7 +96,7 @@ class FullSlips:
         Raises:
             StepFailed: it is no full slip that was held.
         """
-        state = self._simulation.states[-1]
+        state = self.simulation.states[-1]
         if not state.slip_held:
             raise StepFailed(f"the path ends without full slip over a further 0.2 mm (step {state.step})")
         return Solved(conditions, state, self.finger.continuation.place())
@@ -115,13 +123,14 @@ class FullSlips:
                 between(before.friction, conditions.friction, part),
                 between(before.roughness, conditions.roughness, part),
                 (1 - part) * before.h_0 + part * conditions.h_0,
+                before.share and conditions.share and before.share.toward(conditions.share, part),
             )
 
-        self._set_laws(before.friction, before.roughness, before.h_0)
+        self._set_laws(before.friction, before.roughness, before.h_0, before.share)
         path.go_to(start.place)
         name = f"full slip from {before.beside(conditions) or 'itself'}"
         target = Target(name, conditions.f_ext, voltage=conditions.voltage, slips=True, constants=set_laws)
-        state = self._simulation.slip_to(target)
+        state = self.simulation.slip_to(target)
         if not state.slip_held:
             raise StepFailed(f"{name}: {'full slip is not steady' if state.all_slip else 'not every point slips'}")
         return Solved(conditions, replace(state, reached=name), path.place())
@@ -132,12 +141,12 @@ class FullSlips:
         Raises:
             StepFailed: it is not stable.
         """
-        state, checked = solved.state, self._simulation.checks.check(solved.state.reached)
+        state, checked = solved.state, self.simulation.checks.check(solved.state.reached)
         if not checked.stable:
             raise StepFailed(f"{state.reached}: full slip is {checked}")
         state = replace(state, stable=True, lambda_min=checked.frozen.lambda_min, gain=checked.gain)
         return replace(solved, state=state)
 
-    def _set_laws(self, friction: Friction | None, roughness: Closure | None, h_0: float) -> None:
-        self.finger.problem.set_laws(friction, h_0)
+    def _set_laws(self, friction: Friction | None, roughness: Closure | None, h_0: float, share: Share | None) -> None:
+        self.finger.problem.set_laws(friction, h_0, share)
         self.finger.closure = self.finger.coupling.closure = roughness

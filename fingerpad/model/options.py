@@ -28,6 +28,7 @@ from typing import TYPE_CHECKING
 
 from fingerpad.results.terminal import about
 from fingerpad.scene.messages import SceneError, qualify
+from fingerpad.scene.viscosity import viscous_layers
 from geometry import sizing
 from geometry.parameters import Fingertip, MeshSize
 from geometry.profiles import GeometryError
@@ -35,6 +36,7 @@ from variational.contact.formulation import Formulation
 from variational.materials.material import Material
 
 if TYPE_CHECKING:
+    from fingerpad.model.followed import Share
     from fingerpad.scene import Load, Numerics, Scene
 
 COARSER = 2.0
@@ -87,6 +89,7 @@ class ModelOptions:
 
 
 _FILE = "the mesh is of a file"
+_PAST = "viscous layers carry the past of their own mesh, on which the whole path is followed"
 _HALF = Omission(
     "the half at x < 0, but in tables and pictures (displacement.bp, stress.bp and sed.bp hold the other)",
     "no load moves the bone sideways, and the finger is its own mirror image",
@@ -104,9 +107,11 @@ def plan(scene: "Scene") -> ModelOptions:
         omitted.append(Omission("friction and its history", "the friction coefficient is 0"))
     if not receptors:
         omitted.append(Omission("receptor sites and their fine elements", "output.receptors is false"))
-    errors = scene.output.errors or scene.accuracy is not None
+    viscous = bool(viscous_layers(scene.materials))
+    wanted = scene.output.errors or scene.accuracy is not None
+    errors = wanted and not viscous
     if not errors:
-        omitted.append(Omission("discretisation errors", "output.errors is false"))
+        omitted.append(Omission("discretisation errors", _PAST if wanted else "output.errors is false"))
     symmetric = all(solid.keeps_symmetry() for solid in scene.own_laws().values() if isinstance(solid, Material))
     both_halves = any(load.moves for load in scene.loads()) or not symmetric
     if scene.geometry.file is not None:  # the whole of it, and no other mesh of the same finger
@@ -195,6 +200,7 @@ class FingerModel:
         contact: Formulation | None = None,
         loads: tuple["Load", ...] | None = None,
         numerics: "Numerics | None" = None,
+        share: "Share | None" = None,
     ) -> "FingerModel":
         """Return a copy with some values changed, as the attributes are described; those left out stay."""
         found = copy(self)
@@ -207,6 +213,7 @@ class FingerModel:
         found.contact = self.contact if contact is None else contact
         found.loads = self.loads if loads is None else loads
         found.numerics = self.numerics if numerics is None else numerics
+        found.share = self.share if share is None else share
         return found
 
     def with_ridges(self, last: int) -> "FingerModel":

@@ -27,8 +27,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from fingerpad.model import breakdown
 from fingerpad.model.adhesion import sticking
-from fingerpad.model.cautions import breakdown, on_states
+from fingerpad.model.cautions import on_states
 from fingerpad.reduced import cylinder_errors
 from fingerpad.reduced.model import STATES, Model, reduced_state, refuse_others
 from fingerpad.results.answer import Cost
@@ -236,7 +237,7 @@ def solve(scene: Scene, footprint: Footprint | None = None) -> Result:
         ((found[state], states[state]),) = _solved(scene, [scene.f_ext], length, n, state, footprint.charged)
         cautions += _others(state, states[state])
     cautions += on_states(found.values(), scene.closure())
-    cautions += breakdown(scene, [(WORDS[state], ridge.d_eq, scene.volts) for state, ridge in states.items()])
+    cautions += breakdown.of_gaps(scene, [(WORDS[state], ridge.d_eq, scene.volts) for state, ridge in states.items()])
     more: dict[str, Any] = {
         f"{state}_{name}": getattr(ridge, name) for state, ridge in states.items() for name in ("p_c", "d_eq")
     }

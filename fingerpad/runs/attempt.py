@@ -8,7 +8,7 @@ from typing import Any
 from fingerpad.accuracy.refinement import Refinement, with_errors
 from fingerpad.accuracy.solves import Solves
 from fingerpad.accuracy.states import StateRecorder
-from fingerpad.model import cautions
+from fingerpad.model import breakdown, cautions
 from fingerpad.model.adhesion import adhering
 from fingerpad.model.finger import Step, meshed
 from fingerpad.model.options import FingerModel
@@ -234,6 +234,7 @@ class Attempt:
             cautions=(
                 *remarks(scene),
                 *cautions.on_states(record.states, scene.closure(), self._model.contact),
+                *breakdown.of_states(scene, record.states),
                 *long_steps(loads, error),
             ),
             record=more,

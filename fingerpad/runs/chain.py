@@ -7,6 +7,11 @@ goes back: skin may have two states of full slip, and each of them is found from
 end of a chain has a neighbour on one side alone; from the other side it is solved for from a state a step beyond, if
 other ridges touch there.
 
+With errors (``output.errors``) a chain is followed on the mesh of a run's path, whose elements are larger. Each of its
+states is solved for again on the scene's own mesh, and the two meshes give its estimated error
+(:mod:`fingerpad.accuracy.sharpened`). Where it is not found there, the point is a run of its own. Without errors the
+chain is followed on the scene's mesh.
+
 Each point is written when it is solved. A process is ``python3 -m fingerpad.runs.chain ASKED.json FOLDER LIMIT``.
 """
 
@@ -16,26 +21,24 @@ import sys
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
-from fingerpad.results.answer import Cost
 from fingerpad.results.files import below
 from fingerpad.results.result import Result
 from fingerpad.runs import batch
 from fingerpad.runs.context import RunContext
+from fingerpad.runs.points import Point, of_run, one, with_other
 from fingerpad.runs.processes import limit_processor_time
 from fingerpad.runs.solve import kept
-from fingerpad.runs.sweep_columns import OTHER
 from fingerpad.scene import Scene, from_data
 from fingerpad.scene.reading import DEFAULT_MODEL
 from variational.state import ContactState
 
 if TYPE_CHECKING:
+    from fingerpad.accuracy.sharpened import Sharpened, Sharpener
     from fingerpad.model.full_slip import Conditions, FullSlips, Solved
     from fingerpad.model.options import FingerModel
     from fingerpad.startup import MPI
-
-_SAME = 1e-5  # relative difference of f_t up to which two states are one; air gaps are solved to 1e-6
 
 
 class Chain:
@@ -53,12 +56,15 @@ class Chain:
             half_arc: ``mesh.touching_half_arc`` (m) where they give none.
             comm: communicator of the mesh.
         """
+        from fingerpad.model.followed import share
         from fingerpad.model.options import plan
 
         self._scenes, self._half_arc, self._comm = scenes, half_arc, comm
         strongest = max(scenes, key=lambda scene: abs(scene.volts))
-        self._options = replace(plan(strongest), errors=False)
+        self._options = plan(strongest)
+        self._shared = any(share(scene) is not None for scene in scenes)
         self._slips: FullSlips | None = None
+        self._sharpener: Sharpener | None = None  # of their states
         self._solved: list[Solved | None] = []  # of the present mesh, by scene
         self.results: list[Result] = []
 
@@ -72,12 +78,14 @@ class Chain:
 
     def model(self, scene: Scene) -> "FingerModel":
         """Return the model of a scene, with the parts and the ridges of all."""
+        from fingerpad.model.followed import SAME
         from fingerpad.model.options import FingerModel, by_rule
 
         if self._half_arc is not None and scene.mesh.touching_half_arc is None:
             mesh = scene.mesh.model_copy(update={"touching_half_arc": self._half_arc})
             scene = scene.model_copy(update={"mesh": mesh})
-        return FingerModel(by_rule(scene), self._options)
+        found = FingerModel(by_rule(scene), self._options).of_path()
+        return found.changed(share=SAME) if self._shared and found.share is None else found
 
     def _next(self, scene: Scene) -> Result:
         """Return the result of a scene, from the one before or by a path."""
@@ -104,10 +112,31 @@ class Chain:
                 return Result(scene, DEFAULT_MODEL, None, None, None, failure=str(error), record={"reached": ""})
             if self._slips is not None:
                 self._slips.finger.solver.iteration.free()
-            self._slips, self._solved = slips, [None] * len(self._solved)
+            self._slips, self._sharpener, self._solved = slips, None, [None] * len(self._solved)
         self._solved.append(found)
         assert self._slips is not None
-        return self._result(scene, found.state, clock.cost(self._slips.finger.solver.counts, 0), counts, why)
+        try:
+            final = self._final(model, found.state)
+        except StepFailed as error:
+            return of_run(scene, str(error), clock, self._comm)
+        finger = self._slips.finger
+        notes = [f"It was not found from its neighbour: {why}."] if why else []
+        return Point(scene, found.state, finger, final).result(clock.cost(finger.solver.counts, 0), counts, notes)
+
+    def _final(self, model: "FingerModel", state: ContactState) -> "Sharpened | None":
+        """Return the present state on the scene's own mesh; None without errors, where that is the one it is on.
+
+        Raises:
+            StepFailed: it was not found there.
+        """
+        from fingerpad.accuracy.sharpened import Sharpener
+
+        if model.final is None:
+            return None
+        if self._sharpener is None:
+            assert self._slips is not None
+            self._sharpener = Sharpener(self._slips.simulation, self._comm)
+        return self._sharpener.sharpened(model, state)
 
     def _path(self, model: "FingerModel") -> "FullSlips":
         """Return the full slips at the end of a path, with what the path turns out to need."""
@@ -168,50 +197,16 @@ class Chain:
                 start = self._slips.solve(mine.conditions, start)
             except StepFailed:
                 return
-            if _one(start.state, mine.state):
+            if one(start.state, mine.state):
                 return
-            self.results[j] = with_other(self.results[j], start.state)
-            yield j
-
-    def _result(self, scene: Scene, state: ContactState, cost: Cost, before: Any, why: str) -> Result:
-        """Return a result with full slip alone.
-
-        Args:
-            scene: of the state.
-            state: at full slip.
-            cost: of all states so far.
-            before: counts of the solver before this state.
-            why: it was not found from its neighbour; empty where it was.
-        """
-        from fingerpad.model import cautions
-        from fingerpad.model.state import broken
-        from fingerpad.results.provenance import provenance
-        from fingerpad.scene.remarks import coefficient, remarks
-
-        assert self._slips is not None
-        finger = self._slips.finger
-        work = {name: getattr(cost, f"{name}_iterations" if name == "newton" else name) - getattr(before, name)
-                for name in ("newton", "factorisations")}  # fmt: skip
-        cost = replace(
-            cost, newton_iterations=work["newton"], factorisations=work["factorisations"], unknowns=finger.unknowns
-        )
-        notes = [f"This is full slip alone, without an error estimate; it was reached by: {state.reached}."]
-        notes += [f"It was not found from its neighbour: {why}."] if why else []
-        return Result(
-            scene,
-            DEFAULT_MODEL,
-            None,
-            None,
-            state,
-            cost=cost,
-            failure=broken(state, finger.force_error, coefficient(scene)),
-            notes=tuple(notes),
-            cautions=(
-                *remarks(scene),
-                *cautions.on_states([state], scene.closure(), finger.problem.interface.formulation),
-            ),
-            record={"reached": state.reached, "force_error": finger.force_error, "provenance": provenance()},
-        )
+            try:
+                final = self._final(self.model(self._scenes[j]), start.state)
+            except StepFailed:  # on the scene's own mesh it is none
+                continue
+            other, known = start.state if final is None else final.state, self.results[j].full_slip
+            if known is not None and not one(other, known):
+                self.results[j] = with_other(self.results[j], other)
+                yield j
 
 
 def _beyond(end: "Conditions", neighbour: "Conditions") -> "Conditions | None":
@@ -225,22 +220,6 @@ def _beyond(end: "Conditions", neighbour: "Conditions") -> "Conditions | None":
     voltage = math.copysign(max(square, 0.0) ** 0.5, end.voltage)
     found = replace(end, f_ext=end.f_ext**2 / neighbour.f_ext, voltage=voltage)
     return None if found in (end, neighbour) else found
-
-
-def _one(a: ContactState, b: ContactState) -> bool:
-    """Return whether two states are the same one."""
-    return a.ridges_in_contact == b.ridges_in_contact and abs(a.f_t - b.f_t) <= _SAME * abs(b.f_t)
-
-
-def with_other(result: Result, other: ContactState) -> Result:
-    """Return a result with a second state of full slip, and a caution that gives both."""
-    mine = result.full_slip
-    assert mine is not None
-    names = ("f_t", "mu_app", "contact_length", "f_electrostatic", "ridges_in_contact", "reached")
-    said = [f"f_T {s.f_t:.6g} N/m with {s.ridges_in_contact} ridges ({s.reached})" for s in (mine, other)]
-    caution = f"there are two states of full slip: {said[0]} and {said[1]}"
-    record = result.record | {OTHER: {name: getattr(other, name) for name in names}}
-    return replace(result, record=record, cautions=(*result.cautions, caution))
 
 
 def main(asked: Path, folder: Path) -> None:

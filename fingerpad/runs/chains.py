@@ -14,7 +14,7 @@ from fingerpad.runs.solve import Summary
 from fingerpad.scene import Scene, SceneError
 from fingerpad.scene.messages import show
 
-_FREE = ("f_ext", "voltage", "friction", "roughness", "electric", "slide_length", "output")
+_FREE = ("f_ext", "voltage", "friction", "roughness", "electric", "slide_length")
 """Keys in which neighbours may differ: they change neither the mesh nor the layers."""
 _SHORTEST = 8  # points of a chain, of which the first takes the time of some fifteen others
 _LIMIT = 4 * 3600.0  # s of processor time for a chain
@@ -31,11 +31,6 @@ def refuse_others(scene: Scene) -> None:
         if (value := getattr(scene, key)) is not None:
             given = show(value) if key == "force" else "given"
             raise SceneError(f"{key} is {given}; with states='full_slip' it must be left out, or give states='all'")
-    if scene.supply is not None and not scene.supply.circuit.lossless:
-        raise SceneError(
-            "voltage is a drive in a circuit with losses, where each ridge has its own share of it; with "
-            "states='full_slip' it must be a number, or give states='all'"
-        )
 
 
 def sweep(scenes: Mapping[str, Scene], folder: Path, jobs: int, quiet: bool) -> dict[str, Summary]:

@@ -14,10 +14,10 @@ from fingerpad.startup import MPI
 from variational.solvers.outcome import Counts
 from variational.solvers.snapshot import SkinState, StateSnapshot
 from variational.solvers.target import Control, Progress
-from variational.state import ContactState, Errors, RidgeStates, Skin, StepRecord
+from variational.state import ContactState, Errors, RidgeStates, Sites, Skin, StepRecord
 
 _KEPT = (
-    *(ContactState, RidgeStates, StepRecord, Errors, Skin, Control, Counts, Progress),
+    *(ContactState, RidgeStates, Sites, StepRecord, Errors, Skin, Control, Counts, Progress),
     *(State, StateSnapshot, SkinState),
 )
 """Classes of what a checkpoint holds."""

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from fingerpad.model.cautions import breakdown
+from fingerpad.model import breakdown
 from fingerpad.reduced import detection
 from fingerpad.reduced.cylinders import Cylinders
 from fingerpad.runs.context import RunContext
@@ -135,7 +135,7 @@ def drive(scene: Scene) -> Drive:
     sigma = supply.pressure(volts, gap)
     time = np.arange(len(f_t)) / len(f_t) / supply.frequency
     least = float(gap[int(np.argmax(volts))])
-    said = [*remarks(scene), *breakdown(scene, [("full slip", least, 0.0)])]
+    said = [*remarks(scene), *breakdown.of_gaps(scene, [("full slip", least, 0.0)])]
     notes = [*leakage(scene), *(f"! {text}" for text in said)]
     if 2 * (supply.wave.frequency or supply.frequency) > _QUASI_STATIC:
         notes.append(

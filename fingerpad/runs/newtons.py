@@ -17,7 +17,7 @@ from typing import Any
 
 import fingerpad.startup  # noqa: F401
 from fingerpad.accuracy.solves import StateSolver
-from fingerpad.model import cautions
+from fingerpad.model import breakdown, cautions, followed
 from fingerpad.model.finger import Step
 from fingerpad.model.options import FingerModel, by_rule, plan
 from fingerpad.model.report import Clock
@@ -72,8 +72,6 @@ def run(scene: Scene, context: RunContext) -> Result:
     """
     if scene.accuracy is not None:
         raise Unsuited("an accuracy is asked for")
-    if scene.supply is not None and not scene.supply.circuit.lossless:
-        raise Unsuited("the voltage is a drive in a circuit with losses, where each ridge has its own share of it")
     comm = context.comm or MPI.COMM_WORLD
     all_together(comm)
     check_options(comm, scene.numerics.element)
@@ -114,7 +112,8 @@ class _Newtons:
         section, states = self.branches.section, traces.states(self._scene)
         model = FingerModel(by_rule(section), replace(plan(section), receptors=False, errors=False))
         loads = model.loads[: 1 + bool(self._scene.volts) + ("full_slip" in states)]
-        model = model.changed(loads=loads, mesh=model.mesh.model_copy(update=coarser(model)))
+        mesh = model.mesh.model_copy(update=coarser(model))
+        model = model.changed(loads=loads, mesh=mesh, share=followed.share(self._scene))
         self._console.expect(1 + len(states))
         self._console.head()
         while True:
@@ -193,7 +192,11 @@ class _Newtons:
             cost=self.clock.cost(branches.counts, unknowns),
             failure=broken(slip, least, coefficient(self._scene)),
             notes=tuple(notes),
-            cautions=(*remarks(self._scene), *cautions.on_states(states, self._scene.closure(), model.contact)),
+            cautions=(
+                *remarks(self._scene),
+                *cautions.on_states(states, self._scene.closure(), model.contact),
+                *breakdown.of_states(self._scene, states),
+            ),
             record=self._record(model) | {"force_error": least},
             finger=traces.summed(self._scene, _WORDS, found),
         )

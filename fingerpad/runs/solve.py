@@ -22,6 +22,7 @@ from fingerpad.runs.context import RunContext
 from fingerpad.scene import Scene
 from fingerpad.scene.messages import SceneError, show
 from fingerpad.scene.reading import DEFAULT_MODEL, flat
+from fingerpad.scene.supply import REFERENCE
 from variational.coefficients import LawError
 
 if TYPE_CHECKING:
@@ -166,6 +167,7 @@ def _whole(scene: Scene, model: "Model", context: RunContext) -> Result:
 
     What an earlier run of the same scene has finished is taken from there, and what it began goes on.
     """
+    from fingerpad.model import followed
     from fingerpad.slices import traces
 
     with context.place(scene, model.name) as place:
@@ -184,6 +186,8 @@ def _whole(scene: Scene, model: "Model", context: RunContext) -> Result:
             return found if found.interrupted else kept(found, context)
         except newtons.Unsuited as why:
             notes = [f"The traces are runs of their own: {why}."]
+            if followed.share(scene) is not None:
+                notes.append(f"All ridges then have the share of the drive at a gap of {1e6 * REFERENCE:g} µm.")
 
     def solve(each: Scene, name: str) -> Result:
         if not model.path:

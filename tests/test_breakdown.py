@@ -1,0 +1,124 @@
+"""Breakdown of air by the field in the gap of each ridge, in states of the full model."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import fingerpad as fp
+from fingerpad.model import breakdown
+from fingerpad.runs import newtons
+from tests.small_finger import NINE
+from variational.state import ContactState, RidgeStates
+
+SINE = {"waveform": "sine", "amplitude": 400.0, "frequency": 100.0}
+DRY = {"tissue": "dry", "leak": 300.0}
+H_0 = fp.Scene().h_0
+OUTPUT = {"receptors": False, "errors": False}
+
+
+def state(voltage, gaps=(1.5e-6, 1.7e-6), length=(1e-4, 1e-4), **more) -> ContactState:
+    """Return a state of ridges 0, 1 and so on."""
+    zero = np.zeros(len(gaps))
+    ridges = RidgeStates(np.arange(len(gaps)), np.array(length), zero, zero, zero, zero, np.array(gaps))
+    given = {"step": 7, "load": "slide", "load_number": 3} | more
+    return ContactState(
+        f_ext=1.0, voltage=voltage, f_t=0.0, mu_app=0.0, f_contact=1.0, f_electrostatic=0.0, ridges_in_contact=2,
+        contact_length=2e-4, ridges=ridges, **given,
+    )  # fmt: skip
+
+
+def test_ridge_is_named_whose_gap_is_the_farthest_beyond():
+    """Of 440 V, 440 * 1.7 / (1.7 + h_0) lie across the wider gap; of a ridge above the screen nothing is said."""
+    across = 440 * 1.7e-6 / (1.7e-6 + H_0)
+    (found,) = breakdown.of_states(fp.Scene(), [state(300.0), state(-440.0), state(0.0)])
+    words = "V are across a gap of 1.7 µm in ridge 1 in 'slide', step 7, and from 330 V on"
+    assert found.startswith(f"{across:.4g} {words}")
+    assert breakdown.of_states(fp.Scene(), [state(440.0, length=(1e-4, 0.0))]) == []
+    assert breakdown.of_states(fp.Scene(), [replace(state(440.0), ridges=None)]) == []
+
+
+def test_narrow_gaps_break_down_by_the_field():
+    """At 350 V/µm: 0.2 µm bear 70 V, and 250 V put 70.0 V there where h_0 is 0.514 µm."""
+    volts = 70.0 * (0.2e-6 + H_0) / 0.2e-6
+    gaps = (0.2e-6, 1.5e-6)
+    assert breakdown.of_states(fp.Scene(), [state(0.999 * volts, gaps)]) == []
+    (found,) = breakdown.of_states(fp.Scene(), [state(1.001 * volts, gaps)])
+    assert "across a gap of 0.2 µm in ridge 0 in" in found and "from 70 V on" in found
+
+
+def test_instant_of_a_load_over_time():
+    """The state's own time, of a voltage without losses; the peak of the period is not reached in the load."""
+    wave = {"name": "wave", "voltage": SINE | {"amplitude": 600.0}, "duration": 1e-3}
+    scene = fp.Scene(history=[{"name": "press", "f_ext": 1.0}, wave])
+    states = [state(volts, load="wave", load_number=2, time=t) for volts, t in ((0.0, 0.0), (353.0, 1e-3))]
+    assert breakdown.of_states(scene, states) == []
+    (found,) = breakdown.of_states(scene, [*states, state(450.0, load="wave", load_number=2, time=1.35e-3)])
+    assert "in 'wave', step 7 at 0.00135 s, and" in found
+
+
+@pytest.mark.parametrize(
+    ("drive", "electric"),
+    [(SINE, DRY), (SINE, {"follows": "mean"}), (SINE | {"carrier": {"frequency": 5e3}}, DRY)],
+    ids=["losses", "mean", "carrier"],
+)
+def test_period_counts_where_states_have_a_mean(drive, electric):
+    """The mean attraction is that of some 280 V and 160 V, and the peaks of 500 V are beyond breakdown."""
+    drive = drive | {"amplitude": 500.0}
+    scene = fp.Scene(voltage=drive, electric=electric)
+    (found,) = breakdown.of_states(scene, [state(scene.volts)])
+    peak = float(np.abs(scene.supply.across(1.7e-6)).max())
+    assert found.startswith(f"{peak:.4g} V are across a gap of 1.7 µm in ridge 1") and "start of a period" in found
+    assert breakdown.of_states(fp.Scene(voltage=scene.volts), [state(scene.volts)]) == []
+    if "follows" in electric:
+        timed = fp.Scene(
+            history=[{"name": "press", "f_ext": 1.0}, {"name": "wave", "voltage": drive, "duration": 0.1}],
+            electric=electric,
+        )
+        assert breakdown.of_states(timed, [state(scene.volts, load="wave", load_number=2)]) == [
+            found.replace("'slide'", "'wave'")
+        ]
+
+
+@pytest.mark.slow
+def test_run_has_the_caution():
+    """In its result and its summary; half of the voltage has none."""
+    for volts, told in ((450.0, 1), (225.0, 0)):
+        history = [{"name": "press", "f_ext": 1.0}, {"name": "charge", "voltage": volts}]
+        found = fp.run(fp.Scene(**NINE, history=history, output=OUTPUT))
+        cautions = [text for text in found.cautions if "air breaks down" in text]
+        assert len(cautions) == told
+        assert all(" in 'charge', step" in text and text in str(found) for text in cautions)
+
+
+# -- losses in newtons and in direct states ----------------------------------------------------------------
+@pytest.mark.slow
+def test_newtons_have_the_share_of_each_ridge(monkeypatch):
+    """States on the scene's own mesh are those of a run of the same drive; tolerance: of the air gaps."""
+    states, again = [], newtons._again
+
+    def kept(simulation, snapshot, name):
+        states.append(again(simulation, snapshot, name))
+        return states[-1]
+
+    monkeypatch.setattr(newtons, "_again", kept)
+    lossy = NINE | {"output": OUTPUT, "voltage": SINE | {"amplitude": 150.0}, "electric": DRY}
+    whole = fp.run(fp.Scene(**lossy, force=2e-3, slices={"radius": 6e-3, "length": 8e-3}))
+    assert whole.finger is not None and not any("runs of their own" in note for note in whole.notes)
+    run = fp.run(fp.Scene(**lossy, f_ext=states[-1].f_ext)).full_slip
+    assert run.ridges_in_contact == states[-1].ridges_in_contact
+    for name in ("f_t", "f_electrostatic", "contact_length"):
+        assert getattr(run, name) == pytest.approx(getattr(states[-1], name), rel=1e-5), name
+    numbers = fp.run(fp.Scene(**lossy, f_ext=states[-1].f_ext).replace(voltage=run.voltage)).full_slip
+    assert abs(numbers.f_t / run.f_t - 1) > 1e-3, "one share for all ridges has another friction"
+
+
+@pytest.mark.slow
+def test_direct_states_have_the_share_of_each_ridge(tmp_path):
+    """From one frequency to another, where the share is another one, to the states at the ends of paths."""
+    scene = fp.Scene(**NINE, f_ext=1.0, output=OUTPUT, voltage=SINE | {"amplitude": 150.0}, electric=DRY)
+    frequencies = {"voltage.frequency": [15.0, 100.0]}
+    paths = fp.sweep(scene, tmp_path / "paths", quiet=True, **frequencies)
+    direct = fp.sweep(scene, tmp_path / "direct", states="full_slip", quiet=True, **frequencies)
+    assert sorted(result.full_slip.reached.partition(" ")[0] for result in direct) == ["full", "path"]
+    assert direct.array("f_t") == pytest.approx(paths.array("f_t"), rel=1e-6)
