@@ -15,6 +15,7 @@ from variational.state import ContactState
 
 Array = NDArray[np.float64]
 _SHARE = 0.1  # of the contact force, from which ridges outside of the closure's range are mentioned
+_GIVEN = 1e-6  # of the largest viscous work of a point: what another one may give back
 _DEEP = 0.1  # of the air gap: largest penetration that is of no matter
 
 
@@ -25,14 +26,16 @@ def on_states(
 
     Args:
         states: in any order; those without contact have none, and those without a voltage none on the closure.
-        closure: from a ridge's pressure to its air gap; without it there are none.
+        closure: from a ridge's pressure to its air gap; without it there are none on it.
         formulation: of the contact, which has the remedy against deep skin; None of states without a mesh.
     """
+    states = list(states)
+    viscous = _given_back(states)
     touching = [state for state in states if state.contact_length > 0]
     if closure is None or not touching:
-        return []
+        return viscous
     charged = [(*_pressures(state), state.voltage) for state in touching if state.voltage]
-    return [*on_closure(closure, charged, "states"), *_deep(touching, closure, formulation)]
+    return [*on_closure(closure, charged, "states"), *_deep(touching, closure, formulation), *viscous]
 
 
 def on_closure(closure: Closure, points: Sequence[tuple[ArrayLike, ArrayLike, float]], noun: str) -> list[str]:
@@ -78,4 +81,17 @@ def _deep(touching: Sequence[ContactState], closure: Closure, formulation: Formu
         f"in {len(deep)} of {len(found)} states the skin is deeper in the screen than a tenth of the air gap, "
         f"{depth * 1e6:.2g} µm where the gap is {gap * 1e6:.2g} µm: attraction and contact length depend on the depth"
         + ("" if formulation is None else f"; {formulation.less_penetration}")
+    ]
+
+
+def _given_back(states: Sequence[ContactState]) -> list[str]:
+    """Return the caution on viscous layers of which a point gave back more energy than it got."""
+    least = [state.record.viscous_least for state in states if state.record is not None]
+    found = [each for each in least if each < -_GIVEN]
+    if not found:
+        return []
+    return [
+        f"in {len(found)} of {len(least)} steps viscous layers had points that gave back more energy than they got, "
+        f"{-min(found):.1g} of the largest at most: quasi-linear viscoelasticity allows that at large strain, and no "
+        "material does"
     ]
