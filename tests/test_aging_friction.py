@@ -41,7 +41,7 @@ def ratio(made: Body) -> float:
     return float(abs(loads.f_friction.sum()) / loads.f_contact.sum())
 
 
-@pytest.mark.parametrize("formulation", [Penalty(), Nitsche(), AugmentedLagrangian()], ids=["penalty", "Nitsche", "augmented"])
+@pytest.mark.parametrize("formulation", [Penalty(), Nitsche(), AugmentedLagrangian()], ids=["own", "Nitsche", "Uzawa"])
 def test_grows_in_contact(formulation):
     """At full slip friction is mu(t) p, whatever the steps in time. Tolerance: that of the solve."""
     made = over(GROWS, formulation)

@@ -23,15 +23,12 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable
 from dataclasses import dataclass
 from numbers import Real
-from typing import TYPE_CHECKING, Any, ClassVar, Self
+from typing import Any, ClassVar, Self
 
 import numpy as np
 from numpy.typing import NDArray
 
 from variational.coefficients import Law, parameter, said
-
-if TYPE_CHECKING:
-    from variational.contact.formulation import SurfaceState
 
 Array = NDArray[np.float64]
 CONE_ROUNDOFF = 1e-8  # relative: a traction this near the limit counts as on it
@@ -64,8 +61,8 @@ class Friction(Law, ABC):
         """
         raise NotImplementedError
 
-    def limit_in(self, state: "SurfaceState") -> Array:
-        """Return the limit (Pa) at the points of an evaluated surface."""
+    def limit_in(self, state: Any) -> Array:
+        """Return the limit (Pa) at the points of a :class:`variational.contact.formulation.SurfaceState`."""
         more = [] if self.memory is None else [state.history["memory"]]
         return np.asarray(self.limit(state.p_n, *more))  # type: ignore[call-arg]
 
