@@ -42,7 +42,7 @@ contact = partial(
 def change(solve: Solve, **values) -> None:
     kept = solve.states["full_slip"]
     state = replace(kept.state, **values)
-    frictions = np.full(17, -state.f_ext * state.mu_app / 17)
+    frictions = np.full(17, -(state.f_ext * state.mu_app if state.mu_app > 0 else state.f_t) / 17)
     solve.states["full_slip"] = replace(kept, state=state, frictions=frictions)
 
 
@@ -106,7 +106,8 @@ def test_steps_are_halved_where_normal_contact_feels_them(monkeypatch):
     def stepped(scale: float, mesh) -> Solve:
         length = 1e-3 * (1 + 0.1 * scale)
         row = contact(contact_length=length)
-        return Solve({"charged": State(NOTHING, 0, row, np.array([length]), np.zeros(1), {}, 1e-6)}, mesh, 1000, 10, 1.0)
+        state = State(NOTHING, 0, row, np.array([length]), np.zeros(1), {}, 1e-6)
+        return Solve({"charged": state}, mesh, 1000, 10, 1.0)
 
     def with_steps(search, scale: float) -> Solve:
         paths.append(scale)
