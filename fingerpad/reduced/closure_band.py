@@ -10,7 +10,6 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from fingerpad.reduced.cylinders import over_forces
-from fingerpad.results.closures import RECORD
 from fingerpad.scene import Scene
 from fingerpad.scene.messages import SceneError
 from variational.roughness.bam import BearingArea
@@ -55,12 +54,6 @@ def _is_there(law: Closure) -> bool:
     return True
 
 
-def with_band(result: "Result") -> "Result":
-    """Return a result with the band in its record, where it has one."""
-    found = band(result)
-    return replace(result, record=result.record | {RECORD: found}) if found else result
-
-
 def band(result: "Result") -> dict[str, Any]:
     """Return µ_app at full slip by each closure, ready for JSON; empty without voltage, friction or full slip.
 
@@ -71,24 +64,34 @@ def band(result: "Result") -> dict[str, Any]:
         return {}
     try:
         laws, own = closures(scene.closure()), scene.closure()
-        here = _friction(scene, slip, own, result.uncharged)
+        here = friction(scene, slip, own, result.uncharged)
     except SceneError:
         return {}
     if not laws or here is None:
         return {}
     found = {}
     for words, law in laws.items():
-        there = _friction(scene, slip, law, result.uncharged)
+        there = friction(scene, slip, law, result.uncharged)
         found[words] = None if there is None else slip.mu_app * there / here
     return {"mu_app": found, "model": "cylinders"}
 
 
-def _friction(scene: Scene, slip: ContactState, law: Closure, press: ContactState | None) -> float | None:
-    """Return µ_app of the charged cylinders by a closure at the load of a state, None without an equilibrium."""
+def friction(
+    scene: Scene, slip: ContactState, law: Closure, press: ContactState | None, tips: float = 1.0
+) -> float | None:
+    """Return µ_app of the charged cylinders by a closure at the load of a state, None without an equilibrium.
+
+    Args:
+        scene: of the state.
+        slip: full slip.
+        law: closure.
+        press: the same without voltage, whose contact it is; by default the default finger's.
+        tips: radius of the ridges' tips over that of the scene.
+    """
     given = {"roughness": law, "f_ext": slip.f_ext, "voltage": slip.voltage, "force": None}
     known = [replace(press, f_ext=slip.f_ext)] if press is not None and press.contact_length > 0 else []
     try:
-        (found,) = over_forces(scene.model_copy(update=given), [slip.f_ext], "full_slip", known)
+        (found,) = over_forces(scene.model_copy(update=given), [slip.f_ext], "full_slip", known, tips)
     except SceneError:
         return None
     return found.mu_app
