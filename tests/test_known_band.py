@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import fingerpad as fp
-from fingerpad.reduced.known_band import known
+from fingerpad.reduced.closure_band import known
 from fingerpad.report.known import bars
 from fingerpad.results.closures import KNOWN, known_in_words
 from tests.test_closure_band import Held

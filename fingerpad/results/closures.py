@@ -1,6 +1,6 @@
 """The bands of friction in the record of a result, as words: over models of roughness, and over all assumptions.
 
-:mod:`fingerpad.reduced.closure_band` and :mod:`fingerpad.reduced.known_band` compute them.
+:mod:`fingerpad.reduced.closure_band` computes them.
 """
 
 from collections.abc import Mapping

@@ -15,7 +15,7 @@ from fingerpad.model.options import FingerModel
 from fingerpad.model.report import Clock, Report
 from fingerpad.model.simulation import RestartRequired, Simulation
 from fingerpad.model.state import broken, force_error
-from fingerpad.reduced.known_band import with_band
+from fingerpad.reduced.closure_band import with_band
 from fingerpad.results.checkpoint import Checkpoint, CheckpointError
 from fingerpad.results.interrupt import Interrupt, Interrupted
 from fingerpad.results.over_time import NOTE

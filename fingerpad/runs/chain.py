@@ -23,7 +23,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from fingerpad.reduced.known_band import with_band
+from fingerpad.reduced.closure_band import with_band
 from fingerpad.results.files import below
 from fingerpad.results.result import Result
 from fingerpad.runs import batch

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from fingerpad.installed import needed_by, source, version
-from fingerpad.reduced.known_band import with_band
+from fingerpad.reduced.closure_band import with_band
 from fingerpad.reduced.registry import find
 from fingerpad.results import dataset, terminal
 from fingerpad.results.files import below, read_object, replace_json
