@@ -60,7 +60,7 @@ def axis(scene: Scene, key: str, between: Sequence[float | str] | None = None) -
 
     Args:
         scene: the scene.
-        key: dotted, as of :func:`fingerpad.sweep`; its values are numbers.
+        key: dotted, as of :func:`fingerpad.runs.sweep.sweep`; its values are numbers.
         between: first and last value, in SI or as texts with a unit; by default of :data:`RANGES`, or from a tenth to
             ten times the scene's value.
 

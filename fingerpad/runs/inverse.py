@@ -115,7 +115,7 @@ def solve(
         scene: the scene; by default press, charge and slide of the default finger.
         target: a quantity and its value: ``"mu_app=2x"``, twice the value without voltage; ``"F_T=0.3 N"``;
             ``"contrast=10 %"``, the relative rise of µ_app by the voltage.
-        over: the key that is varied, as of :func:`fingerpad.sweep`.
+        over: the key that is varied, as of :func:`fingerpad.runs.sweep.sweep`.
         between: first and last value of the key, in SI or as texts with a unit; by default that of
             :data:`fingerpad.runs.axis.RANGES`, or a tenth to ten times the scene's value.
         model: ``"cylinders"``, or ``"full"`` to confirm each value by a run of the full model.
