@@ -127,12 +127,10 @@ def interpolation(finger: Profile, trace: Trace, total: Total, count: int) -> di
         sums = {name: total.thickness @ abs(each - slope[name] * moved["f_ext"]) for name, each in moved.items()}
         return {name: float(each / values[name]) if values[name] else 0.0 for name, each in sums.items()}
 
-    below = change(trace.later())
-    if trace.ridges is None:
-        one, other = (change(coarse) for coarse in trace.halves())
-        between = {name: max(one[name], other[name]) for name in below}
-    else:
-        between = _between(finger, trace, total, count, slope)
+    one, other, below = (change(coarse) for coarse in (*trace.halves(), trace.later()))
+    between = {name: max(one[name], other[name]) for name in below}
+    if trace.ridges is not None:
+        between |= _between(finger, trace, total, count, slope)
     found = {name: between[name] + below[name] for name in below if name != "f_ext"}
     return found | {"mu_app": found["f_t"]}
 
@@ -153,7 +151,7 @@ def _between(finger: Profile, trace: Trace, total: Total, count: int, slope: Map
     k = np.clip(np.searchsorted(trace.depth, depth, side="right") - 1, 0, len(trace.depth) - 2)
     jumps, above = trace.ridges[k] != trace.ridges[k + 1], depth >= trace.depth[0]
     at, points = np.log(np.maximum(depth, trace.depth[0])), np.log(trace.depth)
-    moved = {"indentation": 0 * fine.z}
+    moved = dict[str, Array]()
     for name, column in TOTALS.items():
         values, width = trace.columns[column], finger.width(fine.z)
         linear = np.exp(np.interp(at, points, np.log(np.maximum(values, _TINY)))) * width
