@@ -130,7 +130,7 @@ def compute(args: argparse.Namespace) -> None:
     found: dict[str, dict[str, Any]] = {"full": {}, "profiles": {}}
     for name, its in scenes.items():
         run = Run(its, args.out)
-        gaps = {state: run.on_ridges(run.row(state), "d_eq")[1].tolist() for state in ("charged", "full_slip")}
+        gaps = {state: run.final(state, "ridges")["d_eq"].tolist() for state in ("charged", "full_slip")}
         found["full"][name] = _row(full[name]) | {"gaps": gaps, "penetration": float(run.steps["penetration"].max())}
     for name, its in shapes.items():
         pressure = shaped[name]["full_slip_f_contact"] / shaped[name]["full_slip_contact_length"]

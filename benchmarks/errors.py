@@ -23,7 +23,7 @@ from fingerpad.model.options import by_rule
 from fingerpad.results import style
 from fingerpad.results.states import WORDS
 from fingerpad.richardson import ORDER, plus_minus
-from fingerpad.scene import Scene, load
+from fingerpad.scene import Scene, from_data, load
 
 _LIMIT = 10800.0  # s of processor time for one run
 LEVELS = 4  # meshes of the limit
@@ -35,11 +35,16 @@ QUANTITIES: Mapping[str, tuple[str, float]] = {  # name: words, and the value of
     "full_slip_mu_app": ("µ_app, full slip", 1),
     "full_slip_f_t": ("f_T, full slip (N/m)", 1),
     **{f"{state}_contact_length": (f"contact length, {words} (mm)", 1e-3) for state, words in STATES.items()},
+    "full_slip_p_max": ("highest pressure, full slip (kPa)", 1e3),
     **{f"{state}_ridges_in_contact": (f"ridges, {STATES[state]}", 1) for state in ("charged", "full_slip")},
     **{f"{state}_sed_{j}": (f"SED at ridge {j}, {words} (J/m³)", 1) for state, words in STATES.items() for j in SITES},
 }
+PRESSED = by_rule(from_data({"history": [{"name": "press", "bone_height": -0.74e-3}], "friction": 0.0}))
+"""The default finger at a given indentation, that of the default scene, of which the force is judged."""
 LENGTHS = [f"{state}_contact_length" for state in STATES]
+FORCE = "uncharged_f_contact"  # that is judged
 _COST = ("unknowns", "factorisations")
+_DOME = 6  # degree of the polynomial through the pressures of a ridge
 STUDIES = {  # settings, from coarse to fine
     "contact": (20e-6, 10e-6, 5e-6, 2.5e-6),
     "growth": (0.5, 0.25, 0.125),
@@ -65,7 +70,8 @@ def values(run: Run) -> dict[str, float]:
     """Return the quantities of a run and its cost."""
     found = {name: float(run.summary[name]) for name in (*QUANTITIES, *_COST) if "sed" not in name}
     for state in STATES:
-        sed = dict(zip(run.receptors["ridge"], run.receptors["merkel_sed"][run.row(state)], strict=True))
+        rows = run.final(state, "receptors")
+        sed = dict(zip(rows["ridge"], rows["merkel_sed"], strict=True))
         found |= {f"{state}_sed_{j}": float(sed[j]) for j in SITES}
     return found
 
@@ -73,9 +79,27 @@ def values(run: Run) -> dict[str, float]:
 def lengths(run: Run, state: str) -> Array:
     """Return the length in contact (m) of every ridge, shape (ridges,)."""
     of_all = np.zeros(run.scene.geometry.ridge_count)
-    ridges, length = run.on_ridges(run.row(state), "contact_length")
-    of_all[ridges.astype(int) + len(of_all) // 2] = length
+    rows = run.final(state, "ridges")
+    of_all[rows["ridge"].astype(int) + len(of_all) // 2] = rows["contact_length"]
     return of_all
+
+
+def saw(run: Run) -> float:
+    """Return how far the pressure at full slip goes up and down, rms over the peak, of the ridge where this is largest.
+
+    The points that bear more than half of a ridge's highest pressure are compared with a polynomial of degree six
+    through them, which follows the dome and no single facet.
+    """
+    a = run.arrays("surface")
+    found = []
+    for ridge in np.unique(a["full_slip_ridge"][np.isfinite(a["full_slip_ridge"])]):
+        mine = a["full_slip_ridge"] == ridge
+        x, p = a["full_slip_x"][mine], a["full_slip_p"][mine]
+        high = p > p.max() / 2
+        if p.max() > 0 and high.sum() > 2 * _DOME:
+            dome = np.polynomial.Polynomial.fit(x[high], p[high], _DOME)
+            found.append(float(np.std(p[high] - dome(x[high])) / p.max()))
+    return max(found)
 
 
 def reference(again: Mapping[str, Any], whole: Mapping[str, float]) -> dict[str, Limit]:
@@ -91,10 +115,13 @@ def compute(args: Any) -> None:
     """Run what is missing and keep the numbers."""
     scenes = {f"{name} {value:g}": scene for name in STUDIES for value, scene in study(name).items()}
     summaries = harness.run({"default": DEFAULT} | scenes, args, _LIMIT)
-    again = limits.solve_all({"default": DEFAULT}, LEVELS, args)["default"]
+    solved = limits.solve_all({"default": DEFAULT, "pressed": PRESSED}, LEVELS, args)
+    again, pressed = solved["default"], solved["pressed"]
     default = finished(DEFAULT, args.out)
-    if default is None or "failure" in again:
-        raise SystemExit(f"the default scene has no limit: {again.get('failure', 'its run did not reach full slip')}")
+    if failed := [found["failure"] for found in (again, pressed) if "failure" in found]:
+        raise SystemExit(f"the default scene has no limit: {failed[0]}")
+    if default is None:
+        raise SystemExit("the default scene has no errors: its run did not reach full slip")
     studies: dict[str, list[dict[str, Any]]] = {name: [] for name in STUDIES}
     for name, rows in studies.items():
         for value, scene in study(name).items():
@@ -103,13 +130,20 @@ def compute(args: Any) -> None:
                 rows.append({"value": value, "quantities": values(run), "lengths": of_ridges})
     whole = values(default)
     ends = {name: vars(end) for name, end in reference(again, whole).items()}
-    numbers = {"default": whole, "again": again, "studies": studies, "reference": ends}
+    numbers = {"default": whole, "again": again, "studies": studies, "reference": ends, "saw": saw(default)}
+    numbers |= {"pressed": pressed, "unknowns_path": default.summary["unknowns_path"]}
+    numbers["contact"] = DEFAULT.mesh.contact
     harness.keep("errors", numbers, harness.made(summaries.values()), args.docs)
 
 
 def known(docs: Path = harness.DOCS) -> dict[str, Limit]:
     """Return the limits of the default scene's quantities from docs/errors.json."""
     return {name: Limit(**each) for name, each in harness.kept("errors", docs).numbers["reference"].items()}
+
+
+def indented(found: Mapping[str, Any]) -> tuple[float, Limit]:
+    """Return the force (N/m) of :data:`PRESSED` on the default mesh, and its limit."""
+    return float(found["own"]["values"][FORCE]), limits.limits(found)[FORCE]
 
 
 def stiffer(docs: Path = harness.DOCS) -> dict[str, tuple[float, float]]:
@@ -143,7 +177,8 @@ def _paint(figure: Figure, numbers: Mapping[str, Any], ends: Mapping[str, Limit]
             look: dict[str, Any] = {"color": colour, "capsize": 2, "marker": style.MARKERS[k], "ms": 5}
             ax.errorbar(sizes, error, bars, label=STATES[state], **look)
             default = abs(numbers["default"][name] / end.value - 1)
-            ax.plot([5 * beside], [default], "*", color=colour, ms=13, mec="black", mew=0.5)
+            size = 1e6 * numbers.get("contact", 5e-6)  # that of older numbers
+            ax.plot([size * beside], [default], "*", color=colour, ms=13, mec="black", mew=0.5)
         ax.set(title=title, xlabel="contact size (µm)", yscale="log", ylim=(1e-5, 0.3))
         harness.ticks(ax, [1.25, 2.5, 5, 10])
     axes[0].set_ylabel("relative distance from the limit")
@@ -167,7 +202,9 @@ def draw(docs: Path) -> Path:
 
     harness.picture(docs / "errors.png", (9, 3.6), lambda figure: _paint(figure, numbers, ends))
     names = {"whole": whole, "ends": ends, "again": numbers["again"], "penalty": stiffer(docs), "end": _end}
-    names |= {"study": study, "rigid": rigid, "worst": worst, "limit": limits.limit}
+    names |= {"study": study, "rigid": rigid, "worst": worst, "limit": limits.limit, "saw": numbers.get("saw")}
+    names["shown"] = {name: words for name, words in QUANTITIES.items() if name in whole}
+    names["force"] = indented(numbers["pressed"]) if "pressed" in numbers else None
     return harness.page(docs, "errors", "make chart", globals() | names)
 
 

@@ -14,7 +14,8 @@ change if the changes alternate and shrink, else three times the larger of the l
 meshes.
 
 A path is followed on the coarse mesh that an ``[accuracy]`` starts from, and its states are solved again on each of
-:func:`meshes`: by halves, since a state put onto elements a quarter of its own is far from equilibrium. They are also
+:func:`meshes`: by halves, since a state put onto elements a quarter of its own is far from equilibrium. All meshes have
+curved facets, and facets of a sixteenth where the contact of their states ends, as those of a run. The states are also
 solved again on the scene's own mesh, for the effect of the coarse path on normal contact (``docs/errors.md``). Where a
 state is not found on a mesh after the third, the limit is that of the meshes before, with their larger bar.
 """
@@ -135,7 +136,8 @@ def _solve(scene: Scene, levels: int) -> dict[str, Any]:
     def summary(solve: Solve) -> dict[str, Any]:
         ridges = {f"{name}_ridges_in_contact": s.state.ridges_in_contact for name, s in solve.states.items()}
         cost = {name: getattr(solve, name) for name in ("unknowns", "factorisations", "processor_seconds")}
-        return {"mesh": solve.mesh.model_dump()} | cost | {"values": solve.values() | ridges}
+        forces = {f"{name}_f_contact": s.state.f_contact for name, s in solve.states.items()}
+        return {"mesh": solve.mesh.model_dump()} | cost | {"values": solve.values() | ridges | forces}
 
     solves = [_path(scene)]
     for mesh in meshes(scene.mesh, levels):

@@ -73,6 +73,18 @@ class Run:
         mine = self.ridges["step"] == self.steps["step"][row]
         return self.ridges["ridge"][mine], self.ridges[name][mine]
 
+    def final(self, state: str, table: str) -> dict[str, NDArray[Any]]:
+        """Return a named state's rows of ``ridges`` or ``receptors``, on the final mesh where there are two meshes."""
+        if (self.folder / f"{table}_final.csv").exists():
+            columns = self._table(f"{table}_final")
+            mine = columns["of"] == state
+        else:
+            columns = self._table(table)
+            mine = columns["step"] == self.summary[f"{state}_step"]
+        if not mine.any():
+            raise FileNotFoundError(f"run {self.folder.name} has no {table} of {state}")
+        return {name: values[mine] for name, values in columns.items()}
+
     def arrays(self, name: str) -> dict[str, NDArray[Any]]:
         """Return the arrays of ``surface`` or ``finger_…``; FileNotFoundError if the run did not keep them."""
         path = self.folder / f"{name}.npz"

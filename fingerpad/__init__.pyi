@@ -26,7 +26,9 @@ from variational.contact.penalty import Penalty as Penalty
 from variational.materials.material import Material as Material
 from variational.materials.neo_hooke import NeoHooke as NeoHooke
 from variational.materials.ogden import Ogden as Ogden
+from variational.materials.qlv import QLV as QLV
 from variational.materials.saint_venant import SaintVenant as SaintVenant
+from variational.materials.viscoelastic import Viscoelastic as Viscoelastic
 from variational.roughness.bam import BearingArea as BearingArea
 from variational.roughness.boundary_elements import BoundaryElements as BoundaryElements
 from variational.roughness.closure import AirGap as AirGap

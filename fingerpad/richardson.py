@@ -119,7 +119,7 @@ def of_two_meshes(
 
     Lengths in contact have the error of the facets where contact ends, of first order in these, and r is how much
     shorter they are. All else has that of all elements, r = 2, with p = 2 (1 with linear elements), and p = 3/2 for the
-    highest pressure, which lies between points of a facet. The change at a single site in the skin may come out small
+    highest pressure, which means over facets give. The change at a single site in the skin may come out small
     by accident: its relative error is at least a part of the median of all sites' of its state.
 
     Args:

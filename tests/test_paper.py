@@ -120,8 +120,20 @@ def test_page_in_git_is_of_its_numbers(tmp_path):
     assert command.draw(tmp_path).read_text(encoding="utf-8").count("| **") == len(numbers["statements"])
 
 
+def test_grid_beside_its_limits(monkeypatch):
+    """Friction at full slip and the contact lengths of both states at 75 N/m and 200 V, the load of the limits."""
+    limits = {"charged_contact_length": 2.0, "full_slip_f_t": 10.0, "full_slip_contact_length": 1.0}
+    monkeypatch.setattr(command, "known", lambda: {name: Limit(value, 0.0, None) for name, value in limits.items()})
+    grid = {name: np.array([[0.0, 0.0], [0.0, 1.01 * value]]) for name, value in limits.items()}
+    found = command.off(grid | {"f_ext": np.array([5.0, 75.0]), "voltage": np.array([0.0, 200.0])})
+    assert found == pytest.approx(dict.fromkeys(limits, 1.0))
+
+
 def test_states_without_paths_are_compared_with_paths(tmp_path):
-    """Equal to one of a load's states, or listed with all of them; a path that failed is left out."""
+    """Equal to one of a load's states, or listed with all of them; a path that failed is left out.
+
+    A path that ends elsewhere with the same ridges in contact is no second state, but unlike.
+    """
     rows = [
         {"f_ext": 5.0, "voltage": u, "f_t": f_t, "ridges": 7, "reached": reached, "other": other, "factorisations": n,
          "processor_seconds": seconds}
@@ -138,12 +150,14 @@ def test_states_without_paths_are_compared_with_paths(tmp_path):
     listed = states.beside(rows, found)
     assert [each["voltage"] for each in listed] == [200.0, 150.0, 100.0]
     numbers = {"default": rows, "larger": rows, "beside": listed, "seconds_of_paths": [10.0]}
+    numbers["seconds_of_sweep"] = 70.0
     assert states.shown(tmp_path) is None
     keep("paper_states", numbers, MADE, tmp_path)
     shown = states.shown(tmp_path)
     assert [each.voltage for each in shown["equal"]] == [200.0, 150.0]
     assert [each.voltage for each in shown["two"]] == [150.0, 100.0]
-    assert (shown["direct"], shown["factorisations"], shown["seconds"]) == (2, 4.5, 63.0)
+    assert [each.voltage for each in shown["unlike"]] == [100.0]
+    assert (shown["direct"], shown["factorisations"], shown["seconds"]) == (2, 4.5, 70.0)
     keep("paper", command.collect(tmp_path / "runs"), MADE, tmp_path)
     page = command.draw(tmp_path).read_text(encoding="utf-8")
     assert "2 of 3 states have the path's friction force to 1e-6" in page

@@ -70,6 +70,25 @@ class Sites:
 
 
 @dataclass(frozen=True, eq=False)
+class Stimuli:
+    """What mechanoreceptors are given in a state of a run over time; shape (ridges,) each."""
+
+    number: NDArray[np.int64]
+    """Of the ridge, as in :class:`Sites`."""
+    merkel_stress: Array
+    """Compressive stress at the Merkel site: minus the Cauchy stress normal to the screen (Pa)."""
+    meissner_stress_left: Array
+    """The same at the Meissner site to the left, x smaller."""
+    meissner_stress_right: Array
+    pacinian_stress: Array
+    """The same below the ridge's middle, just below the junction of dermis and subcutis."""
+    surface_strain_left: Array
+    """Mean strain along the surface of the left half of the ridge, negative in compression; NaN where it cannot touch.
+    """
+    surface_strain_right: Array
+
+
+@dataclass(frozen=True, eq=False)
 class Skin:
     """The skin that can touch, at the Gauss points of its facets; shape (facets, points) but for :attr:`ridge`."""
 
@@ -109,6 +128,10 @@ class StepRecord:
     """Whether skin or an air gap moved without the loads."""
     processor_seconds: float = math.nan
     """Of all ranks since the run began."""
+    viscous: float = math.nan
+    """Work done on the branches of viscous layers (J/m), which store and dissipate it; NaN without such layers."""
+    viscous_least: float = math.nan
+    """Least such work so far at a point of these layers over the largest one; below 0 a point gave more than it got."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -157,6 +180,8 @@ class ContactState:
     """Time since the start of the run's first load over time (s); NaN where no load of the run is one."""
     ridges: RidgeStates | None = None
     sites: Sites | None = None
+    stimuli: Stimuli | None = None
+    """Of runs with a load over time."""
     skin: Skin | None = None
     """Of the named states."""
     changes: tuple[float, ...] = ()
@@ -214,7 +239,10 @@ class ContactState:
     def row(self) -> dict[str, Any]:
         """Return conditions, results and the record of the step as one flat row, as ``steps.csv`` holds it."""
         row: dict[str, Any] = {f.name: getattr(self, f.name) for f in _FIELDS}
-        record = {} if self.record is None else vars(self.record)
+        record = {} if self.record is None else {**vars(self.record)}
+        for name in _VISCOUS:
+            if math.isnan(record.get(name, 0.0)):
+                del record[name]
         last = {f.name: value for f in _LAST if not math.isnan(value := getattr(self, f.name))}
         return row | record | last | dict(self.own)
 
@@ -231,6 +259,7 @@ RESULTS = (
     "p_max",
 )
 _FIELDS = fields(ContactState)[: [f.name for f in fields(ContactState)].index("record")]
+_VISCOUS = ("viscous", "viscous_least")  # columns of a record where layers are viscous
 _LAST = tuple(f for f in fields(ContactState) if f.name in ("mesh_contact", "time"))  # columns where they are known
 
 

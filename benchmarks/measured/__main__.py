@@ -34,8 +34,9 @@ def pressed(scene: Scene, out: Path) -> dict[str, Any]:
     Places (m) and pressures are of each touching ridge; a pressure is the contact force over the ridge's wavelength.
     """
     found, wavelength = Run(scene, out), scene.geometry.ridge_wavelength
-    ridges, force = found.on_ridges(found.pressed, "f_contact")
-    length = float(found.steps["contact_length"][found.pressed])
+    touching = found.final("uncharged", "ridges")
+    ridges, force = touching["ridge"], touching["f_contact"]
+    length = float(found.summary["uncharged_contact_length"])
     along = {"place": (ridges * wavelength).tolist(), "pressure": (force / wavelength).tolist()}
     return {"length": length, "ridges": len(ridges)} | along
 

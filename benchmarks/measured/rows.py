@@ -2,9 +2,9 @@
 
 What is compared is the quantity that was measured. The apparent area is the gross area of the whole finger, a sum of
 slices (:mod:`benchmarks.measured.fingers`). The real area is the contact length of the ridges, of the paper's page
-(docs/paper.json: default mesh). Attraction is of docs/models.json, at a contact size of 10 µm. The stated error is the
-difference of the two meshes. Whole fingers of the finer mesh have its contact lengths and counts of ridges, over the
-indentations of the coarser one. Of trends the other mesh has a count.
+(docs/paper.json: default mesh); over the voltage it is the area of asperities. Attraction is of docs/models.json, at a
+contact size of 10 µm. The stated error is the difference of the two meshes. Whole fingers of the finer mesh have its
+contact lengths and counts of ridges, over the indentations of the coarser one. Of trends the other mesh has a count.
 """
 
 from collections.abc import Callable, Mapping
@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from benchmarks import models
-from benchmarks.measured import fingers, rules
+from benchmarks.measured import drives, fingers, rules
 from benchmarks.measured.rules import (
     CHANGED,
     EXPONENT,
@@ -28,6 +28,7 @@ from benchmarks.measured.rules import (
 from benchmarks.runs import FORCES, VOLTAGES
 from fingerpad.scene import Scene
 from fingerpad.scene.remarks import coefficient
+from variational.attraction.dielectric import VACUUM_PERMITTIVITY
 
 Array = NDArray[np.float64]
 Numbers = dict[str, float]
@@ -90,7 +91,10 @@ def _power(g: Grid, name: str, *ranges: tuple[float, ...]) -> Row:
 
 
 def _real_area(g: Grid) -> Row:
-    """Judge the area of asperities at full slip, by exact contact; the numbers have that of whole fingers in mm²."""
+    """Judge the area of asperities at full slip, by exact contact.
+
+    The numbers also have that of whole fingers in mm², and the exponents of the ridges' contact length.
+    """
 
     def lengths(a: Mapping[str, Array]) -> Mapping[str, Array]:
         force = a["full_slip_f_t"] / (coefficient(Scene()) or 1.0)
@@ -100,7 +104,9 @@ def _real_area(g: Grid) -> Row:
     for name in fingers.CLOSURES:
         area = 1e6 * g.full_finger[f"full_slip_200_{name}_area"]
         numbers |= {f"{name}_least": float(area.min()), f"{name}_most": float(area.max())}
-    return numbers, verdict
+    length, _ = _power(g, "full_slip_contact_length", *AMPLITUDES)
+    numbers |= {"length_low": min(length["low"], length["other_low"]), "length_holds": length["holds"]}
+    return numbers | {"length_high": max(length["high"], length["other_high"])}, verdict
 
 
 def _trend(g: Grid, holds: Callable[[Mapping[str, Array]], NDArray[np.bool_]], **more: float) -> Row:
@@ -193,19 +199,11 @@ def _friction_load(g: Grid) -> dict[str, Row]:
     return {key: ({"factor": factor}, verdict) for key, verdict in verdicts.items()}
 
 
-def _gap_sliding(g: Grid) -> Row:
-    """Impedance of equal plates: attraction F over length L gives the capacitance, in proportion to (F L)^(1/2)."""
-
-    def rise(a: Mapping[str, Array]) -> Array:
-        plates = [
-            np.sqrt(a[f"{s}_f_electrostatic"] * a[f"{s}_contact_length"])[:, 1:] for s in ("charged", "full_slip")
-        ]
-        return np.asarray(plates[0] / plates[1] - 1)
-
-    found = rise(g.coarse)
-    low, high = float(found.min()), float(found.max())
-    seen = max(low, 1e-9), max(high, 1e-9)
-    return {"low": low, "high": high}, by_factor(seen[0], seen[1], 1.0, 10.0, RATIO)
+def _plates(a: Mapping[str, Array], state: str) -> tuple[Array, Array]:
+    """Return air gap (m) and length (m) of equal plates that attract as the ridges do, at each force and voltage."""
+    length, voltages = a[f"{state}_contact_length"][:, 1:], np.array(VOLTAGES[1:])
+    pressure = a[f"{state}_f_electrostatic"][:, 1:] / length
+    return voltages * np.sqrt(VACUUM_PERMITTIVITY / 2 / pressure) - Scene().h_0, length
 
 
 # -- runs of this page ---------------------------------------------------------------------------------------
@@ -262,7 +260,6 @@ def numbers(g: Grid, runs: Mapping[str, Any]) -> dict[str, Row]:
     return {
         "friction_voltage": _power(g, "full_slip_f_t", VOLTAGES[1:]),
         "friction_range": _power(g, "full_slip_f_t", *AMPLITUDES),
-        "area_voltage": _power(g, "full_slip_contact_length", *AMPLITUDES),
         "real_area": _real_area(g),
         "friction_slip": _friction_slip(g),
         "area_before": _apparent(g, "charged_200", "charged_0", _same),
@@ -279,7 +276,7 @@ def numbers(g: Grid, runs: Mapping[str, Any]) -> dict[str, Row]:
         "friction_power": of_load["friction_power"],
         "softer": _softer(runs),
         "ridges": _ridges(g),
-        "gap_sliding": _gap_sliding(g),
+        "gap_sliding": drives.sliding(*(_plates(g.coarse, state) for state in ("charged", "full_slip"))),
         "friction_occluded": of_load["friction_occluded"],
         "gap": ({"low": low, "high": high}, by_factor(low, high, 1.5, 2.5)),
         "friction_input": ({"mu": mu_0}, by_factor(mu_0, mu_0, 0.25, 0.25)),

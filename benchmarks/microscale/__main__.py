@@ -43,6 +43,7 @@ ELECTRIC = {"tissue": "dry", "leak": "sliding dry"}
 PAPER, NEAR = 0.55, 0.1  # µ_app at 75 N/m; what counts as equal to it
 GAPS = (1.5e-6, 2.5e-6)  # m, published equivalent air gaps
 _FINE = 100e-6 / 64
+HURST, HELD = (0.6, 0.675, 0.75, 0.825, 0.9), 20e3  # exponents of a table, and its pressure (Pa)
 Law = BearingArea | TabulatedClosure
 
 
@@ -117,6 +118,18 @@ def _given() -> dict[str, float | Mapping[str, Any]]:
     return {**{name: NUMBER * part for name, part in READINGS.items()}, **CIRCUIT}
 
 
+def over_hurst() -> list[dict[str, Any]]:
+    """Return air gap (m), area and friction read as peak to peak of closures over the Hurst exponent."""
+    h_0, rows, voltage = Scene().h_0, [], NUMBER * READINGS["peak to peak"]
+    for words, law in (("boundary elements", BoundaryElements), ("Persson's theory", Persson)):
+        for hurst in HURST:
+            each = law(h_0, hurst=hurst)
+            gaps, slip = each.statistics(HELD), friction(each, 75.0, voltage)
+            values = {"d_eq": float(gaps.d_eq), "spread": float(each.spread(HELD)), "area": float(gaps.area)}
+            rows.append({"closure": words, "hurst": hurst, "mu": _mu(slip)} | values)
+    return rows
+
+
 def compute(args: argparse.Namespace) -> None:
     """Compute and keep the numbers."""
     exact = {"direct": contacts.direct(), "grids": contacts.grids(), "adhesive": contacts.adhesive()}
@@ -133,6 +146,7 @@ def compute(args: argparse.Namespace) -> None:
             words: {f"{f:g}": [_mu(friction(law, f, u)) for u in VOLTAGES] for f in FORCES}
             for words, law in closures.items()
         },
+        "hurst": over_hurst(),
         "full": {words: {key: summary.get(key) for key in keys} for words, summary in full.items()},
     }
     harness.keep("microscale", found | exact, harness.made(full.values()), args.docs)

@@ -9,6 +9,8 @@ has a section.
 """
 
 import argparse
+import json
+import resource
 import sys
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -21,10 +23,11 @@ from benchmarks.runs import FORCES, VOLTAGES, plain
 from fingerpad.runs.batch import Summary
 from fingerpad.runs.sweep_columns import OTHER
 from fingerpad.scene import Scene
+from geometry.parameters import MeshSize
 
 _LIMIT = 3600.0  # s of processor time for one path
 EQUAL = 1e-6  # relative difference of f_T up to which two states are one, the tolerance of the air gaps
-LARGER = {"contact": 10e-6, "growth": 0.5, "interface": 160e-6, "coarsest": 1e-3}
+LARGER = {name: 2 * getattr(MeshSize(), name) for name in ("contact", "growth", "interface", "coarsest")}
 _PARTS = {"output": {"errors": False, "receptors": False}}
 
 
@@ -38,7 +41,9 @@ class Beside:
     """Of the path (N/m), and"""
     ridges: int
     states: tuple[float, ...]
-    """f_T of the sweep's states, one or two (N/m)."""
+    """f_T of the sweep's states, one or two (N/m),"""
+    touching: int
+    """ridges in the first of these."""
     reached: str
 
     @property
@@ -48,8 +53,13 @@ class Beside:
 
     @property
     def bistable(self) -> bool:
-        """Whether two states were found, by the sweep or by the path."""
-        return len(self.states) > 1 or self.apart > EQUAL
+        """Whether two states were found, in which other ridges touch, by the sweep or by the path."""
+        return len(self.states) > 1 or self.ridges != self.touching
+
+    @property
+    def alike(self) -> bool:
+        """Whether the path's state is one of the sweep's, or another one of two."""
+        return self.apart <= EQUAL or self.bistable
 
 
 def widest(mesh: Mapping[str, float]) -> Scene:
@@ -58,8 +68,16 @@ def widest(mesh: Mapping[str, float]) -> Scene:
 
 
 def states(scene: Scene, out: Path, jobs: int) -> list[dict[str, Any]]:
-    """Return the states over all forces and voltages; those in the folder are taken from there."""
+    """Return the states over all forces and voltages; those in the folder are taken from there.
+
+    The processor time (s) of all processes of the sweep is kept beside them. It is more than that of the states, by the
+    tries for another state at the ends of a chain and where another number of ridges touches.
+    """
+    before = _children()
     found = fp.sweep(scene, out, jobs=jobs, quiet=True, states="full_slip", f_ext=FORCES, voltage=VOLTAGES)
+    spent, file = _children() - before, out / "seconds.json"
+    if not file.exists() or spent > json.loads(file.read_text(encoding="utf-8")):
+        file.write_text(json.dumps(spent), encoding="utf-8")
     return [
         {"f_ext": point.scene.f_ext, "voltage": point.scene.volts, "f_t": point.full_slip.f_t,
          "ridges": point.full_slip.ridges_in_contact, "reached": point.full_slip.reached,
@@ -67,6 +85,17 @@ def states(scene: Scene, out: Path, jobs: int) -> list[dict[str, Any]]:
          "processor_seconds": point.cost.processor_seconds}
         for point in found.results if point.full_slip is not None
     ]  # fmt: skip
+
+
+def _children() -> float:
+    """Return the processor time (s) of this program's children that have ended."""
+    used = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return used.ru_utime + used.ru_stime
+
+
+def _of_sweep(out: Path) -> float:
+    """Return the processor time (s) of the sweep of a folder."""
+    return float(json.loads((out / "seconds.json").read_text(encoding="utf-8")))
 
 
 def paths(mesh: Mapping[str, float], args: argparse.Namespace) -> dict[tuple[float, float], Summary]:
@@ -86,7 +115,8 @@ def beside(rows: Sequence[Mapping[str, Any]], found: Mapping[tuple[float, float]
             values = [each for each in (row["f_t"], row["other"]) if each is not None]
             listed.append(
                 {"f_ext": row["f_ext"], "voltage": row["voltage"], "f_t": path["full_slip_f_t"],
-                 "ridges": path["full_slip_ridges_in_contact"], "states": values, "reached": row["reached"]}
+                 "ridges": path["full_slip_ridges_in_contact"], "states": values, "touching": row["ridges"],
+                 "reached": row["reached"]}
             )  # fmt: skip
     return listed
 
@@ -98,7 +128,13 @@ def compute(args: argparse.Namespace) -> None:
     larger, found = states(widest(LARGER), folder / "larger", args.jobs), paths(LARGER, args)
     seconds = [summary["processor_seconds"] for summary in found.values() if "processor_seconds" in summary]
     numbers |= {"larger": larger, "beside": beside(larger, found), "seconds_of_paths": seconds}
+    numbers["seconds_of_sweep"] = _of_sweep(folder / "default")
     keep("paper_states", numbers, made(found.values()), args.docs)
+
+
+def compared(numbers: Mapping[str, Any]) -> list[Beside]:
+    """Return the paths beside the states of docs/paper_states.json."""
+    return [Beside(**{**each, "states": tuple(each["states"])}) for each in numbers["beside"]]
 
 
 def shown(docs: Path) -> dict[str, Any] | None:
@@ -106,16 +142,17 @@ def shown(docs: Path) -> dict[str, Any] | None:
     if not (docs / "paper_states.json").exists():
         return None
     numbers = kept("paper_states", docs).numbers
-    listed = [Beside(**{**each, "states": tuple(each["states"])}) for each in numbers["beside"]]
+    listed = compared(numbers)
     direct = [row for row in numbers["default"] if row["reached"] != "path"]
     larger = [row["processor_seconds"] for row in numbers["larger"] if row["reached"] != "path"]
     return {
         "beside": listed,
         "equal": [each for each in listed if each.apart <= EQUAL],
-        "two": [each for each in listed if each.bistable],
+        "two": [each for each in listed if each.bistable or not each.alike],
+        "unlike": [each for each in listed if not each.alike],
         "count": len(numbers["default"]),
         "direct": len(direct),
-        "seconds": sum(row["processor_seconds"] for row in numbers["default"]),
+        "seconds": numbers["seconds_of_sweep"],
         "factorisations": sum(row["factorisations"] for row in direct) / len(direct),
         "mean": sum(larger) / len(larger),
         "path": sum(numbers["seconds_of_paths"]) / len(numbers["seconds_of_paths"]),

@@ -37,6 +37,8 @@ if TYPE_CHECKING:
     from variational.contact.friction import Friction
 
 Array = NDArray[np.float64]
+STICKS, SLIPS = 1e-9, -1e-9
+"""First guesses for points on the friction cone, see :func:`traction`."""
 
 
 def traction(u_x, anchor, limit, gamma_t, guess=0.0, lambda_t=0.0):

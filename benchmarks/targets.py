@@ -1,0 +1,203 @@
+"""What was asked of speed and accuracy, beside what the kept numbers of the pages have reached.
+
+python3 -m benchmarks.targets     prints the table; make performance and docs/chart.md have it too
+
+Each figure comes from the numbers that a command of this repository keeps in docs/; one that no command has computed
+yet is a dash. Times are of the version that the page of the command names.
+"""
+
+import sys
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from benchmarks import errors, harness, two_meshes
+from benchmarks.paper import states
+from benchmarks.peers import at_equal_error
+
+Numbers = Callable[[str], Any]
+"""Returns the kept numbers of a page by its name."""
+PATHS = 40  # of the paper's grid
+SCENES = 20  # random ones of the stability map
+_AT_A_TIME = 2  # runs, on two cores
+_MINUTE = 60.0  # s
+
+
+@dataclass(frozen=True)
+class Target:
+    """A figure, its bound, and how it is found."""
+
+    words: str
+    asked: float
+    unit: str
+    command: str
+    found: Callable[[Numbers], float]
+    at_least: bool = False
+
+
+@dataclass(frozen=True)
+class Row:
+    """A line of the table: figure, what was asked and reached, whether that is met, and the command."""
+
+    words: str
+    asked: str
+    reached: str
+    met: str
+    command: str
+
+
+# -- figures -------------------------------------------------------------------------------------------------
+def _error(kind: str) -> Callable[[Numbers], float]:
+    """Return what finds the largest error (%) of the default scene's quantities of a kind."""
+
+    def found(of: Numbers) -> float:
+        numbers = of("errors")
+        ends, default = numbers["reference"], numbers["default"]
+        _ = numbers["saw"]  # older numbers are of straight facets
+        return max(100 * abs(default[name] / end["value"] - 1) for name, end in ends.items() if kind in name)
+
+    return found
+
+
+def _indented(of: Numbers) -> float:
+    """Return the error (%) of the force at a given indentation."""
+    value, end = errors.indented(of("errors")["pressed"])
+    return 100 * abs(value / end.value - 1)
+
+
+def _covered(of: Numbers) -> float:
+    """Return the least share (%) of the kinds' known errors that the estimated ones cover."""
+    known = two_meshes.cases(of("two_meshes"))
+    shares = [covered / n for n, covered in (two_meshes.coverage(known, kind) for kind in two_meshes.KINDS)]
+    return 100 * min(shares)
+
+
+def _beside_script(of: Numbers) -> float:
+    """Return the least of how many times as fast one ridge is as by the plain script at equal error."""
+    return min(at_equal_error.words(of("peers")["equal"]["rows"])["reached"])
+
+
+def _minutes(seconds: float, loads: int) -> float:
+    """Return the minutes of the paper's grid, two at a time, by its processor seconds."""
+    if loads < PATHS:
+        raise ValueError(f"{loads} loads are kept of {PATHS}")
+    return seconds / _AT_A_TIME / _MINUTE
+
+
+def _paths(of: Numbers) -> float:
+    kept = of("paper")["seconds"]
+    return _minutes(sum(kept), len(kept))
+
+
+def _larger(of: Numbers) -> float:
+    kept = of("paper_states")["seconds_of_paths"]
+    return _minutes(sum(kept), len(kept))
+
+
+def _states(of: Numbers) -> float:
+    kept = of("paper_states")
+    return _minutes(kept["seconds_of_sweep"], len(kept["default"]))
+
+
+def _further(of: Numbers) -> list[Any]:
+    """Return the states of the sweep that no path leads to."""
+    return [row for row in of("paper_states")["default"] if row["reached"] != "path"]
+
+
+def _factorisations(of: Numbers) -> float:
+    further = _further(of)
+    return float(sum(row["factorisations"] for row in further)) / len(further)
+
+
+def _part_of_run(of: Numbers) -> float:
+    """Return the processor time of a further state over that of a whole run."""
+    further = _further(of)
+    mean = sum(row["processor_seconds"] for row in further) / len(further)
+    return float(mean / of("performance")["run"]["found"]["processor"])
+
+
+def _alike(of: Numbers) -> float:
+    """Return how many paths end in a state of the sweep, or in the other one of two."""
+    return float(sum(each.alike for each in states.compared(of("paper_states"))))
+
+
+def _slips(of: Numbers) -> float:
+    runs = of("stability")["random"]["runs"]
+    return float(sum(row["full_slip"] for row in runs if row["formulation"] == "penalty"))
+
+
+def _saw(of: Numbers) -> float:
+    return 100 * float(of("errors")["saw"])
+
+
+def _whole_run(of: Numbers) -> float:
+    return float(of("performance")["run"]["found"]["processor"])
+
+
+def _unknowns(of: Numbers) -> float:
+    return float(of("errors")["unknowns_path"])
+
+
+_CHART, _STATES, _RANDOM = "make chart", "python3 -m benchmarks.paper.states", "python3 -m benchmarks.stability"
+_PEERS = "python3 -m benchmarks.peers equal"
+TARGETS = (
+    Target("whole run with errors and pictures, processor s", 18, "", "make performance", _whole_run),
+    Target("µ_app at full slip, known error", 0.05, "%", _CHART, _error("mu_app")),
+    Target("force at a given indentation, known error", 0.1, "%", _CHART, _indented),
+    Target("contact lengths, largest known error", 0.25, "%", _CHART, _error("contact_length")),
+    Target("highest pressure at full slip, known error", 0.5, "%", _CHART, _error("p_max")),
+    Target("saw of the pressure at full slip, rms over the peak", 0.5, "%", _CHART, _saw),
+    Target("energy densities at the sites, largest known error", 1, "%", _CHART, _error("sed_")),
+    Target("unknowns of the path", 40_000, "", _CHART, _unknowns),
+    Target("printed errors that cover the known ones, least kind", 95, "%", "make calibration", _covered, True),
+    Target("one ridge beside plain dolfinx at equal error, times as fast", 4, "", _PEERS, _beside_script, True),
+    Target("40 paths of the paper's grid, two at a time, min", 5, "", "make paper", _paths),
+    Target("the same on elements twice as large", 5, "", _STATES, _larger),
+    Target("40 states of the paper's grid, two at a time, min", 3, "", _STATES, _states),
+    Target("factorisations of a further state of a sweep, mean", 5, "", _STATES, _factorisations),
+    Target("processor time of a further state over that of a run", 1 / 15, "", _STATES, _part_of_run),
+    Target("states equal to the path's or listed with both values", PATHS, "", _STATES, _alike, True),
+    Target("random scenes that reach full slip", SCENES, "", _RANDOM, _slips, True),
+)
+
+
+# -- page ----------------------------------------------------------------------------------------------------
+def rows(docs: Path = harness.DOCS) -> list[Row]:
+    """Return the table from the kept numbers of a folder."""
+
+    def of(name: str) -> Any:
+        return harness.kept(name, docs).numbers
+
+    return [_row(target, of) for target in TARGETS]
+
+
+def _row(target: Target, of: Numbers) -> Row:
+    bound = f"{'≥' if target.at_least else '≤'} {_text(target.asked, target.unit)}"
+    try:
+        value = float(target.found(of))
+    except (FileNotFoundError, KeyError, ValueError, ZeroDivisionError):
+        return Row(target.words, bound, "–", "–", target.command)
+    met = value >= target.asked if target.at_least else value <= target.asked
+    return Row(target.words, bound, _text(value, target.unit), "yes" if met else "no", target.command)
+
+
+def _text(value: float, unit: str) -> str:
+    """Return a value with its unit; whole numbers whole."""
+    return f"{value:.0f}" if value >= 100 else f"{value:.2g} {unit}".rstrip()
+
+
+def text(docs: Path = harness.DOCS) -> str:
+    """Return the table as Markdown."""
+    head = ["figure", "asked", "reached", "met", "command"]
+    return harness.table(head, [list(vars(row).values()) for row in rows(docs)])
+
+
+def main() -> int:
+    """Print the table."""
+    print(text())
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

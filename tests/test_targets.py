@@ -1,0 +1,106 @@
+"""What was asked of speed and accuracy, beside what kept numbers have reached."""
+
+import numpy as np
+import pytest
+
+from benchmarks import chart, errors, targets
+from benchmarks.errors import FORCE
+from benchmarks.harness import DOCS, Made, keep
+from benchmarks.limits import Limit
+from benchmarks.runs import Run
+
+BY = Made("0.1.0", "abc1234", "2026-11-27")
+
+
+def row(words, docs):
+    return next(each for each in targets.rows(docs) if words in each.words)
+
+
+def kept_errors(docs, f_contact):
+    """Keep errors of a scene with two quantities, and a force at a given indentation whose limit is 100 N/m."""
+    default = {"full_slip_mu_app": 0.5001, "charged_contact_length": 1.01e-3}
+    ends = {"full_slip_mu_app": 0.5, "charged_contact_length": 1e-3}
+    reference = {name: vars(Limit(value, 0.0, 2.0)) for name, value in ends.items()}
+    levels = [{"values": {FORCE: 100 + 4.0**-k}} for k in range(3)]
+    pressed = {"own": {"values": {FORCE: f_contact}}, "levels": levels}
+    keep("errors", {"default": default, "reference": reference, "pressed": pressed, "saw": 0.004}, BY, docs)
+
+
+@pytest.mark.parametrize(("f_contact", "met"), [(100.05, "yes"), (100.2, "no")])
+def test_figures_of_kept_errors(tmp_path, f_contact, met):
+    """Largest errors of a kind in per cent, by known limits."""
+    kept_errors(tmp_path, f_contact)
+    friction, lengths = row("µ_app", tmp_path), row("contact lengths", tmp_path)
+    assert (friction.asked, friction.reached, friction.met) == ("≤ 0.05 %", "0.02 %", "yes")
+    assert (lengths.reached, lengths.met) == ("1 %", "no")
+    assert (row("saw", tmp_path).reached, row("force at", tmp_path).met) == ("0.4 %", met)
+
+
+def test_figure_that_no_command_has_computed_is_a_dash(tmp_path):
+    """Here all of them; in the repository's own numbers no figure is lost by the name of a number that changed."""
+    assert {(each.reached, each.met) for each in targets.rows(tmp_path)} == {("–", "–")}
+    assert row("one ridge beside", DOCS).met == "yes"
+    assert row("printed errors", DOCS).reached != "–"
+    assert row("whole run", DOCS).reached != "–"
+
+
+def test_figures_of_states_without_paths(tmp_path):
+    """Forty loads in 240 s, two at a time; all but the first from a neighbour, by four factorisations."""
+    one = {"processor_seconds": 6.0, "factorisations": 4}
+    rows = [one | {"reached": "path" if k == 0 else "neighbour"} for k in range(40)]
+    one = {"f_ext": 5.0, "voltage": 0.0, "f_t": 2.0, "ridges": 7, "states": [2.0], "touching": 7, "reached": "path"}
+    listed = [one, one | {"states": [2.1]}, one | {"states": [2.1], "touching": 8}]
+    seconds = {"seconds_of_sweep": 240.0, "seconds_of_paths": [18.0] * 40}
+    keep("paper_states", {"default": rows, "beside": listed} | seconds, BY, tmp_path)
+    keep("performance", {"run": {"found": {"processor": 60.0}}}, BY, tmp_path)
+    assert (row("40 states", tmp_path).reached, row("40 states", tmp_path).met) == ("2", "yes")
+    assert (row("twice as large", tmp_path).reached, row("twice as large", tmp_path).met) == ("6", "no")
+    assert row("factorisations", tmp_path).reached == "4"
+    assert (row("further state over", tmp_path).reached, row("further state over", tmp_path).met) == ("0.1", "no")
+    assert row("states equal", tmp_path).reached == "2"
+
+
+# -- what they rest on -----------------------------------------------------------------------------------------------
+def test_saw_of_a_dome_and_of_a_sawtooth(monkeypatch):
+    """A root has none but what a polynomial misses; a triangle wave of 2 % of the peak has an rms of 2 / sqrt(3) %."""
+    x = np.linspace(-1, 1, 2001)[1:-1]
+    dome, wave = np.sqrt(1 - x**2), np.abs(np.mod(40 * x, 2) - 1) * 2 - 1
+    found = []
+    for p in (dome, dome + 0.02 * wave):
+        arrays = {"full_slip_ridge": np.zeros(len(x)), "full_slip_x": x, "full_slip_p": p}
+        monkeypatch.setattr(Run, "arrays", lambda run, name, arrays=arrays: arrays)
+        found.append(errors.saw(object.__new__(Run)))
+    assert found[0] < 5e-4
+    assert found[1] == pytest.approx(0.02 / np.sqrt(3), rel=0.05)
+
+
+@pytest.mark.parametrize(("state", "final", "expected"), [("full_slip", True, [3.0]), ("full_slip", False, [2.0, 2.5])])
+def test_named_states_are_read_from_the_final_mesh(tmp_path, state, final, expected):
+    """Where a run has one; its table has them by name, and the path's by step."""
+    (tmp_path / "ridges.csv").write_text("step,ridge,p_c\n1,0,1.0\n2,0,2.0\n2,1,2.5\n", encoding="utf-8")
+    if final:
+        table = "of,ridge,p_c\ncharged,0,9.0\nfull_slip,0,3.0\n"
+        (tmp_path / "ridges_final.csv").write_text(table, encoding="utf-8")
+    run = object.__new__(Run)
+    run.folder, run.summary = tmp_path, {"full_slip_step": 2, "uncharged_step": 7}
+    assert run.final(state, "ridges")["p_c"].tolist() == expected
+    with pytest.raises(FileNotFoundError, match="has no ridges of uncharged"):
+        run.final("uncharged", "ridges")
+
+
+def test_earlier_default_is_judged_by_the_present_limit():
+    """Its values are kept, and its errors are those from the limit of the day; none beside numbers of its own day."""
+    reference = {name: Limit(2.0, 0.0, None) for name in chart.QUANTITIES}
+    work = {"full_slip": 5.0}
+    old = {"label": "earlier", "values": dict.fromkeys(chart.QUANTITIES, 2.02), "work": work, "seconds": work}
+    points = [{"label": chart.DEFAULT, "work": {"full_slip": 4.0}}]
+    found = chart.earlier({"before": old, "points": points}, reference)
+    assert found.error(chart.ALL) == pytest.approx(0.01)
+    assert chart.earlier({"before": old, "points": [points[0] | {"work": work}]}, reference) is None
+
+
+def test_work_of_states_solved_again():
+    """Of all solves after the path's."""
+    solves = [{"unknowns": 100 * k, "factorisations": k, "processor_seconds": 1.0 * k} for k in (9, 1, 2)]
+    assert chart._again({"accuracy": {"solves": solves}}) == (100 + 400, 3.0)
+    assert chart._again({}) == (0.0, 0.0)
