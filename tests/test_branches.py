@@ -10,7 +10,7 @@ from fingerpad.slices.traces import MARGIN
 def test_roots_of_forces_are_evenly_apart_and_have_those_that_are_kept():
     """So are the indentations, about: under large forces no more ridges come down between two points."""
     top, light = 80.0, 80.0 * branches.LIGHT
-    kept = (*(part * top for part in branches.KEPT), top / MARGIN)
+    kept = (branches.KEPT * top, top / MARGIN)
     found = branches._forces(light, top, kept)
     assert set(kept) < set(found) and found[-1] == top
     steps = np.diff(np.sqrt([light, *found]))

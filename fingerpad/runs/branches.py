@@ -32,9 +32,8 @@ POINTS = 24
 indentation, by about as much as lies between a ridge that comes down and the next one."""
 LIGHT = 1 / 100
 """Light force over the largest of a trace. Slices under less are extrapolated, which is a part of the error."""
-KEPT = (0.1, 0.35)
-"""Of the largest force: where full slip is kept besides about at the centre of the finger, and normal contact at the
-last of them."""
+KEPT = 0.35
+"""Of the largest force: where a state is kept besides about at the centre of the finger."""
 _BEGIN = {"press": "uncharged", "charge": "charged"}  # traces by the load that they begin with
 
 
@@ -141,7 +140,7 @@ class Branches:
         simulation, found = self._simulation, Followed(top)
         voltage = simulation.states[-1].voltage
         with simulation.aside(), computed():
-            forces = (KEPT[-1] * top, top / traces.MARGIN, top)
+            forces = (KEPT * top, top / traces.MARGIN, top)
             loads = [Load(name="raise", f_ext=force) for force in forces]
             simulation.reach(loads, lambda: self._anchor(found, name))
             if simulation.restart is not None:
@@ -156,7 +155,7 @@ class Branches:
         assert now is not None
         before = self.kept.get("full_slip") if now.state.reached != "path" else None
         found = Followed(top, [now.state]) if before is None else replace(before, top=top)
-        anchors = (*(part * top for part in KEPT), top / traces.MARGIN)
+        anchors = (KEPT * top, top / traces.MARGIN)
         for force in _forces(now.conditions.f_ext, top, anchors):
             try:
                 now = slips.reach(replace(now.conditions, f_ext=force), now)

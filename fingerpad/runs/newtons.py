@@ -1,7 +1,7 @@
 """A force on the whole finger by the full model: traces on coarse elements, corrected on the scene's own.
 
 One simulation has all traces (:mod:`fingerpad.runs.branches`), on the mesh of a run's path, whose elements are twice as
-large as the scene's. The state of each trace about at the centre of the finger, and some under smaller forces
+large as the scene's. The state of each trace about at the centre of the finger, and one under a smaller force
 (:data:`fingerpad.runs.branches.KEPT`), are solved for again on the scene's own mesh, finest where their contact ends.
 These correct the traces (:mod:`fingerpad.slices.correction`).
 

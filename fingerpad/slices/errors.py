@@ -151,7 +151,7 @@ def _between(finger: Profile, trace: Trace, total: Total, count: int, slope: Map
     k = np.clip(np.searchsorted(trace.depth, depth, side="right") - 1, 0, len(trace.depth) - 2)
     jumps, above = trace.ridges[k] != trace.ridges[k + 1], depth >= trace.depth[0]
     at, points = np.log(np.maximum(depth, trace.depth[0])), np.log(trace.depth)
-    moved = dict[str, Array]()
+    moved = dict[str, np.ndarray]()
     for name, column in TOTALS.items():
         values, width = trace.columns[column], finger.width(fine.z)
         linear = np.exp(np.interp(at, points, np.log(np.maximum(values, _TINY)))) * width
