@@ -162,7 +162,9 @@ class Branches:
             except StepFailed:
                 if self._simulation.restart is not None:
                     raise Again(self._simulation.restart) from None
-                raise
+                if force in (*anchors, top):
+                    raise
+                continue  # the trace has one point less
             found.states.append(now.state)
             if force in anchors:
                 self._anchor(found, "full_slip")
