@@ -99,7 +99,7 @@ class Observer:
     def limit(self, state: SurfaceState) -> Array:
         """Return the largest friction that the law allows (Pa of reference area) at this rank's points."""
         law = self.problem.interface.friction
-        return np.zeros_like(state.p_n) if law is None else np.asarray(law.limit(state.p_n))
+        return np.zeros_like(state.p_n) if law is None else law.limit_in(state)
 
     def slip(self, state: SurfaceState) -> tuple[float, bool]:
         """Return the part of the contact points at the friction cone, and whether all slip one way."""
