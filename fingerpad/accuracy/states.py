@@ -76,8 +76,8 @@ class Solve:
         """Return the same, but for energy densities by ridge, shape (ridges,)."""
         found: dict[str, ArrayLike] = dict(self.values())
         for name, state in self.states.items():
-            parts = {"contact_length": state.lengths, "p_max": state.peaks, "f_t": -state.frictions}
-            parts["mu_app"] = -state.frictions / (state.state.f_ext or math.nan)
+            parts: dict[str, ArrayLike] = {"contact_length": state.lengths, "p_max": state.peaks}
+            parts |= {"f_t": -state.frictions, "mu_app": -state.frictions / (state.state.f_ext or math.nan)}
             found |= {f"{name}_{key}": part for key, part in parts.items() if f"{name}_{key}" in found}
         return found
 
@@ -151,13 +151,14 @@ class StateRecorder:
             peaks = both_sides(peaks)
         by_ridge = np.zeros((3, f.profiles.finger.ridge_count))
         by_ridge[:, np.array(f.ridges) + by_ridge.shape[1] // 2] = loads.length, loads.f_friction, peaks
+        lengths, frictions, peaks = by_ridge
         sed = {j: float(density) for j, density in zip(f.problem.surface.ridge_numbers, self._sites.sed(), strict=True)}
         if not f.options.both_halves:
             sed |= {-j: density for j, density in sed.items()}
         present = self._simulation.present(loads).state
         snapshot = take_snapshot(f.coupling, f.continuation.surface_state)
         facet = f.size.edge if self._simulation.model.edges else f.contact_size
-        return State(snapshot, direction, present, *by_ridge, sed, facet)
+        return State(snapshot, direction, present, lengths, frictions, peaks, sed, facet)
 
     def solve(self) -> Solve:
         """Return what was kept."""
