@@ -138,10 +138,15 @@ class StateRecorder:
         """Go on from what another process kept."""
         self.states, self._begun = kept["states"], kept["begun"]
 
-    def keep(self, name: str) -> None:
-        """Keep the present state; collective."""
+    def keep(self, name: str, slips: bool | None = None) -> None:
+        """Keep the present state; collective.
+
+        Args:
+            name: of the state.
+            slips: whether it is a full slip; by default one of that name is.
+        """
         direction = 1 if self._simulation.finger.solver.reaction[0] <= 0 else -1
-        self.states[name] = self._state(direction * (name == "full_slip"))
+        self.states[name] = self._state(direction * (name == "full_slip" if slips is None else slips))
 
     def _state(self, direction: int) -> State:
         f = self._simulation.finger
