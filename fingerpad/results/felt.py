@@ -1,9 +1,9 @@
 r"""What mechanoreceptive afferents answer to a run over time: stimuli at its sites, and spikes.
 
 Stimuli are known in the accepted states. Between two of a load they follow the monotone cubic curve of Fritsch and
-Carlson, cut at the ends of loads; a jump of the voltage takes half a sample. The state at time 0 has been there for ever.
-A class is refused where two states are further apart than its ``longest_step`` and its stimulus changes between them
-by more than :data:`CHANGE` of its range.
+Carlson, cut at the ends of loads; a jump of the voltage takes half a sample. The state at time 0 has been there for
+ever. A class is refused where two states are further apart than its ``longest_step`` and its stimulus changes between
+them by more than :data:`CHANGE` of its range.
 """
 
 import math
