@@ -140,16 +140,23 @@ def differing(charged: fp.Result, same: fp.Result) -> dict[str, Any]:
     every = [result.afferents(["SA1", "RA1"]) for result in (charged, same)]
     found: dict[str, Any] = {}
     for law in ("SA1", "RA1"):
-        counts = []
-        for spikes in every:
-            begin, end = _span(spikes, "slide")
-            counts.append(np.array([between([train], begin, end) for train in spikes.of(law)]))
-        one, other = counts
-        found[law] = {"charged": int(one.sum()), "same": int(other.sum()), "apart": int(np.abs(one - other).sum())}
-    ends = [result.steps[-1] for result in (charged, same)]
-    touching = np.isin(ends[0].sites.number, ends[0].ridges.number[ends[0].ridges.length > 0])  # type: ignore[union-attr]
-    one, other = (end.sites.merkel[touching] for end in ends)  # type: ignore[union-attr]
-    return found | {"sed": float(np.median(np.abs(other / one - 1)))}
+        one, other = (_by_unit(spikes, law) for spikes in every)
+        common = set(one) & set(other)  # of the ridges that can touch in both
+        apart = sum(abs(one[unit] - other[unit]) for unit in common)
+        counts = (sum(of[unit] for unit in common) for of in (one, other))
+        found[law] = dict(zip(("charged", "same", "apart"), (*counts, apart), strict=True))
+    sites, ridges = charged.steps[-1].sites, charged.steps[-1].ridges
+    assert sites is not None and ridges is not None
+    touching = np.isin(sites.number, ridges.number[ridges.length > 0])
+    ratio = same.steps[-1].sites.merkel[touching] / sites.merkel[touching]  # type: ignore[union-attr]
+    return found | {"sed": float(np.median(np.abs(ratio - 1)))}
+
+
+def _by_unit(spikes: Spikes, law: str) -> dict[tuple[int | None, str], int]:
+    """Return the number of spikes in sliding of each unit of a class, by its ridge and side."""
+    begin, end = _span(spikes, "slide")
+    units = [unit for unit in spikes.units if unit.law == law]
+    return {(u.ridge, u.side): between([train], begin, end) for u, train in zip(units, spikes.of(law), strict=True)}
 
 
 def of_step(result: fp.Result) -> dict[str, Any]:
@@ -179,12 +186,13 @@ def of_step(result: fp.Result) -> dict[str, Any]:
 
 
 def of_grating(result: fp.Result) -> dict[str, float]:
-    """Return mean friction (N/m), the mean of |dF_T/dt| (N/(m s)), and spikes of all RA1 units in a second."""
+    """Return mean friction (N/m), the mean of |dF_T/dt| (N/(m s)), and spikes a second of RA1 below touching ridges."""
     states = without_parts_of_jumps([state for state in result.steps if state.load == "grating"])
     spikes, seconds = result.afferents("RA1"), result.loads[-1].over_time
     assert seconds is not None
     change = np.abs(np.diff([state.f_t for state in states])).sum()
-    count = sum(map(len, spikes.trains))
+    touch = {int(j) for s in states if s.ridges is not None for j in s.ridges.number[s.ridges.length > 0]}
+    count = sum(len(train) for unit, train in zip(spikes.units, spikes.trains, strict=True) if unit.ridge in touch)
     return {"f_t": seconds.mean["f_t"], "rate": float(change / seconds.seconds), "RA1": count / seconds.seconds}
 
 

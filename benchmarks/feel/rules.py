@@ -139,7 +139,7 @@ def _load(numbers: Mapping[str, Any]) -> Verdict:
     rate, (light, heavy) = _gratings(numbers, "RA1"), scenes.GRATING_LOADS
     words = (f"{rate[light, p]:.0f} to {rate[heavy, p]:.0f} 1/s at {1e3 * p:g} mm" for p in scenes.PERIODS)
     holds = all(rate[light, p] > MORE * rate[heavy, p] for p in scenes.PERIODS)
-    why = "all units are counted, of which more are below a larger contact; gains are relative"
+    why = "all units below ridges that touch are counted, of which more are below a larger contact; gains are relative"
     return f"from {light:g} to {heavy:g} N/m {', '.join(words)}", _by(holds), why
 
 
