@@ -23,7 +23,7 @@ NUMBERS = {
     "onset": {"RA1 strain": 3.0, "RA1": 2.0, "SA1": 2.0, "SA1 before": 1.0},
     "hold": {"RA1": 0, "least": 1.5, "most": 2.0},
     "subfield": {"width": 0.4e-3},
-    "shear": {"vertical": 0.04, "horizontal": 0.02},
+    "shear": {"vertical": 0.04, "horizontal": 0.02, "with_rotation": [0.1, 0.1]},
     "same": {law: {"charged": 100, "same": 100, "apart": 10} for law in ("SA1", "RA1")} | {"mu_app": 0.5, "sed": 0.01},
     "thresholds": {law: {"rms": bar} for law, bar in rules.RMS.items()},
 }
@@ -34,7 +34,7 @@ WORSE = {
     3: ("steps", "25", "rise", "strain", 1.0),
     4: ("steps", "25", "rise", "f_t", 1.9),
     6: ("gratings", 1, "f_t", 1.0),
-    7: ("gratings", 2, "RA1", 1e3),
+    7: ("gratings", 2, "RA1", 1e5),
     8: ("gratings", 0, "rate", 0.0),
     9: ("onset", "SA1", 2.1),
     10: ("hold", "RA1", 1),

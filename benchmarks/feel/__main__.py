@@ -105,10 +105,11 @@ def in_hold(result: fp.Result) -> dict[str, float]:
     return {"RA1": silent, "least": min(ratios), "most": max(ratios), "units": len(ratios)}
 
 
-def shear(result: fp.Result) -> dict[str, float]:
+def shear(result: fp.Result) -> dict[str, Any]:
     """Return the largest shears of the flanks of a ridge in contact that sliding adds: vertical, horizontal.
 
-    They are half the difference of the means over the two flanks: a rotation of the ridge is left out.
+    They are half the difference of the means over the two flanks: a rotation of the ridge is left out. A second pair
+    has it.
     """
     assert result.folder is not None
     before, after = (finger_of(result.folder / f"finger_{load}.npz") for load in ("hold", "slide"))
@@ -120,7 +121,7 @@ def shear(result: fp.Result) -> dict[str, float]:
     middle, outer = x[cells].mean(axis=1), after["tag"] == 1  # the stratum corneum
     last = result.steps[-1].ridges
     assert last is not None
-    most = np.zeros(2)
+    most, whole = np.zeros(2), np.zeros(2)
     for number in last.number[last.length > 0]:
         s = np.array([number * finger.ridge_wavelength])
         skin, below = profiles.point(s, profiles.skin(s))[0], profiles.point(s, profiles.sc_ve(s))[0]
@@ -130,9 +131,10 @@ def shear(result: fp.Result) -> dict[str, float]:
             near = outer & (off > _FLANK[0]) & (off < _FLANK[1]) & (middle[:, 1] < (skin[1] + below[1]) / 2)
             area = np.abs(np.linalg.det(edges[near]))
             means.append((gradient[near] * area[:, None, None]).sum(axis=0) / area.sum())
+        whole = np.maximum(whole, np.abs([[mean[1, 0], mean[0, 1]] for mean in means]).max(axis=0))
         half = (means[1] - means[0]) / 2
         most = np.maximum(most, np.abs([half[1, 0], half[0, 1]]))
-    return {"vertical": float(most[0]), "horizontal": float(most[1])}
+    return {"vertical": float(most[0]), "horizontal": float(most[1]), "with_rotation": whole.tolist()}
 
 
 def differing(charged: fp.Result, same: fp.Result) -> dict[str, Any]:

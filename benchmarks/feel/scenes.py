@@ -1,4 +1,4 @@
-"""The runs of the page on what is felt: the default finger on a coarse mesh, elastic, in some ten runs."""
+"""The runs of the page on what is felt: the default finger on a coarse mesh, a small one for gratings; elastic."""
 
 from collections.abc import Mapping
 from pathlib import Path
@@ -6,12 +6,14 @@ from typing import Any
 
 import fingerpad as fp
 from fingerpad.scene import Scene
+from fingerpad.scene import load as load_scene
 
 LOADS = (25.0, 75.0, 150.0)  # N/m
 LOAD, VOLTS = 75.0, 200.0  # N/m, V
 PRESS, HOLD, SPEED = 0.04, 0.3, 20e-3  # s, s, m/s
 RISE, FALL, STEP, LAST = 0.02, 0.07, 0.01, 0.12  # s: when a voltage rises and falls, in what time, and the end
-PERIODS, GRATING_LOADS, GRATING_SPEED = (1.0e-3, 2.5e-3), (25.0, 75.0), 50e-3  # m, N/m, m/s
+PERIODS, GRATING_LOADS, GRATING_SPEED = (1.0e-3, 2.5e-3), (4.0, 10.0), 50e-3  # m, N/m, m/s
+SMALL = Path(__file__).parents[2] / "demos" / "scenes" / "small_finger.toml"
 _GRATINGS = 3  # periods of a grating that are passed
 _COARSE: dict[str, Any] = {
     "mesh": {"contact": 20e-6, "receptor": 20e-6, "growth": 0.5},
@@ -43,11 +45,12 @@ def step(f_ext: float) -> Scene:
 
 
 def grating(f_ext: float, period: float) -> Scene:
-    """A virtual grating: the voltage is on in every other half of a period (m), under a load (N/m)."""
+    """A virtual grating on the small finger: the voltage is on in half of each period (m), under a load (N/m)."""
     frequency = GRATING_SPEED / period
     wave = {"waveform": "square", "amplitude": VOLTS / 2, "offset": VOLTS / 2, "frequency": frequency}
     load = {"name": "grating", "bone_x_by": _GRATINGS * period, "duration": _GRATINGS / frequency, "voltage": wave}
-    return _scene(_press(f_ext), _SLIDE, load)
+    loads = [_press(f_ext), _SLIDE | {"bone_x": 1.5e-3}, load]
+    return load_scene(SMALL).replace(history=loads, **_COARSE | {"mesh": {"contact": 40e-6}})
 
 
 def charged(volts: float, friction: float) -> Scene:
