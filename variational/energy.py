@@ -175,5 +175,6 @@ class EnergyBook:
         # A point without pressure does not slip.
         slip = np.where(b.p_n > 0, np.abs(self._problem.interface.formulation.slip(a, b)), 0.0)
         integrate = self._problem.surface.per_ridge
-        spent, unsure = (self._copies * float(integrate(d).sum()) for d in law.dissipated(a.p_n, b.p_n, slip))
+        found = law.dissipated(law.limit_in(a), law.limit_in(b), slip)
+        spent, unsure = (self._copies * float(integrate(each).sum()) for each in found)
         return spent, unsure

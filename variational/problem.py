@@ -22,7 +22,7 @@ never solves.
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from functools import cache
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import dolfinx
 import numpy as np
@@ -103,6 +103,7 @@ class Problem:
         laws, pressures, densities: each group of layers' material with its numbers as fields, viscous ones with the law
             of the step; volumetric pressure (Pa), positive in tension; and strain energy density (J/m^3), UFL.
         relaxations: history of each group of viscous layers.
+        in_time: whether a state depends on the time that the way to it took.
         shortest_time: of all times (s) in which a law ages; infinite where none does.
         weak: residual and Jacobian in w and its test function, UFL.
         residual, jacobian: the same, compiled.
@@ -168,7 +169,10 @@ class Problem:
         centroid = Centroid(mesh) if kind.reduced else None
         self.laws = grouped(solids, cellwise, cell_tags)
         self.relaxations = relaxations(self.laws, w, self.lapse, cell_tags, kind.quadrature_degree)
-        self.shortest_time = min((t for solid in solids.values() for t in solid.times), default=np.inf)
+        remembers = interface.friction is not None and interface.friction.memory is not None
+        aging: list[Any] = [*solids.values(), *([interface.friction] if interface.friction else [])]
+        self.shortest_time = min((t for law in aging for t in law.times), default=np.inf)
+        self.in_time = bool(self.relaxations) or remembers
         self.laws |= {tags: each.law for tags, each in self.relaxations.items()}
         self.pressure = self._pressure(solids) if kind.mixed else None
         self.pressures = {tags: law.pressure(H) for tags, law in self.laws.items()}
@@ -194,6 +198,7 @@ class Problem:
         self.densities = {tags: law.density(F, self.pressures[tags]) for tags, law in self.laws.items()}
 
         self.x, self.y = ufl.SpatialCoordinate(mesh)[0] + self.u[0], kinematics.current_height(mesh, self.u)
+        memory, before = (fem.Function(surface.history_space) if remembers else None for _ in range(2))
         attraction = interface.attraction
         self.p_el = attraction.pressure(self.y, self.d_eq, voltage, h_0) if attraction else ufl.zero()
         normal = ufl.FacetNormal(mesh)
@@ -208,6 +213,9 @@ class Problem:
             self.p_el * self.area,
             lambda: self._skin_stiffness(solids, cellwise),
             of_springs,
+            memory,
+            None if before is None else self.x - before,
+            self.lapse,
         )
         formulation = interface.formulation
         self._skin = skin
@@ -237,7 +245,11 @@ class Problem:
         unloaded = surface.evaluate(surface.compile([ufl.SpatialCoordinate(mesh)[0]]))[0]
         self.history.add(SkinField("anchor", self.contact.new_anchor, self.anchor, follows=self.u[0]))
         self.history.add(SkinField("pressure", self.contact.p_n, self.multiplier))
-        self.history.add(SkinField("x", self.x, follows=self.x), unloaded)
+        self.history.add(SkinField("x", self.x, before, follows=self.x), unloaded)
+        if memory is not None:
+            start = np.full_like(unloaded, interface.friction.memory)  # type: ignore[union-attr]
+            self.history.add(SkinField("memory", self.contact.memory, memory), start)
+            self.history.impose(self.history.accepted)
         for field in (field for each in self.relaxations.values() for field in each.fields):
             self.history.add(field)
         self.viscous_work = viscous_work(self.relaxations, dx)

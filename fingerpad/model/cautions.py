@@ -1,4 +1,4 @@
-"""Cautions on states: where the closure is outside of its range, or the skin is deep in the screen.
+"""Cautions on states: where the closure is outside of its range or overestimates, or the skin is deep in the screen.
 
 They belong to a state, whatever computed it: runs, bodies, cheaper models and tables of the microscale take them here.
 """
@@ -11,10 +11,12 @@ from numpy.typing import ArrayLike, NDArray
 
 from variational.contact.formulation import Formulation
 from variational.roughness.closure import Closure, air_gaps
+from variational.roughness.tabulated import TabulatedClosure
 from variational.state import ContactState
 
 Array = NDArray[np.float64]
 _SHARE = 0.1  # of the contact force, from which ridges outside of the closure's range are mentioned
+_BALANCED = 0.1  # of the pressure in contact, from which its attraction is overestimated by some 8 %
 _GIVEN = 1e-6  # of the largest viscous work of a point: what another one may give back
 _DEEP = 0.1  # of the air gap: largest penetration that is of no matter
 
@@ -55,6 +57,22 @@ def on_closure(closure: Closure, points: Sequence[tuple[ArrayLike, ArrayLike, fl
     return [
         f"in {count} of {len(points)} {noun} the closure is out of its range: the mean pressure of ridges is {place}"
         for place, count in counts.items()
+    ] + _undeformed(closure, points, noun)
+
+
+def _undeformed(closure: Closure, points: Sequence[tuple[ArrayLike, ArrayLike, float]], noun: str) -> list[str]:
+    """Return the caution on attraction in contact that the closure takes as a load, though it is balanced there."""
+    if not isinstance(closure, TabulatedClosure):
+        return []
+    shares = [float(closure.balanced(p_c, voltage).max(initial=0.0)) for p_c, _, voltage in points]
+    count = sum(share >= _BALANCED for share in shares)
+    if not count:
+        return []
+    return [
+        f"in {count} of {len(points)} {noun} the closure {type(closure).__name__} overestimates the attraction, which "
+        f"deforms the asperities: it balances up to {100 * min(max(shares), 1.0):.0f} % of the pressure in contact "
+        "(overestimated by 11 % at a share of 14 %, by 85 % at 50 %: docs/microscale.md); the values are upper bounds, "
+        "and roughness.field_in_contact=false gives lower ones"
     ]
 
 

@@ -110,6 +110,12 @@ def refuse_others(scene: "Scene", model: str) -> None:
             f"{viscous[0]}.viscosity is given; the model '{model}' has no time, so use the model 'full' with loads "
             "over time, or leave the viscosity out"
         )
+    law = scene.friction_law()
+    if law is not None and law.memory is not None:
+        raise SceneError(
+            f"friction is {type(law).__name__}; the model '{model}' has no time, so use the model 'full' with loads "
+            "over time, or another law"
+        )
     if scene.geometry.file is not None:
         raise SceneError(
             f"geometry.file is {show(scene.geometry.file)}; the model '{model}' answers for fingers of the scene's own "

@@ -89,7 +89,7 @@ def remarks(scene: "Scene") -> list[str]:
 
     There is none on the roughness of a closure of one's own, or of a mesh of a file.
     """
-    found = [*offsets(scene), *nothing_relaxes(scene)]
+    found = [*offsets(scene), *nothing_ages(scene)]
     if isinstance(scene.roughness, BearingArea | TabulatedClosure) and scene.geometry.file is None:
         found += ridges_as_roughness(scene.roughness.wavelength, scene.geometry.ridge_wavelength)
         found += missing_waves(scene.roughness.wavelength)
@@ -153,15 +153,20 @@ def offsets(scene: "Scene") -> list[str]:
     ]
 
 
-def nothing_relaxes(scene: "Scene") -> list[str]:
-    """Return a remark on viscous layers where no load takes time."""
-    layers = viscous_layers(scene.materials)
-    if not layers or any(load.takes_time for load in scene.loads()):
+def nothing_ages(scene: "Scene") -> list[str]:
+    """Return a remark on viscous layers and on friction with a memory where no load takes time."""
+    if any(load.takes_time for load in scene.loads()):
         return []
-    return [
-        f"{layers[0]}.viscosity is given and no load takes time, so that nothing will relax and viscous layers have "
-        "their modulus at once; give loads of a history a duration or a speed"
+    timeless, remedy = "no load takes time, so that", "give loads of a history a duration or a speed"
+    found = [
+        f"{layer}.viscosity is given and {timeless} nothing will relax and viscous layers have their modulus at once; "
+        f"{remedy}"
+        for layer in viscous_layers(scene.materials)[:1]
     ]
+    law = scene.friction
+    if isinstance(law, Friction) and law.memory is not None:
+        found.append(f"friction is {type(law).__name__} and {timeless} friction stays as it begins; {remedy}")
+    return found
 
 
 def missing_waves(longest: float) -> list[str]:

@@ -107,6 +107,11 @@ class Scene(Table):
         if self.history is not None:
             steps = math.inf if self.electric.follows == "mean" else self.numerics.step_scale
             refuse_contradictions(self.history, given, self.output.errors, steps)
+        if self.force is not None and isinstance(self.friction, Friction) and self.friction.memory is not None:
+            raise ValueError(
+                "force is given and friction has a memory, and the sum of slices has no common time; give f_ext or a "
+                "history"
+            )
         refuse_beside(viscous_layers(self.materials), {"force": self.force, "accuracy": self.accuracy})
         refuse_thickness(self.roughness, self.h_0)
         refuse_drives(self.drives(), self.electric, self.geometry.sc_thickness)

@@ -221,8 +221,8 @@ class Continuation:
                     smallest = _SMALLEST_SLIP if target.slips else _SMALLEST * largest
                     if failure.irrecoverable or pseudo_transient and within < smallest:
                         raise StepFailed(self._describe(target, p.part, failure)) from failure
-            # A viscous body has another shape at another time, so that it is not taken back.
-            if target.until_full_slip and slides and not (self.problem.relaxations and target.duration):
+            # What depends on time is another at another time, so that it is not taken back.
+            if target.until_full_slip and slides and not (self.problem.in_time and target.duration):
                 step -= return_to_onset(self.solver, self.observer, way.length) / abs(way.length)
             self.accept()
             p.part += step
