@@ -317,7 +317,7 @@ def _refuse_non_positive(**lengths: float) -> None:
         raise GeometryError(f"size is {lengths['size']:g} m; it must be at least {LEAST_SIZE:g} m, beyond roundoff")
 
 
-def _groups(body: int, bottom: list[int], right: int, top: int, left: int, numbers: Sequence[int] = ()) -> None:
+def _groups(body: int, bottom: list[int], right: int, top: int, left: int, *, numbers: Sequence[int] = ()) -> None:
     gmsh.model.geo.synchronize()
     gmsh.model.addPhysicalGroup(2, [body], tags.STRATUM_CORNEUM, "stratum corneum")
     by_ridge = {0: bottom} if not numbers else {k: [curve] for k, curve in zip(numbers, bottom, strict=True)}
