@@ -148,7 +148,8 @@ def _cost() -> dict[str, float]:
     slide = {"name": "slide", "bone_x_by": 20e-3 * STEP * MEASURED, "duration": STEP * MEASURED, "voltage": wave}
     history = [{"name": "press", "f_ext": FORCE}, slide]
     for name, preset in (("elastic", None), ("viscous", "fingerpad")):
-        found[name] = _timed(Scene(mesh={"contact": SMALL_CONTACT}, output=NO_OUTPUT, materials=_layers(preset), history=history))
+        mesh = {"contact": SMALL_CONTACT}
+        found[name] = _timed(Scene(mesh=mesh, output=NO_OUTPUT, materials=_layers(preset), history=history))
     return {f"{name}_{key}": value for name, each in found.items() for key, value in each.items()}
 
 
