@@ -226,11 +226,11 @@ def _paint(figure: Figure, numbers: Mapping[str, Any]) -> None:
     t = np.array(found["time"])[1:]
     held.semilogx(t, found["force"][1:], color=style.BLUE, marker="o", ms=3, label="force of the finger")
     held.semilogx(t, found["law"][1:], color=style.BLACK, ls=":", label="relaxation of its layers")
-    for each in TIMES:
-        held.axvline(each, color=style.VERMILION, lw=0.8, ls="--")
+    for tau in TIMES:
+        held.axvline(tau, color=style.VERMILION, lw=0.8, ls="--")
     held.set(xlabel="time since the press (s)", ylabel="over the lasting value (–)")
     held.set_title("A  held at a depth of 0.7 mm")
-    held.legend()
+    held.legend(loc="upper right", framealpha=1.0)
     colours = {"elastic": style.BLACK, "skin, mouse": style.GREEN, "fingerpad": style.BLUE}
     for name, each in numbers["steps"].items():
         preset, _, speed = name.partition(" at ")
