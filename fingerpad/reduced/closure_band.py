@@ -1,18 +1,34 @@
-"""The band that the open choice of a closure puts on friction, from the charged cylinders.
+"""The bands that a scene's assumptions put on friction, by charged cylinders: over closures, and over all of them.
 
-A result has one model of roughness. The other ones of the package, on the same rms height, wavelength and modulus,
-give other attractions, and which one is a finger's is open (docs/microscale.md). Their µ_app at full slip is that of
-the result, times the ratio of the charged cylinders' with the two closures. The contact is that of the result without
-voltage where it has one, else the default finger's.
+**Closures.** A result has one model of roughness. The other ones of the package, on the same rms height, wavelength and
+modulus, give other attractions, and which one is a finger's is open (docs/microscale.md). Their µ_app at full slip is
+that of the result, times the ratio of the charged cylinders' with the two closures. The contact is that of the result
+without voltage where it has one, else the default finger's.
+
+**All assumptions.** The ± of a result is what mesh and penalty leave unsolved. Its assumptions move µ_app by more
+(docs/assumptions.md). Each part changes one of them, by the same ratio:
+
+- closure: to the other models of roughness;
+- tips: ridge tips half as curved, and one and a half times. The length of a contact follows the root of the radius;
+- roughness: h_rms 20 % smaller and larger, of the result's closure;
+- coating: the effective thickness h_0 of coating and skin 20 % smaller and larger;
+- slices: the sum of slices beside a finger in three dimensions; of a whole finger alone.
+
+The changes are conventions, those of docs/assumptions.md. The parts are taken as independent: the band is the root of
+the sum of their squares, in the logarithm of µ_app and to either side.
 """
 
+from collections.abc import Iterator
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from fingerpad.reduced.cylinders import over_forces
-from fingerpad.results.closures import RECORD
+from fingerpad.results.closures import KNOWN, RECORD
 from fingerpad.scene import Scene
 from fingerpad.scene.messages import SceneError
+from fingerpad.slices.errors import known_at
 from variational.roughness.bam import BearingArea
 from variational.roughness.boundary_elements import BoundaryElements
 from variational.roughness.closure import Closure
@@ -23,6 +39,9 @@ from variational.state import ContactState
 if TYPE_CHECKING:
     from fingerpad.results.result import Result
 
+_CHANGE, _TIPS = (0.8, 1.2), (2.0, 1 / 1.5)  # factors of a value, and of the radius of a tip
+Part = tuple[str, list[float]]
+"""Name of an assumption, and µ_app over that of the result with it changed."""
 OUTSIDE = "no field in contact"
 _SHARED = ("h_0", "h_rms", "wavelength", "young", "p_floor")
 
@@ -55,12 +74,6 @@ def _is_there(law: Closure) -> bool:
     return True
 
 
-def with_band(result: "Result") -> "Result":
-    """Return a result with the band in its record, where it has one."""
-    found = band(result)
-    return replace(result, record=result.record | {RECORD: found}) if found else result
-
-
 def band(result: "Result") -> dict[str, Any]:
     """Return µ_app at full slip by each closure, ready for JSON; empty without voltage, friction or full slip.
 
@@ -71,24 +84,100 @@ def band(result: "Result") -> dict[str, Any]:
         return {}
     try:
         laws, own = closures(scene.closure()), scene.closure()
-        here = _friction(scene, slip, own, result.uncharged)
+        here = friction(scene, slip, own, result.uncharged)
     except SceneError:
         return {}
     if not laws or here is None:
         return {}
     found = {}
     for words, law in laws.items():
-        there = _friction(scene, slip, law, result.uncharged)
+        there = friction(scene, slip, law, result.uncharged)
         found[words] = None if there is None else slip.mu_app * there / here
     return {"mu_app": found, "model": "cylinders"}
 
 
-def _friction(scene: Scene, slip: ContactState, law: Closure, press: ContactState | None) -> float | None:
-    """Return µ_app of the charged cylinders by a closure at the load of a state, None without an equilibrium."""
+def friction(
+    scene: Scene, slip: ContactState, law: Closure, press: ContactState | None, tips: float = 1.0
+) -> float | None:
+    """Return µ_app of the charged cylinders by a closure at the load of a state, None without an equilibrium.
+
+    Args:
+        scene: of the state.
+        slip: full slip.
+        law: closure.
+        press: the same without voltage, whose contact it is; by default the default finger's.
+        tips: radius of the ridges' tips over that of the scene.
+    """
     given = {"roughness": law, "f_ext": slip.f_ext, "voltage": slip.voltage, "force": None}
     known = [replace(press, f_ext=slip.f_ext)] if press is not None and press.contact_length > 0 else []
     try:
-        (found,) = over_forces(scene.model_copy(update=given), [slip.f_ext], "full_slip", known)
+        (found,) = over_forces(scene.model_copy(update=given), [slip.f_ext], "full_slip", known, tips)
     except SceneError:
         return None
     return found.mu_app
+
+
+# -- all assumptions ---------------------------------------------------------------------------------------
+def with_band(result: "Result") -> "Result":
+    """Return a result with its bands in its record, where it has some: over closures, and over all assumptions."""
+    found = band(result)
+    all_parts = known(result, found.get("mu_app", {}))
+    more = ({RECORD: found} if found else {}) | ({KNOWN: all_parts} if all_parts else {})
+    return replace(result, record=result.record | more) if more else result
+
+
+def known(result: "Result", closures: dict[str, float | None]) -> dict[str, Any]:
+    """Return the band of µ_app at full slip and its parts, the largest first, ready for JSON; empty without a band.
+
+    Args:
+        result: with full slip under a voltage.
+        closures: µ_app of its section by each model of roughness; empty where there is none.
+    """
+    slip = result.full_slip
+    if slip is None or not slip.voltage or not slip.mu_app > 0 or result.scene.history is not None:
+        return {}
+    whole = result.whole and result.finger is not None and "full_slip" in result.finger.states
+    mu = result.finger.states["full_slip"].mu_app if whole and result.finger is not None else slip.mu_app
+    try:
+        parts = [*_parts(result, closures)]
+    except SceneError:
+        return {}
+    ends = [(name, min(1.0, *ratios), max(1.0, *ratios)) for name, ratios in parts if ratios]
+    if not ends:
+        return {}
+    ends.sort(key=lambda each: -np.log(each[2] / each[1]))
+    below, above = (float(np.sqrt(sum(np.log(each[k]) ** 2 for each in ends))) for k in (1, 2))
+    return {
+        "mu_app": mu, "low": mu * float(np.exp(-below)), "high": mu * float(np.exp(above)), "whole": whole,
+        "parts": [{"name": name, "low": mu * low, "high": mu * high} for name, low, high in ends],
+    }  # fmt: skip
+
+
+def _parts(result: "Result", closures: dict[str, float | None]) -> Iterator[Part]:
+    scene, slip, press = result.scene, result.full_slip, result.uncharged
+    assert slip is not None
+    own = scene.closure()
+    found = [value / slip.mu_app for value in closures.values() if value is not None]
+    yield "closure", found
+    here = friction(scene, slip, own, press)
+    if here is None:
+        return
+
+    def ratios(changed: Iterator[tuple[Scene, Closure, float]]) -> list[float]:
+        values = (friction(each, slip, law, press, tips) for each, law, tips in changed)
+        return [value / here for value in values if value is not None]
+
+    yield "tips", ratios((scene, own, tips) for tips in _TIPS)
+    if isinstance(own, BearingArea | TabulatedClosure):
+        yield "roughness", ratios((scene, replace(own, h_rms=factor * own.h_rms), 1.0) for factor in _CHANGE)
+        yield "coating", ratios((*_coated(scene, own, factor), 1.0) for factor in _CHANGE)
+    if result.whole and result.finger is not None and "f_t" in (ends := known_at(result.finger.f_ext)):
+        yield "slices", [1 / (1 + end) for end in ends["f_t"]]
+
+
+def _coated(scene: Scene, own: BearingArea | TabulatedClosure, factor: float) -> tuple[Scene, Closure]:
+    """Return a scene and its closure with a multiple of the effective insulator thickness."""
+    electric = scene.electric
+    changed = electric.model_copy(update={"d_i": factor * electric.d_i, "eps_sc": electric.eps_sc / factor})
+    other = scene.model_copy(update={"electric": changed})
+    return other, replace(own, h_0=other.h_0)

@@ -250,7 +250,7 @@ def solve(scene: Scene, footprint: Footprint | None = None) -> Result:
 
 
 def over_forces(
-    scene: Scene, f_ext: Sequence[float], state: str, press: Sequence[ContactState] = ()
+    scene: Scene, f_ext: Sequence[float], state: str, press: Sequence[ContactState] = (), tips: float = 1.0
 ) -> list[ContactState]:
     """Return a state of a scene under each of several external forces, computed together.
 
@@ -259,6 +259,7 @@ def over_forces(
         f_ext: external forces (N/m).
         state: ``charged`` or ``full_slip``.
         press: states without voltage under these forces, whose contact it is; by default the default finger's.
+        tips: radius of the ridges' tips over that of the scene; Hertz's length grows with its root.
 
     Raises:
         SceneError: as :func:`solve`, but for what is wrong with the other state alone.
@@ -270,7 +271,7 @@ def over_forces(
     else:
         _refuse_other(scene, _default())
         length, ridges = _lengths(f_ext, state), _ridges(f_ext, state)
-    return [found for found, _ in _solved(scene, f_ext, length, ridges, state)]
+    return [found for found, _ in _solved(scene, f_ext, tips**0.5 * length, ridges, state, tips=tips)]
 
 
 def _solved(
@@ -280,6 +281,7 @@ def _solved(
     ridges: NDArray[np.int_],
     state: str,
     charged: bool = False,
+    tips: float = 1.0,
 ) -> list[tuple[ContactState, RidgeState]]:
     """Return a state of a scene under external forces (N/m), and that of its ridges.
 
@@ -290,13 +292,10 @@ def _solved(
         ridges: in contact under each.
         state: ``charged`` or ``full_slip``.
         charged: whether the lengths are those at the voltage.
+        tips: radius of the ridges' tips over that of the scene.
     """
-    radius, closure, forces, length = (
-        tip_radius(scene.geometry),
-        scene.closure(),
-        np.array(f_ext) / ridges,
-        length / ridges,
-    )
+    radius, closure = tips * tip_radius(scene.geometry), scene.closure()
+    forces, length = np.array(f_ext) / ridges, length / ridges
     voltage = scene.volts if scene.supply is None else scene.supply.effective
     try:
         if charged:

@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, NamedTuple
 from fingerpad.reduced.cylinder_errors import in_words
 from fingerpad.reduced.registry import follows_path
 from fingerpad.report import page as html
+from fingerpad.report.known import bars
 from fingerpad.report.page import BAD, CARE, GOOD
-from fingerpad.results.closures import RECORD
-from fingerpad.results.closures import in_words as band_in_words
+from fingerpad.results.closures import KNOWN, known_in_words
 from fingerpad.results.quantities import cell
 from fingerpad.results.states import LoadResult, called
 from fingerpad.scene.remarks import coefficient
@@ -53,9 +53,9 @@ def verdict(found: list[Finding], error: str = "", band: str = "") -> tuple[str,
     Args:
         found: what was looked at.
         error: estimated discretisation error of the number in the head, with its unit; empty where it has none.
-        band: friction by other models of roughness, in words; empty where it is not known.
+        band: how far friction is known, in words; empty where that is not known.
     """
-    more = f" Not in it: {band}." if band else ""
+    more = f" {band[0].upper()}{band[1:]}." if band else ""
     bad, care = ([each for each in found if each.verdict == kind] for kind in (BAD, CARE))
     for kind, worst, first in ((BAD, bad, "Do not use these numbers as they are"), (CARE, care, "Use with care")):
         if worst:
@@ -254,9 +254,10 @@ def head(result: "Result") -> str:
         said = f"contact length in {called('charged', charged.voltage)}; {conditions(result)}"
     else:
         number, said = "No contact state was kept", conditions(result)
-    kind, words = verdict(findings(result), number.partition(" ± ")[2], band_in_words(result.record.get(RECORD, {})))
+    error, band = number.partition(" ± ")[2], result.record.get(KNOWN, {})
+    kind, words = verdict(findings(result), error, known_in_words(band))
     more = ' <a href="#trust">What is not in it</a>' if kind == GOOD else ""
-    return html.banner("report of a run", result.folder, number, said, kind, html.text(words) + more)
+    return html.banner("report of a run", result.folder, number, said, kind, html.text(words) + more) + bars(result)
 
 
 def _timed(result: "Result") -> LoadResult | None:

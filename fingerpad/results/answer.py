@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from fingerpad.results.closures import RECORD
+from fingerpad.results.closures import KNOWN, RECORD
 from fingerpad.results.quantities import FRICTION, QUANTITIES, Output
 from fingerpad.results.states import STATES, LoadResult
 from variational.state import ContactState
@@ -94,6 +94,14 @@ class Answer:
         Empty without voltage, friction or full slip, for a history, and for a closure of one's own.
         """
         return dict(self.record.get(RECORD, {}).get("mu_app", {}))
+
+    @property
+    def known(self) -> dict[str, Any]:
+        """Band of µ_app at full slip over the scene's assumptions: ``low``, ``high`` and ``parts``, the largest first.
+
+        Each part has ``name``, ``low`` and ``high``. Empty where the result has no friction under a voltage.
+        """
+        return dict(self.record.get(KNOWN, {}))
 
     @property
     def whole(self) -> bool:

@@ -1,6 +1,6 @@
-"""The band of friction over models of roughness in the record of a result, as words.
+"""The bands of friction in the record of a result, as words: over models of roughness, and over all assumptions.
 
-:mod:`fingerpad.reduced.closure_band` computes it.
+:mod:`fingerpad.reduced.closure_band` computes them.
 """
 
 from collections.abc import Mapping
@@ -8,6 +8,8 @@ from typing import Any
 
 RECORD = "closures"
 """Key of the band in a result's record and in ``summary.json``."""
+KNOWN = "known"
+"""Key of the band over all assumptions there."""
 
 
 def in_words(kept: Mapping[str, Any]) -> str:
@@ -22,3 +24,12 @@ def in_words(kept: Mapping[str, Any]) -> str:
         "of charged cylinders; which one holds for a finger is open (docs/microscale.md)"
     )
     return text + (f"; no equilibrium by {', '.join(none)}" if none else "")
+
+
+def known_in_words(kept: Mapping[str, Any]) -> str:
+    """Return a kept band over all assumptions as a sentence, the largest part first; empty without one."""
+    if not kept:
+        return ""
+    parts = ", ".join(f"{part['name']} {part['low']:.2f} to {part['high']:.2f}" for part in kept["parts"])
+    of = " of the whole finger" if kept["whole"] else ""
+    return f"known to about {kept['low']:.2f} to {kept['high']:.2f}: µ_app{of} by {parts}"

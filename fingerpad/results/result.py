@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from fingerpad.results import dataset, terminal
 from fingerpad.results.answer import Answer, Cost
-from fingerpad.results.closures import RECORD, in_words
+from fingerpad.results.closures import KNOWN, RECORD, in_words, known_in_words
 from fingerpad.results.files import read_object
 from fingerpad.results.quantities import (
     CHANGES,
@@ -310,8 +310,8 @@ def _remarks(result: Result) -> list[str]:
     share = math.nan if result.full_slip is None else result.full_slip.penalty.contact_length
     if not math.isnan(share):
         found.append(f"Penalty: a rigid screen would change the contact length at full slip by {1e3 * share:+.2g} mm.")
-    band = in_words(result.record.get(RECORD, {}))
-    found += [f"{band[0].upper()}{band[1:]}."] if band else []
+    bands = known_in_words(result.record.get(KNOWN, {})), in_words(result.record.get(RECORD, {}))
+    found += [f"{band[0].upper()}{band[1:]}." for band in bands if band]
     cautions = [f"! {caution}" for caution in result.cautions]
     return [*found, *([PER_LENGTH] if result.named else []), *result.notes, *cautions]
 

@@ -1,0 +1,85 @@
+"""How far friction is known: parts by assumption, their sum, words and the picture of a report."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import fingerpad as fp
+from fingerpad.reduced.closure_band import known
+from fingerpad.report.known import bars
+from fingerpad.results.closures import KNOWN, known_in_words
+from tests.test_closure_band import Held
+
+
+@pytest.fixture(scope="module")
+def result():
+    return fp.run(fp.Scene(voltage=100.0), model="cylinders")
+
+
+def parts(result):
+    return {part["name"]: (part["low"], part["high"]) for part in result.known["parts"]}
+
+
+def test_parts(result):
+    """All that apply to a section, the largest first; each has the result inside, and the band has each part."""
+    found, mu = parts(result), result.full_slip.mu_app
+    assert set(found) == {"closure", "tips", "roughness", "coating"}
+    spans = [np.log(high / low) for low, high in found.values()]
+    assert spans == sorted(spans, reverse=True)
+    for low, high in found.values():
+        assert result.known["low"] <= low <= mu <= high <= result.known["high"]
+
+
+def test_sum_is_of_squares(result):
+    mu, above = result.full_slip.mu_app, [np.log(high) for _, high in parts(result).values()]
+    whole = np.sqrt(sum((each - np.log(mu)) ** 2 for each in above))
+    assert result.known["high"] == pytest.approx(mu * np.exp(whole), rel=1e-12)
+
+
+def test_roughness_is_that_of_runs_with_it(result):
+    """Runs of the same model with h_rms 20 % smaller and larger, to roundoff; a coating likewise."""
+    law = result.scene.roughness
+    for name, changes in {
+        "roughness": [{"roughness": replace(law, h_rms=factor * law.h_rms)} for factor in (1.2, 0.8)],
+        "coating": [
+            {"electric": {"d_i": f * result.scene.electric.d_i, "eps_sc": result.scene.electric.eps_sc / f}}
+            for f in (1.2, 0.8)
+        ],
+    }.items():
+        runs = [fp.run(result.scene.replace(**each), model="cylinders").full_slip.mu_app for each in changes]
+        assert parts(result)[name] == pytest.approx(runs, rel=1e-9)
+
+
+def test_blunter_tips_raise_friction(result):
+    low, high = parts(result)["tips"]
+    assert low < result.full_slip.mu_app < high
+
+
+def test_whole_finger_has_its_own_band():
+    """Its µ_app is the whole finger's, and slices are a part."""
+    found = fp.run(fp.Scene(force="0.5 N", voltage=100.0), model="cylinders")
+    assert found.known["whole"] and "slices" in parts(found)
+    assert found.known["mu_app"] == found.finger.states["full_slip"].mu_app
+    assert "µ_app of the whole finger by closure" in known_in_words(found.known)
+
+
+def test_law_of_ones_own(result):
+    """It has no roughness and no insulator to change, and no other closures."""
+    found = known(replace(result, scene=result.scene.replace(roughness=Held())), {})
+    assert [part["name"] for part in found["parts"]] == ["tips"]
+
+
+def test_none_without_voltage_or_friction():
+    for scene in (fp.Scene(voltage=0.0), fp.Scene(friction=0.0)):
+        found = fp.run(scene, model="cylinders")
+        assert found.known == {} and known_in_words({}) == bars(found) == ""
+
+
+def test_text_files_and_picture_have_it(result):
+    assert f"Known to about {result.known['low']:.2f} to {result.known['high']:.2f}: µ_app by closure" in str(result)
+    again = fp.Result.from_dict(result.to_dict())
+    assert again.known == result.known and KNOWN in again.record
+    picture = bars(result)
+    assert all(f">{name}<" in picture for name in ("known", "closure", "tips", "roughness", "coating"))
+    assert ">solved<" not in picture  # cylinders have no error of a mesh
