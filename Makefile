@@ -13,7 +13,6 @@
 # make measured  measured fingers beside this model's numbers; docs/measured.md, two minutes
 # make drive  friction over frequency and waveform of the voltage; docs/drive.md, a minute
 # make viscosity  how skin relaxes, energy of random histories, friction after a step of voltage; docs/viscosity.md
-# make performance  counts, ratios and seconds, part by part, on an idle machine; docs/performance.md, half an hour
 # make performance  counts, ratios and seconds, part by part, on an idle machine; docs/performance.md, half an hour; prints the targets
 # make calibration  estimated errors beside known ones, scene by scene; docs/two_meshes.md, ten minutes
 # make chart  error over work, one numerical setting after the other; docs/errors.md and chart.md, half an hour or more
