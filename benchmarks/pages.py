@@ -36,6 +36,7 @@ PAGES = {
     "chart": "benchmarks.chart",
     "drive": "benchmarks.drive",
     "errors": "benchmarks.errors",
+    "feel": "benchmarks.feel.__main__",
     "hero": "benchmarks.hero",
     "measured": "benchmarks.measured.__main__",
     "microscale": "benchmarks.microscale.__main__",
