@@ -48,6 +48,7 @@ PAGES = {
     "stability": "benchmarks.stability.__main__",
     "two_meshes": "benchmarks.two_meshes",
     "verification": "benchmarks.verification.case",
+    "viscosity": "benchmarks.viscosity",
 }
 SAME = "same.json"  # pairs of commits that compute the same numbers
 _PACKAGES = ("geometry", "variational", "fingerpad")
