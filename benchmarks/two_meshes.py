@@ -31,7 +31,7 @@ from fingerpad.accuracy.states import Solve, StateRecorder
 from fingerpad.model.finger import Step
 from fingerpad.model.options import FingerModel, by_rule, plan
 from fingerpad.model.simulation import RestartRequired, Simulation
-from fingerpad.richardson import SITES, TWO, of_two_meshes
+from fingerpad.richardson import SITES, TWO, of_two_meshes, value
 from fingerpad.runs.processes import limit_processor_time
 from fingerpad.scene import Scene, from_data
 
@@ -143,7 +143,7 @@ def cases(numbers: Mapping[str, Any], safety: float = TWO, sites: float = SITES)
         coarse, final, finer = (solves[name] for name in MESHES)
         facets = {state: (coarse["facets"][state], facet) for state, facet in final["facets"].items()}
         estimated = of_two_meshes(coarse["parts"], final["parts"], facets, safety=safety, sites=sites)
-        values, limits = ({name: float(np.sum(part)) for name, part in s["parts"].items()} for s in (final, finer))
+        values, limits = ({name: value(name, part) for name, part in s["parts"].items()} for s in (final, finer))
         for name in (name for name in estimated if name in limits and _kind(name)):
             state = name.partition("_sed_")[0]
             alike = [abs(limits[other]) for other in limits if other.startswith(f"{state}_sed_")]

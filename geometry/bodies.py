@@ -1,10 +1,11 @@
-"""Small bodies: block, ridge, round pad, stepped foot, quarter tube, Cook's membrane.
+"""Small bodies: block, ridge, ridges side by side, round pad, stepped foot, quarter tube, Cook's membrane.
 
 Each function returns a :class:`geometry.shape.Shape`. What it refuses, it refuses with a
 :class:`geometry.profiles.GeometryError` when the shape is meshed.
 """
 
 from collections.abc import Sequence
+from numbers import Integral
 
 import gmsh
 import numpy as np
@@ -20,6 +21,7 @@ _MM = 1e3  # gmsh's tolerances suit models in mm
 _SAMPLES = 128  # spline points of a curved bottom
 _GROWTH = 0.25  # increase of the element size per distance from what can touch
 _NEEDED = (tags.BONE_RIM, tags.ridge(0))
+_MOST_RIDGES = 99
 _TOUCHING = 0.6  # part of the ridge's width, about its tip, that is meshed finely
 
 
@@ -76,6 +78,36 @@ def ridge(
     Raises:
         GeometryError: a length is not positive, the top is not above the grooves, or a facet cannot follow the tip.
     """
+    return _wave([0], size, width, height, amplitude, ends)
+
+
+@shape(_NEEDED)
+def ridges(count: int, size: float, width: float = 483e-6, height: float = 600e-6, amplitude: float = 100e-6) -> float:
+    """Return papillary ridges side by side under one flat top, each as :func:`ridge`.
+
+    They are numbered from left to right. Ridge 0 is the middle one, or the left one of the middle two, and its tip is
+    at x = 0. Facets of ridge k have the tag ``geometry.tags.ridge(k)``; other groups are those of :func:`block`.
+
+    Args:
+        count: how many ridges, 1 to 99.
+        size: length of the facets that can touch (m).
+        width: distance of neighbours (m).
+        height: of the flat top above the screen (m).
+        amplitude: height of the grooves above the tips (m).
+
+    Raises:
+        GeometryError: the count is no whole number from 1 to 99, or what :func:`ridge` refuses.
+    """
+    if isinstance(count, bool) or not isinstance(count, Integral) or not 1 <= count <= _MOST_RIDGES:
+        raise GeometryError(f"count is {count!r}; it must be a whole number from 1 to {_MOST_RIDGES}")
+    first = -((count - 1) // 2)
+    return _wave(range(first, first + count), size, width, height, amplitude)
+
+
+def _wave(
+    numbers: Sequence[int], size: float, width: float, height: float, amplitude: float, ends: Sequence[float] = ()
+) -> float:
+    """Mesh ridges by number; the other arguments and what is raised are those of :func:`ridge`."""
     _refuse_non_positive(size=size, width=width, height=height, amplitude=amplitude)
     if amplitude >= height:
         raise GeometryError(f"amplitude is {amplitude:g} m; it must be below the height, {height:g} m")
@@ -88,10 +120,12 @@ def ridge(
     def bottom(x: float) -> tuple[float, float]:
         return x, amplitude / 2 * (1 - np.cos(2 * np.pi * x / width))
 
-    curve = [bottom(x) for x in np.linspace(-width / 2, width / 2, _SAMPLES + 1)]
     half = _TOUCHING * width / 2
-    tip = [bottom(x) for x in np.linspace(-half, half, 1 + int(np.ceil(4 * half / size)))]
-    return _graded([(curve, 0)], height, size, tip, _GROWTH, [bottom(x) for x in ends])
+    along = np.linspace(-width / 2, width / 2, _SAMPLES + 1)
+    fine = np.linspace(-half, half, 1 + int(np.ceil(4 * half / size)))
+    curves = [([bottom(k * width + x) for x in along], 0) for k in numbers]
+    tips = [bottom(k * width + x) for k in numbers for x in fine]
+    return _graded(curves, height, size, tips, _GROWTH, [bottom(x) for x in ends], numbers)
 
 
 @shape(_NEEDED)
@@ -153,6 +187,7 @@ def _graded(
     fine: Sequence[_Point],
     growth: float,
     ends: Sequence[_Point] = (),
+    numbers: Sequence[int] = (),
 ) -> float:
     """Mesh what lies between curves, each a spline through points (m), and a flat top.
 
@@ -163,6 +198,7 @@ def _graded(
         fine: where elements are smallest.
         growth: increase of the element size per distance from there.
         ends: points where contact ends, at which elements are smaller still.
+        numbers: ridge of each curve; by default all are ridge 0.
     """
     geo = gmsh.model.geo
 
@@ -183,7 +219,7 @@ def _graded(
     body = geo.addPlaneSurface([geo.addCurveLoop([*curves, *sides])])
     finest = [(size, growth, fine), (MeshSize(contact=size).edge, FROM_EDGES, ends)]
     cones = [(smallest, slope, [add(point) for point in places]) for smallest, slope, places in finest if places]
-    _groups(body, curves, *sides)
+    _groups(body, curves, *sides, numbers=numbers)
 
     fields = gmsh.model.mesh.field
     grown = []
@@ -281,9 +317,11 @@ def _refuse_non_positive(**lengths: float) -> None:
         raise GeometryError(f"size is {lengths['size']:g} m; it must be at least {LEAST_SIZE:g} m, beyond roundoff")
 
 
-def _groups(body: int, bottom: list[int], right: int, top: int, left: int) -> None:
+def _groups(body: int, bottom: list[int], right: int, top: int, left: int, *, numbers: Sequence[int] = ()) -> None:
     gmsh.model.geo.synchronize()
     gmsh.model.addPhysicalGroup(2, [body], tags.STRATUM_CORNEUM, "stratum corneum")
-    gmsh.model.addPhysicalGroup(1, bottom, tags.ridge(0), "ridge 0")
+    by_ridge = {0: bottom} if not numbers else {k: [curve] for k, curve in zip(numbers, bottom, strict=True)}
+    for k, curves in by_ridge.items():
+        gmsh.model.addPhysicalGroup(1, curves, tags.ridge(k), f"ridge {k}")
     gmsh.model.addPhysicalGroup(1, [top], tags.BONE_RIM, "bone rim")
     gmsh.model.addPhysicalGroup(1, [left, right], tags.SIDES, "sides")

@@ -54,7 +54,8 @@ def model_of(data) -> FingerModel:
 def known(model, states, comm, views=False, stiffer=None) -> Solve:
     row = contact(mu_app=mu_app(model.mesh), f_t=75 * mu_app(model.mesh))
     sed = {0: 1e3 * (1 + (model.mesh.receptor / 60e-6) ** 2), 1: 10.0}
-    state = State(NOTHING, 1, row, np.full(17, 1e-3 / 17), np.full(17, -row.f_t / 17), sed, model.mesh.contact)
+    lengths, frictions = np.full(17, 1e-3 / 17), np.full(17, -row.f_t / 17)
+    state = State(NOTHING, 1, row, lengths, frictions, np.full(17, 1e5), sed, model.mesh.contact)
     return Solve({"full_slip": state}, model.mesh, 1000, 10, 1.0)
 
 
@@ -106,7 +107,7 @@ def test_steps_are_halved_where_normal_contact_feels_them(monkeypatch):
     def stepped(scale: float, mesh) -> Solve:
         length = 1e-3 * (1 + 0.1 * scale)
         row = contact(contact_length=length)
-        state = State(NOTHING, 0, row, np.array([length]), np.zeros(1), {}, 1e-6)
+        state = State(NOTHING, 0, row, np.array([length]), np.zeros(1), np.ones(1), {}, 1e-6)
         return Solve({"charged": state}, mesh, 1000, 10, 1.0)
 
     def with_steps(search, scale: float) -> Solve:
@@ -243,7 +244,7 @@ def test_uncharged_state_that_is_the_charged_one_is_of_the_final_mesh(monkeypatc
 
     def solve(model, states, comm, views=(), stiffer=None):
         row = contact(contact_length=1e-3)
-        state = State(NOTHING, 0, row, np.array([1e-3]), np.zeros(1), {}, model.mesh.contact)
+        state = State(NOTHING, 0, row, np.array([1e-3]), np.zeros(1), np.ones(1), {}, model.mesh.contact)
         return Solve({"charged": state}, model.mesh, 1000, 10, 1.0)
 
     monkeypatch.setattr(solves, "solve_again", solve)

@@ -15,7 +15,7 @@ from fingerpad.results.states import STATES
 from fingerpad.runs import attempt, full
 from fingerpad.runs.processes import End
 from fingerpad.runs.restarts import finer_mesh_may_help
-from fingerpad.scene import from_data
+from fingerpad.scene import SceneError, from_data
 from tests.measures import contact_state
 from tests.runs import no_pictures
 from tests.small_finger import NINE
@@ -51,6 +51,22 @@ def test_run_without_a_folder_writes_nothing(ran, tmp_path, monkeypatch):
     assert list(tmp_path.iterdir()) == []
     same = 1e-12 if MPI.COMM_WORLD.size == 1 else 1e-8
     assert found.full_slip.mu_app == pytest.approx(ran[0].full_slip.mu_app, rel=same)
+
+
+def test_changes_of_the_scene_are_arguments(ran):
+    """A formulation and a number beside the scene, or of the default scene, are those of a scene with them."""
+    given = from_data(SMALL).replace(contact=fp.Nitsche())
+    found = fp.run(from_data(SMALL), contact=fp.Nitsche())
+    assert found.scene == given and found.scene.contact.law == fp.Nitsche()
+    assert found.full_slip.f_t == pytest.approx(fp.run(given).full_slip.f_t, rel=1e-12)
+    # Springs on these coarse facets: the tractions of Nitsche's method differ by their error.
+    assert found.full_slip.f_t == pytest.approx(ran[0].full_slip.f_t, rel=0.1)
+    assert found.full_slip.f_t != ran[0].full_slip.f_t
+    assert fp.run(model="cylinders", voltage=100.0).full_slip.voltage == 100.0
+    with pytest.raises(SceneError, match="voltge is not a key of a scene"):
+        fp.run(voltge=100.0)
+    with pytest.raises(SceneError, match="contact"):
+        fp.run(contact=3)
 
 
 def test_summary_is_the_result(ran):

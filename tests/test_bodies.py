@@ -8,7 +8,7 @@ from mpi4py import MPI
 
 import geometry
 from geometry import tags
-from geometry.bodies import block, cooks_membrane, foot, pad, quarter_tube, ridge
+from geometry.bodies import block, cooks_membrane, foot, pad, quarter_tube, ridge, ridges
 from geometry.mesh import load
 from geometry.profiles import GeometryError
 from tests.measures import integral, vertices
@@ -59,6 +59,26 @@ def test_ridge_with_known_ends_of_contact():
         for place in (-end, end):
             assert facets[abs(middles - place).argmin()] == pytest.approx(expected, rel=0.5)
         assert facets[abs(middles) < 10 * UM] == pytest.approx(size, rel=0.3)
+
+
+@pytest.mark.mpi
+def test_ridges_side_by_side():
+    """Each is a ridge at its place: area, top and length of skin are those of four; one alone has the nodes of a ridge.
+
+    Tolerance: chords of 20 um.
+    """
+    size, width = 20 * UM, 483 * UM
+    body, one = load(MPI.COMM_WORLD, ridges(4, size)), load(MPI.COMM_WORLD, ridge(size))
+    alone = load(MPI.COMM_SELF, ridges(4, size))
+    assert body.ridges() == [-1, 0, 1, 2]
+    assert integral(body, tags.STRATUM_CORNEUM) == pytest.approx(4 * integral(one, tags.STRATUM_CORNEUM), rel=1e-3)
+    assert integral(body, tags.BONE_RIM, kind="ds") == pytest.approx(4 * width, rel=1e-9)
+    for k in body.ridges():
+        skin = integral(body, tags.ridge(k), kind="ds")
+        assert skin == pytest.approx(integral(one, tags.ridge(0), kind="ds"), rel=1e-3)
+        x = vertices(alone, alone.facets(tags.ridge(k)))[:, 0]
+        assert (x.min(), x.max()) == pytest.approx(((k - 0.5) * width, (k + 0.5) * width), abs=1e-9)
+    np.testing.assert_array_equal(load(MPI.COMM_WORLD, ridges(1, size)).mesh.geometry.x, one.mesh.geometry.x)
 
 
 @pytest.mark.mpi
@@ -134,6 +154,9 @@ def test_foot():
             "size is 0.00024 m, too large for a tip with a radius of 0.000118 m; it must",
         ),
         (ridge(1e-12), "size is 1e-12 m; it must be at least 1e-08 m, beyond roundoff"),
+        (ridges(0, 10 * UM), "count is 0; it must be a whole number from 1 to 99"),
+        (ridges(2.5, 10 * UM), "count is 2.5; it must be a whole number"),
+        (ridges(3, 10 * UM, amplitude=MM), "amplitude is 0.001 m; it must be below the height, 0.0006 m"),
         (block(MM, MM, 1e-9), "size is 1e-09 m; it must be at least 1e-08 m, beyond roundoff"),
         (quarter_tube(MM, MM, 4), "inner is 0.001 m; it must be below the outer radius, 0.001 m"),
     ],
@@ -158,7 +181,7 @@ def test_shape_is_a_value():
     assert geometry.ridge(size=10e-6) == geometry.ridge(10e-6) != geometry.ridge(size=20e-6)
     with pytest.raises(TypeError, match="missing a required argument: 'size'"):
         geometry.ridge()
-    with pytest.raises(AttributeError, match="no attribute 'rigde'; its shapes are block, ridge, pad"):
+    with pytest.raises(AttributeError, match="no attribute 'rigde'; its shapes are block, ridge, ridges, pad"):
         _ = geometry.rigde
 
 

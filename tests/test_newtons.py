@@ -9,6 +9,7 @@ from mpi4py import MPI
 import fingerpad as fp
 from fingerpad.model.simulation import Simulation
 from fingerpad.results.folder import full_scene
+from fingerpad.results.states import WORDS
 from fingerpad.runs import newtons
 from fingerpad.runs.branches import Branches
 from fingerpad.scene import Load, SceneError, from_data
@@ -28,15 +29,18 @@ def scene(**changes) -> fp.Scene:
 
 @pytest.fixture(scope="module")
 def found() -> tuple[fp.Result, dict[str, list]]:
-    """The result, and the states that were solved for again on the scene's own mesh."""
-    fine, again = dict[str, list](), newtons._again
+    """The result, and the states that were solved for again on the scene's own mesh, at growing forces."""
+    fine, again = dict[str, list](), newtons.solve_again
 
-    def kept(simulation, snapshot, name):
-        fine.setdefault(name, []).append(again(simulation, snapshot, name))
-        return fine[name][-1]
+    def kept(*given):
+        solve = again(*given)
+        for words, each in solve.states.items():
+            name = next(name for name, word in WORDS.items() if words.startswith(word))
+            fine.setdefault(name, []).append(each.state)
+        return solve
 
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(newtons, "_again", kept)
+        patch.setattr(newtons, "solve_again", kept)
         return fp.run(scene()), fine
 
 
@@ -56,12 +60,17 @@ def test_sums_are_those_of_runs_of_their_own(found, monkeypatch):
 
 
 def test_states_on_the_scenes_mesh_are_those_of_a_run(found):
-    """Full slip by another path, on the same mesh; tolerance: the air gaps' of 1e-6, and forces follow them."""
+    """Full slip by another path, on elements as large, which are small about its own ends alone: within its error.
+
+    The first force is so light that this is large; then the two meshes change less than a per cent.
+    """
+    output = SMALL["output"] | {"errors": True}
     for state in found[1]["full_slip"]:
-        run = fp.run(scene().replace(force=None, f_ext=state.f_ext)).full_slip
+        run = fp.run(scene().replace(force=None, f_ext=state.f_ext, output=output)).full_slip
         assert run.ridges_in_contact == state.ridges_in_contact
-        for name in ("f_t", "contact_length", "f_electrostatic", "bone_height"):
-            assert getattr(run, name) == pytest.approx(getattr(state, name), rel=1e-5), name
+        for name, error in run.error.known().items():
+            value = getattr(state, name)
+            assert getattr(run, name) == pytest.approx(value, abs=min(error, 1e-2 * value)), name
 
 
 def test_traces_meet_the_states_on_the_scenes_mesh(found):
@@ -130,7 +139,7 @@ def test_force_that_was_interrupted_goes_on(tmp_path, last):
     assert not (out / "summary.json").exists() and full_scene(out) == scene()
     made, raised = [], Branches._raised
     with tables_alone(), pytest.MonkeyPatch.context() as patch:
-        patch.setattr(Branches, "_raised", lambda self, top: made.append(top) or raised(self, top))
+        patch.setattr(Branches, "_raised", lambda self, *given: made.append(given) or raised(self, *given))
         went_on = fp.run(full_scene(out), out=out, resume=last)
     assert len(made) == (0 if last else 2)
     assert went_on.finger.values("full_slip")["f_ext"] == pytest.approx(FORCE, rel=1e-9)

@@ -14,6 +14,7 @@ from variational.state import ContactState, RidgeStates
 WAVELENGTH, MU_0 = 0.48e-3, 0.25
 FORCES = np.geomspace(1.0, 100.0, 9)
 FINGER, COUNT, FORCE = profile(Slices()), 24, 0.4
+FACETS = 16e-6, 1e-6
 
 
 def state(f_ext: float, attraction: float = 1.0, longer: float = 1.0, lower: float = 1.0, f_t: float = 1.0):
@@ -35,7 +36,7 @@ def test_constant_ratios_are_taken_away():
     """A coarse mesh that is wrong by one factor a quantity gives the trace of the fine one, by any of its states."""
     fine = of()
     for at in (FORCES[2], FORCES[-1]):
-        pair = Pair(state(at, 1.02, 0.97, 0.99), state(at))
+        pair = Pair(state(at, 1.02, 0.97, 0.99), state(at), FACETS)
         found = corrected(of(1.02, 0.97, 0.99), [pair], WAVELENGTH)
         assert found.depth == pytest.approx(fine.depth, rel=1e-12)
         for name, values in fine.columns.items():
@@ -45,7 +46,8 @@ def test_constant_ratios_are_taken_away():
 
 def test_two_states_are_met_and_ratios_go_evenly_between():
     """In the logarithm of the force; friction stays Coulomb's of the contact force."""
-    coarse, pairs = of(), [Pair(state(at), state(at, 1 + more)) for at, more in ((FORCES[2], 0.04), (FORCES[6], 0.02))]
+    ratios = (FORCES[2], 0.04), (FORCES[6], 0.02)
+    coarse, pairs = of(), [Pair(state(at), state(at, 1 + more), FACETS) for at, more in ratios]
     found = corrected(coarse, pairs, WAVELENGTH)
     ratio = found.columns["f_electrostatic"] / coarse.columns["f_electrostatic"]
     assert ratio == pytest.approx(1 + 0.01 * np.array([4, 4, 4, 3.5, 3, 2.5, 2, 2, 2]), rel=1e-12)
@@ -53,29 +55,42 @@ def test_two_states_are_met_and_ratios_go_evenly_between():
     assert found.columns["f_t"] == pytest.approx(MU_0 * borne, rel=1e-12)
 
 
-def test_error_of_the_mesh_is_that_of_one_halving():
-    """Twice the change at order one; of a length at least the root of the ridges' squared changes."""
-    pair = Pair(state(50.0, longer=0.98, lower=1.01), state(50.0))
+def test_error_of_the_mesh_is_that_of_two_meshes():
+    """Twice the change over r^p - 1: of first order in the facets at the ends for lengths, else p = 2 in all elements.
+
+    The change of a length is at least the root of the ridges' squared ones.
+    """
+    pair = Pair(state(50.0, longer=0.98, lower=1.01), state(50.0), FACETS)
     found = mesh_errors(pair, WAVELENGTH)
-    assert found["contact_area"] == pytest.approx(0.04, rel=1e-9)
-    assert found["indentation"] == pytest.approx(0.02, rel=1e-9)
+    assert found["contact_area"] == pytest.approx(0.04 / (16 - 1), rel=1e-9)
+    assert found["indentation"] == pytest.approx(0.02 / 3, rel=1e-9)
+    assert mesh_errors(pair, WAVELENGTH, 1)["indentation"] == pytest.approx(0.02, rel=1e-9)
     ridges = replace(pair.fine.ridges, length=pair.fine.ridges.length[::-1].copy())
-    turned = mesh_errors(Pair(pair.fine, replace(pair.fine, ridges=ridges)), WAVELENGTH)
-    assert turned["contact_area"] == pytest.approx(2 * 0.4 * 2**0.5, rel=1e-9)
-    assert set(mesh_errors(Pair(state(50.0, 0.0), state(50.0, 0.0)), WAVELENGTH)) == {*found} - {"f_electrostatic"}
-    still = Pair(state(50.0, f_t=0.0), replace(state(50.0), f_t=1e-13))
+    turned = mesh_errors(Pair(pair.fine, replace(pair.fine, ridges=ridges), FACETS), WAVELENGTH)
+    assert turned["contact_area"] == pytest.approx(2 * 0.4 * 2**0.5 / (16 - 1), rel=1e-9)
+    bare = mesh_errors(Pair(state(50.0, 0.0), state(50.0, 0.0), FACETS), WAVELENGTH)
+    assert set(bare) == {*found} - {"f_electrostatic"}
+    still = Pair(state(50.0, f_t=0.0), replace(state(50.0), f_t=1e-13), FACETS)
     assert not {"f_t", "mu_app"} & set(mesh_errors(still, WAVELENGTH)), "roundoff is no friction"
 
 
 def test_error_of_the_correction_is_what_other_states_change():
-    """Of one state, all that it changes; of two, what the sum changes without the first."""
-    coarse, one = of(), Pair(state(FORCES[6]), state(FORCES[6], 1.02))
+    """Of one state, all that it changes; of more, what the sum changes without one of them but the last."""
+    coarse, one = of(), Pair(state(FORCES[6]), state(FORCES[6], 1.02), FACETS)
     found = correction_errors(FINGER, coarse, [one], WAVELENGTH, FORCE, COUNT)
     sums = [at_force(FINGER, each, FORCE, COUNT).values for each in (corrected(coarse, [one], WAVELENGTH), coarse)]
     assert found["f_electrostatic"] == pytest.approx(1 - sums[1]["f_electrostatic"] / sums[0]["f_electrostatic"])
     assert found["f_electrostatic"] == pytest.approx(0.02, rel=0.03)
-    same = Pair(state(FORCES[2]), state(FORCES[2], 1.02))
+    same = Pair(state(FORCES[2]), state(FORCES[2], 1.02), FACETS)
     assert max(correction_errors(FINGER, coarse, [same, one], WAVELENGTH, FORCE, COUNT).values()) < 1e-12
-    other = Pair(state(FORCES[2]), state(FORCES[2], 1.04))
+    other = Pair(state(FORCES[2]), state(FORCES[2], 1.04), FACETS)
     found = correction_errors(FINGER, coarse, [other, one], WAVELENGTH, FORCE, COUNT)
     assert 0.001 < found["f_electrostatic"] < 0.02
+    between = Pair(state(FORCES[4]), state(FORCES[4], 1.03), FACETS)
+    even = correction_errors(FINGER, coarse, [other, between, one], WAVELENGTH, FORCE, COUNT)["f_electrostatic"]
+    assert even < found["f_electrostatic"], "without the first, as much changes as without the first of two, or less"
+    bent = Pair(state(FORCES[4]), state(FORCES[4], 1.06), FACETS)
+    more = correction_errors(FINGER, coarse, [other, bent, one], WAVELENGTH, FORCE, COUNT)["f_electrostatic"]
+    straight = corrected(coarse, [other, one], WAVELENGTH), corrected(coarse, [other, bent, one], WAVELENGTH)
+    sums = [at_force(FINGER, each, FORCE, COUNT).values["f_electrostatic"] for each in straight]
+    assert more >= abs(sums[0] / sums[1] - 1) > 0.001, "what it changes that the ratio is not straight"

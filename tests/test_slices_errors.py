@@ -17,7 +17,7 @@ from fingerpad.scene.parameters import Slices
 from fingerpad.slices import errors
 from fingerpad.slices.estimate import estimate
 from fingerpad.slices.finger import WholeFinger
-from fingerpad.slices.total import Profile, at_force, profile
+from fingerpad.slices.total import Profile, at_force, at_indentation, profile
 from fingerpad.slices.trace import NAMES, Trace, TraceError, trace
 from tests.measures import contact_state
 from tests.test_slices import foundation, kept, whole
@@ -100,6 +100,38 @@ def test_interpolation_covers_a_width_that_grows_by_ridges(points):
         change.append(abs(one.values["gross_area"] / other.values["gross_area"] - 1))
         known.append(errors.interpolation(FINGER, coarse, one, 24)["gross_area"])
     assert np.mean(change) < np.mean(known) < 10 * np.mean(change)
+
+
+def jumping(depth: np.ndarray) -> Trace:
+    """Return a trace of a parabola whose attraction and width jump by a ridge at a time, smooth between."""
+    columns = foundation().at(depth)
+    ridges = 1 + np.floor(columns["gross_width"] / 4e-4)
+    columns |= {"gross_width": 4e-4 * ridges, "f_electrostatic": 3.0 * ridges + 0.1 * columns["f_ext"]}
+    return Trace(depth, columns | {"f_t": 0.25 * (columns["f_ext"] + columns["f_electrostatic"])}, ridges)
+
+
+def test_error_between_points_with_known_ridges_is_that_of_where_they_jump():
+    """It covers the change; points that are nearer to the jumps make it less, where leaving points out does not."""
+    even = np.geomspace(2e-5, 1.5e-3, 14)
+    coarse, fine = jumping(even), jumping(np.geomspace(2e-5, 1.5e-3, 3000))
+    jumps = fine.depth[1:][np.diff(fine.ridges) > 0]
+    jumps = jumps[jumps > 2e-4]  # nearer to the first point they are about its power law
+    near = jumping(np.unique(np.concatenate([even, 0.99 * jumps, 1.01 * jumps])))
+    change, known, less = list[float](), list[float](), list[float]()
+    for deepest in np.linspace(5e-4, 1.2e-3, 6):
+        force = at_indentation(FINGER, coarse, deepest, 48).totals["f_ext"]
+        one, other, many = (at_force(FINGER, each, force, 48) for each in (coarse, fine, near))
+        change.append(abs(one.values["f_t"] / other.values["f_t"] - 1))
+        known.append(errors.interpolation(FINGER, coarse, one, 48)["f_t"])
+        less.append(errors.interpolation(FINGER, near, many, 48)["f_t"])
+        assert less[-1] < errors.interpolation(FINGER, replace(near, ridges=None), many, 48)["f_t"]
+    assert np.all(np.array(change) < known) and np.mean(less) < 0.8 * np.mean(known)
+
+
+def test_smooth_trace_with_known_ridges_has_next_to_no_error():
+    of = replace(foundation(), ridges=np.ones(12))
+    found = errors.interpolation(FINGER, of, at_force(FINGER, of, 0.5, 24), 24)
+    assert max(found.values()) < 1e-6, "a power law is a straight line of logarithms"
 
 
 def test_error_of_a_smaller_force_covers_the_trace_of_more_points():

@@ -117,18 +117,22 @@ class Observer:
             one_way = total[0] == total[1] == total[2]
         return float(total[3] / total[0]), bool(one_way)
 
-    def highest_pressure(self, state: SurfaceState) -> float:
-        """Return the highest contact pressure (Pa of current area), see :mod:`variational.highest`; collective."""
+    def highest_pressures(self, state: SurfaceState) -> Array:
+        """Return each ridge's highest contact pressure (Pa of current area), shape (ridges,); collective.
+
+        :mod:`variational.highest` has how they are found.
+        """
         surface, density = self.surface, (state.p_n, np.hypot(state.area_x, state.area_y))
         force, width = ((each * surface.measure_at) @ surface.weights for each in density)
         closed = np.minimum(surface.closed_length(state.x, state.y, state.gap), width)
-        mine = force, width, closed, surface.ends()
+        mine = force, width, closed, surface.ends(), surface.ridge
         ranks = self.problem.mesh.comm.allgather(mine)
-        force, width, closed, ends = (np.concatenate(each) for each in zip(*ranks, strict=True))
+        force, width, closed, ends, ridge = (np.concatenate(each) for each in zip(*ranks, strict=True))
         if self._mirrored:
-            force, width, closed = (np.concatenate([each, each]) for each in (force, width, closed))
+            force, width, closed, ridge = (np.concatenate([each, each]) for each in (force, width, closed, ridge))
             ends = np.concatenate([ends, ends * [-1.0, 1.0]])
-        return highest(force, width, closed, ends)
+        of = (ridge == k for k in range(len(surface.ridge_numbers)))
+        return np.array([highest(force[k], width[k], closed[k], ends[k]) for k in of])
 
     def penetration(self, state: SurfaceState) -> float:
         """Return how deep the skin is in the screen where it bears pressure (m), the largest of all ranks' points."""

@@ -130,14 +130,14 @@ def _solve(
     recorder, over, finger = StateRecorder(simulation), StateRecorder(simulation), simulation.finger
     springs, soft = finger.problem.interface.formulation, ""
     for name, state in states.items():
-        simulation.re_equilibrate(state.snapshot, WORDS[name], state.direction)
-        recorder.keep(name)
+        simulation.re_equilibrate(state.snapshot, WORDS.get(name, name), state.direction)
+        recorder.keep(name, state.direction != 0)
         if views:
             recorder.views[name] = Viewer(finger).view(simulation.present(finger.ridge_loads()))
         if stiffer is not None:
             try:
-                simulation.over_stiffer_screen(stiffer, WORDS[name], state.direction)
-                over.keep(name)
+                simulation.over_stiffer_screen(stiffer, WORDS.get(name, name), state.direction)
+                over.keep(name, state.direction != 0)
             except StepFailed as error:
                 soft = str(error)
             finger.problem.set_formulation(springs)

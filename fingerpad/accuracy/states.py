@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from fingerpad.model.finger import both_sides
 from fingerpad.results.drawing import View
 from fingerpad.results.states import before_sliding
 from geometry.parameters import MeshSize
@@ -35,6 +36,8 @@ class State:
     """Length in contact (m) of every ridge of the finger, shape (ridges,)."""
     frictions: Array
     """Friction on the skin (N/m), likewise; negative where the bone slides towards x > 0."""
+    peaks: Array
+    """Highest pressure (Pa), likewise."""
     sed: dict[int, float]
     """Strain energy density (J/m^3) at the Merkel sites of the ridges that can touch."""
     facet: float
@@ -70,13 +73,12 @@ class Solve:
         }
 
     def parts(self) -> dict[str, ArrayLike]:
-        """Return the same, contact lengths and friction by ridge, shape (ridges,)."""
+        """Return the same, but for energy densities by ridge, shape (ridges,)."""
         found: dict[str, ArrayLike] = dict(self.values())
         for name, state in self.states.items():
-            found[f"{name}_contact_length"] = state.lengths
-            for key, unit in (("f_t", 1.0), ("mu_app", state.state.f_ext)):
-                if f"{name}_{key}" in found:
-                    found[f"{name}_{key}"] = -state.frictions / unit
+            parts: dict[str, ArrayLike] = {"contact_length": state.lengths, "p_max": state.peaks}
+            parts |= {"f_t": -state.frictions, "mu_app": -state.frictions / (state.state.f_ext or math.nan)}
+            found |= {f"{name}_{key}": part for key, part in parts.items() if f"{name}_{key}" in found}
         return found
 
 
@@ -136,24 +138,32 @@ class StateRecorder:
         """Go on from what another process kept."""
         self.states, self._begun = kept["states"], kept["begun"]
 
-    def keep(self, name: str) -> None:
-        """Keep the present state; collective."""
+    def keep(self, name: str, slips: bool | None = None) -> None:
+        """Keep the present state; collective.
+
+        Args:
+            name: of the state.
+            slips: whether it is a full slip; by default one of that name is.
+        """
         direction = 1 if self._simulation.finger.solver.reaction[0] <= 0 else -1
-        self.states[name] = self._state(direction * (name == "full_slip"))
+        self.states[name] = self._state(direction * (name == "full_slip" if slips is None else slips))
 
     def _state(self, direction: int) -> State:
         f = self._simulation.finger
         loads = f.ridge_loads()
-        lengths, frictions = np.zeros((2, f.profiles.finger.ridge_count))
-        of_ridges = np.array(f.ridges) + len(lengths) // 2
-        lengths[of_ridges], frictions[of_ridges] = loads.length, loads.f_friction
+        peaks = f.observer.highest_pressures(f.continuation.surface_state)
+        if not f.options.both_halves:
+            peaks = both_sides(peaks)
+        by_ridge = np.zeros((3, f.profiles.finger.ridge_count))
+        by_ridge[:, np.array(f.ridges) + by_ridge.shape[1] // 2] = loads.length, loads.f_friction, peaks
+        lengths, frictions, peaks = by_ridge
         sed = {j: float(density) for j, density in zip(f.problem.surface.ridge_numbers, self._sites.sed(), strict=True)}
         if not f.options.both_halves:
             sed |= {-j: density for j, density in sed.items()}
         present = self._simulation.present(loads).state
         snapshot = take_snapshot(f.coupling, f.continuation.surface_state)
         facet = f.size.edge if self._simulation.model.edges else f.contact_size
-        return State(snapshot, direction, present, lengths, frictions, sed, facet)
+        return State(snapshot, direction, present, lengths, frictions, peaks, sed, facet)
 
     def solve(self) -> Solve:
         """Return what was kept."""

@@ -34,7 +34,7 @@ def main(argv: Sequence[str]) -> int:
     parser.add_out("results/sweep", "folder of all runs and of table.csv", quiet="table")
     parser.add_argument("--jobs", type=positive, default=2, metavar="N", help="runs at a time (default: 2)")
     parser.add_argument("--model", choices=MODELS, default=DEFAULT_MODEL, help="model to run (default: %(default)s)")
-    words = "all, each point by its path, or full_slip alone, from point to point: some 5 times as fast (default: all)"
+    words = "all, each point by its path, or full_slip alone, from point to point: some 4 times as fast (default: all)"
     parser.add_argument("--states", choices=STATES, default=STATES[0], help=words)
     args = parser.read(argv)
     check_folder(args.out)

@@ -18,7 +18,6 @@ from fingerpad.scene import Load
 from variational.resultants import RidgeLoads
 from variational.solvers import checkpoint
 from variational.solvers.continuation import Attempt, Continuation, StepFailed
-from variational.solvers.snapshot import StateSnapshot, take_snapshot
 from variational.solvers.stability import Stability
 from variational.solvers.target import Target
 from variational.state import ContactState
@@ -149,11 +148,6 @@ class Simulation:
                 return
             reached()
         self._restart = self._symmetry_lost()
-
-    def snapshot(self) -> tuple[StateSnapshot, bool]:
-        """Return the present state, and whether it is of the half at x >= 0, which leads the finger; collective."""
-        path = self.finger.continuation if self._half is None else self._half.path
-        return take_snapshot(path.coupling, path.surface_state), self._half is not None
 
     def _end_half(self) -> None:
         """Go on with the whole finger."""

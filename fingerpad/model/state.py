@@ -53,7 +53,7 @@ def contact_state(
         f_electrostatic=float(loads.f_attraction.sum()),
         ridges_in_contact=int((loads.length > 0).sum()),
         contact_length=float(loads.length.sum()),
-        p_max=path.observer.highest_pressure(path.surface_state),
+        p_max=float(path.observer.highest_pressures(path.surface_state).max()),
         slipping=slipping,
         all_slip=all_slip,
         ridges=RidgeStates(

@@ -6,12 +6,12 @@ without a path between (:mod:`fingerpad.model.full_slip`).
 """
 
 import itertools
-import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from fingerpad.accuracy.states import State, StateRecorder
 from fingerpad.model.finger import Step
 from fingerpad.model.full_slip import Conditions, FullSlips, Solved
 from fingerpad.model.options import FingerModel
@@ -25,29 +25,27 @@ from fingerpad.startup import MPI
 from geometry.units import computed
 from variational.solvers.continuation import StepFailed
 from variational.solvers.outcome import Counts
-from variational.solvers.transfer import StateSnapshot
 from variational.state import ContactState
 
-POINTS = 16
-"""Forces at full slip, from the light one to the largest of the trace."""
-QUARTER = 0.25
-"""Of the largest force: where full slip is kept besides about at the centre of the finger."""
+POINTS = 24
+"""Forces at full slip, from the light one to the largest of the trace, at equal steps of their roots: of the
+indentation, by about as much as lies between a ridge that comes down and the next one."""
+LIGHT = 1 / 100
+"""Light force over the largest of a trace. Slices under less are extrapolated, which is a part of the error."""
+KEPT = 0.35
+"""Of the largest force: where a state is kept besides about at the centre of the finger."""
 _BEGIN = {"press": "uncharged", "charge": "charged"}  # traces by the load that they begin with
 
 
 @dataclass
 class Followed:
-    """A trace, with some of its states to be solved for again on another mesh."""
+    """A trace, with some of its states to be solved for again on the scene's own mesh."""
 
     top: float
     """Largest force (N/m) that was asked for."""
     states: list[ContactState] = field(default_factory=list)
-    snapshots: list[StateSnapshot] = field(default_factory=list)
-    """At growing forces, the last one about at the centre of the finger."""
-    anchors: list[ContactState] = field(default_factory=list)
-    """The states of these."""
-    half: bool = False
-    """Whether the snapshots are of one half of the finger."""
+    anchors: list[State] = field(default_factory=list)
+    """Those, at growing forces, the last one about at the centre of the finger."""
 
 
 class Again(Exception):  # noqa: N818
@@ -65,6 +63,7 @@ class Branches:
         found: the traces by state.
         kept: what there is of each.
         counts: work of all solvers so far.
+        force_error: what the tolerance of solves leaves of a force (N/m).
     """
 
     def __init__(
@@ -87,8 +86,9 @@ class Branches:
         self._scene, self._comm, self._on_step, self._on_trace = scene, comm, on_step, on_trace
         self._reach = Reach(scene, self._made)
         with computed():
-            self.section = traces.history(scene.replace(force=None), "full_slip", self._reach.top)
-        self.kept, self.found, self.counts = kept, dict[str, Traced](), Counts()
+            light = max(LIGHT, traces.SMALLEST / self._reach.top)
+            self.section = traces.history(scene.replace(force=None), "full_slip", self._reach.top, light)
+        self.kept, self.found, self.counts, self.force_error = kept, dict[str, Traced](), Counts(), 0.0
         self._solved: Solved | None = None  # the last full slip
 
     def follow(self, model: FingerModel) -> None:
@@ -105,6 +105,7 @@ class Branches:
         self.found = {}
         self._simulation = simulation = Simulation(model, self._comm, self._on_step, self._on_load)
         self._slips, self._solved = FullSlips(simulation), None
+        self._recorder = StateRecorder(simulation)
         conditions = Conditions.of(model)
         try:
             if (restart := simulation.run()) is not None:
@@ -113,6 +114,7 @@ class Branches:
                 self._solved = self._slips.first(conditions)
                 self.found["full_slip"] = self._reach.follow("full_slip")
         finally:
+            self.force_error = simulation.finger.force_error
             self.counts.add(simulation.finger.solver.counts)
             simulation.finger.solver.iteration.free()
 
@@ -127,21 +129,23 @@ class Branches:
         followed = self.kept.get(name)
         if followed is None or followed.top != top:
             self._on_trace(name)
-            followed = self._slipped(top) if name == "full_slip" else self._raised(top)
+            followed = self._slipped(top) if name == "full_slip" else self._raised(name, top)
             self.kept[name] = followed
             self._on_trace("")
-        return Traced(trace(followed.states, self._scene.geometry.ridge_wavelength), followed.states)
+        smooth = name == "full_slip"
+        return Traced(trace(followed.states, self._scene.geometry.ridge_wavelength, smooth), followed.states)
 
-    def _raised(self, top: float) -> Followed:
+    def _raised(self, name: str, top: float) -> Followed:
         """Return the trace of normal contact from the present state on."""
         simulation, found = self._simulation, Followed(top)
         voltage = simulation.states[-1].voltage
         with simulation.aside(), computed():
-            loads = [Load(name="raise", f_ext=force) for force in (top / traces.MARGIN, top)]
-            simulation.reach(loads, lambda: self._anchor(found))
+            forces = (KEPT * top, top / traces.MARGIN, top)
+            loads = [Load(name="raise", f_ext=force) for force in forces]
+            simulation.reach(loads, lambda: self._anchor(found, name))
             if simulation.restart is not None:
                 raise Again(simulation.restart)
-            del found.snapshots[1:], found.anchors[1:]  # the end, beyond the centre
+            del found.anchors[-1]  # the end, beyond the centre
             found.states = [s for s in simulation.states if s.voltage == voltage and s.load != FIRST_TOUCH]
         return found
 
@@ -151,29 +155,30 @@ class Branches:
         assert now is not None
         before = self.kept.get("full_slip") if now.state.reached != "path" else None
         found = Followed(top, [now.state]) if before is None else replace(before, top=top)
-        anchors = (QUARTER * top, top / traces.MARGIN)
+        anchors = (KEPT * top, top / traces.MARGIN)
         for force in _forces(now.conditions.f_ext, top, anchors):
             try:
                 now = slips.reach(replace(now.conditions, f_ext=force), now)
             except StepFailed:
                 if self._simulation.restart is not None:
                     raise Again(self._simulation.restart) from None
-                raise
+                if force in (*anchors, top):
+                    raise
+                continue  # the trace has one point less
             found.states.append(now.state)
             if force in anchors:
-                self._anchor(found, now.state)
+                self._anchor(found, "full_slip")
         self._solved = slips.checked(now)
         return found
 
-    def _anchor(self, found: Followed, state: ContactState | None = None) -> None:
+    def _anchor(self, found: Followed, name: str) -> None:
         """Keep the present state as one to be solved for again; collective."""
-        snapshot, found.half = self._simulation.snapshot()
-        found.snapshots.append(snapshot)
-        found.anchors.append(self._simulation.states[-1] if state is None else state)
+        self._recorder.keep(name)
+        found.anchors.append(self._recorder.states[name])
 
 
 def _forces(start: float, top: float, among: Sequence[float]) -> list[float]:
-    """Return forces (N/m) up to a largest one, about as far from each other as :data:`POINTS` of a whole trace.
+    """Return forces (N/m) up to a largest one, with roots about as far apart as :data:`POINTS` of a whole trace have.
 
     Args:
         start: of the present state.
@@ -181,9 +186,9 @@ def _forces(start: float, top: float, among: Sequence[float]) -> list[float]:
         among: to be among them, where they are above the present one.
     """
     ends = [start, *(force for force in among if start < force < top), top]
-    apart = -math.log(traces.LIGHT) / (POINTS - 1)
+    apart = (1 - LIGHT**0.5) * top**0.5 / (POINTS - 1)
     found = list[float]()
     for a, b in itertools.pairwise(ends):
-        count = max(round(math.log(b / a) / apart), 1)
-        found += [*(float(each) for each in np.geomspace(a, b, count + 1)[1:-1]), b]
+        roots = np.linspace(a**0.5, b**0.5, max(round((b**0.5 - a**0.5) / apart), 1) + 1)
+        found += [*(float(each) ** 2 for each in roots[1:-1]), b]
     return found

@@ -1,22 +1,21 @@
 """A force on the whole finger by the full model: traces on coarse elements, corrected on the scene's own.
 
-One simulation has all traces (:mod:`fingerpad.runs.branches`). All sizes of its elements are twice those of the scene,
-but that facets are not made longer than :data:`LONGEST`. The state of each trace about at the centre of the finger is
-solved for again on the scene's own mesh, and so is full slip at a quarter of the largest force. These correct the
-traces (:mod:`fingerpad.slices.correction`).
+One simulation has all traces (:mod:`fingerpad.runs.branches`), on the mesh of a run's path, whose elements are twice as
+large as the scene's. The state of each trace about at the centre of the finger, and one under a smaller force
+(:data:`fingerpad.runs.branches.KEPT`), are solved for again on the scene's own mesh, finest where their contact ends.
+These correct the traces (:mod:`fingerpad.slices.correction`).
 
 Where full slip depends on its past, where an accuracy is asked for, or where a state is not found this way, the traces
 are runs of their own (:mod:`fingerpad.slices.traces`).
 """
 
-import itertools
 from collections.abc import Sequence
 from contextlib import closing
 from dataclasses import replace
 from typing import Any
 
 import fingerpad.startup  # noqa: F401
-from fingerpad.accuracy.solves import StateSolver
+from fingerpad.accuracy.solves import solve_again
 from fingerpad.model import breakdown, cautions, followed
 from fingerpad.model.finger import Step
 from fingerpad.model.options import FingerModel, by_rule, plan
@@ -41,13 +40,10 @@ from fingerpad.slices.traces import Traced
 from fingerpad.startup import MPI
 from geometry.profiles import GeometryError
 from variational.coefficients import LawError
+from variational.element import ELEMENTS
 from variational.solvers.continuation import StepFailed
-from variational.solvers.transfer import StateSnapshot
-from variational.state import ContactState
+from variational.solvers.outcome import Counts
 
-LONGEST = 10e-6
-"""Facets (m) up to which those of the traces are made longer than the scene's: longer ones trap a charged edge."""
-_SIZES = ("growth", "interface", "coarsest", "receptor")
 _WORDS = "traces of the full model on coarser elements, corrected on those of the scene,"
 
 
@@ -104,7 +100,7 @@ class _Newtons:
     ) -> None:
         self._scene, self._comm, self._console, self._interrupt = scene, comm, console, interrupt
         self._checkpoint, self.clock, self.doing = checkpoint, Clock(comm), "light press"
-        self._restarts: list[str] = []
+        self._restarts, self._steps = list[str](), 0
         self.branches = Branches(scene, comm, self._on_step, self._on_trace, self._earlier())
 
     def result(self) -> Result:
@@ -112,8 +108,8 @@ class _Newtons:
         section, states = self.branches.section, traces.states(self._scene)
         model = FingerModel(by_rule(section), replace(plan(section), receptors=False, errors=False))
         loads = model.loads[: 1 + bool(self._scene.volts) + ("full_slip" in states)]
-        mesh = model.mesh.model_copy(update=coarser(model))
-        model = model.changed(loads=loads, mesh=mesh, share=followed.share(self._scene))
+        model = model.changed(loads=loads, share=followed.share(self._scene))
+        model = model.changed(mesh=model.coarser(model.mesh), final=model.mesh)
         self._console.expect(1 + len(states))
         self._console.head()
         while True:
@@ -132,6 +128,7 @@ class _Newtons:
 
     # -- on the way ------------------------------------------------------------------------------------
     def _on_step(self, step: Step, done: float) -> None:
+        self._steps = step.state.step
         self._console.step(step.state, min(len(self.branches.found) / (1 + len(traces.states(self._scene))), 1.0))
         self._interrupt.stop_if_asked(step.state.step)
 
@@ -165,24 +162,24 @@ class _Newtons:
         """
         self.doing = "correction of the traces"
         self._console.phase("states of the traces, on the scene's own mesh")
-        arc = {"touching_half_arc": model.mesh.touching_half_arc}
-        own, branches = by_rule(self.branches.section).mesh.model_copy(update=arc), self.branches
-        found, notes, unknowns, least = dict[str, Traced](), [*leakage(self._scene)], 0, 0.0
-        for half, names in itertools.groupby(branches.found, lambda name: branches.kept[name].half):
-            options = replace(model.options, both_halves=not half, symmetric_start=False)
-            simulation = StateSolver(model.changed(mesh=own, options=options), self._comm, self._on_step)
-            finger = simulation.finger
-            try:
-                for name in names:
-                    kept = branches.kept[name]
-                    fine = [_again(simulation, each, name) for each in kept.snapshots]
-                    pairs = [Pair(*pair) for pair in zip(kept.anchors, fine, strict=True)]
-                    found[name] = self._total(branches.found[name], pairs)
-                    notes += _differences(name, pairs)
-            finally:
-                branches.counts.add(finger.solver.counts)
-                finger.solver.iteration.free()
-            unknowns, least = max(unknowns, finger.unknowns), max(least, finger.force_error)
+        branches, degree = self.branches, ELEMENTS[model.numerics.element].degree
+        anchors = {
+            f"{WORDS[name]} under {state.state.f_ext:.4g} N/m": (name, state)
+            for name in branches.found
+            for state in branches.kept[name].anchors
+        }
+        self._interrupt.stop_if_asked(self._steps)
+        coarse = {words: state for words, (_, state) in anchors.items()}
+        fine = solve_again(model.changed(mesh=model.final), coarse, self._comm)
+        branches.counts.add(Counts(fine.newton, fine.factorisations))
+        pairs: dict[str, list[Pair]] = {name: [] for name in branches.found}
+        for words, (name, state) in anchors.items():
+            own = fine.states[words]
+            pairs[name].append(Pair(state.state, own.state, (state.facet, own.facet)))
+        notes, unknowns = [*leakage(self._scene)], fine.unknowns
+        found = {name: self._total(branches.found[name], each, degree) for name, each in pairs.items()}
+        notes += [text for name, each in pairs.items() for text in _differences(name, each)]
+        least = branches.force_error
         states = [state for each in found.values() for state in each.states]
         slip = found["full_slip"].end if "full_slip" in found else None
         return Result(
@@ -201,14 +198,14 @@ class _Newtons:
             finger=traces.summed(self._scene, _WORDS, found),
         )
 
-    def _total(self, each: Traced, pairs: Sequence[Pair]) -> Traced:
+    def _total(self, each: Traced, pairs: Sequence[Pair], degree: int) -> Traced:
         """Return a trace as on the scene's own mesh, with the finger on it and its errors."""
         scene = self._scene
         finger, force, count, wavelength = profile(scene.slices), scene.force, scene.slices.count, _wavelength(scene)
         assert force is not None
         made = corrected(each.trace, pairs, wavelength)
         carried = {
-            errors.MESH: mesh_errors(pairs[-1], wavelength),
+            errors.MESH: mesh_errors(pairs[-1], wavelength, degree),
             errors.COARSE: correction_errors(finger, each.trace, pairs, wavelength, force, count),
         }
         return Traced(made, each.states, None, at_force(finger, made, force, count), pairs[-1].fine, carried)
@@ -217,19 +214,6 @@ class _Newtons:
         """Return what the summary holds besides, ready for JSON."""
         mesh = {"path_mesh": model.mesh.model_dump(), "restarts": self._restarts}
         return mesh | {"laws": used(self._scene), "provenance": provenance()}
-
-
-def coarser(model: FingerModel) -> dict[str, float]:
-    """Return the sizes of elements on which a model's traces are followed."""
-    sizes = {name: 2 * getattr(model.mesh, name) for name in _SIZES}
-    return sizes | {"contact": min(2 * model.mesh.contact, max(model.mesh.contact, LONGEST))}
-
-
-def _again(simulation: StateSolver, snapshot: StateSnapshot, name: str) -> ContactState:
-    """Return a state of a trace on the mesh of a simulation; collective."""
-    before = len(simulation.states)
-    simulation.re_equilibrate(snapshot, WORDS[name], 1 if name == "full_slip" else 0)
-    return simulation.states[before]
 
 
 def _differences(name: str, pairs: Sequence[Pair]) -> list[str]:

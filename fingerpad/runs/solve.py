@@ -42,8 +42,11 @@ def run(
     comm: "MPI.Comm | None" = None,
     resume: bool = False,
     outputs: Sequence[Output] = (),
+    **changes: Any,
 ) -> Result:
     """Return what a model answers to a scene; collective.
+
+    ``fp.run(contact=fp.Nitsche(), voltage=100.0)`` runs the default scene with these changes.
 
     Args:
         scene: the scene; by default press, charge and slide of the default finger.
@@ -53,6 +56,7 @@ def run(
         comm: communicator; by default of all ranks.
         resume: go on from where a run of the same scene in ``out`` was cut short; only of the full model.
         outputs: further quantities, each computed from every state: see :class:`fingerpad.results.quantities.Output`.
+        changes: values of the scene by key, as :meth:`fingerpad.scene.Scene.replace` takes them.
 
     Returns:
         The result. A load that could not be reached is its ``failure``, with a warning; the states before are in it.
@@ -63,6 +67,7 @@ def run(
         SystemExit: SIGTERM or SIGHUP, after the present step; its attribute ``result`` has the same.
     """
     scene, way = checked(scene), find(model)
+    scene = scene.replace(**changes) if changes else scene
     if out is not None and not isinstance(out, str | os.PathLike):
         raise SceneError(f"out is {show(out)}; it must be the path of a folder")
     if resume and (out is None or not way.resumes):

@@ -65,8 +65,8 @@ def sweep(
         quiet: whether to print no line for each point, and show no progress bar.
         outputs: further quantities, each computed from every state; the folders of the points do not have them.
         states: ``"all"``, each point by its own path; or ``"full_slip"``, full slip alone, which the full model solves
-            for from point to point (:mod:`fingerpad.runs.chain`): some five times as fast, and without
-            ``output.errors`` still faster.
+            for from point to point (:mod:`fingerpad.runs.chain`): some four times as fast, and without
+            ``output.errors`` some sixteen times.
         **axes: values by key: ``voltage=[0, 100, 200]``, or ``**{"roughness.h_rms": [2e-6, 3e-6]}``.
             With ``force`` tables and arrays are of the whole finger.
 

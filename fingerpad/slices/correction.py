@@ -5,10 +5,10 @@ friction over contact force by a few per cent, and by about as much at neighbour
 multiplied by the ratio r of its values on the fine and the coarse mesh. Between the forces :math:`f_k` of the states
 that are known on both, r is linear in the logarithm of the force; beyond them it is constant. Two errors are left:
 
-* of the *mesh*: that of the section on the fine one, by :mod:`fingerpad.richardson` for one halving of all sizes, at
-  the largest force that is known on both; it is carried over to the sum,
-* of the *correction*: what the sum over the slices changes with the ratio at the largest force alone, or, where no
-  other one is known, without a correction.
+* of the *mesh*: that of the section on the fine one, from the two meshes (:func:`fingerpad.richardson.of_two_meshes`),
+  at the largest force that is known on both; it is carried over to the sum,
+* of the *correction*: the largest change of the sum over the slices without one of the ratios but the last, or, with a
+  single ratio, without a correction.
 """
 
 from collections.abc import Mapping, Sequence
@@ -16,7 +16,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fingerpad.richardson import MeshParameter
+from fingerpad.richardson import of_two_meshes
 from fingerpad.slices.total import TOTALS, Profile, at_force
 from fingerpad.slices.trace import Trace, columns
 from variational.state import ContactState
@@ -25,6 +25,7 @@ _SCALED = ("depth", "f_electrostatic", "contact_length", "gross_width", "grip")
 _SUMS = {"f_electrostatic": "f_electrostatic", "contact_area": "contact_length", "gross_area": "gross_width"}
 _OF_SUM = {**_SUMS, "indentation": "depth", "f_t": "f_t", "mu_app": "f_t"}
 """Names of a sum's quantities, and of the section's value whose relative error each has."""
+_SECTION = "section_"
 _ROUNDOFF = 1e-9  # of the contact force: sideways forces of normal contact are below
 
 
@@ -34,6 +35,8 @@ class Pair:
 
     coarse: ContactState
     fine: ContactState
+    facets: tuple[float, float]
+    """Lengths of the facets where its contact ends (m), on the trace's mesh and on the fine one."""
 
 
 def corrected(trace: Trace, pairs: Sequence[Pair], wavelength: float) -> Trace:
@@ -50,16 +53,22 @@ def corrected(trace: Trace, pairs: Sequence[Pair], wavelength: float) -> Trace:
     found = {name: values * ratio.get(name, 1.0) for name, values in trace.columns.items()}
     borne = trace.columns["f_ext"] + trace.columns["f_electrostatic"]
     grip = ratio["grip"] * trace.columns["f_t"] / borne
-    return Trace(trace.depth * ratio["depth"], found | {"f_t": grip * (found["f_ext"] + found["f_electrostatic"])})
+    found["f_t"] = grip * (found["f_ext"] + found["f_electrostatic"])
+    return Trace(trace.depth * ratio["depth"], found, trace.ridges)
 
 
-def mesh_errors(pair: Pair, wavelength: float) -> dict[str, float]:
-    """Return the relative errors of a sum by the fine mesh, those of the section, by the sum's quantities."""
+def mesh_errors(pair: Pair, wavelength: float, degree: int = 2) -> dict[str, float]:
+    """Return the relative errors of a sum by the fine mesh, those of the section, by the sum's quantities.
+
+    Args:
+        pair: the section on both meshes.
+        wavelength: of a ridge (m).
+        degree: polynomial degree of the elements.
+    """
     coarse, fine = (_parts(state, wavelength) for state in (pair.coarse, pair.fine))
-    parameter = MeshParameter()
-    parameter.record(coarse, fine)
-    values = {name: float(np.sum(fine[of])) for name, of in _OF_SUM.items()}
-    return {name: parameter.safe(_OF_SUM[name]) / value for name, value in values.items() if value}
+    found = of_two_meshes(coarse, fine, {_SECTION[:-1]: pair.facets}, degree)
+    values = {name: float(np.sum(fine[_SECTION + of])) for name, of in _OF_SUM.items()}
+    return {name: found[_SECTION + _OF_SUM[name]] / value for name, value in values.items() if value}
 
 
 def correction_errors(
@@ -75,10 +84,13 @@ def correction_errors(
         force: on the finger (N).
         count: slices in each stretch of contact.
     """
-    less = corrected(trace, pairs[-1:], wavelength) if len(pairs) > 1 else trace
-    found = [at_force(finger, each, force, count).values for each in (corrected(trace, pairs, wavelength), less)]
+    less = [[*pairs[:k], *pairs[k + 1 :]] for k in range(len(pairs) - 1)]
+    other = [corrected(trace, each, wavelength) for each in less] or [trace]
+    value, *others = (
+        at_force(finger, each, force, count).values for each in (corrected(trace, pairs, wavelength), *other)
+    )
     names = {*TOTALS, "mu_app", "indentation"} - {"f_ext"}
-    return {name: abs(found[1][name] / found[0][name] - 1) for name in sorted(names) if found[0][name]}
+    return {name: max(abs(o[name] / value[name] - 1) for o in others) for name in sorted(names) if value[name]}
 
 
 def _values(states: Sequence[ContactState], wavelength: float) -> dict[str, np.ndarray]:
@@ -94,7 +106,7 @@ def _parts(state: ContactState, wavelength: float) -> Mapping[str, np.ndarray]:
     found = _values([state], wavelength)
     if state.ridges is not None:
         found["contact_length"] = np.asarray(state.ridges.length)
-    return found
+    return {_SECTION + name: value for name, value in found.items()}
 
 
 def _ratio(fine: np.ndarray, coarse: np.ndarray) -> np.ndarray:

@@ -16,6 +16,8 @@ import math
 from collections.abc import Iterable, Mapping, Sequence
 from itertools import groupby
 
+import numpy as np
+
 from fingerpad.slices.total import TOTALS, Profile, Total, at_indentation
 from fingerpad.slices.trace import LEAST, Trace
 from variational.state import ContactState
@@ -27,6 +29,8 @@ _OF_SECTION = {  # whose relative error each has; the external force is prescrib
     "contact_area": "contact_length",
     "indentation": "bone_height",
 }
+_FINER = 40  # times as many slices, so that there are some between any two points of a trace
+_TINY = 1e-300
 _RELATIVE_STEP = 1e-3  # of the largest indentation: its change for the slope over the force
 MESH, ESTIMATED, POINTS = "mesh of the cross-section", "estimate beside the centre", "points of the traces"
 COARSE = "coarser mesh of the traces"
@@ -98,6 +102,9 @@ def interpolation(finger: Profile, trace: Trace, total: Total, count: int) -> di
     are a part of the finger that grows with the first indentation. A trace from twice this indentation has at least
     twice their error, and the change is added.
 
+    Of a trace that is smooth between points with the same ridges, a slice between others may be at either point: its
+    changes are half of the difference of the two. Elsewhere they are those by linear interpolation of the logarithms.
+
     Args:
         finger: along its axis.
         trace: of a slice on the scale 1.
@@ -121,8 +128,37 @@ def interpolation(finger: Profile, trace: Trace, total: Total, count: int) -> di
         return {name: float(each / values[name]) if values[name] else 0.0 for name, each in sums.items()}
 
     one, other, below = (change(coarse) for coarse in (*trace.halves(), trace.later()))
-    found = {name: max(one[name], other[name]) + below[name] for name in one if name != "f_ext"}
+    between = {name: max(one[name], other[name]) for name in below}
+    if trace.ridges is not None:
+        between |= _between(finger, trace, total, count, slope)
+    found = {name: between[name] + below[name] for name in below if name != "f_ext"}
     return found | {"mu_app": found["f_t"]}
+
+
+def _between(finger: Profile, trace: Trace, total: Total, count: int, slope: Mapping[str, float]) -> dict[str, float]:
+    """Return the relative errors of sums between the points of a trace whose ridges are known.
+
+    Args:
+        finger: along its axis.
+        trace: of a slice on the scale 1.
+        total: the sum over the trace.
+        count: slices in each stretch of contact.
+        slope: of each quantity over the force.
+    """
+    assert trace.ridges is not None
+    fine = at_indentation(finger, trace, total.delta, _FINER * count)
+    depth = np.divide(fine.depth, finger.width(fine.z))
+    k = np.clip(np.searchsorted(trace.depth, depth, side="right") - 1, 0, len(trace.depth) - 2)
+    jumps, above = trace.ridges[k] != trace.ridges[k + 1], depth >= trace.depth[0]
+    at, points = np.log(np.maximum(depth, trace.depth[0])), np.log(trace.depth)
+    moved = dict[str, np.ndarray]()
+    for name, column in TOTALS.items():
+        values, width = trace.columns[column], finger.width(fine.z)
+        linear = np.exp(np.interp(at, points, np.log(np.maximum(values, _TINY)))) * width
+        half = (values[k + 1] - values[k]) / 2 * width
+        moved[name] = np.where(above, np.where(jumps, half, linear - fine.columns[column]), 0.0)
+    sums = {name: fine.thickness @ abs(each - slope[name] * moved["f_ext"]) for name, each in moved.items()}
+    return {name: float(each / total.values[name]) if total.values[name] else 0.0 for name, each in sums.items()}
 
 
 def add(*parts: dict[str, float]) -> dict[str, float]:

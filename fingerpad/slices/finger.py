@@ -93,6 +93,7 @@ class WholeFinger:
             if name in self.traces:
                 made = self.traces[name]
                 points = {key: values.tolist() for key, values in made.columns.items()}
+                points |= {} if made.ridges is None else {"ridges": made.ridges.tolist()}
                 found["states"][name]["trace"] = {"indentation": made.depth.tolist()} | points
         return found
 
@@ -111,7 +112,8 @@ class WholeFinger:
             places = arrays["z"], arrays["thickness"], arrays["indentation"]
             states[name] = Total(state["indentation"], *places, state["centre"], columns)
             points = {key: np.array(values) for key, values in state["trace"].items()}
-            traces[name] = Trace(points.pop("indentation"), points)
+            ridges = points.pop("ridges", None)
+            traces[name] = Trace(points.pop("indentation"), points, ridges)
         carried = {name: state["carried"] for name, state in data["states"].items()}
         return cls(states, data["source"], carried, traces, shape)
 

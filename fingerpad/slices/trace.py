@@ -38,6 +38,9 @@ class Trace:
     """Indentations (m), growing, greater than 0; shape (points,)."""
     columns: dict[str, Array]
     """By :data:`NAMES`; shape (points,)."""
+    ridges: Array | None = None
+    """Ridges in contact at the points, shape (points,); None where a trace is not known to be smooth between two points
+    with the same ridges."""
 
     def __post_init__(self) -> None:
         """Refuse what is no trace.
@@ -69,7 +72,8 @@ class Trace:
         return self._on((self.depth >= 2 * self.depth[0]) | (np.arange(len(self.depth)) >= len(self.depth) - 2))
 
     def _on(self, kept: NDArray[np.bool_]) -> "Trace":
-        return Trace(self.depth[kept], {name: values[kept] for name, values in self.columns.items()})
+        columns = {name: values[kept] for name, values in self.columns.items()}
+        return Trace(self.depth[kept], columns, None if self.ridges is None else self.ridges[kept])
 
     def at(self, depth: Array) -> dict[str, Array]:
         """Return the columns at indentations (m); nothing where a slice does not touch, at 0 and less.
@@ -113,7 +117,7 @@ class Trace:
         return max(float(np.log(values[1] / values[0]) / np.log(self.depth[1] / self.depth[0])), 0.0)
 
 
-def trace(states: Iterable[ContactState], wavelength: float) -> Trace:
+def trace(states: Iterable[ContactState], wavelength: float, smooth: bool = False) -> Trace:
     """Return the trace of a cross-section.
 
     Args:
@@ -121,6 +125,7 @@ def trace(states: Iterable[ContactState], wavelength: float) -> Trace:
             those that go back, as behind a jump, are left out; so are repetitions of one state up to the tolerances of
             solvers, of which full slip under a constant force has several.
         wavelength: of a ridge (m).
+        smooth: whether states with the same ridges in contact are on one smooth curve.
 
     Raises:
         TraceError: less than :data:`LEAST` states are left.
@@ -135,7 +140,8 @@ def trace(states: Iterable[ContactState], wavelength: float) -> Trace:
         raise TraceError(
             f"{len(kept)} states with growing indentation and force are no trace, which must have {LEAST} at least"
         )
-    return Trace(np.array([-state.bone_height for state in kept]), columns(kept, wavelength))
+    ridges = np.array([float(state.ridges_in_contact) for state in kept]) if smooth else None
+    return Trace(np.array([-state.bone_height for state in kept]), columns(kept, wavelength), ridges)
 
 
 def columns(states: Sequence[ContactState], wavelength: float) -> dict[str, Array]:

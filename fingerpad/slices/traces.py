@@ -35,15 +35,16 @@ FORCES = 8
 """Points of a trace of a model without a path."""
 LIGHT = 1 / 30
 """Force under which a finger is charged, and slid to full slip, over the largest of its trace."""
-_SMALLEST, _LARGEST = 1e-3, 5e3  # N/m, of a scene
-_SHORTEST = 1.01 * _SMALLEST / LIGHT  # N/m, largest force of a trace whose light one a scene can have
+SMALLEST, _LARGEST = 1e-3, 5e3
+"""Forces (N/m) of a scene."""
+_SHORTEST = 1.01 * SMALLEST / LIGHT  # N/m, largest force of a trace whose light one a scene can have
 _TRIES = 4  # of a trace, each time to a larger force
 _MORE = 1.8  # factor on the largest force of the next try
 MARGIN = 1.1
 """Largest force of a trace over the one expected at the centre."""
 CONSTANTS = {
     "light": LIGHT, "forces": FORCES, "margin": MARGIN, "more": _MORE, "tries": _TRIES,
-    "shortest": _SHORTEST, "smallest": _SMALLEST, "largest": _LARGEST,
+    "shortest": _SHORTEST, "smallest": SMALLEST, "largest": _LARGEST,
     "start": {"line": LINE, "point": POINT, "power": POWER},
 }  # fmt: skip
 """All of these, for the copy of the calculator, of a finger of the default's width."""
@@ -89,23 +90,24 @@ def whole(scene: Scene, model: "Model", solve: Solve) -> Result:
     if model.path:
         return _of_path(scene, finger, found)
     centre = list(found.values())[-1].total.centre / profile(scene.slices).centre_scale  # type: ignore[union-attr]
-    if centre < _SMALLEST:
+    if centre < SMALLEST:
         raise SceneError(
             f"force is {scene.force:.4g} N, under which the centre of the finger bears {centre:.2g} N/m, and it must "
-            f"bear at least {_SMALLEST:g} N/m; give a larger force or a shorter finger"
+            f"bear at least {SMALLEST:g} N/m; give a larger force or a shorter finger"
         )
     return replace(solve(scene.replace(f_ext=centre), ""), scene=scene, finger=finger)
 
 
-def history(scene: Scene, name: str, top: float) -> Scene:
+def history(scene: Scene, name: str, top: float, part: float = LIGHT) -> Scene:
     """Return the scene of a trace of the full model.
 
     Args:
         scene: press, charge and slide.
         name: ``uncharged``, ``charged`` or ``full_slip``.
         top: largest force (N/m).
+        part: light force over that.
     """
-    light, far = top * LIGHT, scene.slide_length
+    light, far = top * part, scene.slide_length
     loads: list[dict[str, float | str | bool]] = [{"name": "press", "f_ext": top if name == "uncharged" else light}]
     if name != "uncharged" and scene.volts:
         loads += [{"name": "charge", "voltage": scene.volts}]
