@@ -30,8 +30,8 @@ def main(argv: Sequence[str]) -> int:
     parser.add_argument("--model", choices=MODELS, default=Cylinders.name, help=words)
     args = parser.read(argv)
     if len(args.target) != 1:
-        found = "no --target is given" if not args.target else f"--target is given {len(args.target)} times"
-        raise SceneError(f'{found}; give one quantity and its value, as --target "F_T=0.3 N"')
+        given = "no --target is given" if not args.target else f"--target is given {len(args.target)} times"
+        raise SceneError(f'{given}; give one quantity and its value, as --target "F_T=0.3 N"')
     if (args.low is None) != (args.high is None):
         raise SceneError(f"one of --from and --to is given without the other; give both, or none for {clip(args.over)}")
     model = find(args.model)
