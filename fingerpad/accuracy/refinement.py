@@ -151,7 +151,7 @@ class Refinement:
                 )
                 reason += f"{_ridges(path, name)}"
         except StepFailed as error:
-            if model.mesh == final:
+            if model.mesh == final or isinstance(error, Interrupted):
                 raise
             reason = str(error)
         if reason and model.mesh != final:

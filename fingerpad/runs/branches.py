@@ -16,6 +16,7 @@ from fingerpad.model.finger import Step
 from fingerpad.model.full_slip import Conditions, FullSlips, Solved
 from fingerpad.model.options import FingerModel
 from fingerpad.model.simulation import RestartRequired, Simulation
+from fingerpad.results.interrupt import Interrupted
 from fingerpad.results.states import FIRST_TOUCH
 from fingerpad.scene import Load, Scene
 from fingerpad.slices import traces
@@ -159,7 +160,9 @@ class Branches:
         for force in _forces(now.conditions.f_ext, top, anchors):
             try:
                 now = slips.reach(replace(now.conditions, f_ext=force), now)
-            except StepFailed:
+            except StepFailed as error:
+                if isinstance(error, Interrupted):
+                    raise
                 if self._simulation.restart is not None:
                     raise Again(self._simulation.restart) from None
                 if force in (*anchors, top):
