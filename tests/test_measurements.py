@@ -72,7 +72,8 @@ def test_page_runs_as_written(tmp_path, monkeypatch, grid):
     monkeypatch.chdir(tmp_path)
     shutil.copytree(grid.folder, "results/sweep")
     (tmp_path / "lab.csv").write_text("Fn,voltage (V),CoF,person\n25,100,0.5,A\n")
-    code = blocks((ROOT / "docs" / "command.md").read_text(encoding="utf-8"))[0][0]
+    page = blocks((ROOT / "docs" / "command.md").read_text(encoding="utf-8"))
+    (code,) = (code for code, *_ in page if "measured" in code)
     assert "measured  computed  relative_difference\n" in printed(code, {})
 
 
