@@ -38,7 +38,7 @@ class Target:
 
 @dataclass(frozen=True)
 class Row:
-    """A line of the table: figure, what was asked and reached, whether that is met, of when that is, and the command."""
+    """A line of the table: figure, what was asked and reached, whether that is met, and by which command when."""
 
     words: str
     asked: str
