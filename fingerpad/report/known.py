@@ -22,7 +22,7 @@ _SAID = (
 def bars(result: "Result") -> str:
     """Return the figure of a result's band, HTML; empty without one. Its axis is logarithmic."""
     kept = result.record.get(KNOWN, {})
-    if not kept or result.full_slip is None:
+    if not kept:
         return ""
     mu, error = kept["mu_app"], _error(result, kept["whole"])
     rows = [("solved", mu - error, mu + error, BLUE)] if error < mu else []
