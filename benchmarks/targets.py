@@ -3,7 +3,7 @@
 python3 -m benchmarks.targets     prints the table; make performance and docs/chart.md have it too
 
 Each figure comes from the numbers that a command of this repository keeps in docs/; one that no command has computed
-yet is a dash. Times are of the version that the page of the command names.
+yet is a dash. A figure is of the program of its date, the oldest one where two pages have a part in it.
 """
 
 import sys
@@ -38,12 +38,14 @@ class Target:
 
 @dataclass(frozen=True)
 class Row:
-    """A line of the table: figure, what was asked and reached, whether that is met, and the command."""
+    """A line of the table: figure, what was asked and reached, whether that is met, and by which command when."""
 
     words: str
     asked: str
     reached: str
     met: str
+    of: str
+    """Oldest date of the numbers."""
     command: str
 
 
@@ -165,21 +167,24 @@ TARGETS = (
 # -- page ----------------------------------------------------------------------------------------------------
 def rows(docs: Path = harness.DOCS) -> list[Row]:
     """Return the table from the kept numbers of a folder."""
+    return [_row(target, docs) for target in TARGETS]
+
+
+def _row(target: Target, docs: Path) -> Row:
+    bound = f"{'≥' if target.at_least else '≤'} {_text(target.asked, target.unit)}"
+    dates = list[str]()
 
     def of(name: str) -> Any:
-        return harness.kept(name, docs).numbers
+        kept = harness.kept(name, docs)
+        dates.append(kept.made.date)
+        return kept.numbers
 
-    return [_row(target, of) for target in TARGETS]
-
-
-def _row(target: Target, of: Numbers) -> Row:
-    bound = f"{'≥' if target.at_least else '≤'} {_text(target.asked, target.unit)}"
     try:
         value = float(target.found(of))
     except (FileNotFoundError, KeyError, ValueError, ZeroDivisionError):
-        return Row(target.words, bound, "–", "–", target.command)
+        return Row(target.words, bound, "–", "–", "–", target.command)
     met = value >= target.asked if target.at_least else value <= target.asked
-    return Row(target.words, bound, _text(value, target.unit), "yes" if met else "no", target.command)
+    return Row(target.words, bound, _text(value, target.unit), "yes" if met else "no", min(dates), target.command)
 
 
 def _text(value: float, unit: str) -> str:
@@ -189,7 +194,7 @@ def _text(value: float, unit: str) -> str:
 
 def text(docs: Path = harness.DOCS) -> str:
     """Return the table as Markdown."""
-    head = ["figure", "asked", "reached", "met", "command"]
+    head = ["figure", "asked", "reached", "met", "of", "command"]
     return harness.table(head, [list(vars(row).values()) for row in rows(docs)])
 
 

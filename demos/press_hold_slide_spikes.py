@@ -50,7 +50,7 @@ def main(out: str = "results/demos/press_hold_slide_spikes", size: str = "small"
     # %%
     settled = PRESS + HOLD / 4
     assert spikes.count("RA1", "press") > 0 and spikes.count("RA1", "slide") > 0
-    assert not any(((train > settled) & (train < PRESS + HOLD)).any() for train in spikes.of("RA1"))
+    assert spikes.between("RA1", settled, PRESS + HOLD) == 0
     longest = max(spikes.of("SA1"), key=len)
     held = longest[(longest > PRESS) & (longest <= PRESS + HOLD)]
     assert len(held) >= 3 and held[-1] - held[-2] > held[1] - held[0]

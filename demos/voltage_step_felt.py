@@ -13,7 +13,6 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 import fingerpad as fp
-from fingerpad.results.spikes import Spikes
 from fingerpad.startup import MPI
 
 SCENES = Path(__file__).parent / "scenes"
@@ -43,7 +42,7 @@ def main(out: str = "results/demos/voltage_step_felt", size: str = "small") -> N
     result = fp.run(scene.replace(history=loads, output=output, mesh=mesh))
     spikes = result.afferents(["SA1", "RA1"])
     steps = [state for state in result.steps if state.load == "step"]
-    rise, fall = (every(spikes, "RA1", begin, begin + 2 * STEP) for begin in (times[1], times[3]))
+    rise, fall = (spikes.between("RA1", begin, begin + 2 * STEP) for begin in (times[1], times[3]))
     if MPI.COMM_WORLD.rank == 0:
         print(spikes)
         print(f"friction {steps[0].f_t:.3f} N/m without voltage, {max(s.f_t for s in steps):.3f} N/m with it")
@@ -63,12 +62,7 @@ def main(out: str = "results/demos/voltage_step_felt", size: str = "small") -> N
     assert all(state.all_slip for state in steps)
     assert np.allclose([s.f_t for s in steps], [0.25 * (s.f_ext + s.f_electrostatic) for s in steps], rtol=1e-6)
     assert np.isclose(steps[-1].f_t, steps[0].f_t, rtol=1e-3) and max(s.f_t for s in steps) > 1.05 * steps[0].f_t
-    assert rise > 0 and every(spikes, "RA1", times[2] + STEP, times[3]) == 0
-
-
-def every(spikes: Spikes, law: str, begin: float, end: float) -> int:
-    """Return the number of spikes of a class between two times (s)."""
-    return sum(int(((train > begin) & (train <= end)).sum()) for train in spikes.of(law))
+    assert rise > 0 and spikes.between("RA1", times[2] + STEP, times[3]) == 0
 
 
 if __name__ == "__main__":

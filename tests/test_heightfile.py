@@ -7,7 +7,8 @@ import pytest
 import scipy.io
 
 from tests.test_topography import grid, wave
-from variational.roughness.heightfile import _matrix, _text, scan
+from variational import files
+from variational.roughness.heightfile import _matrix, scan
 from variational.roughness.spectrum import SelfAffine
 from variational.roughness.topography import filled, mark
 
@@ -113,7 +114,7 @@ def test_too_much_is_missing():
 @pytest.mark.parametrize("encoding", ["utf-8-sig", "utf-16"])
 def test_plain_matrix(text, rows, encoding):
     """A pixel is missing where the place is empty, holds nan or the mark that is given, a word here."""
-    np.testing.assert_array_equal(_matrix(_text(text.encode(encoding)), "bad")[0], rows)
+    np.testing.assert_array_equal(_matrix(files.text(text.encode(encoding)), "bad")[0], rows)
 
 
 PLAIN = {"unit": "um", "pixel": (1e-6, 1e-6)}

@@ -1,6 +1,8 @@
 """Questions the other way round: the key at which a target is reached, and refusals of what cannot be."""
 
 import math
+from contextlib import nullcontext
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -86,12 +88,18 @@ def test_all_values_are_named():
     assert low == pytest.approx(-high, rel=1e-5) and high > 100
 
 
-def test_margin_is_the_error_of_the_model_over_the_slope():
+@pytest.mark.parametrize(
+    ("target", "value", "over"), [("mu_app={}x", 2.0, "voltage"), ("f_T={} N/m", 30.0, "f_ext")], ids=["even", "ratios"]
+)
+def test_margin_is_the_error_of_the_model_over_the_slope(target, value, over):
     """Two targets that differ by the known error have keys that differ by the margin. Tolerance: the curvature."""
-    (root,) = fp.solve(target="mu_app=2x").roots
+    (root,) = fp.solve(target=target.format(value), over=over).roots
     error = root.section.record["model_error"]["full_slip"]["mu_app"]
-    ends = [fp.solve(target=f"mu_app={2 * (1 + sign * error)}x").values[0] for sign in (-1, 1)]
+    ends = [fp.solve(target=target.format(value * (1 + sign * error)), over=over).values[0] for sign in (-1, 1)]
     assert (ends[1] - ends[0]) / 2 == pytest.approx(root.margin, rel=1e-2)
+
+
+def test_margin_is_not_known_elsewhere():
     (other,) = fp.solve(target="contrast=10 %", over="electric.d_i").roots
     assert math.isnan(other.margin), "the error is known with the default screen alone"
 
@@ -124,8 +132,8 @@ def test_command_prints_the_key(capsys):
         (["--target=L_R=1 mm", "--set=force=0.5"], "L_R is a quantity of the section and force is given; give f_ext"),
         (["--target=mu_app=2x", "--set=friction=0"], "µ_app is 0 without voltage, of which there is no multiple"),
         (["--target=mu_app=2x", "--over=electric.di"], "electric.di is not a key of electric; did you mean"),
-        (["--target=mu_app=2x", "--over=contact.formulation"], "over is contact.formulation, which cannot be varied"),
-        (["--target=mu_app=2x", "--over=slices.count"], "over is slices.count, which cannot be varied"),
+        (["--target=mu_app=2x", "--over=contact.formulation"], "over is contact.formulation; it must be a key of one"),
+        (["--target=mu_app=2x", "--over=slices.count"], "over is slices.count; it must be a key of one number"),
         (["--target=mu_app=2x", "--over=voltage=0:9"], "over is 'voltage=0:9'; it must be the name of one key"),
         (["--target=mu_app=2x", "--over=voltage.rms"], "voltage.rms has no value in the scene to vary around"),
         (["--target=mu_app=2x", "--over=mesh.contact"], "mu_app does not depend on mesh.contact here"),
@@ -165,3 +173,21 @@ def test_full_model_is_beside_the_closed_form(monkeypatch):
     found = fp.solve(target="mu_app=2x", model="full")
     assert found.roots[0].full is not None
     assert "full model: µ_app 0.5000 ± 0.0040, " in str(found) and "±: estimated discretisation error" in str(found)
+
+
+@pytest.mark.parametrize(("stops", "code", "count"), [("SIGINT", 130, 1), ("", 1, 2)])
+def test_confirmation_ends_with_a_run_that_is_stopped(stops, code, count, monkeypatch, capsys):
+    """Two values: each run is announced; Ctrl-C in the first one ends both, with the shell's code for it."""
+    shown = list[float]()
+
+    def instead(scene, model, context):
+        shown.append(scene.voltage)
+        return replace(fp.run(scene, model="cylinders"), failure="stopped", interrupted=stops)
+
+    monkeypatch.setattr("fingerpad.runs.inverse.solved", instead)
+    words = ["--target=mu_app=2x", "--from=-300", "--to=300", "--model=full"]
+    assert main(["solve", *words]) == code and len(shown) == count
+    said = capsys.readouterr().out
+    assert [f"run {k} of 2 of the full model" in said for k in (1, 2)] == [True, count == 2]
+    with pytest.raises(KeyboardInterrupt) if stops else nullcontext():
+        fp.solve(target="mu_app=2x", model="full")

@@ -70,6 +70,13 @@ def test_law_of_ones_own(result):
     assert [part["name"] for part in found["parts"]] == ["tips"]
 
 
+def test_closure_without_an_equilibrium_is_named(result):
+    """The band leaves it out, and the sentence says so."""
+    found = known(result, {"bearing area": result.full_slip.mu_app, "Persson's theory": None})
+    assert known_in_words(found).endswith("; not in it: Persson's theory, without an equilibrium")
+    assert "not in it" not in known_in_words(found | {"left_out": []})
+
+
 def test_none_without_voltage_or_friction():
     for scene in (fp.Scene(voltage=0.0), fp.Scene(friction=0.0)):
         found = fp.run(scene, model="cylinders")
@@ -77,7 +84,8 @@ def test_none_without_voltage_or_friction():
 
 
 def test_text_files_and_picture_have_it(result):
-    assert f"Known to about {result.known['low']:.2f} to {result.known['high']:.2f}: µ_app by closure" in str(result)
+    ends = f"{result.known['low']:.2f} to {result.known['high']:.2f}"
+    assert f"Known to about {ends}, by the cheaper model of charged cylinders: µ_app by closure" in str(result)
     again = fp.Result.from_dict(result.to_dict())
     assert again.known == result.known and KNOWN in again.record
     picture = bars(result)

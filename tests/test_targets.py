@@ -52,12 +52,14 @@ def test_figures_of_states_without_paths(tmp_path):
     listed = [one, one | {"states": [2.1]}, one | {"states": [2.1], "touching": 8}]
     seconds = {"seconds_of_sweep": 240.0, "seconds_of_paths": [18.0] * 40}
     keep("paper_states", {"default": rows, "beside": listed} | seconds, BY, tmp_path)
-    keep("performance", {"run": {"found": {"processor": 60.0}}}, BY, tmp_path)
+    older = Made("0.1.0", "abc1234", "2026-11-25")
+    keep("performance", {"run": {"found": {"processor": 60.0}}}, older, tmp_path)
     assert (row("40 states", tmp_path).reached, row("40 states", tmp_path).met) == ("2", "yes")
     assert (row("twice as large", tmp_path).reached, row("twice as large", tmp_path).met) == ("6", "no")
     assert row("factorisations", tmp_path).reached == "4"
     assert (row("further state over", tmp_path).reached, row("further state over", tmp_path).met) == ("0.1", "no")
     assert row("states equal", tmp_path).reached == "2"
+    assert (row("states equal", tmp_path).of, row("further state over", tmp_path).of) == (BY.date, older.date)
 
 
 # -- what they rest on -----------------------------------------------------------------------------------------------

@@ -4,8 +4,9 @@ import math
 
 import pytest
 
+import fingerpad as fp
 from fingerpad.cli import main
-from fingerpad.reduced.slide import too_short, way
+from fingerpad.reduced.slide import STIFFNESS, too_short, way
 from fingerpad.results.states import load_result
 from fingerpad.results.terminal import in_words
 from fingerpad.scene import Scene
@@ -61,16 +62,28 @@ def test_full_slip_needs_no_more():
     assert math.isnan(found.needs) and found.sticking == ""
 
 
-@pytest.mark.parametrize(("force", "voltage", "run"), [(75, 200, 1.36e-3), (75, 150, 1.17e-3), (10, 200, 0.83e-3)])
-def test_rule_of_thumb(force, voltage, run):
-    """Where full slip begins in full runs of the default finger; within the 15 % that are stated."""
-    assert way(Scene(), float(force), float(voltage)) == pytest.approx(run, rel=0.15)
+@pytest.mark.slow
+@pytest.mark.parametrize(("force", "voltage"), [(75.0, 200.0), (10.0, 200.0)])
+def test_rule_of_thumb(force, voltage):
+    """Where full slip begins in a run of the default finger, by the friction and the ridges of this run.
+
+    Its facets are three times those of the runs that are stated; within the 10 % that are stated.
+    """
+    mesh, output = {"contact": 60e-6}, {"errors": False, "receptors": False}
+    run = fp.run(Scene(f_ext=force, voltage=voltage, mesh=mesh, numerics={"element": "P1"}, output=output))
+    first = next(state for state in run.steps if state.all_slip)
+    assert first.f_t / (STIFFNESS * first.ridges_in_contact**0.5) == pytest.approx(first.bone_x, rel=0.1)
+
+
+def test_way_is_by_the_cylinders():
+    slip = fp.run(Scene(f_ext=10.0, voltage=150.0), model="cylinders").full_slip
+    assert way(Scene(), 10.0, 150.0) == pytest.approx(slip.f_t / (STIFFNESS * slip.ridges_in_contact**0.5))
 
 
 def test_check_reports_a_short_load(tmp_path, capsys):
     """Not one that is long enough, after a slide to full slip, or on a finger for which the rule is not."""
     (said,) = too_short(SCENE)
-    assert said.startswith("wave: the finger may never slip fully, since that needs some 1.5 mm from where it was")
+    assert said.startswith("wave: the finger may never slip fully, since that needs some 1.4 mm from where it was")
     assert said.endswith("and the bone goes 1 mm")
     slide = {"name": "slide", "bone_x": 3e-3, "until_full_slip": True}
     long, still = WAVE | {"bone_x_by": 2e-3}, slide | {"until_full_slip": False}

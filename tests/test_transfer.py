@@ -14,7 +14,7 @@ from tests.test_contact import MU_F, over
 from variational.solvers.continuation import Continuation, StepFailed, Target
 from variational.solvers.outcome import NotConverged
 from variational.solvers.snapshot import take_snapshot
-from variational.solvers.transfer import _near, interpolate, restore, unfolded
+from variational.solvers.transfer import interpolate, restore, unfolded
 
 pytestmark = pytest.mark.mpi
 H_0, FORCE, VOLTAGE = 0.514e-6, 4.4, 150.0
@@ -329,16 +329,6 @@ def test_another_body_and_other_ridges_are_refused(bodies, reached):
     state = reached[COARSE][1]
     with pytest.raises(ValueError, match="ridges 1 to 1 that can touch and the mesh 0 to 0"):
         restore(replace(state, d_eq={1: 1e-6}), prepare(bodies[FINE]).coupling)
-
-
-def test_large_triangle_beside_many_small_ones_is_found():
-    """A point in it, beside sixty triangles of a thousandth of its size, all with nearer centroids."""
-    point, angles = np.array([[0.02, 0.02]]), np.linspace(0, 2 * np.pi, 60, endpoint=False)
-    middles = point + 1.1e-3 * np.stack([np.cos(angles), np.sin(angles)], axis=1)
-    unit = np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]])
-    small = middles + 1e-3 * (unit - unit.mean(axis=0))[:, None]
-    corners = np.concatenate([small, unit[:, None]], axis=1)
-    assert 60 in _near(corners, point)[0]
 
 
 def test_element_that_a_displacement_folds_is_unfolded(bodies):

@@ -48,6 +48,16 @@ def test_files_of_instruments(text, tmp_path):
     assert wave.period == pytest.approx(0.02)
 
 
+def test_text_of_wide_characters(tmp_path):
+    """As a spreadsheet may save it; what is no text at all is refused."""
+    file = tmp_path / "wide.csv"
+    file.write_bytes(("Time (s);Spannung (V)\n" + COMMAS).encode("utf-16"))
+    assert_allclose(table(str(file))["voltages"], 1e3 * U, atol=0.2)
+    file.write_bytes(b"PK\x03\x04\0\0")
+    with pytest.raises(fp.SceneError, match=r"^voltage\.file is .*, which is no text$"):
+        fp.Scene(voltage={"waveform": "file", "file": str(file)})
+
+
 def test_columns_are_chosen_by_name(tmp_path):
     """Without regard to capitals; one of two must be named."""
     file = write(tmp_path, "TIME,CH1,CH2\n" + TWO)

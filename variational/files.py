@@ -1,5 +1,6 @@
 """Files of a user: ordinary ones of a bounded size, and copies of them with nothing beside."""
 
+import codecs
 import contextlib
 import errno
 import os
@@ -40,6 +41,27 @@ def read(path: str | Path, most: float = 500e6) -> bytes:
     if size > most:
         raise OSError(errno.EFBIG, f"it has {size / 1e6:.9g} MB, and at most {most / 1e6:g} MB are read", str(path))
     return content
+
+
+def text(content: bytes) -> str | None:
+    """Return the text in a file of a program or an instrument, None of binary content."""
+    if content.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
+        return content.decode("utf-16", errors="replace")
+    if b"\0" in content:
+        return None
+    try:
+        return content.decode("utf-8-sig")
+    except UnicodeDecodeError:
+        return content.decode("latin-1")  # µ of an instrument
+
+
+def is_number(word: str) -> bool:
+    """Return whether a word of a text is a number, nan and infinity among them."""
+    try:
+        float(word)
+    except ValueError:
+        return False
+    return True
 
 
 @contextlib.contextmanager

@@ -1,8 +1,8 @@
-"""What people and nerves were measured to do, a row a statement, hit or miss by a rule written before.
+"""What people and nerves were measured to do, a row a statement, hit or miss by a rule.
 
 environment/run python3 -m benchmarks.feel [--draw]     also: make feel
 
-The rules are in benchmarks/feel/rules.py, above all runs. Runs are kept in results/feel; some 10 minutes of processor
+The rules are in benchmarks/feel/rules.py. Runs are kept in results/feel; some 10 minutes of processor
 time. Writes docs/feel.json, and from it docs/feel.md and its picture.
 """
 
@@ -24,6 +24,7 @@ from fingerpad.results import style
 from fingerpad.results.arrays import finger_of
 from fingerpad.results.over_time import without_parts_of_jumps
 from fingerpad.results.spikes import Spikes
+from fingerpad.scene import Scene
 from geometry.profiles import Profiles
 from variational.state import ContactState
 
@@ -45,11 +46,17 @@ def compute(args: argparse.Namespace) -> None:
     """Compute and keep the numbers."""
     from benchmarks.feel import subfield  # finite elements
 
-    out = args.out if args.out.name == "feel" else args.out.parent / "feel"
-    onset = scenes.run("onset", scenes.onset(), out)
-    charged = scenes.run("charged", scenes.charged(scenes.VOLTS, 0.25), out)
+    summaries: list[dict[str, Any]] = []
+
+    def run(name: str, scene: Scene) -> fp.Result:
+        found = scenes.run(name, scene, args.out.parent / "feel")
+        summaries.append(found.record)
+        return found
+
+    onset = run("onset", scenes.onset())
+    charged = run("charged", scenes.charged(scenes.VOLTS, 0.25))
     mu_app = charged.steps[-1].mu_app
-    same = scenes.run("same", scenes.charged(0.0, mu_app), out)
+    same = run("same", scenes.charged(0.0, mu_app))
     arcs, values = subfield.response()
     near = np.abs(arcs) < _KEPT
     numbers: dict[str, Any] = {
@@ -59,14 +66,14 @@ def compute(args: argparse.Namespace) -> None:
         "hold": in_hold(onset),
         "shear": shear(onset),
         "same": {**differing(charged, same), "mu_app": mu_app},
-        "steps": {f"{f:g}": of_step(scenes.run(f"step_{f:g}", scenes.step(f), out)) for f in scenes.LOADS},
+        "steps": {f"{f:g}": of_step(run(f"step_{f:g}", scenes.step(f))) for f in scenes.LOADS},
         "gratings": [
-            {"load": f, "period": p, **of_grating(scenes.run(f"grating_{f:g}_{1e3 * p:g}", scenes.grating(f, p), out))}
+            {"load": f, "period": p, **of_grating(run(f"grating_{f:g}_{1e3 * p:g}", scenes.grating(f, p)))}
             for f in scenes.GRATING_LOADS
             for p in scenes.PERIODS
         ],
     }
-    keep("feel", numbers, made(), args.docs)
+    keep("feel", numbers, made(summaries), args.docs)
 
 
 def thresholds(law: str) -> dict[str, Any]:
@@ -74,11 +81,6 @@ def thresholds(law: str) -> dict[str, Any]:
     ours = 1e6 * fp.afferents.threshold(law, list(THRESHOLDS[law]))
     gain, rms = rules.log_gain(ours, list(THRESHOLDS[law].values()))
     return {"ours": ours.tolist(), "gain": 10**gain, "rms": rms}
-
-
-def between(trains: list[Array], begin: float, end: float) -> int:
-    """Return the number of spikes between two times (s)."""
-    return sum(int(((train > begin) & (train <= end)).sum()) for train in trains)
 
 
 def _span(spikes: Spikes, load: str) -> tuple[float, float]:
@@ -90,8 +92,8 @@ def at_onset(result: fp.Result) -> dict[str, float]:
     spikes = result.afferents(["SA1", "RA1", "RA1 strain"])
     begin, _ = _span(spikes, "slide")
     end = next(state.time for state in result.steps if state.load == "slide" and state.all_slip)
-    found = {law: between(spikes.of(law), begin, end) / len(spikes.of(law)) for law in spikes.laws}
-    before = between(spikes.of("SA1"), 2 * begin - end, begin) / len(spikes.of("SA1"))
+    found = {law: spikes.between(law, begin, end) / len(spikes.of(law)) for law in spikes.laws}
+    before = spikes.between("SA1", 2 * begin - end, begin) / len(spikes.of("SA1"))
     return found | {"SA1 before": before, "seconds": end - begin}
 
 
@@ -101,7 +103,7 @@ def in_hold(result: fp.Result) -> dict[str, float]:
     begin, end = _span(spikes, "hold")
     held = [train[(train > begin) & (train <= end)] for train in spikes.of("SA1")]
     ratios = [float(np.diff(train)[-1] / np.diff(train)[0]) for train in held if len(train) >= 3]
-    silent = between(spikes.of("RA1"), begin + _SETTLED, end)
+    silent = spikes.between("RA1", begin + _SETTLED, end)
     return {"RA1": silent, "least": min(ratios), "most": max(ratios), "units": len(ratios)}
 
 
@@ -157,8 +159,8 @@ def differing(charged: fp.Result, same: fp.Result) -> dict[str, Any]:
 def _by_unit(spikes: Spikes, law: str) -> dict[tuple[int | None, str], int]:
     """Return the number of spikes in sliding of each unit of a class, by its ridge and side."""
     begin, end = _span(spikes, "slide")
-    units = [unit for unit in spikes.units if unit.law == law]
-    return {(u.ridge, u.side): between([train], begin, end) for u, train in zip(units, spikes.of(law), strict=True)}
+    pairs = [(unit, train) for unit, train in zip(spikes.units, spikes.trains, strict=True) if unit.law == law]
+    return {(u.ridge, u.side): int(((train > begin) & (train <= end)).sum()) for u, train in pairs}
 
 
 def of_step(result: fp.Result) -> dict[str, Any]:
@@ -182,7 +184,7 @@ def of_step(result: fp.Result) -> dict[str, Any]:
             "f_t": abs(other.f_t - one.f_t),
             "length": abs(other.contact_length - one.contact_length),
             "strain": float(np.sqrt(np.nanmean((after - before) ** 2))),
-            **{law: between(spikes.of(law), begin, begin + _ANSWER) for law in spikes.laws},
+            **{law: spikes.between(law, begin, begin + _ANSWER) for law in spikes.laws},
         }
     return found | {"slips": all(state.all_slip for state in states)}
 

@@ -61,9 +61,13 @@ def charged(volts: float, friction: float) -> Scene:
 
 
 def run(name: str, scene: Scene, folder: Path) -> fp.Result:
-    """Return the result of a scene, which is kept in a folder of its name."""
+    """Return the result of a scene, which is kept in a folder of its name; one of another scene there is refused."""
+    from fingerpad.runs.solve import finished  # finite elements
+
     place = folder / name
-    found = fp.Result.load(place) if (place / "summary.json").exists() else fp.run(scene, out=place)
+    ready = finished(scene, place) is not None
+    print(f"{name}: {'kept' if ready else 'running'} in {place}", flush=True)
+    found = fp.Result.load(place) if ready else fp.run(scene, out=place)
     if found.failure or found.interrupted:
         raise SystemExit(f"{name}: {found.failure or found.interrupted}")
     return found

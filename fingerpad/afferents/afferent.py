@@ -141,5 +141,17 @@ def check_input(law: Any, inputs: tuple[str, ...]) -> None:
     """
     if law.input not in inputs:
         raise SceneError(f"input is {show(law.input)}; it must be {' or '.join(map(repr, inputs))}")
+    check_gain(law)
+
+
+def check_gain(law: Any) -> None:
+    """Refuse a gain that is not greater than 0.
+
+    Args:
+        law: with ``gain``.
+
+    Raises:
+        SceneError: its value and what is allowed.
+    """
     if not (isinstance(law.gain, int | float) and 0 < law.gain < np.inf):
         raise SceneError(f"gain is {show(law.gain)}; it must be greater than 0")

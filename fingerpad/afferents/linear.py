@@ -91,7 +91,10 @@ def threshold(name: str, frequency: ArrayLike) -> Any:
     known = ALIASES.get(name, name) if isinstance(name, str) else name
     if not (isinstance(known, str) and known in FILTERS):
         raise SceneError(f"the class is {show(name)}; it must be {' or '.join(map(repr, FILTERS))}")
-    f = np.asarray(frequency, dtype=float)
+    try:
+        f = np.asarray(frequency, dtype=float)
+    except (TypeError, ValueError):
+        f = np.array(np.nan)
     if not ((f > 0) & np.isfinite(f)).all():
         raise SceneError(f"the frequency is {show(frequency)}; it must be greater than 0 Hz")
     found = FILTERS[known].threshold(f)

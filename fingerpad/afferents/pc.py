@@ -20,7 +20,7 @@ A vibration a little above the threshold gives one spike a cycle, one below it n
 from dataclasses import dataclass
 
 from fingerpad.afferents import pin
-from fingerpad.afferents.afferent import Array, History
+from fingerpad.afferents.afferent import Array, History, check_gain
 from fingerpad.afferents.linear import FILTERS
 from fingerpad.afferents.rates import RateUnit
 
@@ -34,10 +34,10 @@ class PC(RateUnit):
     name, site, longest_step, population = "PC", "pacinian", 0.25 / FILTERS["PC"].high, True
     per_volt, off = 300.0, 0.11
 
+    def __post_init__(self) -> None:
+        """Refuse a gain that is not greater than 0."""
+        check_gain(self)
+
     def stimulus(self, history: History) -> Array:
         """Return the mean compressive stress over the sites (Pa), shape (1, samples)."""
         return history.stress.mean(axis=0, keepdims=True)
-
-    def displacement(self, stimulus: Array) -> Array:
-        """Return the displacement of the skin (m)."""
-        return self.gain * stimulus

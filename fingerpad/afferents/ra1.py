@@ -59,7 +59,3 @@ class RA1(RateUnit):
     def stimulus(self, history: History) -> Array:
         """Return the compressive stress (Pa), or the compression of the surface."""
         return history.stress if self.input == "stress" else -history.strain
-
-    def displacement(self, stimulus: Array) -> Array:
-        """Return the displacement of the skin (m)."""
-        return self.gain * stimulus

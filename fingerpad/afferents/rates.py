@@ -11,7 +11,6 @@ samples V every 4 ms, which is left out here. The displacement of the skin is fo
 gain a class, so thresholds in Pa are relative.
 """
 
-from abc import abstractmethod
 from typing import ClassVar
 
 import numpy as np
@@ -28,20 +27,18 @@ class RateUnit(Afferent):
     """A unit of a linear filter whose rate goes with the potential.
 
     Attributes:
+        gain: displacement of the skin (m) that stands for a stimulus of 1.
         per_volt: K_f, rate over the potential (1/(s V)).
         off: c, weight of the filter's negative output.
     """
 
+    gain: float
     per_volt: ClassVar[float]
     off: ClassVar[float]
 
-    @abstractmethod
-    def displacement(self, stimulus: Array) -> Array:
-        """Return the displacement of the skin (m) that stands for a stimulus, of the same shape."""
-
     def fire(self, stimulus: Array) -> NDArray[np.bool_]:
         """Return whether each unit fires at each sample."""
-        v = FILTERS[self.name].potential(self.displacement(stimulus), self.step)
+        v = FILTERS[self.name].potential(self.gain * stimulus, self.step)
         v = np.where(v > 0, v, -self.off * v)
         above = v > V_TH
         begins = above & ~np.roll(above, 1, axis=1)

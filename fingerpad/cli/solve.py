@@ -44,12 +44,13 @@ def main(argv: Sequence[str]) -> int:
     from fingerpad.startup import start
 
     start(args.petsc)
-    import fingerpad.runs.full  # noqa: F401  # before Ctrl-C raises
+    # PETSc has its options from here on.
+    from fingerpad.runs.full import exit_code
 
     with raises():
         found = found.confirmed(RunContext(lines=True))
     echo(f"\n{found}")
-    return 1 if any(root.full is None or root.full.failure for root in found.roots) else 0
+    return max(exit_code(root.full) for root in found.roots if root.full is not None)
 
 
 def _number(text: str) -> float | str:

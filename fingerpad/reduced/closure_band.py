@@ -12,10 +12,10 @@ without voltage where it has one, else the default finger's.
 - tips: ridge tips half as curved, and one and a half times. The length of a contact follows the root of the radius;
 - roughness: h_rms 20 % smaller and larger, of the result's closure;
 - coating: the effective thickness h_0 of coating and skin 20 % smaller and larger;
-- slices: the sum of slices beside a finger in three dimensions; of a whole finger alone.
+- slices: the sum of slices beside a finger in three dimensions, by its known error; of a whole finger alone.
 
 The changes are conventions, those of docs/assumptions.md. The parts are taken as independent: the band is the root of
-the sum of their squares, in the logarithm of µ_app and to either side.
+the sum of their squares, in the logarithm of µ_app and to either side. A closure without an equilibrium is not in it.
 """
 
 from collections.abc import Iterator
@@ -150,6 +150,7 @@ def known(result: "Result", closures: dict[str, float | None]) -> dict[str, Any]
     return {
         "mu_app": mu, "low": mu * float(np.exp(-below)), "high": mu * float(np.exp(above)), "whole": whole,
         "parts": [{"name": name, "low": mu * low, "high": mu * high} for name, low, high in ends],
+        "left_out": [words for words, value in closures.items() if value is None],
     }  # fmt: skip
 
 

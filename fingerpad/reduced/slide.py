@@ -1,13 +1,25 @@
 r"""How far a bone goes until its finger slips fully, by a rule of thumb, for the check of a scene before its run.
 
-Friction grows about in proportion to the way, the faster the more ridges touch: by :data:`STIFFNESS` a ridge. With
-friction and ridges of the cylinders (:mod:`fingerpad.reduced.cylinders`) the way is
+Friction grows about in proportion to the way, the faster the more ridges touch; neighbours move each other's skin, so
+that n ridges are not n times as stiff. With friction and ridges of the cylinders (:mod:`fingerpad.reduced.cylinders`)
+the way is
 
-.. math:: x = f_t / (k \, n)
+.. math:: x = f_t / (k \sqrt{n})
 
-In full runs of the default finger full slip begins at 1.3 to 1.4 mm (75 N/m, 200 V), 1.2 mm (75 N/m, 150 V) and
-0.83 mm (10 N/m, 200 V); the rule is within 15 % of these. What stops the slide is kept as ``bone_x`` of the first step
-with ``all_slip`` in ``steps.csv``.
+The root and k (:data:`STIFFNESS`) are a fit to four full runs of the default finger on facets of 20 µm, each as
+``fingerpad run --set mesh.contact="20 um" --set output.errors=false --set f_ext=10``. Full slip begins at ``bone_x`` of
+the first step with ``all_slip`` in their ``steps.csv``. The rule is within 10 % of these ways:
+
+=====  ===  ======  ====
+N/m    V    ridges  mm
+=====  ===  ======  ====
+10     200  9       0.50
+30     100  12      0.44
+75     150  16      1.05
+75     200  16      1.33
+=====  ===  ======  ====
+
+No command of the repository makes this table; ``tests/test_too_short.py`` runs two of its loads on larger facets.
 """
 
 from collections.abc import Iterator
@@ -16,8 +28,8 @@ from fingerpad.reduced import cylinders
 from fingerpad.scene import Scene, SceneError
 from fingerpad.scene.loads import ways
 
-STIFFNESS = 1.6e3
-"""Friction of a ridge over the way (N/m²). *Assumption*: of a finger of the default shape and skin."""
+STIFFNESS = 7.0e3
+"""Friction over the way and the root of the number of ridges (N/m²). *Assumption*: of the default shape and skin."""
 
 
 def way(scene: Scene, f_ext: float, voltage: float) -> float:
@@ -34,7 +46,7 @@ def way(scene: Scene, f_ext: float, voltage: float) -> float:
     state = cylinders.solve(scene.replace(history=None, f_ext=f_ext, voltage=voltage)).full_slip
     if state is None:
         raise SceneError("the cylinders do not slip")
-    return state.f_t / (STIFFNESS * state.ridges_in_contact)
+    return float(state.f_t / (STIFFNESS * state.ridges_in_contact**0.5))
 
 
 def too_short(scene: Scene) -> Iterator[str]:

@@ -13,7 +13,6 @@ from fingerpad.scene.messages import SceneError
 from variational.state import ContactState
 
 _MAX_STATES = 200  # of the slider
-_BESIDE = {"": 0.0, "left": -0.25, "right": 0.25}  # ridges
 _TITLE = "What is felt"
 _INTRO = (
     "Spikes of nerve fibres below each ridge that can touch: SA1 at Merkel sites, RA1 at Meissner sites, PC as one "
@@ -69,7 +68,7 @@ def _data(states: Sequence[ContactState], spikes: Spikes) -> dict[str, Any]:
     units = []
     for law in spikes.laws:
         mine = [(u, train) for u, train in zip(spikes.units, spikes.trains, strict=True) if u.law == law]
-        places = [(round(1e3 * float(t), 2), (u.ridge or 0) + _BESIDE[u.side]) for u, train in mine for t in train]
+        places = [(round(1e3 * float(t), 2), u.place) for u, train in mine for t in train]
         units.append({"law": law, "t": [t for t, _ in places], "ridge": [ridge for _, ridge in places]})
     loads = [[span.name, round(1e3 * span.begin, 4), round(1e3 * span.end, 4)] for span in spikes.loads]
     return {"ridges": first.number.tolist(), "states": rows, "units": units, "loads": loads}

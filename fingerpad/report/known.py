@@ -14,8 +14,8 @@ _LEFT, _RIGHT, _WIDTH, _ROW = 90.0, 120.0, 720.0, 26.0  # px
 _LEAST = 3.0  # px, of the shortest bar
 _TICKS = (0.02, 0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.8, 1, 1.5, 2, 3, 5, 10, 20, 50, 100)
 _SAID = (
-    "Solved: error of mesh and penalty. Known: with each assumption below it changed, by charged cylinders; the parts "
-    "are independent."
+    "Solved: error of mesh and penalty. Known: with each assumption below it changed, by the cheaper model of charged "
+    "cylinders; the parts are taken as independent."
 )
 
 

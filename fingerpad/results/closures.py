@@ -32,4 +32,6 @@ def known_in_words(kept: Mapping[str, Any]) -> str:
         return ""
     parts = ", ".join(f"{part['name']} {part['low']:.2f} to {part['high']:.2f}" for part in kept["parts"])
     of = " of the whole finger" if kept["whole"] else ""
-    return f"known to about {kept['low']:.2f} to {kept['high']:.2f}: µ_app{of} by {parts}"
+    ends, none = f"{kept['low']:.2f} to {kept['high']:.2f}", kept.get("left_out")
+    words = f"known to about {ends}, by the cheaper model of charged cylinders: µ_app{of} by {parts}"
+    return words + (f"; not in it: {', '.join(none)}, without an equilibrium" if none else "")

@@ -45,6 +45,11 @@ class Unit(NamedTuple):
     side: str
     """``left``, ``right`` or empty."""
 
+    @property
+    def place(self) -> float:
+        """Where it is drawn, in ridges."""
+        return (self.ridge or 0) + {"": 0.0, "left": -0.25, "right": 0.25}[self.side]
+
 
 class Span(NamedTuple):
     """A load and its times (s)."""
@@ -74,8 +79,11 @@ class Spikes:
     def count(self, law: str, load: str | None = None) -> int:
         """Return the number of spikes of a class, in all or in the loads of a name."""
         spans = [span for span in self.loads if load in (None, span.name)]
-        every = np.concatenate([np.empty(0), *self.of(law)])
-        return sum(int(((every > span.begin) & (every <= span.end)).sum()) for span in spans)
+        return sum(self.between(law, span.begin, span.end) for span in spans)
+
+    def between(self, law: str, begin: float, end: float) -> int:
+        """Return the number of spikes of a class after one time (s) and up to another."""
+        return sum(int(((train > begin) & (train <= end)).sum()) for train in self.of(law))
 
     @property
     def laws(self) -> list[str]:
@@ -137,11 +145,10 @@ class Spikes:
         """Draw a raster: each spike over time, unit by unit; write it as PNG where a path is given."""
         from fingerpad.results.spike_picture import Panel, raster  # Matplotlib
 
-        beside = {"": 0.0, "left": -0.25, "right": 0.25}
         panels = []
         for law in self.laws:
             units = [unit for unit in self.units if unit.law == law]
-            places = [(unit.ridge or 0) + beside[unit.side] for unit in units]
+            places = [unit.place for unit in units]
             population, half = units[0].ridge is None, bool(units[0].side)
             panels.append(Panel(law, places, [1e3 * train for train in self.of(law)], population, 0.4 if half else 0.8))
         loads = [(span.name, 1e3 * span.begin, 1e3 * span.end) for span in self.loads]

@@ -73,7 +73,10 @@ def axis(scene: Scene, key: str, between: Sequence[float | str] | None = None) -
     if found is None:
         with_values(scene, {key: 1.0})  # refuses an unknown one, with the nearest
     if found is None or found.limits is None or found.choices:
-        raise SceneError(f"over is {clip(key)}, which cannot be varied; it must be a key of one number, no whole one")
+        raise SceneError(
+            f"over is {clip(key)}; it must be a key of one number that may have a fraction, such as voltage "
+            "(fingerpad sweep varies whole numbers and names)"
+        )
     if between is not None:
         if isinstance(between, str) or not isinstance(between, Sequence) or len(between) != 2:
             raise SceneError(f"between is {show(between)}; it must be the first and the last value of {key}")

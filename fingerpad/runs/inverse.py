@@ -1,4 +1,4 @@
-"""The value of a key at which a scene reaches a target at full slip, by the closed form in a tenth of a second.
+"""The value of a key at which a scene reaches a target at full slip, by the closed form.
 
 The closed form is the model "cylinders" (:mod:`fingerpad.reduced.cylinders`), of one state alone. The key is varied
 over a range (:mod:`fingerpad.runs.axis`), and each place at which the quantity crosses the target is refined
@@ -18,7 +18,7 @@ from fingerpad.runs.axis import Axis, axis
 from fingerpad.runs.closed_form import STATE, ClosedForm
 from fingerpad.runs.context import RunContext
 from fingerpad.runs.roots import Roots
-from fingerpad.runs.solve import checked, solved
+from fingerpad.runs.solve import checked, solved, stopped
 from fingerpad.runs.target import CONTRAST, Target, read
 from fingerpad.scene import Scene
 from fingerpad.scene.dotted import with_values
@@ -61,13 +61,21 @@ class Solution:
         return [root.key for root in self.roots]
 
     def confirmed(self, context: RunContext) -> "Solution":
-        """Return the solution with a run of the full model at each value; collective, minutes each.
+        """Return the solution with a run of the full model at each value, up to one that is stopped; collective.
 
         Args:
             context: ranks and console.
         """
-        way = find("full")
-        return replace(self, roots=tuple(replace(r, full=solved(r.scene, way, context)) for r in self.roots))
+        way, roots = find("full"), list(self.roots)
+        for k, root in enumerate(roots):
+            if context.lines and context.ranks.rank == 0:
+                words = f"{self.axis.key} = {self.axis.shown(root.key)}, run {k + 1} of {len(roots)} of the full model"
+                print(f"\n{words}", flush=True)
+            full = solved(root.scene, way, context)
+            roots[k] = replace(root, full=full)
+            if full.interrupted:
+                break
+        return replace(self, roots=tuple(roots))
 
     def __str__(self) -> str:
         """Return each value of the key, what the quantity is there, and what is known of its error."""
@@ -125,6 +133,7 @@ def solve(
 
     Raises:
         SceneError: an impossible target, key or range; or a target that is not reached in the range, with what is.
+        KeyboardInterrupt, SystemExit: a run of the full model is stopped, as by :func:`fingerpad.runs.solve.run`.
     """
     scene, way = checked(scene).resolved(), find(model)
     form = ClosedForm(Cylinders() if way.path else way)
@@ -140,7 +149,11 @@ def solve(
         notes.append(f"No force is given; {force:g} N have the f_ext of {scene.f_ext:g} N/m at the finger's centre.")
         scene = scene.replace(force=force)
     solution = _Problem(scene, goal, axis(scene, over, between), form).solution(notes)
-    return solution.confirmed(RunContext()) if way.path else solution
+    solution = solution.confirmed(RunContext()) if way.path else solution
+    for root in solution.roots:
+        if root.full is not None and root.full.interrupted:
+            raise stopped(root.full)
+    return solution
 
 
 class _Problem:

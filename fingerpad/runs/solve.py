@@ -77,7 +77,7 @@ def run(
     context = RunContext(None if out is None else Path(out), comm, resume=resume, outputs=outputs)
     result = solved(scene, way, context)
     if result.interrupted:
-        raise _ended(result)
+        raise stopped(result)
     if result.failure and terminal.rank() == 0:
         warnings.warn(result.failure, stacklevel=2)
     return result
@@ -96,7 +96,7 @@ def checked(scene: Scene | None) -> Scene:
     return scene
 
 
-def _ended(result: Result) -> BaseException:
+def stopped(result: Result) -> BaseException:
     """Return what a signal is to a Python program, with the result of the steps before as its attribute ``result``."""
     number = signal.Signals[result.interrupted]
     error = KeyboardInterrupt(result.failure) if number == signal.SIGINT else SystemExit(128 + number)

@@ -62,7 +62,8 @@ def table(file: str, column: str | None = None, probe: float = 1.0) -> dict[str,
     if len(places) < 2:
         raise ValueError(f"{name}, which has no two columns of numbers; it must have one in s and one in V")
     wide = places[-1]
-    first = next(k for k, (_, row) in enumerate(rows) if len(row) > wide and all(_number(row[j]) for j in places))
+    numbers = (k for k, (_, row) in enumerate(rows) if len(row) > wide and all(files.is_number(row[j]) for j in places))
+    first = next(numbers)
     labels = _labels(rows, first, places)
     place = _chosen(name, labels, places, column)
     factors = [_factor(name, *label, unit) for label, unit in zip((labels[0], labels[place]), ("s", "V"), strict=True)]
@@ -85,10 +86,9 @@ def _rows(file: str, name: str) -> _Rows:
         data = files.read(file, files.MOST_OF_TEXT)
     except OSError as error:
         raise ValueError(f"{name}, which cannot be read: {show(error.strerror or str(error))}") from None
-    try:
-        text = data.decode("utf-8-sig")
-    except ValueError:
-        text = data.decode("latin-1")  # µ of an instrument
+    text = files.text(data)
+    if text is None:
+        raise ValueError(f"{name}, which is no text")
     return max((_parted(text, mark, name) for mark in ",;\t"), key=_count)
 
 
@@ -104,16 +104,8 @@ def _parted(text: str, mark: str, name: str) -> _Rows:
 
 def _count(rows: _Rows) -> int:
     """Return how many lines are of two numbers or more, and of nothing else."""
-    return sum(sum(map(bool, cells)) > 1 and all(not cell or _number(cell) for cell in cells) for _, cells in rows)
-
-
-def _number(text: str) -> bool:
-    """Return whether a text is a number, be it infinite or none."""
-    try:
-        float(text)
-    except ValueError:
-        return False
-    return True
+    found = ([cell for cell in cells if cell] for _, cells in rows)
+    return sum(len(cells) > 1 and all(map(files.is_number, cells)) for cells in found)
 
 
 def _numbers(rows: _Rows) -> list[int]:
@@ -121,14 +113,14 @@ def _numbers(rows: _Rows) -> list[int]:
     counts = dict[int, int]()
     for _, cells in rows:
         for k, cell in enumerate(cells):
-            counts[k] = counts.get(k, 0) + _number(cell)
+            counts[k] = counts.get(k, 0) + files.is_number(cell)
     most = max(counts.values(), default=0)
     return [k for k, count in counts.items() if count > most / 2]
 
 
 def _refuse_line(name: str, line: int, cells: Sequence[str], places: Sequence[int]) -> None:
     texts = [cells[k] if k < len(cells) else "" for k in places]
-    wrong = next((text for text in texts if not (_number(text) and math.isfinite(float(text)))), None)
+    wrong = next((text for text in texts if not (files.is_number(text) and math.isfinite(float(text)))), None)
     if wrong is not None:
         raise ValueError(f"{name}, whose line {line} has {show(wrong)}; it must be a finite number")
     count = sum(map(bool, cells))

@@ -10,7 +10,6 @@ unit though they have a header, those that contradict what is given, and those w
 the heights.
 """
 
-import codecs
 import io
 import re
 from contextlib import redirect_stderr
@@ -158,7 +157,7 @@ def _refuse_mark(path: Path, heights: Array) -> None:
 def _read(path: Path, missing: str | None) -> _Read:
     """Return what is in a file, a matrix of 3 x 3 pixels or more, missing ones as NaN."""
     content = files.read(path)
-    text, why = _text(content), "it is no text"
+    text, why = files.text(content), "it is no text"
     matrix = _array(path, content) if path.suffix.lower() == ".npy" else None
     if matrix is None and text is not None:
         if not text.strip():
@@ -171,23 +170,11 @@ def _read(path: Path, missing: str | None) -> _Read:
     shape = found.heights.shape
     if len(shape) != 2 or min(shape) < 3:
         raise ValueError(f"{path}: heights have shape {shape}; a height map is a matrix of at least 3 x 3")
-    if missing is not None and _is_number(missing):
+    if missing is not None and files.is_number(missing):
         found.heights[found.heights == float(missing)] = np.nan
     elif missing is not None and (matrix is None or text is None):
         raise ValueError(f"'missing' is {missing[:30]!r}; {path} has numbers alone, so it must be one")
     return found
-
-
-def _text(content: bytes) -> str | None:
-    """Return a text, None of binary content."""
-    if content.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
-        return content.decode("utf-16", errors="replace")
-    if b"\0" in content:
-        return None
-    try:
-        return content.decode("utf-8-sig")
-    except UnicodeDecodeError:
-        return content.decode("latin-1")
 
 
 def _array(path: Path, content: bytes) -> Array:
@@ -209,7 +196,7 @@ def _matrix(text: str, missing: str | None) -> tuple[Array | None, str]:
     rows: list[list[float]] = []
     for k, line in lines:
         words = [word.strip(' \t"') for word in line.split(separator)]
-        if unknown := [word for word in words if word not in ("", missing) and not _is_number(word)]:
+        if unknown := [word for word in words if word not in ("", missing) and not files.is_number(word)]:
             return None, f"line {k} has {unknown[0][:30]!r}"
         rows.append([np.nan if word in ("", missing) else float(word) for word in words])
         if len(words) != len(rows[0]):
@@ -217,15 +204,6 @@ def _matrix(text: str, missing: str | None) -> tuple[Array | None, str]:
     if len(rows[0]) <= _POINTS:
         return None, f"it has {len(rows[0])} columns"
     return np.array(rows), ""
-
-
-def _is_number(text: str) -> bool:
-    """Return whether a text is a number, nan and infinity among them."""
-    try:
-        float(text)
-    except ValueError:
-        return False
-    return True
 
 
 def _foreign(path: Path, content: bytes, text: str | None, why: str) -> _Read:
@@ -302,7 +280,7 @@ def _refuse_unread(path: Path, text: str, separator: str, has_unit: bool) -> Non
     begun = False
     for k, line in enumerate(text.splitlines(), start=1):
         words = re.split(separator, line.strip())
-        numbers = all(_is_number(word) or word.lower() in _NO_NUMBERS for word in words)
+        numbers = all(files.is_number(word) or word.lower() in _NO_NUMBERS for word in words)
         if not line.strip() or (begun and line.startswith("#")):
             continue
         if not numbers and (begun or not has_unit):
