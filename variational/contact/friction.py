@@ -85,8 +85,7 @@ class Friction(Law, ABC):
             after: limits (Pa) after, of the same shape as the others.
             slip: how far the points slipped (m), >= 0.
         """
-        a, b = before, after
-        return np.asarray((a + b) / 2 * slip), np.asarray(np.abs(b - a) / 2 * slip)
+        return np.asarray((before + after) / 2 * slip), np.asarray(np.abs(after - before) / 2 * slip)
 
     def coefficient(self, p: float) -> float:
         """Return the friction coefficient t_max / p_n at a contact pressure (Pa) above zero."""
