@@ -107,8 +107,8 @@ def _energy() -> list[dict[str, float]]:
 
 
 def _left_over(body: Any, seconds: float) -> dict[str, float]:
-    """Return what is left over in the steps of random histories, over what is stored, and the least viscous work."""
-    from fingerpad.model.state import least_work
+    """Return what is left over in the steps of random histories, over what is stored, and the least dissipation."""
+    from fingerpad.model.state import least_dissipation
     from variational.energy import Balance, EnergyBook
     from variational.solvers.continuation import Target
 
@@ -124,14 +124,18 @@ def _left_over(body: Any, seconds: float) -> dict[str, float]:
             _say(f"{seed} of {HISTORIES} histories of {seconds:g} s")
         path.go_to(place)
         book, found = EnergyBook(body.problem, *now()), []
-        path.on_accept = lambda target, part, attempt, book=book, found=found: found.append(book.step(*now()))
+
+        def accepted(target: Any, part: float, attempt: Any, book: Any = book, found: Any = found) -> None:
+            found.append(book.step(*now()))
+            least.append(least_dissipation(path))
+
+        path.on_accept = accepted
         sines, w = np.random.default_rng(seed).uniform(-1, 1, (3, 3)), 2 * np.pi * np.arange(1, 4)
         for k in range(STEPS):
             f, U, x = np.sin(w * (k + 1) * seconds / STEPS) @ sines.T
             at = {"f_ext": 4.0 * (1 + 0.1 * f), "voltage": 60 * (1 + 0.3 * U), "bone_x": 20e-6 * x}
             path.run(Target("random", **at, duration=seconds / STEPS))
         left += [abs(each.released) / each.stored for each in found]
-        least.append(least_work(path))
     path.go_to(place)
     return {"steps": len(left), "median": float(np.median(left)), "most": max(left), "least": min(least)}
 
