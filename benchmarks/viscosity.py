@@ -20,6 +20,7 @@ from fingerpad.results import style
 from fingerpad.scene import Scene
 from fingerpad.scene.materials import LAYERS
 from fingerpad.scene.viscosity import PRESETS
+from fingerpad.scene.waveform import SAMPLES
 
 SOFT = [name for name in LAYERS if not name.startswith("nail")]
 TIMES = (4e-3, 70e-3, 1.4)  # s, of the force of a pressed fingerpad (Pawluk and Howe 1999)
@@ -27,7 +28,7 @@ DEPTH, HOLD = -0.7e-3, 10.0  # m, s
 COARSE = {"contact": 60e-6, "receptor": 100e-6, "interface": 200e-6, "growth": 1.0}  # m, but for the growth
 SMALL_CONTACT = 20e-6  # m
 STEP = 1e-3  # s, of the scene over time
-MEASURED = 10  # steps
+MEASURED = 20  # steps
 FORCE, VOLTAGE = 20.0, 150.0  # N/m, V
 HISTORIES, STEPS = 200, 8  # of each length, and targets in each
 LENGTHS = (1e-3, 0.2)  # s
@@ -164,9 +165,12 @@ def _ridge() -> Any:
 
 
 def _cost() -> dict[str, float]:
-    """Return processor seconds of a step, elastic and viscous in turn, and the number of factorisations."""
+    """Return processor seconds of a step, elastic and viscous in turn, and the number of factorisations.
+
+    The samples of the sine are one step apart, in both.
+    """
     found: dict[str, dict[str, float]] = {}
-    wave = {"waveform": "sine", "amplitude": VOLTAGE, "frequency": 20.0}
+    wave = {"waveform": "sine", "amplitude": VOLTAGE, "frequency": 1 / (SAMPLES * STEP)}
     slide = {"name": "slide", "bone_x_by": 20e-3 * STEP * MEASURED, "duration": STEP * MEASURED, "voltage": wave}
     history = [{"name": "press", "f_ext": FORCE}, slide]
     for name, preset in (("elastic", None), ("viscous", "fingerpad")):
@@ -176,7 +180,7 @@ def _cost() -> dict[str, float]:
 
 
 def _timed(scene: Scene) -> dict[str, float]:
-    """Return processor seconds a step and a factorisation of the last load, without its first step."""
+    """Return processor seconds, factorisations and iterations a step of the last load, without its first step."""
     from fingerpad.model.options import FingerModel, by_rule, plan
     from fingerpad.model.simulation import Simulation
     from fingerpad.startup import MPI

@@ -118,7 +118,7 @@ def test_jumps_do_not_age():
         history = path.problem.history
         found.append({field.name: history.accepted[field.name] for field in history.body})
         assert path.time == pytest.approx(0.01)
-    assert len(found[0]) == 5
+    assert len(found[0]) == 6
     for name in found[0]:
         np.testing.assert_allclose(found[1][name], found[0][name], atol=1e-6 * np.abs(found[0][name]).max(initial=1e-9))
 
