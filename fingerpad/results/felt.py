@@ -28,8 +28,8 @@ Array = NDArray[np.float64]
 CHANGE = 0.01
 """Part of the range of a stimulus that may change between two states, however far they are apart."""
 SITE_ERROR = 0.22
-"""Largest known error of energy densities at three Merkel sites on the mesh of the default path, 20 µm in contact and at
-the sites (``again`` in docs/errors.json)."""
+"""Largest known error of energy densities at three Merkel sites on the mesh of the default path, 20 µm in contact and
+at the sites (``again`` in docs/errors.json)."""
 SAMPLE = 1e-4  # s, between two samples of a stimulus
 _SIDES = ("left", "right")
 _TIME_TOLERANCE = 1e-9  # of the length of a run: two times that are one
@@ -178,7 +178,7 @@ def _mesh(result: "Answer", states: Sequence[ContactState]) -> str:
     sites = f" and {1e6 * sizes['receptor']:.3g} µm at the Merkel sites" if "receptor" in sizes else ""
     return (
         f"Stimuli and spikes are of the mesh of the path, with elements of {contact}{sites}. Their discretisation "
-        f"error is not estimated. On the path of the default scene, with 20 µm in both, energy densities at three Merkel "
-        f"sites are known to be off by up to {SITE_ERROR:.0%}, and stresses, whose square they go with, by about half "
-        "(docs/errors.json)."
+        "error is not estimated. On the path of the default scene, with 20 µm in both, energy densities at three "
+        f"Merkel sites are known to be off by up to {SITE_ERROR:.0%}, and stresses, whose square they go with, by "
+        "about half of that (docs/errors.json)."
     )
