@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from fingerpad.afferents.afferent import Afferent, History
 from fingerpad.afferents.registry import DEFAULT, find
 from fingerpad.results.over_time import without_parts_of_jumps
-from fingerpad.results.spikes import Span, Spikes, Unit
+from fingerpad.results.spikes import Densities, Span, Spikes, Unit
 from fingerpad.scene.messages import SceneError, show
 from variational.state import ContactState
 
@@ -66,7 +66,9 @@ def afferents(result: "Answer", laws: str | Afferent | Iterable[str | Afferent] 
         raise SceneError(refusals[0])
     notes += [f"Left out: {coarse}." for coarse in refusals]
     spans = tuple(_spans(time, loads))
-    return Spikes(tuple(units), tuple(trains), float(time[-1]), spans, tuple(notes))
+    ridges = tuple(int(number) for number in _ridges(states))
+    densities = Densities(ridges, time, at_states["merkel"].sed)
+    return Spikes(tuple(units), tuple(trains), float(time[-1]), spans, tuple(notes), densities)
 
 
 def _states(result: "Answer") -> list[ContactState]:
