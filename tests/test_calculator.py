@@ -92,10 +92,9 @@ def by_script(program: str, folder: Path) -> Any:
     interpreter = shutil.which("qjs") or shutil.which("node")
     if not interpreter:
         pytest.skip("neither qjs nor node is installed")
-    folder_of = Path(fields.__file__).parent
-    closed_form, drive = ((folder_of / name).read_text(encoding="utf-8") for name in ("closed_form.js", "drive.js"))
+    parts = "\n".join(map(fields.part, fields.SCRIPTS[: fields.SCRIPTS.index("plot.js")]))
     script = folder / "script.js"
-    script.write_text(f"const data = {json.dumps(fields.data())};\n{closed_form}\n{drive}\n{program}", encoding="utf-8")
+    script.write_text(f"const data = {json.dumps(fields.data())};\n{parts}\n{program}", encoding="utf-8")
     done = subprocess.run([interpreter, str(script)], capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stdout + done.stderr
     return json.loads(done.stdout)

@@ -28,6 +28,8 @@ from geometry.units import Range
 from variational.attraction.circuit import LEAKS
 from variational.attraction.dielectric import TISSUES, VACUUM_PERMITTIVITY
 
+SCRIPTS = ("numerics.js", "closed_form.js", "whole.js", "drive.js", "plot.js", "drive_page.js", "page.js")
+"""In order; those before ``plot.js`` need no page."""
 _TABLE = (20.0, 50.0, 75.0, 100.0, 150.0), (0.0, 50.0, 100.0, 150.0, 200.0)  # N/m, V
 
 
@@ -141,11 +143,6 @@ def circuits() -> dict[str, Any]:
 
 def page() -> str:
     """Return the page."""
-    own = files("fingerpad.calculator")
-    style, closed_form, plot, drive, drive_page, program = (
-        (own / name).read_text(encoding="utf-8").rstrip()
-        for name in ("page.css", "closed_form.js", "plot.js", "drive.js", "drive_page.js", "page.js")
-    )
     values = {
         "error": f"{100 * cylinder_errors.KNOWN_ERROR['full_slip']['mu_app']:.1f} %",
         "runs": str(cylinder_errors.KNOWN_RUNS),
@@ -155,17 +152,17 @@ def page() -> str:
         "defaults": _defaults(),
         "per_length": html.escape(PER_LENGTH),
         "version": version(),
-        "style": style,
+        "style": part("page.css"),
         # Inside a script "</" could end it.
         "data": json.dumps(data(), ensure_ascii=False).replace("</", "<\\/"),
-        "closed_form": closed_form,
-        "plot": plot,
-        "drive": drive,
-        "drive_page": drive_page,
-        "page": program,
+        "script": "\n".join(map(part, SCRIPTS)),
     }
-    template = (own / "page.html").read_text(encoding="utf-8")
-    return re.sub(r"\{\{(\w+)\}\}", lambda name: values[name[1]], template)
+    return re.sub(r"\{\{(\w+)\}\}", lambda name: values[name[1]], part("page.html"))
+
+
+def part(name: str) -> str:
+    """Return the text of a file of this folder."""
+    return (files("fingerpad.calculator") / name).read_text(encoding="utf-8").rstrip()
 
 
 def _table() -> str:
