@@ -1,5 +1,6 @@
 """``fingerpad estimate``: friction over force and voltage by the closed form, without finite elements."""
 
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -70,7 +71,7 @@ def main(argv: Sequence[str]) -> int:
             echo(f"\nAt {force:g} {'N' if key == 'force' else 'N/m'}. {drive(scene.replace(**{key: force}))}")
     said = (*([LEAKAGE] if any(voltages) and not over else []), *(f"{text}." for text in remarks(scene)), *limits)
     notes = [PER_LENGTH] if key == "f_ext" else errors.remarks(forces)
-    for note in (*notes, *_known(scene, rows), *said, *lost):
+    for note in (*notes, *_known(rows), *said, *lost):
         echo(note)
     output.write_files(args, columns, rows, draw)
     return 0
@@ -113,27 +114,33 @@ def grid(
 def _row(found: Result) -> dict[str, Any]:
     """Return what the columns show of a result."""
     slip, finger = found.full_slip, found.finger
-    if finger is None:
-        return {key: getattr(slip, key) for key in _SECTION} | {"state": slip}
-    total = finger.values(list(finger.states)[-1])
-    values = {key: total[key] for key in _WHOLE if key in total}
     section = slip or found.charged
     assert section is not None
-    return values | {"f_ext": section.f_ext, "mu_app_of_section": section.mu_app, "state": section}
+    of = found.scene.model_copy(update={"force": None, "f_ext": section.f_ext})
+    known = {"error": found.record["model_error"], "outside": cylinder_errors.outside(of)}
+    if finger is None:
+        return {key: getattr(slip, key) for key in _SECTION} | {"state": slip} | known
+    total = finger.values(list(finger.states)[-1])
+    values = {key: total[key] for key in _WHOLE if key in total}
+    return values | {"f_ext": section.f_ext, "mu_app_of_section": section.mu_app, "state": section} | known
 
 
-def _known(scene: Scene, rows: Sequence[Mapping[str, Any]]) -> list[str]:
-    """Return what is known of the error of these rows."""
-    bands = cylinder_errors.KNOWN_ERROR["full_slip"]
-    mu, length, pull = (f"within {100 * bands[key]:.1f} %" for key in ("mu_app", "contact_length", "f_electrostatic"))
-    runs = f"{cylinder_errors.KNOWN_RUNS} full runs at {cylinder_errors.where()}"
-    of = "" if "force" not in rows[0] else " of the section"
-    said = [f"Known error{of}: µ_app and f_T {mu}, f_el {pull}, L_R {length} of {runs}."]
-    beyond = sum(cylinder_errors.outside(row["f_ext"], row["voltage"]) for row in rows if "f_ext" in row)
-    if beyond:
-        said.append(f"{beyond} of {len(rows)} points are outside of that; their error is not known.")
-    if keys := cylinder_errors.changed(scene):
-        said.append(f"Those runs have the default {', '.join(keys)}; here the error is not known.")
+def _known(rows: Sequence[Mapping[str, Any]]) -> list[str]:
+    """Return what is known of the error of these rows, and for which keys it is not."""
+    of, said = " of the section" if "force" in rows[0] else "", []
+    bands = [row["error"]["full_slip"] for row in rows if row.get("error")]
+    if bands:
+        shown = ", ".join(
+            f"{words} {100 * max(band[key] for band in bands):.1f} %"
+            for key, words in (("mu_app", "µ_app and f_T"), ("f_electrostatic", "f_el"), ("contact_length", "L_R"))
+        )
+        said.append(f"Known error{of}, at most: {shown}.")
+    beyond: dict[cylinder_errors.Outside, int] = Counter(
+        each._replace(value="") for row in rows for each in row.get("outside", [])
+    )
+    for each, count in beyond.items():
+        points = f"At {count} of {len(rows)} points" if count < len(rows) else "Here"
+        said.append(f"{points} the error{of} is not known: {each.key} is known for {each.known}.")
     return said
 
 
