@@ -19,7 +19,7 @@ def test_estimate_is_the_closed_form(tmp_path, capsys):
     file = tmp_path / "mu.csv"
     assert main(["estimate", "--f-ext", "50,75", "--voltage", "0:100:2", "--csv", str(file)]) == 0
     out = capsys.readouterr().out
-    assert "Known error of the section: µ_app and f_T within 2.4 %, f_el within 5.0 %, L_R within 6.3 % of 44" in out
+    assert "Known error of the section, at most: µ_app and f_T 2.4 %, f_el 5.0 %, L_R 6.3 %." in out
     rows = rows_of(tmp_path, "mu")
     loads = [(float(r["f_ext_of_section"]), float(r["voltage"])) for r in rows]
     assert loads == [(50, 0), (50, 100), (75, 0), (75, 100)]
@@ -49,10 +49,10 @@ def test_estimate_without_a_whole_finger_has_the_section(capsys):
 
 
 def test_estimate_says_where_its_error_is_not_known(capsys):
-    assert main(["estimate", "--f-ext", "75,500", "--set", "friction=0.3"]) == 0
+    assert main(["estimate", "--f-ext", "75,5000", "--set", "roughness.gamma=0.6"]) == 0
     text = capsys.readouterr().out
-    assert "1 of 2 points are outside of that" in text
-    assert "Those runs have the default friction; here the error is not known." in text
+    assert "At 1 of 2 points the error is not known: f_ext is known for" in text
+    assert "Here the error is not known: roughness.gamma is known for 0.5." in text
 
 
 @pytest.mark.parametrize(

@@ -1,5 +1,6 @@
 """``fingerpad estimate``: friction over force and voltage by the closed form, without finite elements."""
 
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import partial
@@ -89,7 +90,7 @@ def main(argv: Sequence[str]) -> int:
     said = (*([LEAKAGE] if any(voltages) and not over else []), *(f"{text}." for text in remarks(scene)), *limits)
     notes = errors.remarks([row["force"] for row in rows if "force" in row])
     notes = [PER_LENGTH, *notes] if key == "f_ext" else notes
-    for note in (*notes, *_known(scene, rows), *said, *lost):
+    for note in (*notes, *_known(rows), *said, *lost):
         echo(note)
     output.write_files(args, _COLUMNS, rows, partial(draw, key))
     return 0
@@ -142,25 +143,31 @@ def _row(found: Result) -> dict[str, Any]:
     """Return what the columns show of a result: of the whole finger where it has one, and of its section."""
     section = found.full_slip or found.charged
     assert section is not None
-    values = {f"{key}_of_section": getattr(section, key) for key in _SECTION} | {"state": section}
+    of = found.scene.model_copy(update={"force": None, "f_ext": section.f_ext})
+    values: dict[str, Any] = {f"{key}_of_section": getattr(section, key) for key in _SECTION}
+    values |= {"state": section, "error": found.record["model_error"], "outside": cylinder_errors.outside(of)}
     if found.finger is None:
         return values
     total = found.finger.values(list(found.finger.states)[-1])
     return values | {key: total[key] for key in _WHOLE if key in total}
 
 
-def _known(scene: Scene, rows: Sequence[Mapping[str, Any]]) -> list[str]:
-    """Return what is known of the error of these rows."""
-    bands = cylinder_errors.KNOWN_ERROR["full_slip"]
-    mu, length, pull = (f"within {100 * bands[key]:.1f} %" for key in ("mu_app", "contact_length", "f_electrostatic"))
-    runs = f"{cylinder_errors.KNOWN_RUNS} full runs at {cylinder_errors.where()}"
-    said = [f"Known error of the section: µ_app and f_T {mu}, f_el {pull}, L_R {length} of {runs}."]
-    f_ext = "f_ext_of_section"
-    beyond = sum(cylinder_errors.outside(row[f_ext], row["voltage"]) for row in rows if f_ext in row)
-    if beyond:
-        said.append(f"{beyond} of {len(rows)} points are outside of that; their error is not known.")
-    if keys := cylinder_errors.changed(scene):
-        said.append(f"Those runs have the default {', '.join(keys)}; here the error is not known.")
+def _known(rows: Sequence[Mapping[str, Any]]) -> list[str]:
+    """Return what is known of the error of these rows, and for which keys it is not."""
+    of, said = " of the section", []
+    bands = [row["error"]["full_slip"] for row in rows if row.get("error")]
+    if bands:
+        shown = ", ".join(
+            f"{words} {100 * max(band[key] for band in bands):.1f} %"
+            for key, words in (("mu_app", "µ_app and f_T"), ("f_electrostatic", "f_el"), ("contact_length", "L_R"))
+        )
+        said.append(f"Known error{of}, at most: {shown}.")
+    beyond: dict[cylinder_errors.Outside, int] = Counter(
+        each._replace(value="") for row in rows for each in row.get("outside", [])
+    )
+    for each, count in beyond.items():
+        points = f"At {count} of {len(rows)} points" if count < len(rows) else "Here"
+        said.append(f"{points} the error{of} is not known: {each.key} is known for {each.known}.")
     return said
 
 

@@ -10,7 +10,6 @@ import numpy as np
 
 from fingerpad.cli import output, ranges
 from fingerpad.cli.arguments import echo, refuse_twice, several
-from fingerpad.reduced import cylinder_errors
 from fingerpad.results.quantities import PER_LENGTH, Output
 from fingerpad.runs.axis import Axis
 from fingerpad.runs.two_keys import TwoKeys, two_keys
@@ -51,7 +50,7 @@ def main(args: argparse.Namespace, scene: Scene) -> int:
     echo()
     notes = errors.remarks([found.scene.force]) if found.scene.force and "force" not in over else []
     notes = notes if found.target.whole else [PER_LENGTH]
-    for note in (*_known(found), *notes, LEAKAGE, *(f"{each}." for each in remarks(scene)), *_lost(found)):
+    for note in (*notes, LEAKAGE, *(f"{each}." for each in remarks(scene)), *_lost(found)):
         echo(note)
     columns = [output.ERROR_KNOWN, *(Output(axis.key, "") for axis in found.axes), found.target.quantity]
     output.write_files(args, columns, [*found.rows()], partial(draw, found, bool(args.target)))
@@ -90,8 +89,7 @@ def text(found: TwoKeys) -> str:
     cells += [[head, *map(quantity.shown, row)] for head, row in zip(shown[0], found.values.tolist(), strict=True)]
     widths = [max(map(len, column)) for column in zip(*cells, strict=True)]
     lines += ["", *("  ".join(map(str.rjust, row, widths)).rstrip() for row in cells)]
-    if not found.known.all():
-        lines.append(f"\nThe error is known at {found.known.sum()} of {found.known.size} points.")
+    lines.append(f"\nThe error of the section is known at {found.known.sum()} of {found.known.size} points.")
     return "\n".join(lines)
 
 
@@ -104,14 +102,6 @@ def _unit(axis: Axis) -> tuple[str, float]:
     """Return the unit in which an axis shows its values, and the factor from SI."""
     unit = axis.shown(axis.high).partition(" ")[2]
     return (unit, 1e6) if unit == "µm" else (unit, 1.0)
-
-
-def _known(found: TwoKeys) -> list[str]:
-    bands = cylinder_errors.KNOWN_ERROR["full_slip"]
-    return [
-        f"Known error of the section: µ_app within {100 * bands['mu_app']:.1f} % of {cylinder_errors.KNOWN_RUNS} full "
-        f"runs at {cylinder_errors.where()} with the default finger, screen and friction."
-    ]
 
 
 def _lost(found: TwoKeys) -> list[str]:

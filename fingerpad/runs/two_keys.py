@@ -157,4 +157,5 @@ class _Map:
 
 def is_known(scene: Scene) -> bool:
     """Return whether the error of the closed form is known, of the section at about the centre of the finger."""
-    return not cylinder_errors.outside(scene.centre_force, scene.volts) and not cylinder_errors.changed(scene)
+    section = scene.model_copy(update={"force": None, "f_ext": scene.centre_force})
+    return cylinder_errors.find(section) is not None
