@@ -5,11 +5,9 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from fingerpad.results import terminal
 from fingerpad.results.closures import KNOWN, RECORD
 from fingerpad.results.quantities import FRICTION, QUANTITIES, Output
 from fingerpad.results.states import STATES, LoadResult
-from fingerpad.scene.remarks import coefficient
 from variational.state import ContactState
 
 if TYPE_CHECKING:
@@ -133,6 +131,8 @@ class Answer:
 
     def _drawn(self) -> "Drawing | None":
         """Return what pictures are drawn from, of a result that was read from its folder; None off rank 0."""
+        from fingerpad.results import terminal
+
         if self.drawing is None and self.steps and self.folder is not None and terminal.rank() == 0:
             return _drawing(self, self.folder)
         return self.drawing
@@ -165,6 +165,7 @@ class Answer:
 def _drawing(result: Answer, folder: Path) -> "Drawing":
     """Return what the pictures of a result that was read are drawn from."""
     from fingerpad.results.drawing import read  # Matplotlib
+    from fingerpad.scene.remarks import coefficient
 
     meshes = (result.record.get("path_mesh"), result.record.get("accuracy", {}).get("mesh"))
     path, final = (mesh["contact"] if mesh and all(meshes) else None for mesh in meshes)

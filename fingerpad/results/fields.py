@@ -91,12 +91,12 @@ def of_snapshot(shown: "Snapshot | Any") -> Fields | None:
 def write(path: Path, fields: Fields) -> None:
     """Write fields into a file ``.vtu``, which is there as a whole or not at all."""
     points, cells = len(fields.points), len(fields.triangles)
-    topology = {
+    topology: dict[str, NDArray[Any]] = {
         "connectivity": fields.triangles.astype(np.int64).ravel(),
         "offsets": 3 * np.arange(1, cells + 1, dtype=np.int64),
         "types": np.full(cells, _TRIANGLE, dtype=np.uint8),
     }
-    parts = {
+    parts: dict[str, dict[str, NDArray[Any]]] = {
         "Points": {"points": _in_space(fields.points)},
         "Cells": topology,
         "PointData": fields.on_points(),
