@@ -12,6 +12,8 @@
 # make paper  the statements of the paper beside this model's numbers; docs/paper.md, a quarter of an hour or more
 # make measured  measured fingers beside this model's numbers; docs/measured.md, two minutes
 # make drive  friction over frequency and waveform of the voltage; docs/drive.md, a minute
+# make viscosity  how skin relaxes, energy of random histories, friction after a step of voltage; docs/viscosity.md
+# make feel   what people and nerves were measured to do beside spikes; docs/feel.md, ten minutes
 # make performance  counts, ratios and seconds, part by part, on an idle machine; docs/performance.md, half an hour; prints the targets
 # make calibration  estimated errors beside known ones, scene by scene; docs/two_meshes.md, ten minutes
 # make chart  error over work, one numerical setting after the other; docs/errors.md and chart.md, half an hour or more
@@ -21,7 +23,7 @@
 
 run := environment/run
 
-.PHONY: help demo lint test check test-pip test-order fuzz docs pages stale verify paper measured drive calibration chart performance
+.PHONY: help demo lint test check test-pip test-order fuzz docs pages stale verify paper measured drive viscosity feel calibration chart performance
 
 help:
 	@sed -n 's/^# make/make/p' Makefile
@@ -77,6 +79,12 @@ measured:
 
 drive:
 	$(run) python3 -m benchmarks.drive
+
+viscosity:
+	$(run) python3 -m benchmarks.viscosity
+
+feel:
+	$(run) python3 -m benchmarks.feel
 
 calibration:
 	$(run) python3 -m benchmarks.two_meshes

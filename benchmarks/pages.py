@@ -36,6 +36,7 @@ PAGES = {
     "chart": "benchmarks.chart",
     "drive": "benchmarks.drive",
     "errors": "benchmarks.errors",
+    "feel": "benchmarks.feel.__main__",
     "hero": "benchmarks.hero",
     "measured": "benchmarks.measured.__main__",
     "microscale": "benchmarks.microscale.__main__",
@@ -47,6 +48,7 @@ PAGES = {
     "stability": "benchmarks.stability.__main__",
     "two_meshes": "benchmarks.two_meshes",
     "verification": "benchmarks.verification.case",
+    "viscosity": "benchmarks.viscosity",
 }
 SAME = "same.json"  # pairs of commits that compute the same numbers
 _PACKAGES = ("geometry", "variational", "fingerpad")

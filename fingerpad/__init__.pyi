@@ -8,6 +8,8 @@ from fingerpad.results.quantities import Output as Output
 from fingerpad.results.result import Result as Result
 from fingerpad.runs.drive import Drive as Drive
 from fingerpad.runs.drive import drive as drive
+from fingerpad.runs.inverse import Solution as Solution
+from fingerpad.runs.inverse import solve as solve
 from fingerpad.runs.solve import run as run
 from fingerpad.runs.sweep import sweep as sweep
 from fingerpad.runs.sweep_results import Sweep as Sweep

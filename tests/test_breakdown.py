@@ -94,23 +94,26 @@ def test_run_has_the_caution():
 # -- losses in newtons and in direct states ----------------------------------------------------------------
 @pytest.mark.slow
 def test_newtons_have_the_share_of_each_ridge(monkeypatch):
-    """States on the scene's own mesh are those of a run of the same drive; tolerance: of the air gaps."""
-    states, again = [], newtons._again
+    """States on the scene's own mesh are those of a run of the same drive, but for facets that end elsewhere."""
+    states, again = [], newtons.solve_again
 
-    def kept(simulation, snapshot, name):
-        states.append(again(simulation, snapshot, name))
-        return states[-1]
+    def kept(model, coarse, comm):
+        solve = again(model, coarse, comm)
+        states.extend(each.state for words, each in solve.states.items() if words.startswith("full slip"))
+        return solve
 
-    monkeypatch.setattr(newtons, "_again", kept)
-    lossy = NINE | {"output": OUTPUT, "voltage": SINE | {"amplitude": 150.0}, "electric": DRY}
-    whole = fp.run(fp.Scene(**lossy, force=2e-3, slices={"radius": 6e-3, "length": 8e-3}))
+    monkeypatch.setattr(newtons, "solve_again", kept)
+    lossy = NINE | {"voltage": SINE | {"amplitude": 150.0}, "electric": DRY}
+    whole = fp.run(fp.Scene(**lossy, output=OUTPUT, force=2e-3, slices={"radius": 6e-3, "length": 8e-3}))
     assert whole.finger is not None and not any("runs of their own" in note for note in whole.notes)
-    run = fp.run(fp.Scene(**lossy, f_ext=states[-1].f_ext)).full_slip
-    assert run.ridges_in_contact == states[-1].ridges_in_contact
-    for name in ("f_t", "f_electrostatic", "contact_length"):
-        assert getattr(run, name) == pytest.approx(getattr(states[-1], name), rel=1e-5), name
-    numbers = fp.run(fp.Scene(**lossy, f_ext=states[-1].f_ext).replace(voltage=run.voltage)).full_slip
-    assert abs(numbers.f_t / run.f_t - 1) > 1e-3, "one share for all ridges has another friction"
+    of = max(states, key=lambda state: state.f_ext)
+    scene = fp.Scene(**lossy, f_ext=of.f_ext, output=OUTPUT | {"errors": True})
+    run = fp.run(scene).full_slip
+    assert run.ridges_in_contact == of.ridges_in_contact
+    numbers = fp.run(scene.replace(voltage=run.voltage)).full_slip
+    for name in ("f_t", "f_electrostatic"):
+        own, one = (abs(getattr(each, name) / getattr(of, name) - 1) for each in (run, numbers))
+        assert own < 1e-3 and one > 4 * own, f"{name}: {own:.2g} from a run, {one:.2g} with one share for all ridges"
 
 
 @pytest.mark.slow

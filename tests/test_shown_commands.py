@@ -15,6 +15,7 @@ from fingerpad.results.checkpoint import Checkpoint
 from fingerpad.scene import from_data
 from tests.pages import alike, blocks, printed
 from tests.runs import no_pictures
+from tests.small_finger import NINE
 from variational.roughness.spectrum import SelfAffine
 
 pytestmark = pytest.mark.slow
@@ -86,6 +87,9 @@ def test_shown_command_runs(line, folder, capsys, monkeypatch):
     words = small(line)
     if words[0] == "report":
         fp.run(model="cylinders", out=words[1])
+    if words[0] == "feel":  # a run with a load over time
+        loads = [{"name": "press", "f_ext": 1.0, "duration": 0.02}]
+        fp.run(fp.Scene(**NINE, history=loads, output={"errors": False}), out=words[1])
     if words[0] == "compare-data":
         fp.sweep(fp.Scene(), "results/sweep", model="cylinders", voltage=[0, 200], f_ext=[25, 75])
     if "--resume" in words:  # a run that was killed when its checkpoint was whole

@@ -58,7 +58,7 @@ def test_forces_do_not_depend_on_where_the_finger_is(at_the_start, away):
     moved = slid(away, 1.0, 100.0, 1e-11)
     assert held(moved) and held(at_the_start)
     assert moved.finger.solver.bone[0] - at_the_start.finger.solver.bone[0] == pytest.approx(away, rel=1e-12)
-    np.testing.assert_allclose(forces(moved), forces(at_the_start), rtol=0, atol=1e-9)
+    np.testing.assert_allclose(forces(moved), forces(at_the_start), rtol=0, atol=3e-9)
 
 
 def test_light_press_at_200_v_after_5_mm():

@@ -27,6 +27,7 @@ COMMANDS = {
     "check": "what a run contains, omits and costs, and a picture of its mesh; solves nothing",
     "mesh": "the mesh of the unloaded finger as a file for gmsh, in m, with names of its parts",
     "calculator": "the closed form as one HTML page with sliders, for a browser without Python or network",
+    "solve": "the voltage, coating or other key at which friction has a given value, by the closed form, at once",
     "drive": "friction over the period of an alternating voltage, its spectrum, and whether it is felt, in a second",
     "microscale": "air gap, attraction and real area of contact of a ridge over its pressure",
     "topography": "roughness of a scene from a measured height map",
@@ -34,7 +35,7 @@ COMMANDS = {
 }
 _BESIDE = {"compare-data": "compare", "calculator": "report", "microscale": "roughness", "topography": "roughness"}
 """Modules of the commands that have none of their own name."""
-_COLLECTIVE = ("run", "compare")  # use all ranks; the others are answered by rank 0
+_COLLECTIVE = ("run", "compare", "solve")  # use all ranks; the others are answered by rank 0
 
 
 def main(argv: Sequence[str] | None = None) -> int:

@@ -22,7 +22,7 @@ _SAID = (
 def bars(result: "Result") -> str:
     """Return the figure of a result's band, HTML; empty without one. Its axis is logarithmic."""
     kept = result.record.get(KNOWN, {})
-    if not kept:
+    if not kept or result.full_slip is None:
         return ""
     mu, error = kept["mu_app"], _error(result, kept["whole"])
     rows = [("solved", mu - error, mu + error, BLUE)] if error < mu else []
@@ -56,8 +56,7 @@ def _error(result: "Result", whole: bool) -> float:
     if whole and result.finger is not None:
         found = result.finger.error.get("full_slip", {}).get("mu_app", math.inf)
     else:
-        assert result.full_slip is not None
-        found = result.full_slip.error.mu_app
+        found = math.nan if result.full_slip is None else result.full_slip.error.mu_app
     return math.inf if math.isnan(found) else found
 
 

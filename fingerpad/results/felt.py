@@ -1,9 +1,9 @@
 r"""What mechanoreceptive afferents answer to a run over time: stimuli at its sites, and spikes.
 
 Stimuli are known in the accepted states. Between two of a load they follow the monotone cubic curve of Fritsch and
-Carlson, cut at the ends of loads; a jump of the voltage takes one sample. The state at time 0 has been there for ever.
-A class is refused where two states are further apart than its ``longest_step`` and its stimulus changes between them
-by more than :data:`CHANGE` of its range.
+Carlson, cut at the ends of loads; a jump of the voltage takes half a sample. The state at time 0 has been there for
+ever. A class is refused where two states are further apart than its ``longest_step`` and its stimulus changes between
+them by more than :data:`CHANGE` of its range.
 """
 
 import math
@@ -29,6 +29,7 @@ CHANGE = 0.01
 """Part of the range of a stimulus that may change between two states, however far they are apart."""
 SAMPLE = 1e-4  # s, between two samples of a stimulus
 _SIDES = ("left", "right")
+_TIME_TOLERANCE = 1e-9  # of the length of a run: two times that are one
 
 
 def afferents(result: "Answer", laws: str | Afferent | Iterable[str | Afferent] | None = None) -> Spikes:
@@ -133,9 +134,10 @@ def _between(time: Array, loads: Sequence[str], values: Array, fine: Array) -> A
     """Return values at states, shape (units, states), at fine times, shape (units, times)."""
     from scipy.interpolate import PchipInterpolator
 
-    moved = time.copy()
-    jumps = np.flatnonzero(np.diff(moved) < SAMPLE / 2) + 1
-    moved[jumps] += SAMPLE / 2
+    moved, near = time.copy(), _TIME_TOLERANCE * time[-1]
+    jumps = np.flatnonzero(np.diff(moved) <= near) + 1
+    after = np.append(np.diff(moved), SAMPLE)[jumps]  # to the next state
+    moved[jumps] += np.minimum(SAMPLE, after) / 2
     found = np.repeat(values[:, -1:], len(fine), axis=1)
     for _, group in groupby(range(1, len(time)), key=lambda k: loads[k]):
         part = list(group)

@@ -3,7 +3,6 @@
 import itertools
 import math
 import os
-import re
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from numbers import Integral
@@ -23,9 +22,10 @@ from fingerpad.results.result import Result
 from fingerpad.runs.context import RunContext
 from fingerpad.runs.solve import checked, solved
 from fingerpad.runs.sweep_results import FILE, Sweep
-from fingerpad.scene import Scene, law_name
+from fingerpad.scene import Scene
+from fingerpad.scene.dotted import value_of, with_values
 from fingerpad.scene.messages import SceneError, clip, show
-from fingerpad.scene.reading import DEFAULT_MODEL, plain, put
+from fingerpad.scene.reading import DEFAULT_MODEL, plain
 from fingerpad.scene.remarks import leakage
 from variational.state import PATH
 
@@ -90,7 +90,7 @@ def sweep(
     checked_outputs(outputs)
     _refuse_axes(axes)
     scene = scene.resolved()
-    scenes = [_with(scene, point) for point in _points(axes)]
+    scenes = [with_values(scene, point) for point in _points(axes)]
     values = _values(scenes, axes)
     if states != STATES[0]:
         from fingerpad.runs.chains import refuse_others
@@ -178,31 +178,10 @@ def _values(scenes: Sequence[Scene], axes: Mapping[str, Sequence[Any]]) -> dict[
     found, apart = {}, len(scenes)  # points from one value of an axis to the next
     for key, values in axes.items():
         apart //= len(values)
-        found[key] = tuple(_at(scenes[k * apart], key) for k in range(len(values)))
+        found[key] = tuple(value_of(scenes[k * apart], key) for k in range(len(values)))
         if len(set(map(repr, found[key]))) < len(values):
             raise SceneError(f"{key} of the sweep is {show(values)}; each value must be there once")
     return found
-
-
-def _with(scene: Scene, changes: Mapping[str, Any]) -> Scene:
-    """Return the scene with other values by dotted key, as :meth:`Scene.replace` does."""
-    data: dict[str, Any] = {}
-    for key, value in sorted(changes.items(), key=lambda change: "[" not in change[0]):  # whole lists first
-        table = re.split(r"[.\[]", key, maxsplit=1)[0]
-        if "[" in key and table not in data:  # an entry of a list, of which the others stay
-            data[table] = scene.parameters().get(table)
-        put(data, key, plain(value))
-    return scene.replace(**data)
-
-
-def _at(scene: Scene, key: str) -> Any:
-    """Return the value of a dotted key in SI; of the key ``law`` of a law's table the law's name."""
-    value: Any = scene
-    for part, place in re.findall(r"(\w+)|\[(\d+)\]", key):
-        if part == "law" and not hasattr(value, "law"):
-            return law_name(value)
-        value = getattr(value, part) if part else value[int(place)]
-    return value
 
 
 def _failed(scene: Scene, model: "Model", why: str) -> Result:

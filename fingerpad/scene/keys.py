@@ -13,7 +13,7 @@ import re
 import textwrap
 import types
 from collections.abc import Iterator
-from dataclasses import MISSING, Field, dataclass
+from dataclasses import MISSING, Field, dataclass, replace
 from functools import cache
 from typing import Annotated, Any, Literal, Union, get_args, get_origin
 
@@ -135,8 +135,8 @@ def _of_law(table: str, key: LawKey, meaning: str) -> Iterator[Key]:
             if key.several and len(readers) < len(key.kind.laws):
                 meaning += f" Of {' and '.join(readers)} alone."
             yield Key(table + field.name, value, meaning, range_of(field), choices, law=of)
-    for each in key.tables(type(default)):
-        yield from _of(each, f"{table}{each.__name__.lower()}.", None)
+    for each in key.tables(type(default)):  # that a law may have, and the default law has not
+        yield from (replace(k, default=None) for k in _of(each, f"{table}{each.__name__.lower()}.", None))
 
 
 def _parts(annotation: Any) -> Iterator[Any]:

@@ -21,10 +21,10 @@ Presets
     depth relaxes in three exponentials of about 4 ms, 70 ms and 1.4 s (Pawluk and Howe 1999,
     doi 10.1115/1.2835100, read as abstract). These branches, in all four soft layers, let the force of this program's
     default finger at a held depth of 0.7 mm relax in these times: a calibration of this program, not a measurement of a
-    layer. Since the volume's stress does not relax, the branches are 3 to 13 % faster and larger than the force's.
+    layer. Since the volume's stress does not relax, the branches are 8 to 13 % faster than the force, and stronger.
     The force's weights were not in the text that was read. *Assumption*: the three are alike, and the force at once is
     2.375 times the lasting one, the middle of the 2 to 2.75 by which peak forces of a palm at impact exceed static ones
-    (doi 10.1371/journal.pone.0261008, read as abstract). ``python3 -m benchmarks.viscous`` fits the force again.
+    (doi 10.1371/journal.pone.0261008, read as abstract). ``python3 -m benchmarks.viscosity`` fits the force again.
 """
 
 from collections.abc import Mapping, Sequence

@@ -300,7 +300,7 @@ def _made(scene: Scene, model: "Model", solve: Solve, name: str, top: float, tri
     here = scene.replace(force=None)
     if model.path:
         return _run(here, scene.force or 0.0, solve, name, top, tries)
-    return _points(here, model, solve, name, top)
+    return of_points(here, model, solve, name, top)
 
 
 def _run(scene: Scene, force: float, solve: Solve, name: str, top: float, tries: int) -> Traced:
@@ -316,7 +316,7 @@ def _run(scene: Scene, force: float, solve: Solve, name: str, top: float, tries:
         raise SceneError(f"the force on the finger is {force:.4g} N; {error}{why}") from None
 
 
-def _points(scene: Scene, model: "Model", solve: Solve, name: str, top: float) -> Traced:
+def of_points(scene: Scene, model: "Model", solve: Solve, name: str, top: float) -> Traced:
     """Return a trace of a model without a path."""
     forces = [float(each) for each in np.geomspace(top * LIGHT, top, FORCES)]
     kind = "full_slip" if name == "full_slip" else "charged"

@@ -1,0 +1,60 @@
+"""``fingerpad solve``: the value of a key at which friction, or another quantity at full slip, has a target."""
+
+from collections.abc import Sequence
+
+from fingerpad.cli.arguments import Parser, echo, scene_of
+from fingerpad.ctrl_c import raises
+from fingerpad.reduced.cylinders import Cylinders
+from fingerpad.reduced.registry import MODELS, find
+from fingerpad.runs.context import RunContext
+from fingerpad.runs.inverse import solve
+from fingerpad.scene.messages import SceneError, clip
+
+_EXAMPLES = """
+    fingerpad solve --target mu_app=2x --over voltage
+    fingerpad solve --target "F_T=0.3 N" --set force="0.5 N" --model full
+    fingerpad solve --target "contrast=10 %" --over electric.d_i --from "0.5 um" --to "5 um"
+"""
+
+
+def main(argv: Sequence[str]) -> int:
+    """Find the values of a key; return the exit code."""
+    parser = Parser("solve", _EXAMPLES)
+    parser.add_scene()
+    words = "at full slip: mu_app=2x (twice the value without voltage), 'F_T=0.3 N', 'contrast=10 %%'"
+    parser.add_argument("--target", action="append", default=[], metavar="QUANTITY=VALUE", help=words)
+    parser.add_argument("--over", default="voltage", metavar="KEY", help="key that is varied (default: %(default)s)")
+    parser.add_argument("--from", dest="low", metavar="VALUE", help="first value of the key, also with a unit")
+    parser.add_argument("--to", dest="high", metavar="VALUE", help="last value of the key, also with a unit")
+    words = "full confirms each value by a run of the full model (default: %(default)s alone)"
+    parser.add_argument("--model", choices=MODELS, default=Cylinders.name, help=words)
+    args = parser.read(argv)
+    if len(args.target) != 1:
+        given = "no --target is given" if not args.target else f"--target is given {len(args.target)} times"
+        raise SceneError(f'{given}; give one quantity and its value, as --target "F_T=0.3 N"')
+    if (args.low is None) != (args.high is None):
+        raise SceneError(f"one of --from and --to is given without the other; give both, or none for {clip(args.over)}")
+    model = find(args.model)
+    scene = scene_of(args, meshed=model.meshes)
+    between = None if args.low is None else [_number(args.low), _number(args.high)]
+    found = solve(scene, args.target[0], args.over, between=between, model=Cylinders.name if model.path else args.model)
+    echo(str(found))
+    if not model.path:
+        return 0
+    from fingerpad.startup import start
+
+    start(args.petsc)
+    import fingerpad.runs.full  # noqa: F401  # before Ctrl-C raises
+
+    with raises():
+        found = found.confirmed(RunContext(lines=True))
+    echo(f"\n{found}")
+    return 1 if any(root.full is None or root.full.failure for root in found.roots) else 0
+
+
+def _number(text: str) -> float | str:
+    """Return a number, or a text that may have a unit."""
+    try:
+        return float(text)
+    except ValueError:
+        return text

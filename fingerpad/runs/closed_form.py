@@ -1,0 +1,59 @@
+"""Values at full slip by a model without a path, one state alone: what a search over a key evaluates many times."""
+
+from dataclasses import dataclass
+from functools import partial
+
+from fingerpad.reduced.model import Model
+from fingerpad.results.quantities import Output
+from fingerpad.results.result import Result
+from fingerpad.runs.context import RunContext
+from fingerpad.scene import Scene
+from fingerpad.scene.messages import SceneError
+from fingerpad.slices import traces
+from fingerpad.slices.total import Total, at_indentation, deepest, profile
+from variational.coefficients import LawError
+
+STATE = "full_slip"
+
+
+@dataclass(frozen=True)
+class ClosedForm:
+    """A model without a path, by the state of full slip."""
+
+    model: Model
+
+    def value(self, scene: Scene, quantity: Output, whole: bool) -> float:
+        """Return a quantity (SI): of the whole finger under ``force``, or of the section under ``f_ext``.
+
+        Raises:
+            SceneError: the model has no full slip here.
+        """
+        try:
+            self.model.check(scene)
+            if whole:
+                return self._total(scene).values[quantity.name]
+            (state,) = self.model.over_forces(scene, [scene.f_ext], STATE, self.section)
+        except LawError as error:
+            raise SceneError(str(error)) from error
+        return float(getattr(state, quantity.name))
+
+    def section(self, scene: Scene) -> Result:
+        """Return the result of the section: the scene's own, or that at the centre of the finger under ``force``."""
+        if scene.force is not None:
+            centre = self._total(scene).centre / profile(scene.slices).centre_scale
+            scene = scene.replace(f_ext=centre)
+        return self.model.solve(scene, RunContext())
+
+    def newtons(self, scene: Scene) -> float:
+        """Return the force (N) on the whole finger whose centre bears ``f_ext`` without voltage."""
+        self.model.check(scene)
+        made, finger = self._traced(scene, "uncharged", scene.f_ext, 0).trace, profile(scene.slices)
+        return at_indentation(finger, made, deepest(finger, made), scene.slices.count).totals["f_ext"]
+
+    def _total(self, scene: Scene) -> Total:
+        found = traces.Reach(scene, partial(self._traced, scene.replace(force=None))).follow(STATE).total
+        assert found is not None
+        return found
+
+    def _traced(self, scene: Scene, name: str, top: float, _: int) -> traces.Traced:
+        return traces.of_points(scene, self.model, lambda each, _: self.section(each), name, top)

@@ -1,0 +1,167 @@
+"""Questions the other way round: the key at which a target is reached, and refusals of what cannot be."""
+
+import math
+
+import numpy as np
+import pytest
+
+import fingerpad as fp
+from fingerpad.cli import main
+from fingerpad.runs.roots import Roots
+from fingerpad.runs.target import read
+from fingerpad.scene.messages import SceneError
+from tests.commands import refused
+
+
+# -- roots -----------------------------------------------------------------------------------------------------------
+@pytest.mark.parametrize(("target", "roots"), [(0.25, [0.5, 1.5]), (0.01, [0.9, 1.1]), (1.0, [0.0, 2.0])])
+def test_all_roots_of_a_parabola_are_found(target, roots):
+    """A pair in one interval, a pair in several, and a pair at the ends. Tolerance: that of Brent's method."""
+    assert Roots(lambda x: (x - 1) ** 2, 0.0, 2.0, target).find() == pytest.approx(roots, abs=1e-5)
+
+
+def test_jump_is_no_root():
+    search = Roots(lambda x: x + 5 * (x > 0.3), 0.0, 1.0, 3.0)
+    assert search.find() == [] and search.jumps == pytest.approx([0.3], abs=1e-5)
+
+
+def test_range_ends_where_answers_end():
+    """A root between the last grid point with an answer and the first without one is found."""
+
+    def function(x):
+        if x > 0.93:
+            raise SceneError("too far")
+        return x
+
+    search = Roots(function, 0.0, 1.0, 0.92)
+    assert search.find() == pytest.approx([0.92], abs=1e-5)
+    assert max(search.values) <= 0.93 < min(search.refusals)
+
+
+# -- on the closed form ----------------------------------------------------------------------------------------------
+@pytest.mark.parametrize(
+    ("target", "over", "value"),
+    [
+        ("mu_app=2x", "voltage", lambda state: (state.mu_app, 0.5)),
+        ("contrast=10 %", "electric.d_i", lambda state: (state.mu_app, 0.275)),
+        ("f_T=30 N/m", "f_ext", lambda state: (state.f_t, 30.0)),
+        ("L_R=1.4 mm", "f_ext", lambda state: (state.contact_length, 1.4e-3)),
+        ("µ_app=40 %", "roughness.h_rms", lambda state: (state.mu_app, 0.4)),
+    ],
+)
+def test_model_has_the_target_at_the_key(target, over, value):
+    """The model, run at the key that was found. Tolerance: of the key, 1e-6 of its range."""
+    (root,) = fp.solve(target=target, over=over).roots
+    found, wanted = value(fp.run(root.scene, model="cylinders").full_slip)
+    assert found == pytest.approx(wanted, rel=2e-5) and root.value == pytest.approx(wanted, rel=2e-5)
+
+
+@pytest.mark.parametrize(("over", "force"), [("voltage", 0.5), ("force", None)])
+def test_newtons_are_of_the_whole_finger(over, force):
+    """Tolerance: a run follows other states first, and its trace of full slip has other points."""
+    (root,) = fp.solve(fp.Scene(force=force) if force else None, "F_T=0.3 N", over).roots
+    finger = fp.run(root.scene, model="cylinders").finger
+    assert finger.values("full_slip")["f_t"] == pytest.approx(0.3, rel=3e-3)
+
+
+def test_newtons_without_a_force_have_f_ext_at_the_centre():
+    """Without voltage the section at the centre bears the scene's f_ext. Tolerance as above."""
+    found = fp.solve(target="F_T=0.3 N")
+    assert "No force is given" in found.notes[0]
+    pressed = fp.run(found.scene.replace(voltage=0.0), model="cylinders").full_slip
+    assert pressed.f_ext == pytest.approx(75.0, rel=1e-2)
+
+
+def test_drive_is_varied_by_its_amplitude():
+    """A lossless sine attracts as its effective value does."""
+    sine = fp.Scene(voltage={"waveform": "sine", "amplitude": 100.0, "frequency": 1e3})
+    (amplitude,) = fp.solve(sine, "mu_app=2x", "voltage.amplitude").values
+    (voltage,) = fp.solve(target="mu_app=2x").values
+    assert amplitude / 2**0.5 == pytest.approx(voltage, rel=1e-4)
+
+
+def test_all_values_are_named():
+    """The sign of a voltage changes no force."""
+    low, high = fp.solve(target="mu_app=2x", between=("-0.3 kV", 300)).values
+    assert low == pytest.approx(-high, rel=1e-5) and high > 100
+
+
+def test_margin_is_the_error_of_the_model_over_the_slope():
+    """Two targets that differ by the known error have keys that differ by the margin. Tolerance: the curvature."""
+    (root,) = fp.solve(target="mu_app=2x").roots
+    error = root.section.record["model_error"]["full_slip"]["mu_app"]
+    ends = [fp.solve(target=f"mu_app={2 * (1 + sign * error)}x").values[0] for sign in (-1, 1)]
+    assert (ends[1] - ends[0]) / 2 == pytest.approx(root.margin, rel=1e-2)
+    (other,) = fp.solve(target="contrast=10 %", over="electric.d_i").roots
+    assert math.isnan(other.margin), "the error is known with the default screen alone"
+
+
+def test_answers_that_end_are_told():
+    found = fp.solve(target="mu_app=5x", between=(0, 5000))
+    assert len(found.values) == 1 and any("there is no answer" in note for note in found.notes)
+
+
+# -- the command -----------------------------------------------------------------------------------------------------
+def test_command_prints_the_key(capsys):
+    words = ["--target=contrast=10 %", "--over=electric.d_i", "--from=1 um", "--to=0.1 mm"]
+    assert main(["solve", *words]) == 0
+    said = capsys.readouterr().out
+    assert "electric.d_i = 21.3" in said and "relative rise of µ_app by the voltage" in said
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        ([], "no --target is given"),
+        (["--target=mu_app=2x", "--target=f_t=3 N/m"], "--target is given 2 times; give one quantity and its value"),
+        (["--target=mu_app"], "target is 'mu_app'; write it as"),
+        (["--target=mu=2"], "mu is not a quantity of a target; it must be one of contrast, mu_app,"),
+        (["--target=mu_app=x"], "target mu_app is 'x'; it must have a number"),
+        (["--target=mu_app=2 V"], "target mu_app is '2 V'; it must be a number, in %, or a multiple"),
+        (["--target=contrast=2x"], "target contrast is '2x'; it must be a number or in %"),
+        (["--target=F_T=0.3 V"], "target F_T is '0.3 V'; its unit is not a unit of force"),
+        (["--target=F_T=0.3 N", "--over=f_ext"], "F_T is a quantity of the whole finger and over is f_ext; give force"),
+        (["--target=L_R=1 mm", "--set=force=0.5"], "L_R is a quantity of the section and force is given; give f_ext"),
+        (["--target=mu_app=2x", "--set=friction=0"], "µ_app is 0 without voltage, of which there is no multiple"),
+        (["--target=mu_app=2x", "--over=electric.di"], "electric.di is not a key of electric; did you mean"),
+        (["--target=mu_app=2x", "--over=contact.formulation"], "over is contact.formulation, which cannot be varied"),
+        (["--target=mu_app=2x", "--over=slices.count"], "over is slices.count, which cannot be varied"),
+        (["--target=mu_app=2x", "--over=voltage=0:9"], "over is 'voltage=0:9'; it must be the name of one key"),
+        (["--target=mu_app=2x", "--over=voltage.rms"], "voltage.rms has no value in the scene to vary around"),
+        (["--target=mu_app=2x", "--over=mesh.contact"], "mu_app does not depend on mesh.contact here"),
+        (["--target=mu_app=2x", "--from=9"], "one of --from and --to is given without the other"),
+        (["--target=mu_app=2x", "--from=9", "--to=8"], "the range of voltage is 9 to 8; the last value"),
+        (["--target=mu_app=2x", "--from=1 m", "--to=2 m"], "voltage is '1 m'; its unit is not a unit of voltage"),
+        (["--target=mu_app=2"], "at voltage 0 to 400 V mu_app is 0.25 to 1.6"),
+        (["--target=mu_app=9x"], "times its value without voltage; 9 times is not reached"),
+        (["--target=mu_app=9999x", "--to=5000", "--from=0"], "9999 times is not reached; at 3011 V there is no"),
+        (["--target=contrast=900 %"], "%; 900 % is not reached"),
+        (["--target=mu_app=2x", "--set=geometry.ridge_count=9"], "geometry is not that of the default finger"),
+    ],
+)
+def test_bad_question_is_refused_in_one_sentence(words, said, capsys):
+    assert said in refused(capsys, "solve", *words)
+
+
+@pytest.mark.parametrize("text", ["f_t=0.3 N", "F_T=300 mN"])
+def test_unit_chooses_between_finger_and_section(text):
+    found = read(text, False)
+    assert found.whole and found.value == pytest.approx(0.3)
+    assert not read("f_t=30 N/m", True).whole
+
+
+def test_full_model_is_beside_the_closed_form(monkeypatch):
+    """Its value, its error and the difference: of a run that has been replaced by one of the cylinders."""
+
+    def instead(scene, model, context):
+        found = fp.run(scene, model="cylinders")
+        state = found.full_slip
+        error = type(state.error)(mu_app=0.004)
+        object.__setattr__(state, "error", error)
+        assert model.name == "full" and np.isfinite(state.mu_app)
+        return found
+
+    monkeypatch.setattr("fingerpad.runs.inverse.solved", instead)
+    found = fp.solve(target="mu_app=2x", model="full")
+    assert found.roots[0].full is not None
+    assert "full model: µ_app 0.5000 ± 0.0040, " in str(found) and "±: estimated discretisation error" in str(found)
