@@ -112,7 +112,13 @@ LINES = {"lines": np.array([[0, 2, 1]]), "beside": np.array([[0, -1]])}
 
 @pytest.mark.parametrize(
     "changes",
-    [{"triangles": np.array([[0, 1, 3]])}, {"sed": np.zeros(2)}, {"u": np.zeros(3)}, {"x": np.array(["a"] * 3)}],
+    [
+        {"triangles": np.array([[0, 1, 3]])},
+        {"sed": np.zeros(2)},
+        {"u": np.zeros(3)},
+        {"x": np.array(["a"] * 3)},
+        {"stress": np.zeros((1, 3))},
+    ],
 )
 def test_arrays_of_no_finger_are_none(tmp_path, changes):
     np.savez(tmp_path / "whole.npz", **FINGER)

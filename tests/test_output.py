@@ -154,6 +154,12 @@ def test_gathered_mesh(problem):
     assert np.abs(middle - (begin + end) / 2).max() < 1e-17
     assert snapshot.triangles.shape == (72, 3)
     assert np.abs(snapshot.x + snapshot.u - snapshot.x @ F_GIVEN.T).max() < 1e-17
+    strain = (F_GIVEN.T @ F_GIVEN - np.eye(2)) / 2
+    assert snapshot.strain == pytest.approx(np.tile(strain[[0, 1, 0], [0, 1, 1]], (72, 1)), abs=1e-13)
+    for tag in SOLIDS:  # 5e-9 is of the central differences
+        sigma = cauchy_3d(tag, F_GIVEN)
+        error = snapshot.stress[snapshot.tag == tag] - sigma[[0, 1, 2, 0], [0, 1, 2, 1]]
+        assert np.abs(error).max() < 5e-9 * np.abs(sigma).max()
     corners = snapshot.x[snapshot.triangles]
     a, b = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
     assert np.abs(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]).sum() / 2 == pytest.approx(1e-6, rel=1e-12, abs=0)

@@ -1,4 +1,4 @@
-"""What is evaluated inside of the body: fields for ParaView, mean energy densities, densities at receptor sites.
+"""What is evaluated inside of the body: fields for ParaView, means of each cell, energy densities at receptor sites.
 
 ParaView shows the deformed body with *Warp By Vector* on ``displacement.bp``. Stress and energy density jump from
 layer to layer; they are sampled in the corners of each cell by itself and stay discontinuous.
@@ -99,9 +99,7 @@ class Fields:
         if mesh.comm.rank == 0:
             folder.mkdir(parents=True, exist_ok=True)
         mesh.comm.barrier()
-        F = kinematics.deformation_gradient(ufl.grad(problem.u))
-        stresses = {tags: kinematics.cauchy(law, F, problem.pressures[tags]) for tags, law in problem.laws.items()}
-        self.stress, self._sample_stress = _sampled(problem, "stress", stresses)
+        self.stress, self._sample_stress = _sampled(problem, "stress", _stresses(problem))
         self.sed, self._sample_sed = _sampled(problem, "sed", problem.densities)
         self._problem, self.displacement = problem, fem.Function(problem.V, name="displacement")
         # One writer a field: a file holds functions of one element.
@@ -162,6 +160,26 @@ def _sampled(
     return fem.Function(space, name=name), Cellwise(problem.mesh, problem.cell_tags, expressions, points)
 
 
+def _stresses(problem: "Problem") -> dict[tuple[int, ...], Any]:
+    """Return the Cauchy stress (Pa), shape (3, 3), of each law by the tags of its cells."""
+    F = kinematics.deformation_gradient(ufl.grad(problem.u))
+    return {tags: kinematics.cauchy(law, F, problem.pressures[tags]) for tags, law in problem.laws.items()}
+
+
+def tensors_per_cell(problem: "Problem") -> tuple[Array, Array]:
+    """Return means over the corners of each cell of this rank, which for linear fields are those over the cell.
+
+    Returns:
+        Cauchy stress (Pa), components xx, yy, zz and xy, shape (cells, 4), and Green's strain, xx, yy and xy, shape
+        (cells, 3).
+    """
+    corners = np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]])
+    stress = Cellwise(problem.mesh, problem.cell_tags, _stresses(problem), corners).evaluate().mean(axis=1)
+    strains = dict.fromkeys(problem.laws, kinematics.green_strain(ufl.grad(problem.u)))
+    strain = Cellwise(problem.mesh, problem.cell_tags, strains, corners).evaluate().mean(axis=1)
+    return stress[:, [0, 4, 8, 1]], strain
+
+
 def sed_per_cell(problem: "Problem") -> tuple[NDArray[np.int32], Array]:
     """Return the cells of this rank and the mean strain energy density of each (J/m^3 of reference volume)."""
     # Degree 2 integrates the linear solid's energy at P2 exactly.
@@ -215,8 +233,7 @@ class Receptors:
 
     @cached_property
     def _compression(self) -> Cellwise:
-        F, p = kinematics.deformation_gradient(ufl.grad(self._problem.u)), self._problem.pressures
-        stresses = {tags: -kinematics.cauchy(law, F, p[tags])[1, 1] for tags, law in self._problem.laws.items()}
+        stresses = {tags: -stress[1, 1] for tags, stress in _stresses(self._problem).items()}
         return Cellwise(self._mesh, self._problem.cell_tags, stresses, self._points)
 
     @cached_property

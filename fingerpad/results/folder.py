@@ -40,6 +40,7 @@ LEFT = (
         "result.nc*.part",
     ),
     *("displacement.bp", "stress.bp", "sed.bp", "finger_*.npz", "finger_*.png", "surface*.npz", "surface*.png"),
+    *("fields_*.vtu", "fields.pvd"),
     *("history.png", "time.png", "footprint.png", "report.html", "report.html*.part"),
     *("spikes.csv", "spikes.nc", "raster.png"),
 )
