@@ -7,9 +7,10 @@ from xml.etree import ElementTree
 
 import numpy as np
 import pytest
+from mpi4py import MPI
 
 import fingerpad as fp
-from fingerpad.results.fields import Fields
+from fingerpad.results.fields import UNITS, Fields
 from fingerpad.scene import from_data
 from geometry import tags
 from tests.runs import no_pictures
@@ -33,7 +34,7 @@ def ran(tmp_path_factory) -> fp.Result:
 
 def arrays(file: Path) -> dict[str, np.ndarray]:
     """Return the arrays of a .vtu file by name, read by its specification."""
-    types = {"Float64": "<f8", "Int64": "<i8", "Int32": "<i4", "UInt8": "u1"}
+    types = {"Float64": "<f8", "Float32": "<f4", "Int64": "<i8", "Int32": "<i4", "UInt8": "u1"}
     found = {}
     for each in ElementTree.parse(file).iter("DataArray"):
         text = (each.text or "").strip()
@@ -109,12 +110,16 @@ def test_files_hold_the_fields(ran):
         np.testing.assert_array_equal(found["points"][:, :2], fields.points)
         np.testing.assert_array_equal(found["connectivity"].reshape(-1, 3), fields.triangles)
         np.testing.assert_array_equal(found["displacement"][:, :2], fields.displacement)
-        np.testing.assert_array_equal(found["stress"].reshape(-1, 3, 3), fields.stress)
+        np.testing.assert_array_equal(found["stress"].reshape(-1, 3, 3), fields.stress.astype(np.float32))
 
 
 def test_pyvista_opens_the_files(ran):
-    """Its reader of collections gives each load's arrays, and so does the result itself."""
+    """Its reader of collections gives each load's arrays with their units, and the result itself gives the arrays.
+
+    Tolerance: values of cells have 32 bits in files.
+    """
     pyvista = pytest.importorskip("pyvista")
+    core = pytest.importorskip("vtkmodules.vtkCommonCore")
     reader = pyvista.PVDReader(str(ran.folder / "fields.pvd"))
     assert list(reader.time_values) == ends(ran)
     blocks = ran.to_pyvista()
@@ -124,19 +129,48 @@ def test_pyvista_opens_the_files(ran):
             fields = ran.fields[load]
             assert set(grid.celltypes) == {pyvista.CellType.TRIANGLE}
             np.testing.assert_array_equal(grid.points[:, :2], fields.points)
-            np.testing.assert_array_equal(grid["stress"].reshape(-1, 3, 3), fields.stress)
+            for name in ("stress", "strain", "sed"):
+                values = getattr(fields, name)
+                np.testing.assert_allclose(grid[name].reshape(values.shape), values, rtol=1e-7, atol=1e-30)
             np.testing.assert_array_equal(grid["layer"], fields.layer)
             lowest = grid.warp_by_vector("displacement").points[:, 1].min()
             assert lowest == pytest.approx((fields.points + fields.displacement)[:, 1].min(), abs=1e-12)
+        on_cells, key = reader.read()[0].GetCellData(), core.vtkDataArray.UNITS_LABEL()
+        units = {name: on_cells.GetArray(name).GetInformation().Get(key) for name in ("stress", "sed", "layer")}
+        assert units == {name: UNITS[name] or None for name in units}
 
 
-def test_what_is_missing_is_one_sentence(monkeypatch):
+@pytest.mark.mpi
+@pytest.mark.skipif(MPI.COMM_WORLD.size == 1, reason="one rank has no other to agree with")
+def test_ranks_write_what_one_does(tmp_path):
+    """The same cells in the same order, and numbers to 1e-8 of the largest, the solver's tolerance."""
+    comm = MPI.COMM_WORLD
+    place = Path(comm.bcast(str(tmp_path)))
+    with no_pictures():
+        many, one = (
+            fp.run(from_data(SCENE), out=place / name / str(rank), comm=each)
+            for name, rank, each in (("all", 0, comm), ("one", comm.rank, MPI.COMM_SELF))
+        )
+    assert bool(many.fields) == (comm.rank == 0)
+    for load in many.fields:
+        for key, expected in vars(one.fields[load]).items():
+            np.testing.assert_allclose(getattr(many.fields[load], key), expected, atol=1e-8 * np.abs(expected).max())
+    if comm.rank == 0:
+        files = [arrays(place / name / "0" / "fields_press.vtu") for name in ("all", "one")]
+        assert files[0].keys() == files[1].keys()
+        np.testing.assert_allclose(*(found["stress"] for found in files), rtol=1e-5, atol=1e-3)
+
+
+def test_what_is_missing_is_one_sentence(ran, monkeypatch):
     """A model without a mesh has no fields; without PyVista the remedy is named."""
     found = fp.run(model="cylinders")
     assert found.fields == {}
-    with pytest.raises(ValueError, match="the result of the model 'cylinders' has no fields here"):
-        found.to_pyvista()
+    for wanted in (found.to_pyvista, lambda: found.fields["full_slip"]):
+        with pytest.raises(ValueError, match="the result of the model 'cylinders' has no fields here; full runs have"):
+            wanted()
+    with pytest.raises(ValueError, match="has no fields of 'stress'; it has those of 'press', 'go on', 'uncharged'"):
+        ran.fields["stress"]
     monkeypatch.setitem(__import__("sys").modules, "pyvista", None)
     nothing = Fields(*(np.zeros((0, 2)),) * 7)
-    with pytest.raises(ImportError, match="to_pyvista needs pyvista, which is not installed; pip install pyvista"):
+    with pytest.raises(ImportError, match="to_pyvista needs pyvista, which is not installed; pip install pyvista, or"):
         nothing.to_pyvista()

@@ -1,6 +1,4 @@
-"""Fields, cell means and receptor sites against closed forms under homogeneous deformation."""
-
-from pathlib import Path
+"""Cell means and receptor sites against closed forms under homogeneous deformation."""
 
 import dolfinx
 import numpy as np
@@ -14,7 +12,7 @@ from variational.contact.penalty import Penalty
 from variational.materials import ogden, saint_venant
 from variational.materials.ogden import Ogden
 from variational.materials.saint_venant import SaintVenant
-from variational.output import Cellwise, Fields, Receptors, sed_per_cell
+from variational.output import Cellwise, Receptors, sed_per_cell
 from variational.problem import Interface, Problem
 from variational.snapshot import gather_mesh
 from variational.surface import Surface
@@ -206,33 +204,3 @@ def test_receptor_outside(problem):
         Receptors(problem, np.array([[0.5e-3, 0.5e-3], [2e-3, 0.5e-3]]))
     with pytest.raises(ValueError, match="no receptor site"):
         Receptors(problem, np.zeros((0, 2)))
-
-
-def test_files(problem, tmp_path, capfd):
-    """Three files with two steps each, and not a word on the terminal."""
-    folder = Path(problem.mesh.comm.bcast(str(tmp_path))) / "new" / "fields"
-    fields = Fields(problem, folder)
-    for time, F in enumerate((np.eye(2), F_GIVEN)):
-        deform(problem, F)
-        fields.write(float(time))
-    fields.close()
-    assert {path.name for path in folder.iterdir()} >= {"displacement.bp", "stress.bp", "sed.bp"}
-    assert all((folder / name / "md.idx").stat().st_size > 0 for name in ("displacement.bp", "stress.bp", "sed.bp"))
-    assert capfd.readouterr() == ("", "")
-
-
-def test_written_values(tmp_path):
-    """The function handed to the writer has both solids' nine components in every cell (the file is not read back).
-
-    Tolerance: that of the central differences.
-    """
-    problem = block(MPI.COMM_SELF)
-    deform(problem, F_GIVEN)
-    fields = Fields(problem, tmp_path)
-    fields.write(0.0)
-    fields.close()
-    found = np.asarray(fields.stress.x.array).reshape(-1, 9)
-    for tag in SOLIDS:
-        expected = cauchy_3d(tag, F_GIVEN).ravel()
-        dofs = fields.stress.function_space.dofmap.list[problem.cell_tags.find(tag)]
-        assert np.abs(found[dofs] - expected).max() < 5e-9 * np.abs(expected).max()

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     import pyvista
 
     from fingerpad.results.drawing import Drawing
-    from fingerpad.results.fields import Fields
+    from fingerpad.results.fields import StateFields
     from fingerpad.scene import Scene
     from fingerpad.slices.finger import WholeFinger
 
@@ -138,14 +138,16 @@ class Answer:
         return self.drawing
 
     @property
-    def fields(self) -> "dict[str, Fields]":
+    def fields(self) -> "StateFields":
         """Displacement, stress, strain and energy density inside the finger, by load or named state; on rank 0.
 
         A load's name stands for its end. Named states are those of the mesh that their numbers are of. Empty for
         models without a mesh, and on other ranks.
         """
+        from fingerpad.results.fields import StateFields
+
         drawing = self._drawn()
-        return {} if drawing is None else drawing.fields()
+        return StateFields({} if drawing is None else drawing.fields(), self.model)
 
     def to_pyvista(self) -> "pyvista.MultiBlock":
         """Return :attr:`fields` as blocks of PyVista, each a grid of the unloaded finger in m.
@@ -154,12 +156,7 @@ class Answer:
             ImportError: PyVista is not installed.
             ValueError: there are no fields.
         """
-        found = {name: each.to_pyvista() for name, each in self.fields.items()}
-        if not found:
-            raise ValueError(f"the result of the model {self.model!r} has no fields here; full runs have, on rank 0")
-        import pyvista
-
-        return pyvista.MultiBlock(found)
+        return self.fields.to_pyvista()
 
 
 def _drawing(result: Answer, folder: Path) -> "Drawing":

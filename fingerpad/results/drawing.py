@@ -176,10 +176,16 @@ class Drawing:
         """Return the fields inside the finger: at the end of each load by its name, and of named states by theirs."""
         views = {**self.ends, **self.finer}
         if self.starting_size is None:  # named states are those of the path
-            at = {end.state.step: end for end in self.ends.values()}
-            views |= {name: at[state.step] for name, state in self.named.items() if state.step in at}
+            views |= {name: end for name, state in self.named.items() if (end := self._end_of(name, state)) is not None}
         found = {name: fields.of_snapshot(view.snapshot) for name, view in views.items() if view.snapshot is not None}
         return {name: each for name, each in found.items() if each is not None}
+
+    def _end_of(self, name: str, state: ContactState) -> View | None:
+        """Return the end of a load in a named state; in full slip, which further sliding leaves as it is, its last."""
+        same = [end for end in self.ends.values() if end.state.step == state.step]
+        if name == "full_slip":
+            same += [end for end in self.ends.values() if end.state.slip_began == state.slip_began > 0]
+        return same[-1] if same else None
 
     def _put_fields(self, folder: Path, each_load: bool) -> None:
         """Write the fields of each load's end, a collection of them, and the fields of named states on other meshes."""
@@ -187,7 +193,7 @@ class Drawing:
         found = {name: each for name, each in self.fields().items() if name in files}
         for name, each in found.items():
             fields.write(folder / files[name], each)
-        loads = [(end.state.step, files[load]) for load, end in self.ends.items() if load in found]
+        loads = [(end.state.step, load, files[load]) for load, end in self.ends.items() if load in found]
         if loads:
             fields.write_series(folder / "fields.pvd", loads)
 

@@ -6,7 +6,7 @@ of these (``.pvd``). Both formats are described in VTK's manual, https://docs.vt
 
 import zlib
 from base64 import b64encode
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -18,13 +18,16 @@ from numpy.typing import NDArray
 from fingerpad.results import files
 
 if TYPE_CHECKING:
-    from pyvista import UnstructuredGrid
+    from pyvista import MultiBlock, UnstructuredGrid
 
     from variational.snapshot import Snapshot
 
 Array = NDArray[np.float64]
+UNITS = {"displacement": "m", "stress": "Pa", "strain": "", "sed": "J/m^3", "layer": ""}
+"""Units of the arrays in files; each array has its own beside it, by VTK's key ``UNITS_LABEL``."""
+_LEVEL = 1  # of compression: the next ones take longer and save little
 _TRIANGLE = 5  # VTK's number of this cell
-_TYPES = {"f8": "Float64", "i8": "Int64", "i4": "Int32", "u1": "UInt8"}
+_TYPES = {"f8": "Float64", "f4": "Float32", "i8": "Int64", "i4": "Int32", "u1": "UInt8"}
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,9 +45,10 @@ class Fields:
     sed: Array
     """Strain energy density per reference volume (J/m^3), shape (cells,)."""
     stress: Array
-    """Cauchy stress (Pa), z out of the plane, shape (cells, 3, 3)."""
+    """Cauchy stress (Pa), z out of the plane, shape (cells, 3, 3): the mean of the values in the cell's three corners,
+    each with the strain of this cell. With viscous layers the stress of their branches is part of it."""
     strain: Array
-    """Green's strain (C - I) / 2, zero out of the plane, shape (cells, 3, 3)."""
+    """Green's strain (C - I) / 2, zero out of the plane, shape (cells, 3, 3); the mean over the corners too."""
 
     def to_pyvista(self) -> "UnstructuredGrid":
         """Return PyVista's grid of the unloaded finger, in m; ``warp_by_vector("displacement")`` deforms it.
@@ -52,11 +56,7 @@ class Fields:
         Raises:
             ImportError: PyVista is not installed.
         """
-        try:
-            import pyvista
-        except ModuleNotFoundError as error:
-            how = "pip install pyvista, or environment/add pyvista"
-            raise ImportError(f"to_pyvista needs pyvista, which is not installed; {how}", name="pyvista") from error
+        pyvista = _pyvista()
         grid = pyvista.UnstructuredGrid({_TRIANGLE: self.triangles}, _in_space(self.points))
         for data, arrays in ((grid.point_data, self.on_points()), (grid.cell_data, self.on_cells())):
             for name, values in arrays.items():
@@ -71,6 +71,45 @@ class Fields:
         """Return the arrays by cell that VTK has, shapes (cells,) and, of tensors row by row, (cells, 9)."""
         tensors = {"stress": self.stress.reshape(-1, 9), "strain": self.strain.reshape(-1, 9)}
         return {"sed": self.sed, **tensors, "layer": self.layer}
+
+
+class StateFields(dict[str, Fields]):
+    """Fields by the name of a load or of a named state."""
+
+    def __init__(self, found: Mapping[str, Fields], model: str) -> None:
+        """Take the fields of a result of a model."""
+        super().__init__(found)
+        self._model = model
+
+    def __missing__(self, name: str) -> Fields:
+        """Refuse a state of which there are no fields.
+
+        Raises:
+            ValueError: what there is.
+        """
+        if not self:
+            raise ValueError(f"the result of the model {self._model!r} has no fields here; full runs have, on rank 0")
+        raise ValueError(f"the result has no fields of {name!r}; it has those of {', '.join(map(repr, self))}")
+
+    def to_pyvista(self) -> "MultiBlock":
+        """Return a block for each state, each a grid of the unloaded finger in m.
+
+        Raises:
+            ImportError: PyVista is not installed.
+            ValueError: there are no fields.
+        """
+        if not self:
+            self.__missing__("")
+        return _pyvista().MultiBlock({name: fields.to_pyvista() for name, fields in self.items()})
+
+
+def _pyvista() -> Any:
+    try:
+        import pyvista
+    except ModuleNotFoundError as error:
+        how = "pip install pyvista, or in a clone environment/wheels"
+        raise ImportError(f"to_pyvista needs pyvista, which is not installed; {how}", name="pyvista") from error
+    return pyvista
 
 
 def of_snapshot(shown: "Snapshot | Any") -> Fields | None:
@@ -89,32 +128,36 @@ def of_snapshot(shown: "Snapshot | Any") -> Fields | None:
 
 
 def write(path: Path, fields: Fields) -> None:
-    """Write fields into a file ``.vtu``, which is there as a whole or not at all."""
+    """Write fields into a file ``.vtu``, which is there as a whole or not at all; values of cells have 32 bits."""
     points, cells = len(fields.points), len(fields.triangles)
     topology: dict[str, NDArray[Any]] = {
         "connectivity": fields.triangles.astype(np.int64).ravel(),
         "offsets": 3 * np.arange(1, cells + 1, dtype=np.int64),
         "types": np.full(cells, _TRIANGLE, dtype=np.uint8),
     }
+    on_cells = fields.on_cells().items()
     parts: dict[str, dict[str, NDArray[Any]]] = {
         "Points": {"points": _in_space(fields.points)},
         "Cells": topology,
         "PointData": fields.on_points(),
-        "CellData": fields.on_cells(),
+        "CellData": {name: each.astype(np.float32) if each.dtype == np.float64 else each for name, each in on_cells},
     }
     body = "\n".join(f"<{name}>\n{_arrays(arrays)}</{name}>" for name, arrays in parts.items())
     piece = f'<Piece NumberOfPoints="{points}" NumberOfCells="{cells}">\n{body}\n</Piece>'
     files.replace(path, _file("UnstructuredGrid", f"<UnstructuredGrid>\n{piece}\n</UnstructuredGrid>"))
 
 
-def write_series(path: Path, states: Sequence[tuple[int, str]]) -> None:
+def write_series(path: Path, states: Iterable[tuple[int, str, str]]) -> None:
     """Write a collection ``.pvd`` of states.
 
     Args:
         path: where to.
-        states: number of the step, as the time, and name of the file beside the collection.
+        states: number of the step, as the time, its name, and the name of the file beside the collection.
     """
-    rows = "\n".join(f'<DataSet timestep="{step}" part="0" file={quoteattr(name)}/>' for step, name in states)
+    rows = "\n".join(
+        f'<DataSet timestep="{step}" part="0" name={quoteattr(name)} file={quoteattr(file)}/>'
+        for step, name, file in states
+    )
     files.replace(path, _file("Collection", f"<Collection>\n{rows}\n</Collection>"))
 
 
@@ -129,12 +172,17 @@ def _arrays(arrays: Mapping[str, NDArray[Any]]) -> str:
     for name, values in arrays.items():
         kind = values.dtype.str[1:]
         raw = np.ascontiguousarray(values, dtype=f"<{kind}").tobytes()
-        block = zlib.compress(raw)
+        block = zlib.compress(raw, _LEVEL)
         sizes = np.array([1, len(raw), 0, len(block)], dtype="<u8").tobytes()
         components = 1 if values.ndim == 1 else values.shape[1]
         text += f'<DataArray type="{_TYPES[kind]}" Name="{name}" NumberOfComponents="{components}" format="binary">'
-        text += f"{b64encode(sizes).decode()}{b64encode(block).decode()}</DataArray>\n"
+        text += f"{b64encode(sizes).decode()}{b64encode(block).decode()}{_unit(name)}</DataArray>\n"
     return text
+
+
+def _unit(name: str) -> str:
+    unit = UNITS.get(name)
+    return f'<InformationKey name="UNITS_LABEL" location="vtkDataArray">{unit}</InformationKey>' if unit else ""
 
 
 def _in_space(plane: Array) -> Array:
