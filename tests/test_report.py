@@ -92,7 +92,7 @@ def page(folder) -> str:
 @pytest.fixture
 def copy(folder, tmp_path) -> Path:
     """A copy of the run's folder, to be spoilt."""
-    return Path(shutil.copytree(folder, tmp_path / "copy", ignore=shutil.ignore_patterns("*.bp", "*.png")))
+    return Path(shutil.copytree(folder, tmp_path / "copy", ignore=shutil.ignore_patterns("*.vtu", "*.png")))
 
 
 # -- a run -------------------------------------------------------------------------------------------------
@@ -179,7 +179,9 @@ def test_long_run_keeps_some_of_its_states():
     assert len(kept) > 50
 
 
-@pytest.mark.parametrize(("name", "words"), [("a.mp4", "must end with one of .webp, .gif"), ("a.webp", "has no motion.npz")])
+@pytest.mark.parametrize(
+    ("name", "words"), [("a.mp4", "must end with one of .webp, .gif"), ("a.webp", "has no motion.npz")]
+)
 def test_animation_that_cannot_be_made_is_refused(copy, capsys, name, words):
     (copy / motion.FILE).unlink()
     assert main(["animate", str(copy), "--out", str(copy / name)]) == 2

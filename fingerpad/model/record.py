@@ -71,13 +71,13 @@ class Viewer:
             merkel[ridges < 0, 0] *= -1
         return snapshot, merkel
 
-    def body(self, densities: bool = True) -> Snapshot | None:
+    def body(self, fields: bool = True) -> Snapshot | None:
         """Return the present state of the whole body, on rank 0; collective.
 
         Args:
-            densities: whether its energy densities are computed.
+            fields: whether its energy densities, stresses and strains are computed.
         """
-        snapshot = self._lines.snapshot(self._finger.problem, densities)
+        snapshot = self._lines.snapshot(self._finger.problem, fields)
         return snapshot if snapshot is None or self._finger.options.both_halves else snapshot.whole()
 
     def sites(self) -> Sites | None:
