@@ -154,10 +154,10 @@ def _draw_change(ax: Axes, scene: _Scene, k: int) -> None:
     state, before = scene.states[k], scene.states[max(k - 1, 0)]
     if state.ridges is None or before.ridges is None:
         return
-    now, then = (set(each.number[each.length > 0].tolist()) for each in (state.ridges, before.ridges))
-    gone, come = sorted(then - now), sorted(now - then)
-    words = [f"ridges off: {', '.join(map(str, gone))}"] if gone else []
-    words += [f"ridges on: {', '.join(map(str, come))}"] if come else []
+    now, then = (each.number[each.length > 0] for each in (state.ridges, before.ridges))
+    gone, come = np.setdiff1d(then, now), np.setdiff1d(now, then)
+    words = [f"ridges off: {', '.join(map(str, gone))}"] if gone.size else []
+    words += [f"ridges on: {', '.join(map(str, come))}"] if come.size else []
     ax.text(0.5, 0.9, "     ".join(words), transform=ax.transAxes, ha="center", va="top", weight="bold", zorder=5)
 
 
@@ -188,7 +188,7 @@ def _draw_forces(ax: Axes, states: Sequence[ContactState], frame: _Frame) -> Non
     top = 0.0
     for label, name, colour, dash in rows:
         values = np.array([getattr(state, name) for state in states], dtype=float)
-        done = at[at <= k].tolist() + [k]
+        done = np.append(at[at <= k], k)
         ax.plot(at, values, color=colour, lw=0.8, alpha=0.35, ls=dash)
         ax.plot(done, np.interp(done, at, values), color=colour, lw=2, ls=dash, label=label)
         ax.plot(k, np.interp(k, at, values), "o", color=colour, ms=5)
