@@ -85,7 +85,7 @@ def _paint_curves(ax: Axes, curves: Curves) -> None:
     for values in curves.values:
         ax.plot(curves.time, values, color=style.GREY, lw=0.7, alpha=0.6)
     for colour, k in zip(style.CATEGORIES, marked, strict=False):
-        ax.plot(curves.time, curves.values[k], color=colour, label=f"ridge {curves.ridges[k]}")
+        ax.plot(curves.time, curves.values[k], color=colour, label=f"ridge {curves.ridges[int(k)]}")
     ax.set_ylabel("SED at Merkel\nsites (kPa)")
     ax.set_ylim(bottom=0)
     ax.spines[["top", "right"]].set_visible(False)
