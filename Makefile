@@ -13,6 +13,7 @@
 # make measured  measured fingers beside this model's numbers; docs/measured.md, two minutes
 # make drive  friction over frequency and waveform of the voltage; docs/drive.md, a minute
 # make viscosity  how skin relaxes, energy of random histories, friction after a step of voltage; docs/viscosity.md
+# make loads  seeded scenes of people's loads beside the closed form; docs/loads.md, half an hour, and it goes on
 # make feel   what people and nerves were measured to do beside spikes; docs/feel.md, ten minutes
 # make performance  counts, ratios and seconds, part by part, on an idle machine; docs/performance.md, half an hour; prints the targets
 # make calibration  estimated errors beside known ones, scene by scene; docs/two_meshes.md, ten minutes
@@ -23,7 +24,7 @@
 
 run := environment/run
 
-.PHONY: help demo lint test check test-pip test-order fuzz docs pages stale verify paper measured drive viscosity feel calibration chart performance
+.PHONY: help demo lint test check test-pip test-order fuzz docs pages stale verify paper measured drive viscosity loads feel calibration chart performance
 
 help:
 	@sed -n 's/^# make/make/p' Makefile
@@ -82,6 +83,9 @@ drive:
 
 viscosity:
 	$(run) python3 -m benchmarks.viscosity
+
+loads:
+	$(run) python3 -m benchmarks.loads
 
 feel:
 	$(run) python3 -m benchmarks.feel

@@ -20,7 +20,7 @@ from matplotlib.figure import Figure
 from benchmarks import harness
 from benchmarks.models import SIZE, name
 from benchmarks.runs import FORCES, VOLTAGES, Run, trace
-from fingerpad.reduced import cylinders
+from fingerpad.reduced import uncharged
 from fingerpad.results import style
 from fingerpad.scene import Scene
 from fingerpad.scene.parameters import Slices
@@ -34,6 +34,7 @@ _LIMIT = 3600.0  # s of processor time of the run
 RADII = (15e-3, 28e-3, 40e-3)  # m, R_z
 NEWTONS = (0.05, 0.1, 0.2, 0.3, 0.5, 0.75)  # N
 COMPARED = 0.5  # N
+OF_CLOSED_FORM = (0.05, 0.075, 0.1, 0.15, 0.2, 0.3, 0.4, 0.5, 0.6, 0.75, 1.0, 1.2)  # N, of the error of the closed form
 PAPER = 20e-3  # m of finger, by which the paper multiplies
 CENTRE = 75.0  # N/m, of the run and of the estimates in the table
 CENTRES = (25.0, 50.0, 75.0, 100.0, 120.0)  # N/m, of the runs whose estimates are judged
@@ -53,7 +54,7 @@ def states(scenes: Found, model: str, voltage: float, state: str) -> list[Contac
         summary = scenes[name(f_ext, voltage)][model]["summary"]
         values = {key: summary[f"{state}_{key}"] for key in RESULTS if f"{state}_{key}" in summary}
         if model == "cylinders":
-            values["bone_height"] = -cylinders.indentation(f_ext, state)
+            values["bone_height"] = -uncharged.indentation(f_ext, state)
         found.append(ContactState(f_ext=f_ext, voltage=voltage, **values))
     return found
 
@@ -112,6 +113,16 @@ def by_model(scenes: Found) -> list[dict[str, Any]]:
             total = at_force(finger(), kept(scenes, model, voltage), COMPARED, Slices().count)
             found.append({"model": model} | row(total, voltage, RADII[1]))
     return found
+
+
+def closed_form(scenes: Found) -> dict[str, float]:
+    """Return the largest error of the cylinders' sums at full slip by quantity, of their value, rounded up to 0.1 %."""
+    worst = dict.fromkeys(("f_electrostatic", "contact_area", "gross_area"), 0.0)
+    for voltage, force in itertools.product(VOLTAGES[1:], OF_CLOSED_FORM):
+        made = (kept(scenes, model, voltage) for model in ("cylinders", "full"))
+        own, full = (at_force(finger(), each, force, Slices().count).totals for each in made)
+        worst = {key: max(value, abs(full[key] / own[key] - 1)) for key, value in worst.items()}
+    return {key: float(np.ceil(1e3 * value - 1e-6) / 1e3) for key, value in worst.items()}
 
 
 def estimates(scenes: Found) -> list[dict[str, Any]]:

@@ -38,6 +38,7 @@ PAGES = {
     "errors": "benchmarks.errors",
     "feel": "benchmarks.feel.__main__",
     "hero": "benchmarks.hero",
+    "loads": "benchmarks.loads.__main__",
     "measured": "benchmarks.measured.__main__",
     "microscale": "benchmarks.microscale.__main__",
     "models": "benchmarks.models",

@@ -275,31 +275,35 @@ def test_errors_of_the_script_are_those_of_python(tmp_path):
     """And the keys for which none is known, at the ends of all ranges, beyond them, and for each field."""
     some = [values for values in sets() if "length" not in values]
     for key, (low, high) in cylinder_errors.REGIONS[-1].ranges.items():
-        per = FIELDS[key].per
-        some += [{key: end * per} for end in (low, high, low * 0.999, high * 1.001) if end]
+        per = FIELDS[key].per if key in FIELDS else 0.0
+        some += [{key: end * per} for end in (low, high, low * 0.999, high * 1.001) if end * per]
     some = [values for values in some if not isinstance(by_python(values), str)]
     fixed = in_si({key: field.value for key, field in FIELDS.items()})
-    asked_for = [fixed | in_si(values) for values in some]
+    asked_for = [fixed | in_si(values) | {"newtons": "force" in values} for values in some]
     program = (
-        f"const asked = {json.dumps(asked_for)};\nconsole.log(JSON.stringify(asked.map((values) => "
-        "[modelErrors.of(values, closedForm.solve(values)), modelErrors.outside(values)])));"
+        f"const asked = {json.dumps(asked_for)};\nconsole.log(JSON.stringify(asked.map((values) => {{"
+        "const answer = values.newtons ? closedForm.whole(values) : closedForm.solve(values);"
+        "return [modelErrors.of(values, answer), modelErrors.outside(values, answer)]; })));"
     )
     inside = 0
     for values, (error, outside) in zip(some, by_script(program, tmp_path), strict=True):
         data: dict[str, Any] = {}
         for key, value in in_si(values).items():
             put(data, key, value)
-        found = cylinders.solve(Scene(**data))
-        expected = found.record["model_error"].get("full_slip", {})
-        assert {each["key"] for each in outside} == {each.key for each in cylinder_errors.outside(found.scene)}, values
-        assert (error or {}).keys() - {"f_t"} == expected.keys(), values
-        assert {key: error[key] for key in expected} == pytest.approx(expected, rel=SAME), values
+        found = fp.run(Scene(**data), model="cylinders")
+        known = found.record["model_error"].get(cylinder_errors.WHOLE if "force" in values else "full_slip", {})
+        assert found.full_slip is not None
+        force, pull = found.scene.f_ext, found.full_slip.f_electrostatic
+        if found.finger is not None:
+            force, pull = found.finger.f_ext, found.finger.values("full_slip")["f_electrostatic"]
+        keys = {each.key for each in cylinder_errors.outside(found.scene, pull / force)}
+        assert {each["key"] for each in outside} == keys and bool(keys) == (not known), values
+        assert (error or {}) == pytest.approx(known, rel=3e-3 if "force" in values else SAME), values
         inside += bool(error)
     assert 0 < inside < len(some)
 
 
 # -- The calculator's ±, band and solid line are where full runs are, and nowhere else ---
-BANDS = cylinder_errors.REGIONS[0].errors["full_slip"]
 # Sets values into fields; returns what the page shows of its error.
 SHOWN = """
 function shown(values) {
@@ -347,10 +351,11 @@ def test_point_that_no_run_is_at_has_no_error(whole, tmp_path):
 def test_known_point_has_its_errors(whole, tmp_path):
     """Of friction, attraction and contact length, in the digits of the value."""
     (found,) = shown(whole, tmp_path, {})
-    state = cylinders.solve(Scene()).full_slip
+    result = cylinders.solve(Scene())
+    state, bands = result.full_slip, result.record["model_error"]["full_slip"]
     for key, band, per in (("mu_app", "mu_app", 1), ("f_t", "mu_app", 1), ("f_electrostatic", "f_electrostatic", 1),
                            ("contact_length", "contact_length", 1e3)):  # fmt: skip
         error = float(re.search(r"± ([0-9.]+)", found["cells"][key])[1])
-        assert error == pytest.approx(BANDS[band] * getattr(state, key) * per, abs=6e-3)
+        assert error == pytest.approx(bands[band] * getattr(state, key) * per, abs=6e-3)
     assert "±" not in found["cells"]["d_eq"] and found["caption"] == "Section at the centre of the finger"
     assert found["voltage"]["bands"] == found["force"]["bands"] == 1

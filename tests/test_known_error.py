@@ -3,59 +3,102 @@
 import numpy as np
 import pytest
 
-from benchmarks import harness, models
-from fingerpad.reduced import cylinder_errors, cylinders
+from benchmarks import harness, models, newtons
+from fingerpad.reduced import cylinder_errors, cylinders, uncharged
 from fingerpad.scene import Scene, from_data
+from fingerpad.scene.dotted import with_values
 from tests.commands import kept
 from variational.contact.friction import Derjaguin
 
 
 def test_known_error_is_that_of_the_kept_runs():
-    """The figures printed are the largest differences from the full runs in docs/models.json, rounded up to 0.1 %."""
+    """The figures are the largest differences of docs/models.json, over the printed value, rounded up to 0.1 %."""
     numbers = kept("models.json")
     runs = numbers["scenes"] | numbers["held_out"]
     region = cylinder_errors.REGIONS[0]
     assert len(runs) == region.runs and len(numbers["held_out"]) == 4
     points = [tuple(float(part.split()[0]) for part in name.split(",")) for name in runs]
     ends = [(min(each), max(each)) for each in zip(*points, strict=True)]
-    assert region.ranges == dict(zip(("f_ext", "voltage"), ends, strict=True))
-    assert set(region.errors) == {"full_slip", "charged"}
-    for state, bands in region.errors.items():
+    assert [region.ranges[key] for key in ("f_ext", "voltage")] == ends
+    assert set(region.errors) == {"full_slip", "charged", cylinder_errors.WHOLE}
+    contact = [each["full"]["summary"]["full_slip_f_contact"] for each in runs.values()]
+    pulls = [force / f_ext for force, (f_ext, _) in zip(contact, points, strict=True)]
+    assert region.ranges[cylinder_errors.PULL][1] == pytest.approx(max(pulls) - 1, rel=0.05)
+    for state in ("full_slip", "charged"):
+        bands = region.errors[state]
         for key, largest in bands.items():
             name = f"{state}_{key}"
             pairs = [(each["cylinders"]["summary"][name], each["full"]["summary"][name]) for each in runs.values()]
-            worst = max(abs(ours / full - 1) for ours, full in pairs if full)
+            worst = max(abs(full / ours - 1) for ours, full in pairs if ours)
             assert worst <= largest < worst + 1e-3, name
 
 
+def test_known_error_of_a_whole_finger_is_that_of_the_kept_runs():
+    """Of sums over traces of both models, rounded up to 0.1 %; the range of the force is that of the sums."""
+    region, known = cylinder_errors.REGIONS[0], newtons.closed_form(kept("models.json")["scenes"])
+    assert region.errors[cylinder_errors.WHOLE] == pytest.approx(known, abs=1e-9)
+    assert region.ranges["force"] == (newtons.OF_CLOSED_FORM[0], newtons.OF_CLOSED_FORM[-1])
+
+
 def test_band_is_named_where_the_runs_are():
-    """Every quantity that has one, normal contact too."""
+    """Every quantity that has one, normal contact too, and friction by the share of the attraction."""
     scene = from_data({"f_ext": 42.0, "voltage": -120.0})
-    words, region = cylinder_errors.in_words(cylinder_errors.errors(scene)), cylinder_errors.find(scene)
-    assert region is not None
-    for bands in region.errors.values():
+    result, region = cylinders.solve(scene), cylinder_errors.find(scene)
+    known, slip = result.record["model_error"], result.full_slip
+    words = cylinder_errors.in_words(known)
+    assert region is not None and slip is not None
+    share = region.errors["full_slip"]["f_electrostatic"] * slip.f_electrostatic / slip.f_contact
+    assert known["full_slip"]["mu_app"] == pytest.approx(share, rel=1e-12)
+    for bands in known.values():
         for error in bands.values():
             assert f" {100 * error:.1f} %" in words
     assert "in charged normal contact" in words
-    assert cylinder_errors.runs(region) == "44 full runs at f_ext 5 to 150 N/m, voltage 0 to 200 V"
+
+
+def test_friction_of_the_kept_runs_is_within_its_error():
+    """That of the attraction times its share, as a result prints it."""
+    numbers = kept("models.json")
+    for name, each in (numbers["scenes"] | numbers["held_out"]).items():
+        f_ext, voltage = (float(part.split()[0]) for part in name.split(","))
+        result = cylinders.solve(from_data({"f_ext": f_ext, "voltage": voltage}))
+        error, slip = result.record["model_error"]["full_slip"]["mu_app"], result.full_slip
+        assert slip is not None
+        assert abs(each["full"]["summary"]["full_slip_mu_app"] - slip.mu_app) <= error * slip.mu_app + 1e-6, name
 
 
 def test_ends_of_a_range_belong_to_it():
     """The next number beyond roundoff does not, and the caution names the key, its value and the range."""
-    for key, end, beyond in (("f_ext", 5.0, 4.999), ("f_ext", 150.0, 150.01), ("voltage", -200.0, -200.1)):
-        assert cylinder_errors.errors(from_data({key: end})) and not cylinder_errors.outside(from_data({key: end}))
-        (found,) = cylinder_errors.outside(from_data({key: beyond}))
-        assert found.key == key and found.value.startswith(f"{beyond:g} ")
-        assert str(found) in cylinder_errors.cautions(from_data({key: beyond}))[0]
+    for region in cylinder_errors.REGIONS:
+        inside = {key: high for key, (_, high) in region.ranges.items() if key not in ("force", cylinder_errors.PULL)}
+        for key, (low, high) in region.ranges.items():
+            if key == cylinder_errors.PULL:
+                continue
+            load = {"f_ext": None} if key == "force" else {}
+            for end, beyond in ((low, low * 0.999), (high, high * 1.001)):
+                if end == 0:
+                    continue
+                scenes = [
+                    with_values(Scene(), {name: value for name, value in (inside | load | {key: at}).items() if value})
+                    for at in (end, beyond)
+                ]
+                assert region.ranges[key] and cylinder_errors.find(scenes[0]) is not None
+                nearest = cylinder_errors.outside(scenes[1])
+                assert nearest or cylinder_errors.find(scenes[1]) is not region
+    scene = from_data({"voltage": 200.2})
+    (found,) = cylinder_errors.outside(scene, 1.0)
+    assert (found.key, found.value, found.known) == ("voltage", "200.2 V", "0 to 200 V")
+    assert str(found) in cylinder_errors.cautions(scene, 1.0)[0] and not cylinder_errors.outside(Scene(), 5.0)
+    (found,) = cylinder_errors.outside(Scene(), 5.1)
+    assert found.key == cylinder_errors.PULL and found.known == "0 to 5"
 
 
 @pytest.mark.parametrize(
     "scene",
     [
-        from_data({"f_ext": 151.0}),
-        from_data({"voltage": 201.0}),
-        from_data({"friction": 0.26}),
-        from_data({"electric": {"d_i": 2e-6}}),
+        from_data({"f_ext": 451.0}),
+        from_data({"voltage": 401.0}),
+        from_data({"friction": 1.01}),
+        from_data({"electric": {"d_i": 11e-6}}),
         from_data({"geometry": {"ridge_count": 21}}),
         from_data({"contact": {"eps_n": 2e12}}),
         from_data({"roughness": {"h_rms": 4e-6}}),
@@ -66,7 +109,7 @@ def test_ends_of_a_range_belong_to_it():
 )
 def test_no_band_where_no_run_is(scene):
     """Beyond the loads, and with anything else than those runs have; a caution names it."""
-    assert cylinder_errors.errors(scene) == {} and len(cylinder_errors.cautions(scene)) == 1
+    assert cylinder_errors.find(scene) is None and len(cylinder_errors.cautions(scene)) == 1
     (key,) = (each.key for each in cylinder_errors.outside(scene) if not each.key.startswith("friction."))
     assert scene.parameters()[key.partition(".")[0]] != Scene().parameters()[key.partition(".")[0]]
 
@@ -76,33 +119,36 @@ def test_lengths_in_the_program_are_the_runs():
     """The lengths that `cylinders` interpolates are the kept full runs', to the four digits they are kept with."""
     known = harness.kept("models").numbers["scenes"]
     for state in ("charged", "full_slip"):
-        for k, f in enumerate(cylinders.FORCES):
+        for k, f in enumerate(models.FORCES):
             run = known[models.name(f, 0.0)]["full"]["summary"]
-            assert cylinders.LENGTHS[state][k] == pytest.approx(run[f"{state}_contact_length"], abs=0.5e-7)
-            depth = cylinders.INDENTATIONS[state][k]
+            assert uncharged.LENGTHS[state][k] == pytest.approx(run[f"{state}_contact_length"], abs=0.5e-7)
+            depth = uncharged.INDENTATIONS[state][k]
             assert depth == pytest.approx(-run[f"{state}_bone_height"], abs=0.5e-7)
-            assert cylinders.RIDGES[state][k] == run[f"{state}_ridges_in_contact"]
+            assert uncharged.RIDGES[state][k] == run[f"{state}_ridges_in_contact"]
 
 
 def test_program_of_the_page_prints_what_the_model_has():
     """So that the lengths and the known errors can be put there when the runs are made anew."""
     lines = models.in_the_program(harness.kept("models").numbers).splitlines()
-    for state, lengths in cylinders.LENGTHS.items():
-        assert f"LENGTHS {state}: {', '.join(f'{1e3 * each:.4f}e-3' for each in lengths)}" in lines
-        assert f"RIDGES {state}: {', '.join(map(str, cylinders.RIDGES[state]))}" in lines
-    for state, bands in cylinder_errors.REGIONS[0].errors.items():
+    count = len(models.FORCES)
+    assert uncharged.FORCES[:count] == models.FORCES
+    for state, lengths in uncharged.LENGTHS.items():
+        assert f"LENGTHS {state}: {', '.join(f'{1e3 * each:.4f}e-3' for each in lengths[:count])}" in lines
+        assert f"RIDGES {state}: {', '.join(map(str, uncharged.RIDGES[state][:count]))}" in lines
+    for state in ("full_slip", "charged"):
+        bands = cylinder_errors.REGIONS[0].errors[state]
         assert all(f"KNOWN_ERROR {state}_{key}: {each:.3f}" in lines for key, each in bands.items())
 
 
 def test_lengths_between_known_forces_are_a_power_law():
     """Halfway on logarithmic axes, between each force and the next; beyond the last as between the two before."""
-    forces = cylinders.FORCES
+    forces = uncharged.FORCES
     for k, between in enumerate(np.sqrt(np.array(forces[1:]) * np.array(forces[:-1]))):
-        lengths = cylinders.LENGTHS["charged"][k : k + 2]
-        assert cylinders._interpolate(between, cylinders.LENGTHS["charged"]) == pytest.approx(np.sqrt(np.prod(lengths)))
-    ratio = cylinders.LENGTHS["charged"][1] / cylinders.LENGTHS["charged"][0]
-    below = cylinders._interpolate(forces[0] ** 2 / forces[1], cylinders.LENGTHS["charged"])
-    assert below == pytest.approx(cylinders.LENGTHS["charged"][0] / ratio)
+        lengths = uncharged.LENGTHS["charged"][k : k + 2]
+        assert uncharged.interpolate(between, uncharged.LENGTHS["charged"]) == pytest.approx(np.sqrt(np.prod(lengths)))
+    ratio = uncharged.LENGTHS["charged"][1] / uncharged.LENGTHS["charged"][0]
+    below = uncharged.interpolate(forces[0] ** 2 / forces[1], uncharged.LENGTHS["charged"])
+    assert below == pytest.approx(uncharged.LENGTHS["charged"][0] / ratio)
 
 
 def test_kept_answers_are_those_of_the_program():

@@ -1,6 +1,6 @@
 /* Where the error of the closed form is known, and how large it is: cylinder_errors.py. data.known.regions has ranges by
  * key, the narrowest region first. values has SI values by key of a scene; with values.newtons the force is on the whole
- * finger. */
+ * finger. An answer is one of closedForm, at full slip. */
 const modelErrors = (() => {
   const ROUNDOFF = 1e-12; // relative, of a value at an end
   const regions = data.known.regions;
@@ -8,26 +8,34 @@ const modelErrors = (() => {
   const within = (value, [low, high]) =>
     Math.abs(value) >= low * (1 - ROUNDOFF) && Math.abs(value) <= high * (1 + ROUNDOFF);
 
+  /** Return the attraction of an answer over the external force. */
+  const pull_of = (values, answer) => answer.f_electrostatic / (values.newtons ? values.force : values.f_ext);
+
   /** Return the keys of values that are outside of a region, with its ranges: [{key, low, high}]. */
-  function beyond(region, values) {
+  function beyond(region, values, answer) {
     const load = values.newtons ? "force" : "f_ext", other = values.newtons ? "f_ext" : "force", found = [];
+    const given = { ...values, "f_electrostatic/f_ext": answer ? pull_of(values, answer) : 0 };
     if (!region.ranges[load]) found.push({ key: load, low: NaN, high: NaN });
     for (const [key, ends] of Object.entries(region.ranges))
-      if (key !== other && !within(values[key], ends)) found.push({ key, low: ends[0], high: ends[1] });
+      if (key !== other && !within(given[key], ends)) found.push({ key, low: ends[0], high: ends[1] });
     return found;
   }
 
   /** Return the narrowest region of values, null where the error is not known. */
-  const find = (values) => regions.find((region) => beyond(region, values).length === 0) || null;
+  const find = (values, answer) => regions.find((region) => beyond(region, values, answer).length === 0) || null;
 
-  /** Return the relative errors of an answer at full slip by quantity, null where they are not known. */
+  /** Return the relative errors of an answer by quantity, null where they are not known. */
   function of(values, answer) {
-    const region = find(values);
-    return region && { ...region.errors.full_slip, f_t: region.errors.full_slip.mu_app };
+    const region = find(values, answer);
+    if (!region) return null;
+    const known = region.errors[values.newtons ? "finger" : "full_slip"], pull = pull_of(values, answer);
+    const friction = (known.f_electrostatic * pull) / (1 + pull);
+    return { ...known, mu_app: friction, f_t: friction };
   }
 
-  /** Return the keys for which the error is not known, with the ranges in which it is; empty where it is known. */
-  const outside = (values) => (find(values) ? [] : beyond(regions[regions.length - 1], values));
+  /** Return the keys for which the error is not known, by the nearest region; empty where it is known. */
+  const outside = (values, answer) => regions.map((region) => beyond(region, values, answer))
+    .reduce((least, keys) => (keys.length < least.length ? keys : least));
 
   return { of, outside };
 })();

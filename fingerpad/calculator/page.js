@@ -125,28 +125,26 @@
     }
   }
 
-  const inside = (values) => within(values.f_ext, data.known.forces) && within(values.voltage, data.known.voltages);
-  const within = (value, [low, high]) => value >= low && value <= high;
   const changed = (values) => [...new Set(fields.map((field) => field.key)
     .filter((key) => !FOOTPRINT.includes(key) && !["f_ext", "force", "voltage"].includes(key) && values[key] !== defaults[key])
     .map((key) => key.split(".")[0]))];
-  /** Return whether the error of an answer is known: at the loads of the full runs, with all else as they have it. */
-  const known_at = (values, given) => !given && !values.newtons && inside(values) && changed(values).length === 0;
+  /** Return the relative errors of an answer by quantity, null where they are not known. */
+  const errors_of = (values, given, found) => (given || typeof found === "string" ? null : modelErrors.of(values, found));
 
   function curve(values, given, key, highest, lowest) {
     const most = (values.newtons ? POINTS_OF_FINGERS : POINTS) - 1;
     const even = Array.from({ length: most + 1 }, (_, k) => lowest + ((highest - lowest) * k) / most);
-    const ends = { voltage: data.known.voltages, f_ext: data.known.forces }[key] || []; // where the line ceases to be solid
+    const ends = data.known.regions.flatMap((region) => region.ranges[key] || []); // where the error changes or ends
     const places = new Set([...even, ...ends.filter((x) => x > lowest && x < highest)]);
     return [...places].sort((a, b) => a - b).map((x) => {
-      const here = { ...values, [key]: x }, found = answer(here, given);
-      return { x, y: typeof found === "string" ? null : found.mu_app, known: known_at(here, given) };
+      const here = { ...values, [key]: x }, found = answer(here, given), errors = errors_of(here, given, found);
+      return { x, y: typeof found === "string" ? null : found.mu_app, known: errors !== null, error: errors && errors.mu_app };
     });
   }
 
   const ROWS = [
     ["mu_app", "friction coefficient µ_app", "", 1, 3, "mu_app"],
-    ["f_t", "friction force", "N/m", 1, 2, "mu_app"],
+    ["f_t", "friction force", "N/m", 1, 2, "f_t"],
     ["f_electrostatic", "attraction", "N/m", 1, 2, "f_electrostatic"],
     ["contact_length", "contact length", "mm", 1e3, 3, "contact_length"],
     ["ridges_in_contact", "ridges in contact", "", 1, 0],
@@ -155,20 +153,20 @@
   ];
 
   const ROWS_OF_FINGERS = [
-    ["mu_app", "friction coefficient µ_app of the whole finger", "", 1, 3],
-    ["f_t", "friction force", "N", 1, 3],
-    ["f_electrostatic", "attraction", "N", 1, 3],
+    ["mu_app", "friction coefficient µ_app of the whole finger", "", 1, 3, "mu_app"],
+    ["f_t", "friction force", "N", 1, 3, "f_t"],
+    ["f_electrostatic", "attraction", "N", 1, 3, "f_electrostatic"],
     ["contact_area", "contact area of the ridges", "mm²", 1e6, 2],
     ["gross_area", "gross area of contact", "mm²", 1e6, 1],
     ["indentation", "indentation", "mm", 1e3, 3],
   ];
 
   function show_point(found, values, given) {
-    const sure = known_at(values, given), body = find("point").tBodies[0];
+    const errors = errors_of(values, given, found), body = find("point").tBodies[0];
     const head = values.newtons ? "Whole finger, as a sum of slices" : "Section at the centre of the finger";
-    find("point").caption.textContent = head + (sure ? "" : ": error not known");
+    find("point").caption.textContent = head + (errors ? "" : ": error not known");
     body.replaceChildren(...(values.newtons ? ROWS_OF_FINGERS : ROWS).map(([key, words, unit, per, digits, error]) => {
-      const value = found[key] * per, band = error && sure ? ` ± ${(value * data.known.error[error]).toFixed(digits)}` : "";
+      const value = found[key] * per, band = errors && errors[error] !== undefined ? ` ± ${(value * errors[error]).toFixed(digits)}` : "";
       const cell = create("td", { id: "value_" + key }, `${value.toFixed(digits)}${band} ${unit}`.trim());
       cell.dataset.value = String(found[key]);
       return create("tr", {}, create("th", { scope: "row" }, words), cell);
@@ -176,21 +174,23 @@
   }
 
   function remarks(found, values, given) {
-    const percent = (value) => `${(100 * value).toFixed(1)} %`, { error, runs, forces, voltages } = data.known;
-    const where = `${forces.map(Number).join(" to ")} N/m and ${voltages.map(Number).join(" to ")} V`, said = [];
+    const percent = (value) => `${(100 * value).toFixed(1)} %`, said = [];
+    const errors = errors_of(values, given, found), outside = given ? [] : modelErrors.outside(values, found);
     if (values.newtons) {
       const section = found.section.mu_app.toFixed(3);
       said.push(`Section at the centre of the finger, second: ${show(found.centre, 3)} N/m, where µ_app is ${section}.`);
-      found = found.section;
-      values = { ...values, f_ext: found.f_ext };
     }
     if (given) said.push("The contact is as given along both curves; the error of this answer is not known.");
-    else {
-      said.push(`Known error of ${values.newtons ? "the section" : "these numbers"}: µ_app and friction within ${percent(error.mu_app)}, attraction within ` +
-        `${percent(error.f_electrostatic)}, contact length within ${percent(error.contact_length)} of ${runs} full runs at ${where}.`);
-      if (!inside(values)) said.push("This point is outside of that; its error is not known.");
-      const keys = changed(values);
-      if (keys.length) said.push(`Those runs have the default ${keys.join(", ")}; here the error is not known.`);
+    else if (errors) said.push(`Known error beside the full model: µ_app and friction ${percent(errors.mu_app)}, ` +
+      `attraction ${percent(errors.f_electrostatic)}.`);
+    for (const { key, low, high } of outside) {
+      const field = by_key[key], shown = (x) => show(field ? x * field.per : x, 4), unit = field ? field.unit : "";
+      const known = low === high ? shown(low) : `${shown(low)} to ${shown(high)}`;
+      said.push(`The error is not known here: ${field ? field.words : "the attraction over the force"} is known for ${known} ${unit}`.trim() + ".");
+    }
+    if (values.newtons) {
+      values = { ...values, f_ext: found.centre };
+      found = found.section;
     }
     const state = found.closure.state(found.p_c, values.voltage);
     if (state) said.push(`The mean pressure of ${show(found.p_c, 4)} Pa is ${state}.`);
@@ -202,8 +202,8 @@
 
   function draw(values, given, found) {
     const by = values.newtons ? "force" : "f_ext", unit = by_key[by].unit, force = values[by];
-    const ends = values.newtons ? by_key.force.slider : data.known.forces;
-    const most_u = Math.max(data.known.voltages[1], values.voltage), most_f = Math.max(ends[1], force);
+    const ends = values.newtons ? by_key.force.slider : by_key.f_ext.slider;
+    const most_u = Math.max(by_key.voltage.slider[1], values.voltage), most_f = Math.max(ends[1], force);
     const least_f = Math.min(ends[0], force), mu = `µ_app of the ${values.newtons ? "whole finger" : "section"}`;
     const axes = [
       ["over_voltage", "voltage", most_u, 0, "voltage U (V)", `force of ${show(force)} ${unit}`],
@@ -215,7 +215,7 @@
       const other = same ? [] : curve({ ...defaults, [by]: force, newtons: values.newtons, voltage: values.voltage }, false, key, highest, lowest);
       const mark = found && { x: values[key], y: found.mu_app };
       const title = `${mu} over ${x} at a ${at}`;
-      plot.draw(find(id), { x, y: mu, points, other: other.filter((p) => p.y !== null), mark, error: data.known.error.mu_app, title });
+      plot.draw(find(id), { x, y: mu, points, other: other.filter((p) => p.y !== null), mark, title });
       const missing = points.filter((p) => p.y === null).length;
       find("caption_" + (key === "voltage" ? "voltage" : "force")).textContent = `Over ${x} at a ${at}. ` +
         (points.some((p) => p.known) ? "Shaded: known error; dashed: error not known." : "The curve is dashed, since its error is not known.") +
@@ -260,7 +260,7 @@
     else show_point(found, values, given);
     if (text) find("notes").textContent = "";
     else remarks(found, values, given);
-    const sure = known_at(values, given) ? "" : ", error not known";
+    const sure = text || errors_of(values, given, found) ? "" : ", error not known";
     const of = values.newtons ? "Whole finger: " : "";
     find("always").textContent = text ? "No answer at this point." : `${of}µ_app ${find("value_mu_app").textContent}${sure}`;
     find("command").textContent = command(values, given);

@@ -15,7 +15,7 @@ from typing import Any
 from numpy.polynomial.legendre import leggauss
 
 from fingerpad.installed import version
-from fingerpad.reduced import cylinder_errors, cylinders
+from fingerpad.reduced import cylinder_errors, cylinders, uncharged
 from fingerpad.reduced.model import STATES
 from fingerpad.results.quantities import PER_LENGTH, Output
 from fingerpad.results.states import WORDS
@@ -106,7 +106,7 @@ def _in_unit(value: float, per: float) -> float:
 
 def data() -> dict[str, Any]:
     """Return all numbers that the page has from Python, ready for JSON; SI units but for those of the fields."""
-    scene, first, shown = Scene(), cylinder_errors.REGIONS[0], [*fields()]
+    scene, shown = Scene(), [*fields()]
     nodes, weights = (each.tolist() for each in leggauss(scene.slices.count))
     return {
         "fields": [asdict(field) for field in shown],
@@ -115,18 +115,16 @@ def data() -> dict[str, Any]:
         "tip_radius": cylinders.tip_radius(scene.geometry),
         "skin_modulus": skin_modulus(scene),
         "largest_gap": LARGEST_GAP,
-        "forces": cylinders.FORCES,
-        "lengths": cylinders.LENGTHS,
-        "ridges": cylinders.RIDGES,
-        "indentations": cylinders.INDENTATIONS,
+        "forces": uncharged.FORCES,
+        "lengths": uncharged.LENGTHS,
+        "ridges": uncharged.RIDGES,
+        "indentations": uncharged.INDENTATIONS,
         "wavelength": scene.geometry.ridge_wavelength,
         "slices": {"radius": scene.slices.radius, "length": scene.slices.length, "nodes": nodes, "weights": weights},
         "traces": traces.CONSTANTS,
         "words": {state: WORDS[state] for state in STATES},
         "circuits": circuits(),
-        "known": {"error": first.errors["full_slip"], "runs": first.runs}
-        | {"forces": first.ranges["f_ext"], "voltages": first.ranges["voltage"]}
-        | {"regions": cylinder_errors.data(field.key for field in shown)},
+        "known": {"regions": cylinder_errors.data(field.key for field in shown)},
     }
 
 
@@ -145,9 +143,7 @@ def circuits() -> dict[str, Any]:
 def page() -> str:
     """Return the page."""
     values = {
-        "error": f"{100 * cylinder_errors.REGIONS[0].errors['full_slip']['mu_app']:.1f} %",
-        "runs": str(cylinder_errors.REGIONS[0].runs),
-        "where": cylinder_errors.where(cylinder_errors.REGIONS[0]),
+        "where": cylinder_errors.where(cylinder_errors.REGIONS[-1]),
         "leakage": html.escape(LEAKAGE),
         "table": _table(),
         "defaults": _defaults(),

@@ -29,9 +29,10 @@ const plot = (function () {
     return found;
   }
 
-  /* box: an HTML element; x, y: names of the axes; points: {x, y, known}, in order, y null where there is no answer;
-   * other: points of the dotted curve; mark: {x, y}; error: relative half width of the band; title: for readers of it. */
-  function draw(box, { x, y, points, other, mark, error, title }) {
+  /* box: an HTML element; x, y: names of the axes; points: {x, y, known, error}, in order, y null where there is no
+   * answer, error the relative half width of the band;
+   * other: points of the dotted curve; mark: {x, y}; title: for readers of it. */
+  function draw(box, { x, y, points, other, mark, title }) {
     const width = Math.max(box.clientWidth, 260), height = Math.min(340, Math.max(230, 0.62 * width));
     const answered = points.filter((p) => p.y !== null), all = [...answered, ...other, ...(mark ? [mark] : [])];
     const most_x = Math.max(...points.map((p) => p.x)), most_y = Math.max(1e-9, ...all.map((p) => p.y)) * 1.1;
@@ -57,7 +58,7 @@ const plot = (function () {
     const up = { x: 0, y: 0, transform: `translate(14 ${(MARGIN.top + bottom) / 2}) rotate(-90)`, "text-anchor": "middle" };
     svg.append(element("text", up, y));
     for (const list of runs(points, (p) => p.y !== null && p.known)) {
-      const edge = [...list.map((p) => [p.x, p.y * (1 + error)]), ...list.reverse().map((p) => [p.x, p.y * (1 - error)])];
+      const edge = [...list.map((p) => [p.x, p.y * (1 + p.error)]), ...list.reverse().map((p) => [p.x, p.y * (1 - p.error)])];
       const path = edge.map(([a, b]) => `${at_x(a).toFixed(2)},${at_y(b).toFixed(2)}`).join(" ");
       svg.append(element("polygon", { points: path, fill: "#56b4e9", "fill-opacity": 0.45, class: "band" }));
     }

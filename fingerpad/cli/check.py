@@ -68,7 +68,7 @@ def _verdict(scene: Scene) -> str:
     for load in scene.loads():
         force = load.f_ext if load.f_ext is not None else force
         voltage = load.wave.peak if load.wave is not None else voltage if load.level is None else load.level
-        tried = REGIONS[-1]
+        tried = REGIONS[0]
         if not (within(force, tried.ranges["f_ext"]) and within(voltage, tried.ranges["voltage"])):
             return (
                 f"The scene is valid; whether its loads can be reached is not known: {load.name} has {force:g} N/m and "

@@ -30,8 +30,11 @@ def _of_section(key: str) -> Output:
 
 
 _OF_SECTION = {key: _of_section(key) for key in _SECTION}
-_COLUMNS = (replace(FINGER["f_ext"], name="force"), QUANTITIES["voltage"], *(FINGER[key] for key in _WHOLE),
-            *_OF_SECTION.values())  # fmt: skip
+_ERROR = "mu_app_error"
+_PLUS_MINUS = {key: replace(QUANTITIES["mu_app"], name=key, words="±") for key in (_ERROR, f"{_ERROR}_of_section")}
+_COLUMNS = (replace(FINGER["f_ext"], name="force"), QUANTITIES["voltage"], FINGER["mu_app"], _PLUS_MINUS[_ERROR],
+            *(FINGER[key] for key in _WHOLE[1:]), _OF_SECTION["f_ext"], _OF_SECTION["mu_app"],
+            _PLUS_MINUS[f"{_ERROR}_of_section"], *(_OF_SECTION[key] for key in _SECTION[2:]))  # fmt: skip
 _OF_FILES = ("f_t_of_section", "f_electrostatic_of_section", "ridges_in_contact_of_section")
 _SHOWN = tuple(each for each in _COLUMNS if each.name not in _OF_FILES)
 _NAME = {"force": "force", "f_ext": "f_ext_of_section"}
@@ -122,7 +125,8 @@ def grid(
                 if newtons is not None:
                     row |= {"force": newtons} | _row(form.result(scene.replace(force=newtons, **changed)))
                 if key == "f_ext":
-                    row |= _row(form.result(scene.replace(force=None, f_ext=force, **changed)))
+                    section = _row(form.result(scene.replace(force=None, f_ext=force, **changed)))
+                    row |= section | {"error": {**row.get("error", {}), **section["error"]}}
             except SceneError as error:
                 lost.append(f"At {force:g} {unit} and {voltage:g} V: {error}.")
             rows.append(row)
@@ -143,31 +147,35 @@ def _row(found: Result) -> dict[str, Any]:
     """Return what the columns show of a result: of the whole finger where it has one, and of its section."""
     section = found.full_slip or found.charged
     assert section is not None
-    of = found.scene.model_copy(update={"force": None, "f_ext": section.f_ext})
     values: dict[str, Any] = {f"{key}_of_section": getattr(section, key) for key in _SECTION}
-    values |= {"state": section, "error": found.record["model_error"], "outside": cylinder_errors.outside(of)}
-    if found.finger is None:
-        return values
-    total = found.finger.values(list(found.finger.states)[-1])
-    return values | {key: total[key] for key in _WHOLE if key in total}
+    known, finger = found.record["model_error"], found.finger
+    force, pull = section.f_ext, section.f_electrostatic
+    if "full_slip" in known:
+        values[f"{_ERROR}_of_section"] = known["full_slip"]["mu_app"] * section.mu_app
+    if finger is not None:
+        total = finger.values(list(finger.states)[-1])
+        values |= {key: total[key] for key in _WHOLE if key in total}
+        force, pull = finger.f_ext, total["f_electrostatic"]
+    if cylinder_errors.WHOLE in known:
+        values[_ERROR] = known[cylinder_errors.WHOLE]["mu_app"] * values["mu_app"]
+    return values | {"state": section, "error": known, "outside": cylinder_errors.outside(found.scene, pull / force)}
 
 
 def _known(rows: Sequence[Mapping[str, Any]]) -> list[str]:
     """Return what is known of the error of these rows, and for which keys it is not."""
-    of, said = " of the section", []
-    bands = [row["error"]["full_slip"] for row in rows if row.get("error")]
-    if bands:
-        shown = ", ".join(
-            f"{words} {100 * max(band[key] for band in bands):.1f} %"
-            for key, words in (("mu_app", "µ_app and f_T"), ("f_electrostatic", "f_el"), ("contact_length", "L_R"))
-        )
-        said.append(f"Known error{of}, at most: {shown}.")
-    beyond: dict[cylinder_errors.Outside, int] = Counter(
-        each._replace(value="") for row in rows for each in row.get("outside", [])
-    )
+    said = []
+    for state, words in ((cylinder_errors.WHOLE, "whole finger"), ("full_slip", "section")):
+        bands = [row["error"][state] for row in rows if state in row.get("error", {})]
+        if bands:
+            shown = ", ".join(
+                f"{name} {100 * max(band[key] for band in bands):.1f} %"
+                for key, name in (("mu_app", "µ_app and friction"), ("f_electrostatic", "attraction"))
+            )
+            said.append(f"Known error of the {words} (±), at most: {shown}.")
+    beyond = Counter(each._replace(value="") for row in rows for each in row.get("outside", []))
     for each, count in beyond.items():
         points = f"At {count} of {len(rows)} points" if count < len(rows) else "Here"
-        said.append(f"{points} the error{of} is not known: {each.key} is known for {each.known}.")
+        said.append(f"{points} the error is not known: {each.key} is known for {each.known}.")
     return said
 
 

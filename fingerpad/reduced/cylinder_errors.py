@@ -1,26 +1,37 @@
-"""Where the error of the model "cylinders" is known, and how large it is there: a table of regions of scenes.
+r"""Where the error of the model "cylinders" is known, and how large it is there: a table of regions of scenes.
 
-A :class:`Region` has a range by key, and the relative errors of results inside. They are errors of the model beside
-full runs, without those of a mesh. Regions are in order, the narrowest first, and the first one that a scene is in has
-its errors. Outside of all regions the error is not known, and :func:`cautions` names the key and its range.
+A :class:`Region` has a range by key, and the relative errors inside. They are errors of the model beside full runs,
+without those of a mesh. Regions are in order, the narrowest first, and the first one that a scene is in has its errors.
+Outside of all regions the error is not known, and :func:`cautions` names the key and its range.
 
-:func:`data` is the same table for the calculator, whose ``errors.js`` finds the same region.
+Friction follows Coulomb's law there, :math:`f_T = \mu_0 (f_{ext} + f_{el})`. So its error is that of the attraction,
+times the share of the attraction in the contact force:
+
+.. math:: \frac{\Delta \mu_{app}}{\mu_{app}} = \frac{f_{el}}{f_{ext} + f_{el}} \, \frac{\Delta f_{el}}{f_{el}}.
+
+It vanishes without voltage. :func:`data` is the same table for the calculator, whose ``errors.js`` reads it.
 """
 
+import json
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import asdict, dataclass
 from functools import cache
+from importlib.resources import files
 from typing import Any, NamedTuple
 
-from fingerpad.results.quantities import QUANTITIES
+from fingerpad.results.quantities import FINGER, QUANTITIES
 from fingerpad.results.states import WORDS
 from fingerpad.scene.keys import every
 from fingerpad.scene.messages import show
 from fingerpad.scene.reading import flat
 from fingerpad.scene.scene import Scene
+from variational.state import ContactState
 
 Bands = Mapping[str, Mapping[str, float]]
-"""Relative errors by state and quantity."""
+"""Relative errors by state and quantity; those of a whole finger at full slip are under :data:`WHOLE`."""
+WHOLE = "finger"
+PULL = "f_electrostatic/f_ext"
+"""Key of a region's range of the attraction at full slip over the external force, which no scene gives."""
 
 
 @dataclass(frozen=True)
@@ -28,12 +39,13 @@ class Region:
     """Scenes in which the error is known."""
 
     runs: int
-    """Full runs beside which it was found."""
+    """States of the full model beside which it was found."""
     ranges: Mapping[str, tuple[float, float]]
     """Range by dotted key, in SI units; both ends belong to it, and a voltage has no sign. Keys of :data:`_TABLES` that
-    are not there have their defaults."""
+    are not there have their defaults. A scene has ``force`` or ``f_ext``, and the range of the other one is not read.
+    The range :data:`PULL` is one of results."""
     errors: Bands
-    """Relative errors of a section by state and quantity."""
+    """Errors over the printed value, of the attraction and of lengths: of a section by its states, of a finger."""
 
 
 class Outside(NamedTuple):
@@ -51,20 +63,31 @@ class Outside(NamedTuple):
 
 
 _TABLES = ("friction", "geometry", "materials", "contact", "electric", "roughness")
-REGIONS = (
-    Region(
-        44,
-        {"f_ext": (5.0, 150.0), "voltage": (0.0, 200.0)},
-        {
-            "full_slip": {"mu_app": 0.024, "contact_length": 0.063, "f_electrostatic": 0.05},
-            "charged": {"contact_length": 0.1, "f_electrostatic": 0.14},
-        },
-    ),
+_DEFAULT_SCREEN = Region(
+    44,
+    {"force": (0.05, 1.2), "f_ext": (5.0, 150.0), "voltage": (0.0, 200.0), PULL: (0.0, 5.0)},
+    {
+        "full_slip": {"f_electrostatic": 0.053, "contact_length": 0.059},
+        "charged": {"f_electrostatic": 0.163, "contact_length": 0.111},
+        WHOLE: {"f_electrostatic": 0.035, "contact_area": 0.057, "gross_area": 0.077},
+    },
 )
-"""Largest errors beside the runs of docs/models.json, rounded up to 0.1 %: tests/test_known_error.py derives them."""
+
+
+def _regions() -> tuple[Region, ...]:
+    """Return the regions: that of the default screen, and those that ``python3 -m benchmarks.loads`` has written."""
+    text = (files("fingerpad.reduced") / "cylinder_errors.json").read_text(encoding="utf-8")
+    made = [each | {"ranges": {key: tuple(ends) for key, ends in each["ranges"].items()}} for each in json.loads(text)]
+    return (_DEFAULT_SCREEN, *(Region(**each) for each in made))
+
+
+REGIONS = _regions()
+"""Errors that cover the full model's states: tests/test_known_error.py and tests/test_loads.py derive them from those
+of docs/models.json and docs/loads.json."""
 _ROUNDOFF = 1e-12  # relative, of a value at an end
 
 
+# -- where ---------------------------------------------------------------------------------------------------
 def where(region: Region) -> str:
     """Return the ranges of a region in words."""
     units = _units()
@@ -76,43 +99,53 @@ def _span(ends: tuple[float, float], unit: str) -> str:
     return f"{words} {unit}".strip()
 
 
-def runs(region: Region) -> str:
-    """Return the runs of a region in words."""
-    return f"{region.runs} full runs at {where(region)}"
-
-
 def within(value: float, ends: tuple[float, float]) -> bool:
     """Return whether a value is in a range, the ends and roundoff included; its sign does not count."""
     return ends[0] * (1 - _ROUNDOFF) <= abs(value) <= ends[1] * (1 + _ROUNDOFF)
 
 
-def find(scene: Scene) -> Region | None:
-    """Return the narrowest region of a scene; None where its error is not known."""
-    return next((region for region in REGIONS if not [*_outside(scene, region)]), None)
+def find(scene: Scene, pull: float = 0.0) -> Region | None:
+    """Return the narrowest region of a scene; None where its error is not known.
+
+    Args:
+        scene: with ``f_ext``, or ``force``.
+        pull: attraction at full slip over that force.
+    """
+    given = _given(scene, pull)
+    return next((region for region in REGIONS if not [*_outside(given, region)]), None)
 
 
-def errors(scene: Scene) -> Bands:
-    """Return the known relative errors for a scene by state and quantity; empty where none is known."""
-    found = find(scene)
-    return {} if found is None else found.errors
+def outside(scene: Scene, pull: float = 0.0) -> list[Outside]:
+    """Return the keys for which the error is not known, by the nearest region; empty where it is known.
+
+    Arguments are those of :func:`find`.
+    """
+    given = _given(scene, pull)
+    return min(([*_outside(given, region)] for region in REGIONS), key=len)
 
 
-def outside(scene: Scene) -> list[Outside]:
-    """Return the keys for which the error of a scene is not known; empty where it is known."""
-    return [] if find(scene) else [*_outside(scene, REGIONS[-1])]
-
-
-def cautions(scene: Scene) -> list[str]:
-    """Return in one sentence why the error is not known for the result of a scene; empty where it is known."""
-    keys = outside(scene)
+def cautions(scene: Scene, pull: float = 0.0) -> list[str]:
+    """Return in one sentence why the error is not known, empty where it is known; arguments of :func:`find`."""
+    keys = outside(scene, pull)
     return [f"the error of this model is not known here: {'; '.join(map(str, keys))}"] if keys else []
 
 
-def _outside(scene: Scene, region: Region) -> Iterator[Outside]:
-    """Yield the keys in which a scene is outside of a region."""
-    given, default, units = flat(scene.parameters()) | {"voltage": scene.volts}, _default(), _units()
+def _given(scene: Scene, pull: float) -> dict[str, Any]:
+    """Return the values of a scene by dotted key; of the two forces the one that it has."""
+    given = flat(scene.parameters()) | {"voltage": scene.volts, PULL: pull}
+    given.pop("f_ext" if scene.force is not None else "force", None)
+    return given
+
+
+def _outside(given: Mapping[str, Any], region: Region) -> Iterator[Outside]:
+    """Yield the keys in which values are outside of a region."""
+    default, units = _default(), _units()
+    if "force" in given and "force" not in region.ranges:
+        yield Outside("force", _span((given["force"],) * 2, units["force"]), "sections alone")
     for key, ends in region.ranges.items():
         value = given.get(key)
+        if key in ("force", "f_ext") and value is None:
+            continue
         if not isinstance(value, int | float):
             yield Outside(key, "a law", _span(ends, units[key]))
         elif not within(value, ends):
@@ -129,15 +162,51 @@ def _default() -> dict[str, Any]:
 
 @cache
 def _units() -> dict[str, str]:
-    return {key.name: key.unit for key in every(Scene)}
+    return {key.name: key.unit for key in every(Scene)} | {PULL: ""}
+
+
+# -- how large -----------------------------------------------------------------------------------------------
+def errors(scene: Scene, states: Mapping[str, ContactState]) -> Bands:
+    """Return the known relative errors of a section by state and quantity; empty where none is known.
+
+    Args:
+        scene: with ``f_ext``.
+        states: of its result by name, full slip too.
+    """
+    pull = states["full_slip"].f_electrostatic / scene.f_ext
+    region = find(scene, pull)
+    known = {} if region is None else region.errors
+    found = {name: dict(known[name]) for name in states if name in known}
+    return {name: each | _of_friction(each, pull) if name == "full_slip" else each for name, each in found.items()}
+
+
+def of_finger(scene: Scene, f_electrostatic: float) -> Mapping[str, float]:
+    """Return the known relative errors of a whole finger at full slip by quantity; empty where none is known.
+
+    Args:
+        scene: with ``force``.
+        f_electrostatic: attraction on the finger (N).
+    """
+    assert scene.force is not None
+    pull = f_electrostatic / scene.force
+    region = find(scene, pull)
+    return {} if region is None else dict(region.errors[WHOLE]) | _of_friction(region.errors[WHOLE], pull)
+
+
+def _of_friction(known: Mapping[str, float], pull: float) -> dict[str, float]:
+    """Return the errors of friction where the attraction is a multiple of the external force."""
+    share = known["f_electrostatic"] * pull / (1 + pull)
+    return {"mu_app": share, "f_t": share}
 
 
 def in_words(bands: Bands) -> str:
     """Return what is known of the error of a result in words."""
     if not bands:
         return "the error of this model is not known here"
+    words = {state: f"in {WORDS[state]}" for state in WORDS} | {WHOLE: "of the whole finger at full slip"}
+    names = {**QUANTITIES, **FINGER}
     states = (
-        f"in {WORDS[state]} " + ", ".join(f"{QUANTITIES[key].words} {100 * e:.1f} %" for key, e in each.items())
+        f"{words[state]} " + ", ".join(f"{names[key].words or key} {100 * e:.1f} %" for key, e in each.items())
         for state, each in bands.items()
     )
     return f"error of this model beside full runs: {'; '.join(states)}"
@@ -150,5 +219,5 @@ def data(keys: Iterable[str]) -> list[dict[str, Any]]:
         keys: that are to be there, with their defaults where a region has no range of them.
     """
     default = _default()
-    fixed = {key: (default[key],) * 2 for key in keys if default.get(key) is not None}
+    fixed = {key: (default[key],) * 2 for key in keys if key != "force" and default.get(key) is not None}
     return [asdict(each) | {"ranges": fixed | dict(each.ranges)} for each in REGIONS]

@@ -25,12 +25,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from fingerpad.model import breakdown
 from fingerpad.model.adhesion import sticking
 from fingerpad.model.cautions import on_states
-from fingerpad.reduced import cylinder_errors
+from fingerpad.reduced import cylinder_errors, uncharged
 from fingerpad.reduced.model import STATES, Model, reduced_state, refuse_others
 from fingerpad.results.answer import Cost
 from fingerpad.results.files import read_object
@@ -48,20 +48,9 @@ from variational.state import ContactState
 
 if TYPE_CHECKING:
     from fingerpad.runs.context import RunContext
+    from fingerpad.slices.finger import WholeFinger
 
 Array = NDArray[np.float64]
-# The default finger's full runs without voltage, contact size 10 um: f_ext (N/m), then contact length (m), ridges in
-# contact and indentation in each state. benchmarks/models.py keeps the same numbers in docs/models.json.
-FORCES = (5.0, 10.0, 25.0, 50.0, 75.0, 100.0, 120.0, 150.0)
-LENGTHS = {
-    "charged": (0.2314e-3, 0.3575e-3, 0.6513e-3, 1.0123e-3, 1.3027e-3, 1.4999e-3, 1.7015e-3, 1.8907e-3),
-    "full_slip": (0.2374e-3, 0.3497e-3, 0.6539e-3, 0.9847e-3, 1.2376e-3, 1.4616e-3, 1.6059e-3, 1.7898e-3),
-}
-RIDGES = {"charged": (7, 9, 11, 15, 17, 17, 19, 19), "full_slip": (7, 9, 12, 14, 16, 17, 18, 18)}
-INDENTATIONS = {  # m, how far the bone is lowered
-    "charged": (0.1457e-3, 0.2244e-3, 0.3895e-3, 0.5848e-3, 0.7383e-3, 0.8670e-3, 0.9568e-3, 1.0751e-3),
-    "full_slip": (0.1452e-3, 0.2239e-3, 0.3893e-3, 0.5842e-3, 0.7345e-3, 0.8569e-3, 0.9417e-3, 1.0510e-3),
-}
 _SHAPING = ("geometry", "materials", "contact")  # tables of a scene of which these lengths are a matter
 _ELSE = "use the model 'full', or the command compare with --contact-length and --ridges, or with the --run of a folder"
 
@@ -88,12 +77,13 @@ def fitted(scene: Scene) -> Footprint:
     default = _default()
     _refuse_other(scene, default)
     source = "uncharged contact length interpolated between full runs of the default finger"
-    if not FORCES[0] <= scene.f_ext <= FORCES[-1]:
-        source = f"uncharged contact length extrapolated from full runs at {FORCES[0]:g} to {FORCES[-1]:g} N/m"
+    low, high = uncharged.FORCES[0], uncharged.FORCES[-1]
+    if not low <= scene.f_ext <= high:
+        source = f"uncharged contact length extrapolated from full runs at {low:g} to {high:g} N/m"
     if scene.friction != default.friction:
         source += f"; that of full slip with a friction coefficient of {default.friction:g}"
-    length = {state: float(_lengths(scene.f_ext, state)) for state in STATES}
-    return Footprint(length, {state: int(_ridges(scene.f_ext, state)) for state in STATES}, False, source)
+    length = {state: float(uncharged.lengths(scene.f_ext, state)) for state in STATES}
+    return Footprint(length, {state: int(uncharged.ridges(scene.f_ext, state)) for state in STATES}, False, source)
 
 
 _default = cache(Scene)
@@ -104,33 +94,6 @@ def _refuse_other(scene: Scene, default: Scene) -> None:
     for name in _SHAPING:
         if getattr(scene, name) != getattr(default, name):
             raise SceneError(f"{name} is not that of the default finger, whose contact length is known; {_ELSE}")
-
-
-def _lengths(f_ext: ArrayLike, state: str) -> Array:
-    """Return the default finger's contact length (m) without voltage under external forces (N/m)."""
-    return _interpolate(f_ext, LENGTHS[state])
-
-
-def _ridges(f_ext: ArrayLike, state: str) -> NDArray[np.int_]:
-    """Return the default finger's ridges in contact without voltage under external forces (N/m)."""
-    return np.maximum(np.rint(_interpolate(f_ext, RIDGES[state])).astype(int), 1)
-
-
-def _interpolate(f_ext: ArrayLike, values: tuple[float, ...] | tuple[int, ...]) -> Array:
-    """Return power laws through the two neighbours, at the ends through the last two; shape of the forces."""
-    x, y, at = np.log(FORCES), np.log(values), np.log(f_ext)
-    k = np.clip(np.searchsorted(x, at) - 1, 0, len(x) - 2)
-    return np.exp(y[k] + (y[k + 1] - y[k]) * (at - x[k]) / (x[k + 1] - x[k]))
-
-
-def indentation(f_ext: float, state: str) -> float:
-    """Return how far the default finger's bone is lowered (m), without voltage; the model itself has no bone.
-
-    Args:
-        f_ext: external force (N/m).
-        state: ``charged`` or ``full_slip``. A voltage of 200 V moves the bone at full slip by up to 6 %.
-    """
-    return float(_interpolate(f_ext, INDENTATIONS[state]))
 
 
 def given(length: float, ridges: int) -> Footprint:
@@ -209,7 +172,21 @@ class Cylinders(Model):
     ) -> list[ContactState]:
         """Return the states computed together, with the indentations of the default finger without voltage."""
         states = over_forces(scene, f_ext, state)
-        return [replace(each, bone_height=-indentation(each.f_ext, state)) for each in states]
+        return [replace(each, bone_height=-uncharged.indentation(each.f_ext, state)) for each in states]
+
+    def of_finger(self, scene: Scene, section: Result, finger: "WholeFinger") -> Result:
+        """Return the result with the known error of the whole finger, or a caution that it is not known."""
+        found = super().of_finger(scene, section, finger)
+        assert section.full_slip is not None and scene.force is not None
+        own = cylinder_errors.cautions(section.scene, _pull(section.full_slip))
+        known: Mapping[str, float] = {}
+        cautions = [each for each in section.cautions if each not in own]
+        if "full_slip" in finger.states:
+            attraction = finger.states["full_slip"].totals["f_electrostatic"]
+            known = cylinder_errors.of_finger(scene, attraction)
+            cautions += cylinder_errors.cautions(scene, attraction / scene.force)
+        errors = {**section.record["model_error"], **({cylinder_errors.WHOLE: known} if known else {})}
+        return replace(found, record={**section.record, "model_error": errors}, cautions=tuple(cautions))
 
 
 def solve(scene: Scene, footprint: Footprint | None = None) -> Result:
@@ -223,7 +200,13 @@ def solve(scene: Scene, footprint: Footprint | None = None) -> Result:
     footprint = footprint or fitted(scene)
     found: dict[str, ContactState] = {}
     exact = "a closed form, without a mesh: no discretisation error but that of the contact length it is given"
-    errors = {} if footprint.charged else cylinder_errors.errors(scene)
+    cautions, states = [*remarks(scene)], dict[str, RidgeState]()
+    for state in STATES:
+        n, length = np.array([footprint.ridges[state]]), np.array([footprint.length[state]])
+        ((found[state], states[state]),) = _solved(scene, [scene.f_ext], length, n, state, footprint.charged)
+        cautions += _others(state, states[state])
+    errors = {} if footprint.charged else cylinder_errors.errors(scene, found)
+    cautions += [] if footprint.charged else cylinder_errors.cautions(scene, _pull(found["full_slip"]))
     notes = (
         footprint.source,
         exact,
@@ -231,11 +214,6 @@ def solve(scene: Scene, footprint: Footprint | None = None) -> Result:
         "the bone's height is not in this model",
         *leakage(scene),
     )
-    cautions, states = [*remarks(scene), *([] if footprint.charged else cylinder_errors.cautions(scene))], {}
-    for state in STATES:
-        n, length = np.array([footprint.ridges[state]]), np.array([footprint.length[state]])
-        ((found[state], states[state]),) = _solved(scene, [scene.f_ext], length, n, state, footprint.charged)
-        cautions += _others(state, states[state])
     cautions += on_states(found.values(), scene.closure())
     cautions += breakdown.of_gaps(scene, [(WORDS[state], ridge.d_eq, scene.volts) for state, ridge in states.items()])
     more: dict[str, Any] = {
@@ -270,7 +248,7 @@ def over_forces(
         ridges = np.array([each.ridges_in_contact for each in press])
     else:
         _refuse_other(scene, _default())
-        length, ridges = _lengths(f_ext, state), _ridges(f_ext, state)
+        length, ridges = uncharged.lengths(f_ext, state), uncharged.ridges(f_ext, state)
     return [found for found, _ in _solved(scene, f_ext, tips**0.5 * length, ridges, state, tips=tips)]
 
 
@@ -319,6 +297,11 @@ def _solved(
         under = scene.model_copy(update={"f_ext": float(each)})
         states.append((reduced_state(under, contact, state == "full_slip"), ridge))
     return states
+
+
+def _pull(slip: ContactState) -> float:
+    """Return the attraction over the external force."""
+    return slip.f_electrostatic / slip.f_ext
 
 
 def _others(state: str, ridge: RidgeState) -> list[str]:

@@ -6,6 +6,7 @@ method, :meth:`Model.solve`, and a line in :data:`fingerpad.reduced.registry.MOD
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from fingerpad.scene.messages import SceneError, show
@@ -16,6 +17,7 @@ if TYPE_CHECKING:
     from fingerpad.results.result import Result
     from fingerpad.runs.context import RunContext
     from fingerpad.scene import Scene
+    from fingerpad.slices.finger import WholeFinger
 
 STATES = ("charged", "full_slip")
 """For which reduced models answer, by their names in :mod:`fingerpad.results.states`."""
@@ -79,6 +81,16 @@ class Model(ABC):
                 f"the model {self.name!r} has no {state.replace('_', ' ')} at {f_ext[found.index(None)]:.4g} N/m"
             )
         return states
+
+    def of_finger(self, scene: "Scene", section: "Result", finger: "WholeFinger") -> "Result":
+        """Return the result of a force on the whole finger.
+
+        Args:
+            scene: with the force.
+            section: result of the section at the centre of the finger.
+            finger: the finger.
+        """
+        return replace(section, scene=scene, finger=finger)
 
 
 def reduced_state(scene: "Scene", contact: Mapping[str, float], slips: bool) -> ContactState:

@@ -9,7 +9,6 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-from fingerpad.reduced import cylinder_errors
 from fingerpad.reduced.cylinders import Cylinders
 from fingerpad.reduced.registry import find
 from fingerpad.results.quantities import PLUS_MINUS
@@ -220,17 +219,15 @@ class _Problem:
 
     def _share(self, section: Result) -> float | None:
         """Return the known relative error of the quantity of a section; that of friction is that of its coefficient."""
-        known, name = cylinder_errors.errors(section.scene).get(STATE, {}), self._target.quantity.name
+        known, name = section.record["model_error"].get(STATE, {}), self._target.quantity.name
         return None if self._target.whole else known.get("mu_app" if name == "f_t" else name)
 
     def _known(self, root: Root) -> list[str]:
         """Return what is known of the error of a root; a caution of its section tells where nothing is."""
         if self._target.whole:
             return errors.remarks([root.scene.force or 0.0])
-        share, region = self._share(root.section), cylinder_errors.find(root.section.scene)
-        if share is None or region is None:
-            return []
-        return [f"The closed form is within {100 * share:.1f} % of {cylinder_errors.runs(region)}."]
+        share = self._share(root.section)
+        return [] if share is None else [f"The closed form is known to {100 * share:.1f} % beside the full model."]
 
     def _refused(self, search: Roots) -> str:
         """Return where there is no answer, nearest to those that there are, and why; empty where there is one."""

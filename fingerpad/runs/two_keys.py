@@ -156,6 +156,5 @@ class _Map:
 
 
 def is_known(scene: Scene) -> bool:
-    """Return whether the error of the closed form is known, of the section at about the centre of the finger."""
-    section = scene.model_copy(update={"force": None, "f_ext": scene.centre_force})
-    return cylinder_errors.find(section) is not None
+    """Return whether the error of the closed form is known: of the whole finger where the scene has a force on it."""
+    return cylinder_errors.find(scene) is not None

@@ -95,7 +95,7 @@ def whole(scene: Scene, model: "Model", solve: Solve) -> Result:
             f"force is {scene.force:.4g} N, under which the centre of the finger bears {centre:.2g} N/m, and it must "
             f"bear at least {SMALLEST:g} N/m; give a larger force or a shorter finger"
         )
-    return replace(solve(scene.replace(f_ext=centre), ""), scene=scene, finger=finger)
+    return model.of_finger(scene, solve(scene.replace(f_ext=centre), ""), finger)
 
 
 def history(scene: Scene, name: str, top: float, part: float = LIGHT) -> Scene:

@@ -1,0 +1,1 @@
+"""How far the closed form holds over the loads of people."""

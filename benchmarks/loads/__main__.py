@@ -1,0 +1,218 @@
+"""How far the closed form of charged cylinders holds: seeded scenes over the loads of people, beside the full model.
+
+environment/run python3 -m benchmarks.loads [--minutes 20] [--draw]     one process; the same command goes on later
+
+A scene is a force on the finger, a voltage, a friction coefficient and a coating: a point of a scrambled Sobol
+sequence in these five keys. Its full slip is followed over growing forces of the section, up to that at the centre of
+the finger. So a scene has errors of the section at several forces, and one of the sum over slices. States are solved
+for from neighbours, without a path. Writes docs/loads.json, docs/loads.md and its picture, and the known errors into
+fingerpad/reduced/cylinder_errors.json; prints the contact lengths that fingerpad/reduced/uncharged.py has of them.
+"""
+
+import argparse
+import itertools
+import json
+import sys
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from benchmarks import harness
+from benchmarks.loads.compared import (
+    BANDS,
+    LEAST,
+    MARGIN,
+    PART,
+    Compared,
+    covered,
+    fingers,
+    fits,
+    in_band,
+    regions,
+    sections,
+)
+from benchmarks.loads.scenes import COUNT, MESHES, MOST, PULL, Data, checked, scenes, section
+from benchmarks.loads.states import pressed, solved
+from benchmarks.models import name
+from fingerpad.reduced import uncharged
+from fingerpad.reduced.cylinder_errors import REGIONS, WHOLE
+from fingerpad.results.files import replace
+
+_SHORT = ("f_ext", "f_t", "mu_app", "f_electrostatic", "contact_length", "ridges_in_contact", "bone_height",
+          "factorisations", "failure")  # fmt: skip
+REGIONS_FILE = harness.ROOT / "fingerpad" / "reduced" / "cylinder_errors.json"
+_MINUTES = 20.0
+_LAST = 150.0  # N/m, largest force of a full run in the tables of fingerpad/reduced
+
+
+def compute(args: argparse.Namespace) -> None:
+    """Solve for what is missing, and keep the numbers."""
+    folder = args.out / "loads"
+    states, far = solved(folder, args.minutes), _pressed(folder)
+    kept = [
+        {"scene": k, "values": data, "states": [_short(each) for each in states[f"scene {k}"]]}
+        for k, data in enumerate(scenes())
+        if f"scene {k}" in states
+    ]
+    checked = [_short(each) for which in range(len(MESHES)) for each in states[f"mesh {which}"]]
+    slipped = [_short(each) for each in states["far"]]
+    numbers = {"scenes": kept, "mesh": checked, "far": {"full_slip": slipped, "charged": far}, "count": COUNT}
+    harness.keep("loads", numbers, harness.made(), args.docs)
+    found = regions(sections(kept), fingers(kept))
+    replace(REGIONS_FILE, json.dumps(found, indent=1) + "\n")
+    print(in_the_program(numbers))
+
+
+def _pressed(folder: Path) -> list[Data]:
+    """Return the states of :func:`pressed`, kept in a file in the folder."""
+    file = folder / "pressed.json"
+    if not file.exists():
+        replace(file, json.dumps([_short(each) for each in pressed()]) + "\n")
+    found: list[Data] = json.loads(file.read_text(encoding="utf-8"))
+    return found
+
+
+def _short(state: Data) -> Data:
+    """Return what docs/loads.json has of a state, numbers of seven digits."""
+    found = {key: state[key] for key in _SHORT if key in state}
+    return {key: float(f"{value:.7g}") if isinstance(value, float) else value for key, value in found.items()}
+
+
+# -- numbers -------------------------------------------------------------------------------------------------
+def far(numbers: Mapping[str, Any]) -> dict[str, dict[str, list[float]]]:
+    """Return contact lengths and indentations (m) beyond :data:`_LAST` by state, as the tables continue there.
+
+    They are the tables' last value of a full run, times the ratio of states on the coarser mesh.
+    """
+    found: dict[str, dict[str, list[float]]] = {}
+    k = uncharged.FORCES.index(_LAST)
+    for state, lengths in uncharged.LENGTHS.items():
+        first, *others = numbers["far"][state]
+        found[state] = {
+            "lengths": [lengths[k] * each["contact_length"] / first["contact_length"] for each in others],
+            "indentations": [
+                uncharged.INDENTATIONS[state][k] * each["bone_height"] / first["bone_height"] for each in others
+            ],
+            "ridges": [each["ridges_in_contact"] for each in others],
+        }
+    return found
+
+
+def in_the_program(numbers: Mapping[str, Any]) -> str:
+    """Return what fingerpad.reduced.uncharged has of kept numbers."""
+    lines = []
+    for state, each in far(numbers).items():
+        for key in ("lengths", "indentations"):
+            lines += [f"{key.upper()} {state}: {', '.join(f'{1e3 * value:.4f}e-3' for value in each[key])}"]
+        lines += [f"RIDGES {state}: {', '.join(map(str, each['ridges']))}"]
+    return "\n".join(lines)
+
+
+# -- page ----------------------------------------------------------------------------------------------------
+def by_key(compared: Sequence[Compared]) -> list[tuple[str, str, list[Compared]]]:
+    """Return the sections in three parts of the range of each key: the key, the part in words and the sections."""
+    values: dict[str, Callable[[Compared], float]] = {
+        "force of the section (N/m)": lambda each: each.force,
+        "voltage (V)": lambda each: each.values["voltage"],
+        "µ_0": lambda each: each.values["friction"],
+        "h_0 (µm)": lambda each: 1e6 * section(each.values, 1.0).h_0,
+        "attraction over force": lambda each: each.attraction / each.force,
+    }
+    found = []
+    for words, value in values.items():
+        ends = np.quantile([value(each) for each in compared], [0, 1 / 3, 2 / 3, 1])
+        for k, (low, high) in enumerate(itertools.pairwise(ends)):
+            part = [each for each in compared if low <= value(each) and (value(each) < high or k == 2)]
+            found += [(words, f"{low:.3g} to {high:.3g}", part)] if part else []  # few scenes may share a value
+    return found
+
+
+def spread(compared: Sequence[Compared]) -> list[float]:
+    """Return in per cent: mean, rms, 90 % and worst error of the attraction, and the worst of friction."""
+    errors = np.array([each.error for each in compared])
+    parts = [errors.mean(), np.sqrt((errors**2).mean()), np.quantile(abs(errors), 0.9), abs(errors).max()]
+    return [100 * float(each) for each in (*parts, max(abs(each.of_friction) for each in compared))]
+
+
+def mesh_errors(numbers: Mapping[str, Any], docs: Path) -> list[tuple[float, float, float]]:
+    """Return force, voltage and the relative difference (%) of µ_app of the coarse meshes from docs/models.json."""
+    full = harness.kept("models", docs).numbers["scenes"]
+    loads = [each for which in range(len(MESHES)) for each in checked(which)]
+    runs = [full[name(f_ext, voltage)]["full"]["summary"]["full_slip_mu_app"] for f_ext, voltage in loads]
+    mu_app = [state["mu_app"] for state in numbers["mesh"]]
+    return [(*load, 100 * (mu / run - 1)) for load, mu, run in zip(loads, mu_app, runs, strict=True)]
+
+
+def draw(docs: Path) -> Path:
+    """Draw the page and its picture from the kept numbers."""
+    numbers = harness.kept("loads", docs).numbers
+    every, whole = sections(numbers["scenes"]), fingers(numbers["scenes"])
+    states = [state for each in numbers["scenes"] for state in each["states"]]
+    tried = [each for each in states if not each.get("failure", "").startswith("not tried")]
+    harness.picture(docs / "loads.png", (9.5, 4.2), lambda figure: _paint(figure, every))
+    names = {
+        "every": every, "whole": whole, "states": states, "tried": tried, "mesh": mesh_errors(numbers, docs),
+        "rows": by_key(every), "regions": [judged(every, whole, k) for k in range(len(BANDS) - 1)],
+        "LEAST": LEAST, "MARGIN": MARGIN, "PART": PART, "MOST": MOST, "PULL": PULL, "MESHES": MESHES,
+        "known": [REGIONS[0].errors[key]["f_electrostatic"] for key in ("full_slip", WHOLE)],
+        "lost": [each for each in tried if "failure" in each],
+    }  # fmt: skip
+    return harness.page(docs, "loads", "python3 -m benchmarks.loads", globals() | names, "models")
+
+
+class Judged(NamedTuple):
+    """A band of the friction coefficient on the page."""
+
+    friction: str
+    made: int
+    """States that make an error."""
+    error: float | None
+    """Of the attraction (%); None where there are too few."""
+    tests: int
+    inside: int | None
+    """Of the states that test the error."""
+    fingers: int
+
+
+def judged(every: Sequence[Compared], whole: Sequence[Compared], k: int) -> Judged:
+    """Return what the page has of a band."""
+    some, words = in_band(every, k), f"{BANDS[k]:g} to {BANDS[k + 1]:g}"
+    tests, made = [each for each in some if not fits(each)], sum(map(fits, some))
+    found = [each for each in regions(some, in_band(whole, k)) if made]
+    error = found[0]["errors"]["full_slip"]["f_electrostatic"] if found else None
+    inside = None if error is None else covered(tests, error)
+    return Judged(words, made, None if error is None else 100 * error, len(tests), inside, len(in_band(whole, k)))
+
+
+def _paint(figure: Figure, every: Sequence[Compared]) -> None:
+    """Paint the errors of friction over the share of the attraction, and those of the attraction over friction."""
+    panels = figure.subplots(1, 2)
+    for test, marker in ((False, "o"), (True, "s")):
+        some = [each for each in every if fits(each) != test]
+        colours = [each.values["friction"] for each in some]
+        friction = [each.values["friction"] * (each.force + each.attraction) for each in some]
+        shares = [each.share for each in some], [100 * each.of_friction for each in some]
+        places = [shares, (friction, [100 * each.error for each in some])]
+        for ax, (x, y) in zip(panels, places, strict=True):
+            shown = ax.scatter(x, y, s=28, marker=marker, c=colours, cmap="viridis", vmin=0.1, vmax=1.0)
+    panels[0].set(
+        xlabel="share of the attraction in the contact force (–)", ylabel="full model's µ_app, difference (%)"
+    )
+    panels[1].set(xlabel="friction force $f_T$ (N/m)", ylabel="full model's attraction, difference (%)", xscale="log")
+    figure.colorbar(shown, ax=panels[1], label="friction coefficient µ_0 (–)")
+    for letter, ax in zip("AB", panels, strict=True):
+        ax.axhline(0, color="black", lw=0.8)
+        ax.set_title(letter, loc="left", fontweight="bold")
+
+
+if __name__ == "__main__":
+    given = harness.parser(__doc__, "")
+    given.add_argument("--minutes", type=float, default=_MINUTES, help="processor time after which no scene is begun")
+    args = given.parse_args()
+    if not args.draw:
+        compute(args)
+    print(draw(args.docs))
+    sys.exit(0)

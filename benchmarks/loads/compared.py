@@ -1,0 +1,143 @@
+"""Both models side by side: attraction of a section and of a whole finger, and the error that covers it."""
+
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from benchmarks.loads.scenes import Data, section
+from fingerpad.reduced.cylinder_errors import PULL, WHOLE
+from fingerpad.reduced.cylinders import Cylinders
+from fingerpad.runs.closed_form import ClosedForm
+from fingerpad.scene import Scene, SceneError
+from fingerpad.scene.parameters import Slices
+from fingerpad.slices.total import at_force, at_indentation, deepest, profile
+from fingerpad.slices.trace import TraceError
+from fingerpad.slices.trace import trace as trace_of
+from variational.state import ContactState
+
+BANDS = (0.1, 0.35, 0.65, 1.0)
+"""Friction coefficients, between which an error is found: it grows with the shear of the finger."""
+LEAST, MARGIN = 8, 1.25
+"""Least number of states that make an error, and that test it; factor on what covers those that make it."""
+BLOCK = 2  # scenes of the sequence that make the error, or test it, in turn
+PART = 0.95  # of the states that the error is to cover
+
+
+class Compared(NamedTuple):
+    """A section, or a whole finger, by both models."""
+
+    scene: int
+    """Place in the sequence."""
+    force: float
+    """N/m, or N."""
+    attraction: float
+    """By the closed form, of the unit of the force."""
+    error: float
+    """The full model's attraction over that, less 1."""
+    values: Data
+    """Of the scene by key."""
+
+    @property
+    def share(self) -> float:
+        """Of the attraction in the contact force."""
+        return self.attraction / (self.force + self.attraction)
+
+    @property
+    def of_friction(self) -> float:
+        """The full model's friction over that of the closed form, less 1."""
+        return self.share * self.error
+
+
+def sections(kept: Iterable[Data]) -> list[Compared]:
+    """Return every state of kept scenes beside the closed form; those that one of the two has not are left out."""
+    found = []
+    for each in kept:
+        for state in each["states"]:
+            own = _closed(each["values"], [state["f_ext"]])
+            if own and "f_electrostatic" in state:
+                f_el = own[0].f_electrostatic
+                error = state["f_electrostatic"] / f_el - 1
+                found.append(Compared(each["scene"], state["f_ext"], f_el, error, each["values"]))
+    return found
+
+
+def _closed(data: Data, under: Sequence[float]) -> list[ContactState]:
+    """Return full slip of the closed form under forces (N/m), with indentations; empty where it is refused."""
+    model = Cylinders()
+    try:
+        return model.over_forces(section(data, under[0]), under, "full_slip", ClosedForm(model).section)
+    except SceneError:
+        return []
+
+
+def fingers(kept: Iterable[Data]) -> list[Compared]:
+    """Return the whole finger of kept scenes, by sums over traces of both models at the same forces.
+
+    The force is that of the scene, or the largest that both traces reach.
+    """
+    finger, count, found = profile(Slices()), Slices().count, []
+    for each in kept:
+        data, states = each["values"], [_state(state) for state in each["states"] if "f_electrostatic" in state]
+        own = _closed(data, [state.f_ext for state in states]) if states else []
+        try:
+            traces = [trace_of(some, Scene().geometry.ridge_wavelength) for some in (own, states)]
+        except TraceError:
+            continue
+        most = [at_indentation(finger, made, deepest(finger, made), count).totals["f_ext"] for made in traces]
+        force = min(data["force"], *most)
+        one, full = (at_force(finger, made, force, count).totals["f_electrostatic"] for made in traces)
+        found.append(Compared(each["scene"], force, one, full / one - 1, data))
+    return found
+
+
+def _state(values: Mapping[str, Any]) -> ContactState:
+    own = {key: value for key, value in values.items() if key not in ("factorisations", "failure")}
+    own["f_contact"] = values["f_ext"] + values["f_electrostatic"]
+    return ContactState(**own, voltage=math.nan)
+
+
+def in_band(compared: Iterable[Compared], k: int) -> list[Compared]:
+    """Return those whose friction coefficient is in a band of :data:`BANDS`."""
+    return [each for each in compared if BANDS[k] <= each.values["friction"] <= BANDS[k + 1]]
+
+
+def regions(sections: Sequence[Compared], fingers: Sequence[Compared]) -> list[dict[str, Any]]:
+    """Return the regions in which the error is known, by bands of the friction coefficient, as the program reads them.
+
+    A band with fewer than :data:`LEAST` states to make the error or to test it is none.
+    """
+    found = []
+    for k in range(len(BANDS) - 1):
+        some, whole = in_band(sections, k), in_band(fingers, k)
+        if min(sum(map(fits, some)), sum(not fits(each) for each in some)) < LEAST:
+            continue
+        error, of_finger = (bound(each for each in every if fits(each)) for every in (some, [*whole, *some]))
+        errors = {"full_slip": {"f_electrostatic": error}, WHOLE: {"f_electrostatic": of_finger}}
+        found.append({"runs": len(some), "ranges": hull(some, whole), "errors": errors})
+    return found
+
+
+def hull(some: Sequence[Compared], whole: Sequence[Compared]) -> dict[str, tuple[float, float]]:
+    """Return the range by key of sections and fingers in which the error is known; without voltage it is nothing."""
+    found = {"force": [each.force for each in whole], "f_ext": [each.force for each in some]}
+    found |= {key: [each.values[key] for each in some] for key in some[0].values if key != "force"}
+    found |= {PULL: [each.attraction / each.force for each in (*some, *whole)]}
+    ends = {key: (0.0 if key in ("voltage", PULL) else min(values), max(values)) for key, values in found.items()}
+    return {key: tuple(float(f"{end:.3g}") for end in each) for key, each in ends.items()}  # type: ignore[misc]
+
+
+def fits(one: Compared) -> bool:
+    """Return whether a scene is one that the error is made of; the others test it. Blocks of eight take turns."""
+    return one.scene // BLOCK % 2 == 0
+
+
+def bound(compared: Iterable[Compared]) -> float:
+    """Return the relative error that covers :data:`PART` of the attractions, with the margin, rounded up to 0.1 %."""
+    return float(np.ceil(1e3 * MARGIN * np.quantile([abs(each.error) for each in compared], PART) - 1e-9) / 1e3)
+
+
+def covered(compared: Sequence[Compared], error: float) -> int:
+    """Return how many attractions are within a relative error; their friction is then within its own."""
+    return sum(abs(each.error) <= error for each in compared)

@@ -1,0 +1,161 @@
+"""Full slip of the full model in many scenes on few meshes: each state is solved for from the nearest one before."""
+
+import json
+import time
+from dataclasses import dataclass
+from hashlib import sha256
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from benchmarks.loads.scenes import DEFAULT, FAR, LADDER, LIGHT, MESHES, MOST, PULL, Data, meshed, section, tasks
+from fingerpad.reduced import cylinders
+from fingerpad.results.files import replace
+from fingerpad.scene import from_data
+from variational.state import RESULTS, ContactState
+
+if TYPE_CHECKING:
+    from fingerpad.model.full_slip import FullSlips, Solved
+
+_NONE = {"factorisations": 0}
+
+
+class _TooManyError(RuntimeError):
+    """A state that takes more work than it is given."""
+
+
+@dataclass
+class Pool:
+    """States of full slip on one mesh, each a start for others."""
+
+    which: int
+    slips: "FullSlips"
+    solved: "list[Solved]"
+    most: int = 0
+    """Factorisations up to which the present state is looked for."""
+
+    @classmethod
+    def begin(cls, which: int) -> "Pool":
+        """Return the pool with one state, the end of a path."""
+        from fingerpad.model.full_slip import Conditions, FullSlips
+        from fingerpad.model.simulation import Simulation
+        from fingerpad.startup import MPI
+
+        model = _model({"voltage": 0.0} | DEFAULT, LIGHT[which], which)
+        simulation = Simulation(model, MPI.COMM_WORLD)
+        if simulation.run() is not None:
+            raise RuntimeError("the path asks for another mesh")
+        slips = FullSlips(simulation)
+        pool = cls(which, slips, [slips.first(Conditions.of(model))])
+        path, counts = slips.finger.continuation, slips.finger.solver.counts
+        solve = path.solve
+
+        def capped(pseudo_transient: bool) -> None:
+            if counts.factorisations > pool.most:
+                raise _TooManyError(f"not found with {MOST} factorisations")
+            solve(pseudo_transient)
+
+        path.solve = capped
+        for f_ext, voltage, friction in LADDER[which]:
+            pool.state({"voltage": voltage} | DEFAULT | {"friction": friction}, f_ext)
+        return pool
+
+    def state(self, data: Data, f_ext: float) -> Data:
+        """Return full slip from the nearest states, ready for JSON; its ``failure`` where none leads to it."""
+        from fingerpad.model.full_slip import Conditions
+        from variational.solvers.continuation import StepFailed
+
+        pull = _pull(data, f_ext)
+        if pull > PULL:
+            return {"f_ext": f_ext, "failure": f"not tried: attraction is {pull:.3g} times the force"} | _NONE
+        counts, why = self.slips.finger.solver.counts, ""
+        wanted, before = Conditions.of(_model(data, f_ext, self.which)), counts.factorisations
+        for start in sorted(self.solved, key=lambda each: _distance(each.conditions, wanted))[:2]:
+            self.most = counts.factorisations + MOST
+            try:
+                found = self.slips.solve(wanted, start)
+            except (StepFailed, _TooManyError) as error:
+                why = why or str(error)
+                continue
+            self.solved.append(found)
+            return _kept(found.state, f_ext) | {"factorisations": counts.factorisations - before}
+        return {"f_ext": f_ext, "failure": why, "factorisations": counts.factorisations - before}
+
+
+def _pull(data: Data, f_ext: float) -> float:
+    """Return the attraction over the force by the closed form."""
+    slip = cylinders.solve(section(data, f_ext)).full_slip
+    assert slip is not None
+    return slip.f_electrostatic / f_ext
+
+
+def _model(data: Data, f_ext: float, which: int) -> Any:
+    from fingerpad.model.options import FingerModel, by_rule, plan
+
+    scene = meshed(data, f_ext, which)
+    return FingerModel(by_rule(scene), plan(scene.replace(voltage=400.0))).of_path()
+
+
+def _distance(one: Any, other: Any) -> float:
+    """Return how far two conditions are apart; ridges that leave the screen take more work than those that come."""
+
+    def place(conditions: Any) -> tuple[float, float, float]:
+        pull = (conditions.voltage / (conditions.h_0 + 1.6e-6)) ** 2 / 1e16  # attraction, some 1 at 200 V
+        return (
+            float(np.log(conditions.f_ext)),
+            float(np.log1p(pull)),
+            float(np.log(conditions.friction.coefficient(1e4))),
+        )
+
+    steps = [b - a for a, b in zip(place(one), place(other), strict=True)]
+    return float(sum(weight * max(step, -4 * step) for weight, step in zip((1.0, 2.0, 0.5), steps, strict=True)))
+
+
+def pressed() -> list[Data]:
+    """Return normal contact of the default finger without voltage under :data:`FAR`, on the second mesh."""
+    from fingerpad.model.options import FingerModel, by_rule, plan
+    from fingerpad.model.simulation import Simulation
+    from fingerpad.startup import MPI
+
+    history = [{"name": f"press {f_ext:g}", "f_ext": f_ext} for f_ext in FAR]
+    scene = from_data({"history": history, "mesh": MESHES[1], "output": {"errors": False, "receptors": False}})
+    simulation = Simulation(FingerModel(by_rule(scene), plan(scene)), MPI.COMM_WORLD)
+    simulation.run()
+    by_load = {state.load: state for state in simulation.states}  # the last one of each
+    return [_kept(by_load[f"press {f_ext:g}"], f_ext) for f_ext in FAR]
+
+
+def _kept(state: ContactState, f_ext: float) -> Data:
+    values = {key: getattr(state, key) for key in RESULTS}
+    return {"f_ext": f_ext} | {key: value for key, value in values.items() if isinstance(value, int | float)}
+
+
+def solved(folder: Path, minutes: float) -> dict[str, list[Data]]:
+    """Return the states of tasks by name, computing those that are missing; each task is a file in the folder.
+
+    Args:
+        folder: of the tasks.
+        minutes: of processor time after which no task is begun.
+    """
+    folder.mkdir(parents=True, exist_ok=True)
+    pools: dict[int, Pool] = {}
+    found = {}
+    for name, (which, points) in tasks().items():
+        text = json.dumps([points, MESHES[which]], sort_keys=True)
+        file = folder / f"{sha256(text.encode()).hexdigest()[:12]}.json"
+        if not file.exists():
+            if time.process_time() > 60 * minutes:
+                continue
+            if which not in pools:
+                pools[which] = Pool.begin(which)
+            states = [pools[which].state(data, f_ext) for data, f_ext in points]
+            replace(file, json.dumps(states) + "\n")
+            print(f"{name}: {' '.join(_shown(each) for each in states)}", flush=True)
+        found[name] = json.loads(file.read_text(encoding="utf-8"))
+    return found
+
+
+def _shown(state: Data) -> str:
+    value = f"{state['mu_app']:.4g}" if "mu_app" in state else "none"
+    return f"{value} ({state['factorisations']})"

@@ -1,0 +1,62 @@
+"""The default finger's contact without voltage: tables over the force of the section, between which others lie.
+
+Up to 150 N/m they are full runs with a contact size of 10 µm, of docs/models.json. Beyond, they are the last of these,
+times the ratios of states on a coarser mesh, of docs/loads.json. ``benchmarks.models`` and ``benchmarks.loads`` print
+them.
+"""
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+Array = NDArray[np.float64]
+FORCES = (5.0, 10.0, 25.0, 50.0, 75.0, 100.0, 120.0, 150.0, 200.0, 280.0, 400.0)
+"""External forces (N/m)."""
+LENGTHS = {  # m, in contact
+    "charged": (0.2314e-3, 0.3575e-3, 0.6513e-3, 1.0123e-3, 1.3027e-3, 1.4999e-3, 1.7015e-3, 1.8907e-3)
+    + (2.2103e-3, 2.6178e-3, 3.1416e-3),
+    "full_slip": (0.2374e-3, 0.3497e-3, 0.6539e-3, 0.9847e-3, 1.2376e-3, 1.4616e-3, 1.6059e-3, 1.7898e-3)
+    + (2.0751e-3, 2.4783e-3, 2.9474e-3),
+}
+RIDGES = {
+    "charged": (7, 9, 11, 15, 17, 17, 19, 19, 21, 21, 23),
+    "full_slip": (7, 9, 12, 14, 16, 17, 18, 18, 20, 21, 22),
+}
+INDENTATIONS = {  # m, how far the bone is lowered
+    "charged": (0.1457e-3, 0.2244e-3, 0.3895e-3, 0.5848e-3, 0.7383e-3, 0.8670e-3, 0.9568e-3, 1.0751e-3)
+    + (1.2390e-3, 1.4421e-3, 1.6645e-3),
+    "full_slip": (0.1452e-3, 0.2239e-3, 0.3893e-3, 0.5842e-3, 0.7345e-3, 0.8569e-3, 0.9417e-3, 1.0510e-3)
+    + (1.1996e-3, 1.3795e-3, 1.5723e-3),
+}
+"""Each by state."""
+
+
+def lengths(f_ext: ArrayLike, state: str) -> Array:
+    """Return the contact length (m) under external forces (N/m).
+
+    Args:
+        f_ext: external forces.
+        state: ``charged``, normal contact, or ``full_slip``.
+    """
+    return interpolate(f_ext, LENGTHS[state])
+
+
+def ridges(f_ext: ArrayLike, state: str) -> NDArray[np.int_]:
+    """Return the number of ridges in contact; arguments of :func:`lengths`."""
+    return np.maximum(np.rint(interpolate(f_ext, RIDGES[state])).astype(int), 1)
+
+
+def indentation(f_ext: float, state: str) -> float:
+    """Return how far the bone is lowered (m), which the closed form itself has not.
+
+    Args:
+        f_ext: external force (N/m).
+        state: ``charged`` or ``full_slip``. A voltage of 200 V moves the bone at full slip by up to 6 %.
+    """
+    return float(interpolate(f_ext, INDENTATIONS[state]))
+
+
+def interpolate(f_ext: ArrayLike, values: tuple[float, ...] | tuple[int, ...]) -> Array:
+    """Return power laws through the two neighbours, at the ends through the last two; shape of the forces."""
+    x, y, at = np.log(FORCES), np.log(values), np.log(f_ext)
+    k = np.clip(np.searchsorted(x, at) - 1, 0, len(x) - 2)
+    return np.exp(y[k] + (y[k + 1] - y[k]) * (at - x[k]) / (x[k + 1] - x[k]))
