@@ -86,7 +86,8 @@ def text(found: TwoKeys) -> str:
     lines = [f"{title}{of} at full slip by a closed form{at}; {down.key} down, {across.key} across."]
     shown = [_shown(axis, keys) for axis, keys in zip(found.axes, found.keys, strict=True)]
     cells = [["", *shown[1]]]
-    cells += [[head, *map(quantity.shown, row)] for head, row in zip(shown[0], found.values.tolist(), strict=True)]
+    for j, head in enumerate(shown[0]):
+        cells.append([head, *(quantity.shown(float(value)) for value in found.values[j, :])])
     widths = [max(map(len, column)) for column in zip(*cells, strict=True)]
     lines += ["", *("  ".join(map(str.rjust, row, widths)).rstrip() for row in cells)]
     lines.append(f"\nThe error of the section is known at {found.known.sum()} of {found.known.size} points.")
