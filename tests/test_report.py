@@ -87,7 +87,7 @@ def page(folder) -> str:
 @pytest.fixture
 def copy(folder, tmp_path) -> Path:
     """A copy of the run's folder, to be spoilt."""
-    return Path(shutil.copytree(folder, tmp_path / "copy", ignore=shutil.ignore_patterns("*.bp", "*.png")))
+    return Path(shutil.copytree(folder, tmp_path / "copy", ignore=shutil.ignore_patterns("*.vtu", "*.png")))
 
 
 # -- a run -------------------------------------------------------------------------------------------------

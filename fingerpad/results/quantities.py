@@ -123,12 +123,6 @@ def _listed(*rows: tuple[Any, ...]) -> dict[str, Output]:
     return {name: Output(name, unit, None, *more) for name, unit, *more in rows}
 
 
-FIELDS = _listed(
-    ("displacement", "m", "displacement, plane"),
-    ("stress", "Pa", "Cauchy stress, 3 x 3, row by row"),
-    ("sed", "J/m^3", "strain energy density per reference volume"),
-)
-"""Variables of the files for ParaView, each in the file of its name."""
 STEPS = _listed(
     ("step", "", "number of the accepted step"),
     ("load", "", "name of the load"),
