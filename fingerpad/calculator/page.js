@@ -218,9 +218,11 @@
     else rest(asked);
     find("drop").hidden = !kept;
     find("keep").textContent = kept ? "Keep this screen instead" : "Keep this screen to compare";
-    try {
-      history.replaceState(null, "", "#" + state.to_fragment(texts, kept));
-    } catch (error) { /* a page without an address of its own */ }
+    const fragment = state.to_fragment(texts, kept);
+    if (fragment !== location.hash.replace(/^#/, ""))
+      try {
+        history.replaceState(null, "", "#" + fragment);
+      } catch (error) { /* a page without an address of its own */ }
   }
 
   /** Draw what takes longer than a frame. */
