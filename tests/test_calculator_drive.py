@@ -47,7 +47,8 @@ def test_page_takes_a_drive(tmp_path):
       set({{ frequency }});
       answers.push(find("frequency_refused").textContent);
     }}
-    const lines = ["drive_u", "drive_sigma", "drive_friction"].map((id) => find(id).querySelectorAll("polyline").length);
+    const boxes = ["drive_u", "drive_sigma", "drive_friction"].map(find);
+    const lines = boxes.map((box) => box.querySelectorAll("polyline").length);
     return [find("drive_said").textContent, lines, answers];"""
     said, lines, refused = asked(page(), program, tmp_path)
     assert "amplitude 200 V, peak to peak 400 V, rms 141.4 V" in said and lines == [1, 1, 1]

@@ -46,7 +46,7 @@ def test_map_has_the_target_and_takes_clicks_and_keys(whole, tmp_path):
     program = f"""{SET}{FIND}
     set({{ force: 0.5, target: "2x" }});
     const words = text("caption_voltage"), svg = find("map").querySelector("svg"), rect = svg.getBoundingClientRect();
-    const hit = (x, y) => ({{ clientX: rect.left + x * rect.width, clientY: rect.top + y * rect.height, bubbles: true }});
+    const hit = (x, y) => ({{ clientX: rect.left + x * rect.width, clientY: rect.top + y * rect.height }});
     svg.dispatchEvent(new PointerEvent("pointermove", hit(0.5, 0.5)));
     const under = svg.querySelector(".hover").textContent;
     svg.dispatchEvent(new MouseEvent("click", hit(0.3, 0.4)));
@@ -149,8 +149,9 @@ def test_nonsense_in_the_address_is_one_sentence_each(tmp_path):
 
 
 def test_nonsense_in_fields_is_one_sentence_beside_them(whole, tmp_path):
+    wrong = [{"force": "0,5"}, {"force": "0"}, {"force": "-1"}, {"force": ""}, {"target": "2,5x"}]
     program = f"""{SET}{FIND}
-    return [{{ force: "0,5" }}, {{ force: "0" }}, {{ force: "-1" }}, {{ force: "" }}, {{ target: "2,5x" }}].map((values) => {{
+    return {json.dumps(wrong)}.map((values) => {{
       set({{ force: 0.5, ...values }});
       const said = [...document.querySelectorAll("[role=alert]")].map((each) => each.textContent).filter(Boolean);
       return said;
@@ -163,6 +164,27 @@ def test_nonsense_in_fields_is_one_sentence_beside_them(whole, tmp_path):
         strict=True,
     ):  # fmt: skip
         assert len(said) == 2 and stale in said and words in "".join(said)
+
+
+# -- to be read ----------------------------------------------------------------------------------------
+@pytest.mark.parametrize("width", [390, 1366, 1920])
+def test_nothing_is_cut_off(whole, tmp_path, width):
+    """On a phone, a laptop and a large screen no part is wider than the page, and the curves fill their places."""
+    program = """
+    const beyond = [...document.querySelectorAll("body *")].filter(
+      (each) => each.getBoundingClientRect().right > innerWidth + 0.5 || each.scrollWidth > each.clientWidth + 1 &&
+        ["P", "LABEL", "PRE", "TD", "TH", "FIGURE", "DIV"].includes(each.tagName) && each.clientWidth);
+    return [document.documentElement.scrollWidth, beyond.map((each) => each.outerHTML.slice(0, 80)),
+      [...document.querySelectorAll("svg")].map((each) => each.getBoundingClientRect().width)];"""
+    whole_width, beyond, curves = asked(whole, program, tmp_path, width=width, height=800)
+    assert beyond == [] and whole_width <= width
+    assert len(curves) == 6 and min(curves) > 0.8 * min(width, 800)
+
+
+def test_page_needs_no_network(whole):
+    """It names no address but a DOI in words, which nothing fetches."""
+    asks = r"""(src|href)="(?!data:)|@import|url\((?!#)|fetch\(|https?://(?!www\.w3\.org/2000/svg)"""
+    assert not re.search(asks, whole)
 
 
 # -- dark and light ------------------------------------------------------------------------------------

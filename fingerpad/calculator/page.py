@@ -33,8 +33,8 @@ from variational.attraction.circuit import LEAKS
 from variational.attraction.dielectric import TISSUES, VACUUM_PERMITTIVITY
 
 SCRIPTS = (
-    "numerics.js", "closed_form.js", "whole.js", "errors.js", "drive.js", "state.js", "commands.js", "plot.js", "heat.js",
-    "files.js", "form.js", "drive_page.js", "page.js",
+    "numerics.js", "closed_form.js", "whole.js", "errors.js", "drive.js", "state.js", "commands.js", "plot.js",
+    "heat.js", "files.js", "form.js", "drive_page.js", "page.js",
 )  # fmt: skip
 """In order; those before ``plot.js`` need no page."""
 _TABLE = (0.1, 0.3, 0.5, 1.0, 2.0), (0.0, 50.0, 100.0, 150.0, 200.0)  # N, V
@@ -191,8 +191,7 @@ def _finding() -> str:
     low, high = (_mu_app(_FORCE, voltage) for voltage in (0.0, _VOLTAGE))
     return (
         f"At {_FORCE:g} N, {_VOLTAGE:g} V raise the friction coefficient of the default finger from {low:.2f} to "
-        f"{high:.2f}, and friction from {low * _FORCE:.2f} to {high * _FORCE:.2f} N: a voltage attracts the skin to the "
-        "screen."
+        f"{high:.2f}: a voltage attracts the skin to the screen."
     )
 
 
@@ -219,7 +218,8 @@ def _table() -> str:
         rows.append(f'<tr><th scope="row">{force:g} N</th>{cells}</tr>')
     caption = "<caption>µ_app of the whole finger at full slip, by force and voltage</caption>"
     body = "\n".join(rows)
-    return f'<table id="default">{caption}\n<thead><tr><td></td>{head}</tr></thead>\n<tbody>\n{body}\n</tbody></table>'
+    top = f"<thead><tr><td></td>{head}</tr></thead>"
+    return f'<table id="default">{caption}\n{top}\n<tbody>\n{body}\n</tbody></table>'
 
 
 def _defaults() -> str:

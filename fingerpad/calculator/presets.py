@@ -1,7 +1,7 @@
 """Presets of the calculator: values of fields that stand for a screen or a finger, each with its source.
 
-A preset sets keys of a scene that the page has a field of. A finger that changes other keys, such as its shape, is not one
-that the closed form answers for, and is left out.
+A preset sets keys of a scene that the page has a field of. A finger that changes other keys, such as its shape, is not
+one that the closed form answers for, and is left out.
 """
 
 from collections.abc import Iterator, Mapping
