@@ -113,7 +113,7 @@ def grid(
 def _row(found: Result) -> dict[str, Any]:
     """Return what the columns show of a result."""
     slip, finger = found.full_slip, found.finger
-    if finger is None:
+    if finger is None or not found.whole:
         return {key: getattr(slip, key) for key in _SECTION} | {"state": slip}
     total = finger.values(list(finger.states)[-1])
     values = {key: total[key] for key in _WHOLE if key in total}
