@@ -29,6 +29,7 @@ FORCE = "full_slip_finger_f_ext"
 """Column of the force on the whole finger at full slip."""
 _WHOLE = ("mu_app", "f_t", "f_electrostatic", "contact_area", "gross_area")
 _FIRST = ("f_ext", "mu_app", "f_t", "contact_area")  # of a sweep without a force in newtons
+_SECOND = ("mu_app", "f_t", "contact_length")  # of its middle section
 _NEWTONS = ("f_ext", *_WHOLE, "indentation")
 _IN_TIME = ("mu_app", "f_t", "contact_length")
 _ENDS = {"min": "least", "max": "largest", "mean": "mean"}
@@ -96,7 +97,8 @@ def shown(columns: Iterable[str], whole: bool, outputs: Iterable[Output] = ()) -
     if not whole:
         summed = _of_finger("full_slip", "mu_app") in there
         finger = {_of_finger("full_slip", key): FINGER[key] for key in _FIRST} if summed else {}
-        known = {key: _of_section(QUANTITIES[key]) if summed else QUANTITIES[key] for key in SWEPT}
+        known = {key: QUANTITIES[key] for key in SWEPT}
+        known = {key: _of_section(known[key]) for key in _SECOND} if summed else known
         known |= {each.name: each for each in outputs}
         return "full_slip", finger | {f"full_slip_{key}": each for key, each in known.items()}
     state = next((name for name in reversed(STATES) if _of_finger(name, "contact_area") in there), "full_slip")
