@@ -62,7 +62,7 @@ def test_own_closure_is_in_the_band():
 
 def test_text_and_files_have_the_band(result):
     text = str(result)
-    assert "Models of roughness: µ_app 0.28 (bearing area) to 0.41 (boundary elements) at full slip" in text
+    assert "Models of roughness: µ_app of the middle section 0.28 (bearing area) to 0.41 (boundary elements) at full slip" in text
     again = fp.Result.from_dict(result.to_dict())
     assert again.closures == result.closures != {}
 

@@ -9,7 +9,7 @@ it would be a result of its own, so that the sentence has the friction force alo
 """
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -267,19 +267,11 @@ def _stuck(result: "Answer", load: str) -> str:
 
 
 def _numbers(*values: float) -> Sequence[str]:
-    """Return numbers with as few digits as tell them apart."""
-    found: Iterable[str] = ()
+    """Return numbers with as few digits as tell them apart, all with the same digits after the point."""
+    least, found = min((abs(value) for value in values if value), default=1.0), list[str]()
     for digits in _DIGITS:
-        found = [_rounded(value, digits) for value in values]
+        after = max(digits - 1 - math.floor(math.log10(least * (1 + _ROUNDOFF))), 0)
+        found = [f"{value * (1 + _ROUNDOFF):.{after}f}" for value in values]
         if len(set(found)) == len(found):
             break
-    return [*found]
-
-
-def _rounded(value: float, digits: int) -> str:
-    """Return a number with some digits, without an exponent."""
-    raised = value * (1 + _ROUNDOFF)
-    if not raised:
-        return "0"
-    after = max(digits - 1 - math.floor(math.log10(abs(raised))), 0)
-    return f"{float(f'{raised:.{digits}g}'):.{after}f}"
+    return found
