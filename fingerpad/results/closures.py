@@ -20,8 +20,8 @@ def in_words(kept: Mapping[str, Any]) -> str:
     none = [words for words, value in kept["mu_app"].items() if value is None]
     low, high = (pick(found, key=lambda words: found[words]) for pick in (min, max))
     text = (
-        f"models of roughness: µ_app of the middle section {found[low]:.2f} ({low}) to {found[high]:.2f} ({high}) at full slip, by the ratio "
-        "of charged cylinders; which one holds for a finger is open (docs/microscale.md)"
+        f"models of roughness: µ_app of the middle section {found[low]:.2f} ({low}) to {found[high]:.2f} ({high}) at "
+        "full slip, by the ratio of charged cylinders; which one holds for a finger is open (docs/microscale.md)"
     )
     return text + (f"; no equilibrium by {', '.join(none)}" if none else "")
 
