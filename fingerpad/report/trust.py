@@ -206,9 +206,9 @@ def head(result: "Result") -> str:
     """Return the finding: its sentence, the number, how far it is solved and known, and whether to rely on it."""
     found = result.headline
     kind, words = verdict(findings(result))
-    number = f"{html.symbol(found.symbol)} {html.text(found.number)}" if found.number else ""
+    number = html.typeset(f"{found.symbol} {found.number}") if found.number else ""
     said = f"of the {found.of}, {found.at}{_factor(result)}" if number else ""
-    more = f'{html.text(words)} <a href="#trust">What was examined</a>'
+    more = f'{html.typeset(words)} <a href="#trust">What was examined</a>'
     claims = html.claims(filter(None, (found.solved, found.known)), bars(result))
     return html.banner("report of a run", result.folder, found.sentence, number, said, kind, more, claims)
 
