@@ -8,7 +8,7 @@ import pytest
 
 import fingerpad as fp
 from fingerpad.report import trust
-from fingerpad.report.trust import head
+from fingerpad.report.trust import head as page_head
 from fingerpad.results.quantities import PLUS_MINUS
 from fingerpad.results.result import Result
 from fingerpad.results.states import load_result
@@ -26,6 +26,11 @@ SCENE = from_data(
         ]
     }
 )
+
+
+def head(result: Result) -> str:
+    """Return the head of a page with plain spaces in values, which do not break there."""
+    return page_head(result).replace("\u00a0", " ")
 
 
 def state(time: float = math.nan, f_t: float = 4.0, **values) -> ContactState:
@@ -148,7 +153,8 @@ def test_number_is_the_first_line_of_all_that_is_written(tmp_path):
     assert str(found).startswith(f"{words}\n  µ_app of the whole finger = 0.601")
     assert kept["sentence"] == words and kept["of"] == "whole finger" and kept["value"] == found.headline.value
     assert fp.Result.load(tmp_path).headline.to_dict() == kept
-    assert f"<h1>{words}</h1>" in (tmp_path / "report.html").read_text(encoding="utf-8")
+    assert head(found).startswith(f"<header><h1>{words}</h1>")
+    assert f"<title>fingerpad: {words}</title>" in (tmp_path / "report.html").read_text(encoding="utf-8")
 
 
 def test_solved_has_the_penalty():
