@@ -1,9 +1,9 @@
-"""The picture that opens the README: finger, one ridge with air gap and attraction, friction force over voltage.
+"""The pictures of the README: finger, one ridge with gap and attraction, friction force; and the moving run.
 
 Finger and ridge are those of a default run, at whose middle 75 N/m press. Friction forces are of the whole finger, sums
 of slices over the traces of docs/models.json, under the force of that run and under two others.
 
-environment/run python3 -m benchmarks.hero FOLDER    keep the numbers of a default run's folder, then draw
+environment/run python3 -m benchmarks.hero FOLDER    keep the numbers of a default run's folder, then draw both
 environment/run python3 -m benchmarks.pages hero     draw from docs/hero.json, without a run
 """
 
@@ -24,6 +24,7 @@ from benchmarks.harness import DOCS, keep, kept, made, picture
 from fingerpad.results import style
 from fingerpad.results.arrays import finger_of
 from fingerpad.results.finger_picture import LAYER_COLOURS
+from fingerpad.results.result import Result
 from fingerpad.scene.parameters import Slices
 from fingerpad.slices.total import at_force
 from geometry import tags
@@ -57,6 +58,7 @@ def main(folder: str) -> None:
     numbers = {"default": default, "finger": outlines, "ridge": along, "friction": friction}
     keep("hero", numbers, made([summary]))
     draw(DOCS)
+    Result.load(folder).animate(DOCS / "animation.webp")
 
 
 def _forces(scenes: Mapping[str, Any], force: float) -> list[list[float]]:

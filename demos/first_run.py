@@ -17,7 +17,7 @@ curve = fp.sweep(scene, model="cylinders", voltage=[0, 100, 200])  # a closed fo
 print(curve)
 
 result = fp.run(scene, out="results/mine")                         # finite elements: a minute or two
-print(result.headline)                                             # of the whole finger, a sum of slices
+print(result.headline)                                             # of the whole finger; set its force by force="0.5 N"
 slip = result.full_slip                                            # also .uncharged, .charged, .steps
 print(f"middle section: µ_app = {slip.mu_app:.4f} ± {slip.error.mu_app:.4f}, {slip.f_ext:.0f} N/m")
 result.plot("surface", "surface.png")                              # pressure, attraction and gap along the skin

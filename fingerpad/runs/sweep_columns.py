@@ -116,7 +116,8 @@ def said_of(columns: Iterable[str]) -> str:
     of = {WHOLE: False, SECTION: False}
     for column in columns:
         of[WHOLE if of_finger(column) else SECTION] = True
-    return " and ".join(words for words, there in of.items() if there)
+    words = [words for words, there in of.items() if there]
+    return f"{WHOLE}, and {SECTION} per metre of finger" if len(words) > 1 else words[0]
 
 
 def _of_section(quantity: Output) -> Output:

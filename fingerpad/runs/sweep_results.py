@@ -20,7 +20,7 @@ from fingerpad.results.closures import KNOWN
 from fingerpad.results.files import replace
 from fingerpad.results.quantities import FINGER, PER_LENGTH, Output
 from fingerpad.results.states import STATES, WORDS
-from fingerpad.runs.sweep_columns import described, head_of, printed, row, said_of, shown, tables
+from fingerpad.runs.sweep_columns import described, head_of, of_finger, printed, row, said_of, shown, tables
 from fingerpad.slices.errors import remarks
 from variational.state import CONDITIONS, RESULTS
 
@@ -175,7 +175,7 @@ class Sweep:
         for name, over_time in tables(rows, axes):
             lines += [f"Over time, in the load {name}", *_aligned(over_time)]
         forces = {each.finger.f_ext for each in self.results if each.finger is not None}
-        notes = [*remarks(forces), *([] if self.whole else [PER_LENGTH])]
+        notes = [*remarks(forces), *([] if any(map(of_finger, columns)) else [PER_LENGTH])]
         return "\n".join([*lines, *notes, *(f"! {caution}" for caution in self.cautions()), *self.notes])
 
     __repr__ = __str__
