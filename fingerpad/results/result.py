@@ -71,7 +71,8 @@ class Result(Answer):
                 raise ValueError("the result has no whole finger to draw: a history has none, else a note says why")
             from fingerpad.results.finger_picture import footprint  # Matplotlib
 
-            return footprint(self.finger, None if path is None else Path(path)) if terminal.rank() == 0 else None
+            place, spacing = None if path is None else Path(path), self.scene.geometry.ridge_wavelength
+            return footprint(self.finger, place, self.named, spacing) if terminal.rank() == 0 else None
         if (drawing := self._drawn()) is not None:
             return drawing.figure(kind, None if path is None else Path(path))
         if not self.steps:
