@@ -1,8 +1,8 @@
-"""The picture of the electric field between one ridge and the screen, under the stresses that it causes.
+r"""The picture of the electric field between one ridge and the screen, under the stresses that it causes.
 
 The field is that of the law of attraction, as between plates: it stands upright on the screen. In air it is
 
-.. math:: E = \\sqrt{2 p_{el} / \\varepsilon_0} = U / (h_0 + g), \\qquad g = \\max(y, d_{eq})
+.. math:: E = \sqrt{2 p_{el} / \varepsilon_0} = U / (h_0 + g), \qquad g = \max(y, d_{eq})
 
 (Forsbach et al. 2023, Eq. 3). Fringes of the field at steep flanks are left out, as in the model.
 """
@@ -19,7 +19,7 @@ from fingerpad.results import style
 from fingerpad.results.curves import SurfaceProfile
 from variational.attraction.dielectric import VACUUM_PERMITTIVITY
 
-_LINES = 60  # of the field
+_LINES = 90  # of the field
 _BESIDE, _ABOVE = 60e-6, 9e-6  # m: shown beside the contact, and above the screen
 _UM, _KPA, _PER_UM = 1e6, 1e-3, 1e-6
 
@@ -50,7 +50,9 @@ def field(path: Path | str | None, skin: SurfaceProfile, title: str) -> Figure:
         above.fill_between(place, np.minimum(_UM * gap, 2 * _UM * _ABOVE), 2 * _UM * _ABOVE, color="0.85", lw=0)
         above.plot(place, _UM * gap, color="black", lw=1)
         ends = np.minimum(_UM * np.interp(at, x, gap), 2 * _UM * _ABOVE)
-        lines = [[(_UM * (each - middle), top), (_UM * (each - middle), 0.0)] for each, top in zip(at, ends, strict=True)]
+        lines = [
+            [(_UM * (each - middle), top), (_UM * (each - middle), 0.0)] for each, top in zip(at, ends, strict=True)
+        ]
         colours = LineCollection(lines, array=np.interp(at, x, strength), norm=norm, cmap=style.MAGNITUDE, lw=1.4)
         above.add_collection(colours)
         above.axhspan(-1.2, 0, color="0.35", lw=0)
@@ -58,7 +60,8 @@ def field(path: Path | str | None, skin: SurfaceProfile, title: str) -> Figure:
         above.text(0, 0.85 * _UM * _ABOVE, "skin", ha="center", va="center")
         above.set(ylim=(-1.2, _UM * _ABOVE), ylabel="gap g (µm)")
         bar = style.panel(figure, 7.85, 8.0, 2.35, 4.85)
-        figure.colorbar(ScalarMappable(norm, style.MAGNITUDE), cax=bar).set_label("field in air E (V/µm)")
+        figure.colorbar(ScalarMappable(norm, style.MAGNITUDE), cax=bar)
+        bar.set_title("field in air\nE (V/µm)")
         below.plot(place, _KPA * p, color=style.PRESSURE, label="contact pressure p")
         below.plot(place, _KPA * p_el, color=style.ATTRACTION, ls="--", label="attraction p_el")
         below.set(xlim=(-_UM * half, _UM * half), xlabel="x from the middle of the contact (µm)", ylabel="stress (kPa)")

@@ -227,13 +227,16 @@ def _draw_density(ax: Axes, snapshot: "Snapshot", xy: Array, scale: Scales) -> N
 
 
 def footprint(
-    whole: "WholeFinger", path: Path | None = None, named: Mapping[str, ContactState] | None = None, spacing: float = 5e-4
+    whole: "WholeFinger",
+    path: Path | None = None,
+    named: Mapping[str, ContactState] | None = None,
+    spacing: float = 5e-4,
 ) -> Figure:
     """Draw the ridges and the outline of each state in contact, and the mean contact pressure along the finger.
 
-    A state's title has its colour. The gross width of a slice is drawn about its middle, where sliding shifts it. Slices
-    give the sum of the contact lengths of their ridges. Its parts are those of the section at the centre of the finger,
-    at equal places within the gross width: an *assumption* of this picture.
+    A state's title has its colour. The gross width of a slice is drawn about its middle, where sliding shifts it.
+    Slices give the sum of the contact lengths of their ridges. Its parts are those of the section at the centre of
+    the finger, at equal places within the gross width: an *assumption* of this picture.
 
     Args:
         whole: the finger.
@@ -299,7 +302,8 @@ def ridges_along(state: ContactState | None, spacing: float, gross: Array) -> tu
         parts = np.interp(place * outer, x, length)
     else:
         parts = np.sqrt(np.maximum(1 - place**2, 0))
-    parts = np.where(np.abs(place) <= 1, parts, 0.0)
+    nearest = np.abs(place).min(axis=0, initial=np.inf)  # touches where no ridge lies within a narrow contact
+    parts = np.where(np.abs(place) <= np.maximum(1, nearest), parts, 0.0)
     return x, parts / np.maximum(parts.sum(axis=0), _ROUNDOFF)
 
 

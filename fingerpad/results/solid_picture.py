@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from matplotlib.cm import ScalarMappable
-from matplotlib.colors import Normalize
+from matplotlib.colors import LightSource, Normalize
 from matplotlib.figure import Figure
 from mpl_toolkits.mplot3d.art3d import Poly3DCollection
 from mpl_toolkits.mplot3d.axes3d import Axes3D
@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from fingerpad.results import style
 from fingerpad.results.finger_picture import ridges_along
+from fingerpad.results.states import WORDS
 from fingerpad.slices.total import Total, profile
 from variational.outline import loops
 from variational.state import ContactState
@@ -27,9 +28,9 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 _MM, _KPA = 1e3, 1e-3
-_SLICES, _POINTS = 41, 4  # along the finger; one of so many points of an outline is drawn
+_SLICES, _APART = 31, 0.12  # along the finger; mm between the points of an outline
 _BEYOND, _UPPER = 1.5, 5.0  # times the length of the contact; mm, of the height that is drawn
-_SKIN = "#E8C4A8"
+_SKIN, _LIGHT_FROM = "#F3D9C6", 300  # degrees
 
 
 def solid(
@@ -49,7 +50,7 @@ def solid(
     far = min(_BEYOND * float(np.abs(total.z).max()), 0.98 * min(-finger.ends[0], finger.ends[1]))
     z = np.linspace(-far, far, _SLICES)
     around = max(loops(snapshot.lines, snapshot.beside, snapshot.tag, 0), key=len)
-    edge = _MM * snapshot.x[around[:: _POINTS, 0]]
+    edge = _even(_MM * snapshot.x[around[:, :2].ravel()])
     edge = edge - [0.0, edge[:, 1].min()]
     lift = _MM * (finger.rise(z) - finger.lowest[1] - total.delta)
     height = np.maximum(edge[None, :, 1] + lift[:, None], 0.0)
@@ -57,18 +58,28 @@ def solid(
     x = np.broadcast_to(edge[:, 0], shown.shape)
     norm = Normalize(0, _KPA * float(total.pressure.max()))
     with style.look():
-        figure = style.sheet(5.6, f"{whole.heads()[list(whole.states).index(name)]} under {whole.f_ext:.3g} N, from below")
-        ax = Axes3D(figure, rect=(0.0, 0.0, 0.86, 0.94), computed_zorder=False)
+        figure = style.sheet(5.6, f"Whole finger under {whole.f_ext:.3g} N, from below: {WORDS[name]}")
+        ax = Axes3D(figure, rect=(0.0, 0.0, 0.8, 0.92), computed_zorder=False)
         figure.add_axes(ax)
-        ax.plot_surface(x, _MM * np.broadcast_to(z[:, None], x.shape), shown, color=_SKIN, lw=0, rstride=1, cstride=1)
+        along, light = _MM * np.broadcast_to(z[:, None], x.shape), LightSource(_LIGHT_FROM, -60)
+        ax.plot_surface(x, along, shown, color=_SKIN, lw=0, rstride=1, cstride=1, lightsource=light)
         strips, values = _strips(total.z, total, state, spacing)
         ax.add_collection3d(Poly3DCollection(strips, array=values, norm=norm, cmap=style.MAGNITUDE, lw=0, zorder=5))
         ax.set(xlabel="x (mm)", ylabel="z along the finger (mm)", zlabel="height y (mm)")
         ax.set_box_aspect((np.ptp(edge[:, 0]), 2 * _MM * far, float(np.nanmax(shown))), zoom=1.25)
         ax.view_init(elev=-32, azim=-58)
         bar = style.panel(figure, 7.9, 8.05, 1.2, 4.4)
-        figure.colorbar(ScalarMappable(norm, style.MAGNITUDE), cax=bar).set_label("mean contact pressure (kPa)")
+        figure.colorbar(ScalarMappable(norm, style.MAGNITUDE), cax=bar)
+        bar.set_title("mean contact\npressure (kPa)")
         return style.save(figure, path)
+
+
+def _even(points: Array) -> Array:
+    """Return points (mm) at equal distances along a closed line, shape (points, 2)."""
+    closed = np.concatenate([points, points[:1]])
+    along = np.append(0.0, np.cumsum(np.hypot(*np.diff(closed, axis=0).T)))
+    at = np.linspace(0, along[-1], round(along[-1] / _APART))
+    return np.stack([np.interp(at, along, each) for each in closed.T], axis=1)
 
 
 def _strips(z: Array, total: Total, state: ContactState, spacing: float) -> tuple[Array, Array]:
