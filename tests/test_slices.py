@@ -190,7 +190,7 @@ def test_finger_under_another_force_is_read_from_its_traces():
 
 @pytest.mark.parametrize("known", [True, False])
 def test_ridges_of_a_slice_have_its_contact_length(known):
-    """In parts that add up to one, of ridges within the gross width or else the nearest; with the centre and without."""
+    """Parts add up to one: of ridges within the gross width or else the nearest, with the centre known or not."""
     number, length = np.array([-2, -1, 0, 1, 2]), np.array([0.0, 1.0, 3.0, 1.0, 0.5])
     state = SimpleNamespace(ridges=SimpleNamespace(number=number, length=length)) if known else None
     gross = np.array([0.0, 0.4, 1.1, 1.6])

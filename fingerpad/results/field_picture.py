@@ -8,6 +8,7 @@ The field is that of the law of attraction, as between plates: it stands upright
 """
 
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 from matplotlib.cm import ScalarMappable
@@ -16,15 +17,17 @@ from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 
 from fingerpad.results import style
-from fingerpad.results.curves import SurfaceProfile
 from variational.attraction.dielectric import VACUUM_PERMITTIVITY
+
+if TYPE_CHECKING:
+    from fingerpad.results.curves import SurfaceProfile
 
 _LINES = 90  # of the field
 _BESIDE, _ABOVE = 60e-6, 9e-6  # m: shown beside the contact, and above the screen
 _UM, _KPA, _PER_UM = 1e6, 1e-3, 1e-6
 
 
-def field(path: Path | str | None, skin: SurfaceProfile, title: str) -> Figure:
+def field(path: Path | str | None, skin: "SurfaceProfile", title: str) -> Figure:
     """Draw field lines, as many per length as the field is strong, and below them pressure and attraction.
 
     Args:

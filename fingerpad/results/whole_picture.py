@@ -9,11 +9,11 @@ from fingerpad.results.finger_picture import footprint
 from fingerpad.results.solid_picture import solid
 
 if TYPE_CHECKING:
+    from fingerpad.results.answer import Answer
     from fingerpad.results.drawing import Drawing
-    from fingerpad.results.result import Result
 
 
-def draw(result: "Result", drawing: "Drawing | None", kind: str, path: Path | None) -> Figure:
+def draw(result: "Answer", drawing: "Drawing | None", kind: str, path: Path | None) -> Figure:
     """Draw a picture of a result with a whole finger, on rank 0.
 
     Args:
