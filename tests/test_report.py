@@ -26,6 +26,7 @@ from fingerpad.runs.solve import solved
 from fingerpad.scene import Scene
 from tests.browser import SIZES, asked
 from tests.small_finger import small
+from variational.attraction.dielectric import VACUUM_PERMITTIVITY
 
 pytestmark = pytest.mark.slow
 FEW = "contacts of few facets"
@@ -204,7 +205,7 @@ def test_field_lines_are_as_dense_as_the_field_is_strong(folder, tmp_path):
     flux = np.diff(foot[:, 0]) * (strength[1:] + strength[:-1]) / 2
     assert np.median(np.abs(flux / np.median(flux) - 1)) < 0.02
     p_el = skin_of(folder / "surface.npz", "full_slip")["p_el"]
-    assert strength.max() <= 1e-6 * math.sqrt(2 * np.nanmax(p_el) / 8.8541878e-12) * (1 + 1e-6)
+    assert strength.max() <= 1e-6 * math.sqrt(2 * np.nanmax(p_el) / VACUUM_PERMITTIVITY) * (1 + 1e-6)
 
 
 def test_finger_in_three_dimensions_is_drawn_from_its_slices(folder, tmp_path):

@@ -256,9 +256,10 @@ def footprint(
             gross, touching = (np.interp(z, total.z, total.columns[key]) for key in ("gross_width", "contact_length"))
             axis.fill_betweenx(_MM * z, -_MM * gross / 2, _MM * gross / 2, color=colour, alpha=_LIGHT, lw=0)
             x, parts = ridges_along((named or {}).get(name), spacing, gross)
-            for place, part in zip(x, parts * touching, strict=True):
-                left, right = _MM * (place - part / 2), _MM * (place + part / 2)
-                axis.fill_betweenx(_MM * z, left, right, where=part > 0, color=colour, lw=0)
+            lengths: Array = parts * touching
+            for k, place in enumerate(x):
+                left, right = _MM * (place - lengths[k] / 2), _MM * (place + lengths[k] / 2)
+                axis.fill_betweenx(_MM * z, left, right, where=lengths[k] > 0, color=colour, lw=0)
             area, ridges = (1e6 * total.totals[key] for key in ("gross_area", "contact_area"))
             words = head.replace(" normal", "\nnormal")
             axis.set_title(f"{words}\n{area:.1f} mm² gross,\nridges {ridges:.2f} mm²", color=colour)
@@ -294,8 +295,8 @@ def ridges_along(state: ContactState | None, spacing: float, gross: Array) -> tu
     ridges = None if state is None else state.ridges
     if ridges is not None and (ridges.length > 0).any():
         touches = ridges.length > 0
-        x, length = spacing * ridges.number[touches], ridges.length[touches]
-        x = x - (x.min() + x.max()) / 2
+        x, length = np.asarray(spacing * ridges.number[touches], dtype=np.float64), ridges.length[touches]
+        x -= (x.min() + x.max()) / 2
     place = x[:, None] / np.maximum(gross / 2, _ROUNDOFF)
     outer = max(float(np.abs(x).max(initial=0)), _ROUNDOFF)
     if length.size:

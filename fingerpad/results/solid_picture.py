@@ -86,9 +86,10 @@ def _strips(z: Array, total: Total, state: ContactState, spacing: float) -> tupl
     """Return pieces of ridges on the screen (mm), shape (pieces, 4, 3), and their mean pressure (kPa)."""
     columns = total.columns
     x, parts = ridges_along(state, spacing, columns["gross_width"])
-    length = parts * columns["contact_length"]
+    length: Array = parts * columns["contact_length"]
     found, values = [], []
-    for place, mine in zip(x, length, strict=True):
+    for ridge, place in enumerate(x):
+        mine = length[ridge]
         for k in np.flatnonzero((mine[1:] > 0) & (mine[:-1] > 0)):
             a, b = mine[k] / 2, mine[k + 1] / 2
             ends = [(place - a, z[k]), (place + a, z[k]), (place + b, z[k + 1]), (place - b, z[k + 1])]
