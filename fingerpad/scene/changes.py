@@ -1,7 +1,17 @@
-"""Changes of a scene: which keys they make meaningless, and the coarse start of a scene with an accuracy."""
+"""Changes of a scene: which keys they make meaningless, and the keys that a finger's name or an accuracy gives."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from dataclasses import is_dataclass
 from typing import Any
+
+from pydantic import BaseModel
+
+from fingerpad.scene.electric import Electric
+from fingerpad.scene.fingers import ADULT, FINGERS
+from fingerpad.scene.law_keys import keys_of
+from fingerpad.scene.materials import BEARING_AREA, CLOSURES, FRICTION, MATERIALS, Materials
+from fingerpad.scene.parameters import Slices
+from geometry.parameters import Fingertip
 
 DEFAULT_HISTORY = ("f_ext", "voltage", "slide_length")
 """Keys of the default loads, which a history replaces."""
@@ -19,7 +29,7 @@ def changed(
         accuracy: the present tolerances by quantity; None without any.
         changes: values by key, as for :meth:`fingerpad.scene.Scene.replace`.
     """
-    present = dict(present)
+    present = without_finger(present) if "finger" in changes else dict(present)
     if "accuracy" in changes and accuracy is not None:
         coarse = start(accuracy)
         present["mesh"] = {key: size for key, size in present.get("mesh", {}).items() if coarse.get(key) != size}
@@ -60,3 +70,109 @@ def with_coarse_start(data: Mapping[str, Any]) -> Mapping[str, Any]:
 def start(asked: Mapping[str, Any]) -> dict[str, float]:
     """Return the element sizes from which a scene starts that asks for accuracies by quantity."""
     return _START | ({"receptor": _START_AT_SITES} if asked.get("sed") is not None else {})
+
+
+# -- fingers by name -----------------------------------------------------------------------------------
+_LAWS = MATERIALS.laws | CLOSURES.laws  # type: ignore[operator]
+_DEFAULTS = {
+    "friction": FRICTION.default.mu_f,
+    "geometry": Fingertip(),
+    "materials": Materials(),
+    "roughness": BEARING_AREA,
+    "electric": Electric(),
+    "slices": Slices(),
+}
+
+
+def with_finger(data: Mapping[str, Any]) -> tuple[Mapping[str, Any], list[str]]:
+    """Return the data of a scene with the values of its finger, and the keys of these.
+
+    A key that is given wins. So does a law that is given as an object, of one's own, or without such a parameter, and
+    the shape of a mesh in ``geometry.file``.
+    """
+    name = data.get("finger")
+    values = FINGERS[name].values if isinstance(name, str) and name in FINGERS else {}
+    taken, found = list[str](), data
+    for key, value in values.items():
+        parts = key.split(".")
+        if _takes(found, parts):
+            found = _put(found, parts, value)
+            taken.append(key)
+    return found, taken
+
+
+def forget(scene: BaseModel, given: Mapping[str, Any], keys: Sequence[str]) -> None:
+    """Take keys that a finger gave off the set of those that were given, so that another finger gives its own.
+
+    Args:
+        scene: the scene.
+        given: its data without those of the finger.
+        keys: of the finger.
+    """
+    for key in keys:
+        parts = key.split(".")
+        table: Any = scene
+        for depth, part in enumerate(parts, start=1):
+            if isinstance(table, BaseModel) and _at(given, parts[:depth]) is None:
+                table.__pydantic_fields_set__.discard(part)
+            table = getattr(table, part)
+
+
+def without_finger(data: Mapping[str, Any], laws: bool = True) -> dict[str, Any]:
+    """Return the data of a scene without the values of its present finger.
+
+    These are in the record of a run, which gives every key, and in tables of laws, which do not tell what was given.
+
+    Args:
+        data: nested tables.
+        laws: whether values in tables of laws are left out, too, where the data are no record.
+    """
+    name = data.get("finger", ADULT)
+    own = FINGERS[name].values if isinstance(name, str) and name in FINGERS else {}
+    every = [key for finger in FINGERS.values() for key in finger.values]
+    record = all(_at(data, key.split(".")) is not None for key in every if key.partition(".")[0] not in _PARTIAL)
+    found: Mapping[str, Any] = dict(data)
+    for key in dict.fromkeys(every):
+        parts = key.split(".")
+        value = own[key] if key in own else _of_default(parts)
+        if (record or laws and parts[0] in ("roughness", "materials")) and _at(found, parts) == value:
+            found = _put(found, parts, None)
+    return dict(found)
+
+
+_PARTIAL = ("geometry", "materials", "roughness")  # of which a record has other keys with a mesh or laws of one's own
+
+
+def _of_default(parts: Sequence[str]) -> Any:
+    value = _DEFAULTS[parts[0]]
+    for part in parts[1:]:
+        value = getattr(value, part)
+    return value
+
+
+def _takes(table: Any, parts: Sequence[str]) -> bool:
+    """Return whether a value may be put at a place: nothing else stands there or on the way."""
+    if not isinstance(table, Mapping):
+        return False
+    if len(parts) > 1:
+        return _takes(table.get(parts[0], {}), parts[1:])
+    if table.get("file") is not None:  # of a mesh
+        return parts[0] == "sc_thickness" and "sc_thickness" not in table
+    law = table.get("law")
+    law = _LAWS.get(law) if isinstance(law, str) else law
+    known = "law" not in table or (isinstance(law, type) and is_dataclass(law) and parts[0] in keys_of(law))
+    return known and parts[0] not in table
+
+
+def _put(table: Mapping[str, Any], parts: Sequence[str], value: Any) -> dict[str, Any]:
+    """Return nested tables with a value at a place; without it where it is None."""
+    inner = value if len(parts) == 1 else _put(table.get(parts[0], {}), parts[1:], value)
+    rest = {key: each for key, each in table.items() if key != parts[0]}
+    return rest if inner is None else {**rest, parts[0]: inner}
+
+
+def _at(table: Any, parts: Sequence[str]) -> Any:
+    """Return the value at a place of nested tables, None where there is none."""
+    for part in parts:
+        table = table.get(part) if isinstance(table, Mapping) else None
+    return table
