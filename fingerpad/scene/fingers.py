@@ -62,7 +62,7 @@ class Trait:
 
 
 @dataclass(frozen=True)
-class Finger:
+class NamedFinger:
     """A finger with a name."""
 
     words: str
@@ -118,8 +118,8 @@ def _surface(values: Mapping[str, Any]) -> tuple[Trait, ...]:
 
 FINGERS = MappingProxyType(
     {
-        ADULT: Finger("the default finger, with the geometry and the materials of the paper"),
-        "woman": Finger(
+        ADULT: NamedFinger("the default finger, with the geometry and the materials of the paper"),
+        "woman": NamedFinger(
             "a woman, 18 years or older",
             (
                 Trait(
@@ -137,7 +137,7 @@ FINGERS = MappingProxyType(
                 ),
             ),
         ),
-        "child": Finger(
+        "child": NamedFinger(
             "a child of 3 to 10 years",
             (
                 Trait(
@@ -153,7 +153,7 @@ FINGERS = MappingProxyType(
                 ),
             ),
         ),
-        "elderly": Finger(
+        "elderly": NamedFinger(
             "a person of some 60 years or older",
             (
                 Trait(
@@ -169,7 +169,7 @@ FINGERS = MappingProxyType(
                 _DRY_CIRCUIT,
             ),
         ),
-        "callused": Finger(
+        "callused": NamedFinger(
             "a finger with calluses, of manual work or strings",
             (
                 Trait(
@@ -179,8 +179,8 @@ FINGERS = MappingProxyType(
                 ),
             ),
         ),
-        "dry": Finger("a dry finger", (*_surface(_DRY), _DRY_CIRCUIT)),
-        "moist": Finger("a moist finger, of sweat or after some time on glass", (*_surface(_MOIST), _MOIST_CIRCUIT)),
+        "dry": NamedFinger("a dry finger", (*_surface(_DRY), _DRY_CIRCUIT)),
+        "moist": NamedFinger("a moist finger, of sweat or after some time on glass", (*_surface(_MOIST), _MOIST_CIRCUIT)),
     }
 )
 """Fingers by name."""
