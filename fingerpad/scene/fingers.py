@@ -41,7 +41,8 @@ _OF_SIZE = (  # lengths that go with the finger's
     "nail_bed_half_width",
 )
 _PAD = 28e-3  # m, radius and length of the default pad along the finger
-_SOFT = {"subcutis": 25e3, "dermis": 2.55e3, "viable_epidermis": 61.75e3, "stratum_corneum": 86.76e3}  # Pa, Table 2
+SOFT = {"subcutis": 25e3, "dermis": 2.55e3, "viable_epidermis": 61.75e3, "stratum_corneum": 86.76e3}
+"""Shear moduli (Pa) of the default finger's soft layers (Table 2)."""
 _RIDGES = (
     "of the prints of Králík and Novotný 2003 (Variability and Evolution 11, 5 to 30), whose data were read in the "
     "repository andburch/bayesianfingerprintr; means of people"
@@ -90,7 +91,7 @@ def _shape(ridges: float, size: float) -> dict[str, float]:
 
 def _stiffer(factor: float) -> dict[str, float]:
     """Return the shear moduli of the soft layers, in parts of the default ones."""
-    return {f"materials.{layer}.shear_modulus": _round(factor * value) for layer, value in _SOFT.items()}
+    return {f"materials.{layer}.shear_modulus": _round(factor * value) for layer, value in SOFT.items()}
 
 
 _DRY = {"friction": 0.2, "roughness.young": 3.2e6, "electric.tissue": "dry", "electric.leak": "sliding dry"}
@@ -180,7 +181,7 @@ FINGERS = MappingProxyType(
             ),
         ),
         "dry": NamedFinger("a dry finger", (*_surface(_DRY), _DRY_CIRCUIT)),
-        "moist": NamedFinger("a moist finger, of sweat or after some time on glass", (*_surface(_MOIST), _MOIST_CIRCUIT)),
+        "moist": NamedFinger("a moist finger, by sweat or after a while on glass", (*_surface(_MOIST), _MOIST_CIRCUIT)),
     }
 )
 """Fingers by name."""
