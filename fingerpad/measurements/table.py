@@ -166,8 +166,8 @@ def read(
         if condition not in used:
             _refuse_overlooked(name, condition, ignored)
     measured = pd.DataFrame({"spread": np.nan} | rows | people, index=frame.index)
-    measured, heads = measured.rename(columns={quantity: "measured"}), tuple(column.head for column in ignored)
-    return Measured(name, about, STATES[given], quantity, whole, measured, heads, turned)
+    measured, left = measured.rename(columns={quantity: "measured"}), tuple(column.head for column in ignored)
+    return Measured(name, about, STATES[given], quantity, whole, measured, left, turned)
 
 
 def _file(file: Path) -> tuple[str, str, pd.DataFrame]:
