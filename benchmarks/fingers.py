@@ -1,6 +1,6 @@
 """Fingers by name beside each other: their friction, and where their keys are from.
 
-environment/run python3 -m benchmarks.fingers [--draw]     two minutes of processor time
+environment/run python3 -m benchmarks.fingers [--draw]     also: make fingers; two minutes of processor time
 
 The closed form has the fingers that are similar to the default one. The others are run by the full model, on coarse
 elements, and so is the default finger beside its closed form. Writes docs/fingers.json, docs/fingers.md and a picture.
@@ -73,7 +73,7 @@ def draw(docs: Path) -> Path:
     """Write docs/fingers.md and its picture from docs/fingers.json."""
     numbers = harness.kept("fingers", docs).numbers
     harness.picture(docs / "fingers.png", (8, 3.6), lambda figure: _paint(figure, numbers))
-    return harness.page(docs, "fingers", "python3 -m benchmarks.fingers", globals())
+    return harness.page(docs, "fingers", "make fingers", globals())
 
 
 def best(found: Mapping[str, Any]) -> float:

@@ -94,7 +94,7 @@ def test_mesh_of_a_file_keeps_its_shape():
     """The name gives no lengths beside a mesh but the thickness that the attraction reads."""
     from fingerpad.scene.changes import with_finger
 
-    data, taken = with_finger({"finger": "child", "geometry": {"file": "finger.msh"}})
+    data, taken = with_finger({"finger": "child", "geometry": {"file": "finger.msh"}}, {})
     assert data["geometry"] == {"file": "finger.msh", "sc_thickness": FINGERS["child"].values["geometry.sc_thickness"]}
     assert [key for key in taken if key.startswith("geometry.")] == ["geometry.sc_thickness"]
 
@@ -132,3 +132,11 @@ def test_every_value_has_a_source_or_is_an_assumption():
     for finger in FINGERS.values():
         for trait in finger.traits:
             assert trait.values and re.search(r"doi 10\.\d{4}|\b(19|20)\d\d\b|Assumption|docs/drive", trait.source)
+
+
+def test_defaults_are_those_of_the_scene():
+    """A name gives keys that have a default here, and these are the default finger's."""
+    from fingerpad.scene.fingers import DEFAULTS
+
+    assert {key: value(fp.Scene(), key) for key in DEFAULTS} == dict(DEFAULTS)
+    assert {key for finger in FINGERS.values() for key in finger.values} == DEFAULTS.keys()

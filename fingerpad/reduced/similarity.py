@@ -11,9 +11,9 @@ from dataclasses import dataclass
 from functools import cache
 from typing import Any
 
-from fingerpad.scene import Scene
 from fingerpad.scene.fingers import SOFT
 from fingerpad.scene.law_keys import parameters
+from fingerpad.scene.scene import Scene
 from geometry.parameters import Fingertip
 
 _SAME = 0.01  # relative difference of ratios

@@ -6,12 +6,8 @@ from typing import Any
 
 from pydantic import BaseModel
 
-from fingerpad.scene.electric import Electric
-from fingerpad.scene.fingers import ADULT, FINGERS
+from fingerpad.scene.fingers import ADULT, DEFAULTS, FINGERS
 from fingerpad.scene.law_keys import keys_of
-from fingerpad.scene.materials import BEARING_AREA, CLOSURES, FRICTION, MATERIALS, Materials
-from fingerpad.scene.parameters import Slices
-from geometry.parameters import Fingertip
 
 DEFAULT_HISTORY = ("f_ext", "voltage", "slide_length")
 """Keys of the default loads, which a history replaces."""
@@ -73,29 +69,22 @@ def start(asked: Mapping[str, Any]) -> dict[str, float]:
 
 
 # -- fingers by name -----------------------------------------------------------------------------------
-_LAWS = MATERIALS.laws | CLOSURES.laws  # type: ignore[operator]
-_DEFAULTS = {
-    "friction": FRICTION.default.mu_f,
-    "geometry": Fingertip(),
-    "materials": Materials(),
-    "roughness": BEARING_AREA,
-    "electric": Electric(),
-    "slices": Slices(),
-}
-
-
-def with_finger(data: Mapping[str, Any]) -> tuple[Mapping[str, Any], list[str]]:
+def with_finger(data: Mapping[str, Any], laws: Mapping[str, type]) -> tuple[Mapping[str, Any], list[str]]:
     """Return the data of a scene with the values of its finger, and the keys of these.
 
     A key that is given wins. So does a law that is given as an object, of one's own, or without such a parameter, and
     the shape of a mesh in ``geometry.file``.
+
+    Args:
+        data: nested tables.
+        laws: of the package, by name.
     """
     name = data.get("finger")
     values = FINGERS[name].values if isinstance(name, str) and name in FINGERS else {}
     taken, found = list[str](), data
     for key, value in values.items():
         parts = key.split(".")
-        if _takes(found, parts):
+        if _takes(found, parts, laws):
             found = _put(found, parts, value)
             taken.append(key)
     return found, taken
@@ -129,12 +118,10 @@ def without_finger(data: Mapping[str, Any], laws: bool = True) -> dict[str, Any]
     """
     name = data.get("finger", ADULT)
     own = FINGERS[name].values if isinstance(name, str) and name in FINGERS else {}
-    every = [key for finger in FINGERS.values() for key in finger.values]
-    record = all(_at(data, key.split(".")) is not None for key in every if key.partition(".")[0] not in _PARTIAL)
+    record = all(_at(data, key.split(".")) is not None for key in DEFAULTS if key.partition(".")[0] not in _PARTIAL)
     found: Mapping[str, Any] = dict(data)
-    for key in dict.fromkeys(every):
+    for key, value in (DEFAULTS | own).items():
         parts = key.split(".")
-        value = own[key] if key in own else _of_default(parts)
         if (record or laws and parts[0] in ("roughness", "materials")) and _at(found, parts) == value:
             found = _put(found, parts, None)
     return dict(found)
@@ -143,23 +130,16 @@ def without_finger(data: Mapping[str, Any], laws: bool = True) -> dict[str, Any]
 _PARTIAL = ("geometry", "materials", "roughness")  # of which a record has other keys with a mesh or laws of one's own
 
 
-def _of_default(parts: Sequence[str]) -> Any:
-    value = _DEFAULTS[parts[0]]
-    for part in parts[1:]:
-        value = getattr(value, part)
-    return value
-
-
-def _takes(table: Any, parts: Sequence[str]) -> bool:
+def _takes(table: Any, parts: Sequence[str], laws: Mapping[str, type]) -> bool:
     """Return whether a value may be put at a place: nothing else stands there or on the way."""
     if not isinstance(table, Mapping):
         return False
     if len(parts) > 1:
-        return _takes(table.get(parts[0], {}), parts[1:])
+        return _takes(table.get(parts[0], {}), parts[1:], laws)
     if table.get("file") is not None:  # of a mesh
         return parts[0] == "sc_thickness" and "sc_thickness" not in table
     law = table.get("law")
-    law = _LAWS.get(law) if isinstance(law, str) else law
+    law = laws.get(law) if isinstance(law, str) else law
     known = "law" not in table or (isinstance(law, type) and is_dataclass(law) and parts[0] in keys_of(law))
     return known and parts[0] not in table
 

@@ -44,8 +44,8 @@ _PAD = 28e-3  # m, radius and length of the default pad along the finger
 SOFT = {"subcutis": 25e3, "dermis": 2.55e3, "viable_epidermis": 61.75e3, "stratum_corneum": 86.76e3}
 """Shear moduli (Pa) of the default finger's soft layers (Table 2)."""
 _RIDGES = (
-    "of the prints of Králík and Novotný 2003 (Variability and Evolution 11, 5 to 30), whose data were read in the "
-    "repository andburch/bayesianfingerprintr; means of people"
+    "Prints of Králík and Novotný 2003 (Variability and Evolution 11, 5 to 30), whose data were read in the repository "
+    "andburch/bayesianfingerprintr"
 )
 _STIFFNESS = '"Age and gender effect on human tactile perception, in vivo", abstract, with doi 10.1098/rsos.170321'
 _MOISTURE = "Yuan and Verma 2006, Colloids and Surfaces B 48, 6 to 12, abstract"
@@ -125,7 +125,7 @@ FINGERS = MappingProxyType(
             (
                 Trait(
                     {"geometry.ridge_wavelength": 441e-6},
-                    f"441 µm is the mean of 33 women, and 492 µm that of 23 men, {_RIDGES}",
+                    f"Mean of 33 women; 23 men have 492 µm. {_RIDGES}",
                 ),
                 Trait(
                     _shape(0.913, 0.913),
@@ -143,7 +143,7 @@ FINGERS = MappingProxyType(
             (
                 Trait(
                     {"geometry.ridge_wavelength": 354e-6},
-                    f"354 µm is the mean of 21 children of 4 to 10 years, {_RIDGES}",
+                    f"Mean of 21 children of 4 to 10 years. {_RIDGES}",
                 ),
                 Trait(
                     _shape(0.733, 0.876) | {"geometry.ridge_count": 65},
@@ -185,4 +185,14 @@ FINGERS = MappingProxyType(
     }
 )
 """Fingers by name."""
+DEFAULTS: Mapping[str, Any] = MappingProxyType(
+    {
+        **{f"geometry.{name}": getattr(Fingertip(), name) for name in (*_OF_RIDGES, *_OF_SIZE)},
+        **{f"materials.{layer}.shear_modulus": value for layer, value in SOFT.items()},
+        **{f"slices.{name}": _PAD for name in ("radius", "length")},
+        **{f"geometry.{name}": getattr(Fingertip(), name) for name in ("ridge_wavelength", "ridge_count")},
+        **{"friction": 0.25, "roughness.young": 1e6, "electric.tissue": "lossless", "electric.leak": "none"},
+    }
+)
+"""The default finger's value of every key that a name gives."""
 assert tuple(FINGERS) == FingerName.__args__  # type: ignore[attr-defined]

@@ -12,7 +12,6 @@ from typing import Any
 import numpy as np
 from pydantic import BaseModel
 
-from fingerpad.scene.changes import without_finger
 from fingerpad.scene.law_keys import table
 from fingerpad.scene.messages import SceneError, clip, key_of, show
 from variational import files
@@ -251,15 +250,7 @@ def put(data: dict[str, Any], key: str, value: Any) -> None:
 
 
 def put_all(data: dict[str, Any], changes: Mapping[str, Any]) -> None:
-    """Put values at dotted keys, as :func:`put` does.
-
-    Of ``f_ext`` and ``force`` a change of one replaces the other. Another ``finger`` replaces values in the record of a
-    run that are of the record's finger.
-    """
-    if "finger" in changes:
-        kept = without_finger(data, laws=False)
-        data.clear()
-        data.update(kept)
+    """Put values at dotted keys, as :func:`put` does; of ``f_ext`` and ``force`` a change of one replaces the other."""
     for key, other in (("force", "f_ext"), ("f_ext", "force")):
         if key in changes:
             data.pop(other, None)

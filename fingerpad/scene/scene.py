@@ -11,14 +11,23 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 from pydantic import Field, ValidationError, model_validator
 
-from fingerpad.scene.changes import DEFAULT_HISTORY, changed, forget, with_coarse_start, with_finger
+from fingerpad.scene.changes import DEFAULT_HISTORY, changed, forget, with_coarse_start, with_finger, without_finger
 from fingerpad.scene.electric import Electric
 from fingerpad.scene.fingers import ADULT, FingerName
 from fingerpad.scene.keys import every
 from fingerpad.scene.law_code import digest, folder_of, imported
 from fingerpad.scene.law_keys import Kept, kept
 from fingerpad.scene.loads import Load, Voltage, drives, refuse_contradictions
-from fingerpad.scene.materials import BEARING_AREA, FRICTION, LAYERS, ROUGHNESS, Materials, refuse_thickness
+from fingerpad.scene.materials import (
+    BEARING_AREA,
+    CLOSURES,
+    FRICTION,
+    LAYERS,
+    MATERIALS,
+    ROUGHNESS,
+    Materials,
+    refuse_thickness,
+)
 from fingerpad.scene.messages import SceneError, first_error, show
 from fingerpad.scene.parameters import (
     Accuracy,
@@ -41,6 +50,9 @@ from variational.roughness.closure import Closure
 
 if TYPE_CHECKING:
     from variational.materials.material import Material
+
+
+_LAWS: dict[str, type] = {**MATERIALS.laws, **CLOSURES.laws}
 
 
 class Scene(Table):
@@ -93,7 +105,7 @@ class Scene(Table):
         """
         given = plain(data)
         refuse_beside_mesh(given)
-        full, named = with_finger(given)
+        full, named = with_finger(given, _LAWS)
         try:
             self.__pydantic_validator__.validate_python(with_coarse_start(full), self_instance=self)
         except ValidationError as error:
@@ -285,8 +297,20 @@ def load(path: Path | None = None, overrides: Mapping[str, Any] | None = None) -
         SceneError: the file cannot be read, or the first key at fault.
     """
     data = {} if path is None else read_scene(Path(path))
-    put_all(data, overrides or {})
-    return from_data(data)
+    return from_data(overridden(data, overrides or {}))
+
+
+def overridden(data: Mapping[str, Any], changes: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the data of a scene with values by dotted key.
+
+    Another ``finger`` replaces values in the record of a run that are of the record's finger.
+
+    Raises:
+        SceneError: a table, or an entry of a list, that is not there.
+    """
+    found = without_finger(data, laws=False) if "finger" in changes else dict(data)
+    put_all(found, changes)
+    return found
 
 
 def from_data(data: Mapping[str, Any]) -> Scene:
