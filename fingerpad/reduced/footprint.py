@@ -11,9 +11,9 @@ import numpy as np
 from fingerpad.reduced.model import STATES
 from fingerpad.results.files import read_object
 from fingerpad.results.folder import difference
-from fingerpad.scene import Scene, SceneError
-from fingerpad.scene.messages import show
+from fingerpad.scene.messages import SceneError, show
 from fingerpad.scene.reading import DEFAULT_MODEL
+from fingerpad.scene.scene import Scene
 
 
 @dataclass(frozen=True)
