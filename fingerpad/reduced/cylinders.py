@@ -131,8 +131,9 @@ class Cylinders(Model):
     traces = "traces of charged cylinders, indentations without voltage"
 
     def __init__(self, footprint: Footprint | None = None) -> None:
-        """Take the footprint."""
+        """Take the footprint, which is known at one force alone where it is given."""
         self._footprint = footprint
+        self.sums = footprint is None
 
     def solve(self, scene: Scene, context: "RunContext") -> Result:
         """Return the answer of :func:`solve`."""
