@@ -37,6 +37,7 @@ PAGES = {
     "drive": "benchmarks.drive",
     "errors": "benchmarks.errors",
     "feel": "benchmarks.feel.__main__",
+    "fingers": "benchmarks.fingers",
     "hero": "benchmarks.hero",
     "loads": "benchmarks.loads.__main__",
     "measured": "benchmarks.measured.__main__",
