@@ -198,7 +198,7 @@ def _error(region: cylinder_errors.Region) -> str:
     section, whole = (100 * region.errors[key]["f_electrostatic"] for key in ("full_slip", cylinder_errors.WHOLE))
     return (
         f"The attraction is known to {whole:.1f} % for the whole finger, and to {section:.1f} % for its section, at "
-        f"{cylinder_errors.where(region)}. µ_app has the share of this error that the attraction has of the contact force."
+        f"{cylinder_errors.where(region)}. µ_app has the share of this error that attraction has of contact force."
     )
 
 

@@ -155,7 +155,8 @@ def _row(found: Result) -> dict[str, Any]:
     if finger is not None:
         total = finger.values(list(finger.states)[-1])
         values |= {key: total[key] for key in _WHOLE if key in total}
-        force, pull = finger.f_ext, total["f_electrostatic"]
+        if found.scene.force is not None:
+            force, pull = finger.f_ext, total["f_electrostatic"]
     if cylinder_errors.WHOLE in known:
         values[_ERROR] = known[cylinder_errors.WHOLE]["mu_app"] * values["mu_app"]
     return values | {"state": section, "error": known, "outside": cylinder_errors.outside(found.scene, pull / force)}
