@@ -8,6 +8,7 @@
 # make pages  every generated page and picture of docs/ from the numbers kept there; seconds, no run
 # make stale  the pages older than the code that they rest on; needs git
 # make docs   the documentation site, in build/docs/index.html; a minute
+# make notebook  a demo as a notebook of Jupyter, in results: make notebook DEMO=own_material
 # make verify every number with a known answer, some minutes; docs/verification.md
 # make paper  the statements of the paper beside this model's numbers; docs/paper.md, a quarter of an hour or more
 # make measured  measured fingers beside this model's numbers; docs/measured.md, two minutes
@@ -23,7 +24,7 @@
 
 run := environment/run
 
-.PHONY: help demo lint test check test-pip test-order fuzz docs pages stale verify paper measured drive viscosity feel calibration chart performance
+.PHONY: help demo lint test check test-pip test-order fuzz docs notebook pages stale verify paper measured drive viscosity feel calibration chart performance
 
 help:
 	@sed -n 's/^# make/make/p' Makefile
@@ -62,6 +63,9 @@ docs:
 pages:
 	$(run) python3 -m benchmarks.pages
 	$(run) python3 -m fingerpad calculator --out docs/calculator.html
+
+notebook:
+	$(run) python3 -m benchmarks.notebook $(or $(DEMO),first_run)
 
 stale:
 	python3 -m benchmarks.pages --stale
