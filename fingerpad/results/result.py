@@ -97,6 +97,16 @@ class Result(Answer):
 
         return afferents(self, laws)
 
+    def animate(self, path: "str | Path") -> Path:
+        """Write the run as a moving picture, WebP or GIF by the end of the file's name; return the file.
+
+        Raises:
+            SceneError: the run has no ``motion.npz``, or the name another ending.
+        """
+        from fingerpad.results.animation import animate  # Matplotlib
+
+        return animate(self, Path(path))
+
     def with_outputs(self, outputs: Iterable[Output]) -> "Result":
         """Return the result with further outputs, computed from its states; files are not written again.
 
