@@ -1,7 +1,7 @@
 """Make a notebook of a demo: environment/run python3 -m benchmarks.notebook NAME [FOLDER], or make notebook DEMO=NAME
 
 The notebook is results/NAME.ipynb by default, in Jupyter's format 4.5 (https://nbformat.readthedocs.io) and without
-output. Cells of the script become cells; the first one stands for the command line, and the last one shows the pictures.
+output. Cells of the script become cells; the first one stands for the command line, and the last one shows pictures.
 """
 
 import argparse
