@@ -42,7 +42,7 @@ from variational.energy import EnergyBook
 from variational.materials.material import Material
 from variational.problem import Interface
 from variational.roughness.closure import Closure, check
-from variational.snapshot import Nodes, gather_mesh
+from variational.snapshot import Lines, Nodes
 from variational.solvers.continuation import Attempt, StepFailed, Target
 from variational.state import ContactState, Skin, StepRecord
 
@@ -243,7 +243,7 @@ class Body:
     @property
     def fields(self) -> Fields:
         """Displacement, stress, strain and energy density inside the body, in the last accepted state; collective."""
-        shown = gather_mesh(self.problem)
+        shown = Lines(self.problem).snapshot(self.problem)
         found: Fields = self.problem.mesh.comm.bcast(None if shown is None else of_snapshot(shown))
         return found
 
