@@ -113,7 +113,7 @@ def _help() -> str:
     commands = "\n".join(f"  {name:12s} {what}" for name, what in COMMANDS.items())
     return f"""usage: fingerpad COMMAND [SCENE] [--set KEY=VALUE ...]
 
-How a fingertip sticks, slides and feels on a touchscreen under electroadhesion.
+How a fingertip sticks and slides on a touchscreen under electroadhesion, and spikes of its nerve fibres.
 
 commands:
 {commands}
