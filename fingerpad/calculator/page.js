@@ -68,8 +68,9 @@
   }
 
   const span = ({ key, low, high }) => {
-    const field = state.by_key[key], unit = field.unit && ` ${field.unit}`, per = field.per, ends = [low, high].map((v) => show(v * per));
-    return `${key.split(".").pop()} ${ends[0] === ends[1] ? ends[0] : ends.join(" to ")}${unit}`;
+    const field = state.by_key[key], unit = field && field.unit ? ` ${field.unit}` : "", name = field ? key.split(".").pop() : "attraction over force";
+    const ends = [low, high].map((v) => show(field ? v * field.per : v));
+    return `${name} ${ends[0] === ends[1] ? ends[0] : ends.join(" to ")}${unit}`;
   };
 
   function remarks(found, { values, given }) {
@@ -83,7 +84,7 @@
     if (given) parts.push("The contact is as given along both curves; the error of this answer is not known.");
     else if (error) parts.push(`Known error, beside full runs: µ_app and friction within ${percent(error.mu_app)}, attraction within ${percent(error.f_electrostatic)}.`);
     else {
-      const beyond = modelErrors.outside(values).filter(({ low }) => !Number.isNaN(low)).map(span).join(", ");
+      const beyond = modelErrors.outside(values, found).filter(({ low }) => !Number.isNaN(low)).map(span).join(", ");
       parts.push(`The error is not known here${beyond && `; it is for ${beyond}`}.`);
     }
     const point = found.section || found, at = closedForm.closure_of(values).state(point.p_c, values.voltage);
