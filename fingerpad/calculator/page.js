@@ -19,8 +19,8 @@
     ["mu_app", "friction coefficient µ_app of the whole finger", "", 1, 3, "mu_app"],
     ["f_t", "friction force", "N", 1, 3, "f_t"],
     ["f_electrostatic", "attraction", "N", 1, 3, "f_electrostatic"],
-    ["contact_area", "contact area of the ridges", "mm²", 1e6, 2],
-    ["gross_area", "gross area of contact", "mm²", 1e6, 1],
+    ["contact_area", "contact area of the ridges", "mm²", 1e6, 2, "contact_area"],
+    ["gross_area", "gross area of contact", "mm²", 1e6, 1, "gross_area"],
     ["indentation", "indentation", "mm", 1e3, 3],
   ];
   let { texts, kept, said } = state.from_fragment(location.hash);
