@@ -73,6 +73,7 @@ WORDS = {
     "docs/command": {"": ["Windows", "WSL", "macOS", "Docker", "conda", "install"], "## Targets": ["target"]},
     "docs/drive": {"": ["alternating voltage", "frequency", "waveform"]},
     "docs/feel": {"": ["nerve", "perception", "spike"]},
+    "docs/fingers": {"": ["child", "elderly", "moisture", "sweat", "callus"]},
     "docs/newtons": {"": ["newton", "contact area"]},
     "docs/scene": {"## `[electric]`": ["coating", "insulator", "dielectric", "permittivity"]},
     "docs/viscosity": {"": ["viscous", "relaxation", "creep"]},
