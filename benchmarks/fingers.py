@@ -89,13 +89,14 @@ def _paint(figure: Figure, numbers: Mapping[str, Any]) -> None:
     full = {name: found.full["mu_app"] for name, found in numbers.items() if found.full}
     closed = {name: found.closed for name, found in numbers.items() if found.closed is not None}
     alone = {name: found.mu_0 for name, found in numbers.items()}
-    for values, label, look in (
+    looks: list[tuple[dict[str, float], str, dict[str, Any]]] = [
         (alone, "without voltage: µ_0", {"marker": "o", "mfc": "white"}),
         (closed, f"{VOLTAGE:g} V, closed form", {"marker": "o"}),
         (full, f"{VOLTAGE:g} V, full model", {"marker": "D", "color": style.VERMILION}),
-    ):
-        at = [places[name] for name in values]
-        ax.plot(list(values.values()), at, **({"ls": "none", "color": style.BLUE, "ms": 8, "label": label} | look))
+    ]
+    for values, label, look in looks:
+        own: dict[str, Any] = {"ls": "none", "color": style.BLUE, "ms": 8, "label": label} | look
+        ax.plot(list(values.values()), [places[name] for name in values], **own)
     ax.set_yticks(list(places.values()), list(places))
     ax.set(xlabel="friction coefficient µ_app of the whole finger at full slip (–)", xlim=(0, None))
     ax.grid(axis="x", alpha=0.3)

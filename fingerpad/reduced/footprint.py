@@ -10,10 +10,9 @@ import numpy as np
 
 from fingerpad.reduced.model import STATES
 from fingerpad.results.files import read_object
-from fingerpad.results.folder import difference
-from fingerpad.scene import Scene, SceneError
-from fingerpad.scene.messages import show
+from fingerpad.scene.messages import SceneError, show
 from fingerpad.scene.reading import DEFAULT_MODEL
+from fingerpad.scene.scene import Scene
 
 
 @dataclass(frozen=True)
@@ -69,6 +68,8 @@ def _of_summary(scene: Scene, folder: Path, summary: Mapping[str, Any]) -> Footp
                 f"run {folder} is one at {name} {summary[name]:g} {unit}, and the scene's is {own:g}; "
                 "give a run of this scene"
             )
+    from fingerpad.results.folder import difference  # of runs' folders, which the closed form itself does not read
+
     other = difference(_finger(summary["parameters"]), _finger(scene.parameters()))
     if other:
         raise SceneError(f"run {folder} is one of another finger ({other}); give a run of this scene's finger")

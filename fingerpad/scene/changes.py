@@ -120,7 +120,7 @@ def without_finger(data: Mapping[str, Any], laws: bool = True) -> dict[str, Any]
     own = FINGERS[name].values if isinstance(name, str) and name in FINGERS else {}
     record = all(_at(data, key.split(".")) is not None for key in DEFAULTS if key.partition(".")[0] not in _PARTIAL)
     found: Mapping[str, Any] = dict(data)
-    for key, value in (DEFAULTS | own).items():
+    for key, value in {**DEFAULTS, **own}.items():
         parts = key.split(".")
         if (record or laws and parts[0] in ("roughness", "materials")) and _at(found, parts) == value:
             found = _put(found, parts, None)
