@@ -10,6 +10,7 @@
 # make docs   the documentation site, in build/docs/index.html; a minute
 # make verify every number with a known answer, some minutes; docs/verification.md
 # make paper  the statements of the paper beside this model's numbers; docs/paper.md, a quarter of an hour or more
+# make paper FIGURE=6  a figure of the paper; fingerpad paper lists them with their times
 # make measured  measured fingers beside this model's numbers; docs/measured.md, two minutes
 # make drive  friction over frequency and waveform of the voltage; docs/drive.md, a minute
 # make viscosity  how skin relaxes, energy of random histories, friction after a step of voltage; docs/viscosity.md
@@ -72,7 +73,7 @@ verify:
 	$(run) mpirun -n 2 python3 -m pytest -q --color=no -p no:cacheprovider -m long tests
 
 paper:
-	$(run) python3 -m benchmarks.paper
+	$(run) python3 -m $(if $(FIGURE),fingerpad paper $(FIGURE) --out results/traces,benchmarks.paper)
 
 measured:
 	$(run) python3 -m benchmarks.measured
