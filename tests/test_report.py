@@ -30,7 +30,8 @@ for (let k = 0; k <= Number(slider.max); k++) {
   slider.value = String(k);
   slider.dispatchEvent(new Event("input"));
   const curve = document.querySelectorAll("#skin .scatterlayer .trace path.js-line")[0];
-  seen.push([document.getElementById("about").textContent, curve ? curve.getAttribute("d") : ""]);
+  const about = document.getElementById("about").textContent.replaceAll("\u00a0", " ");
+  seen.push([about, curve ? curve.getAttribute("d") : ""]);
 }
 const ridges = document.getElementById("ridge"), values = [];
 for (const option of ridges.options) {
@@ -47,6 +48,22 @@ const gaps = ["y", "y2"].map((name) => {
 });
 const root = document.documentElement;
 return { seen, values, gaps, charts, fetched, wide: root.scrollWidth, width: root.clientWidth };
+"""
+FIRST = """
+const box = (element) => element.getBoundingClientRect();
+function lines(cell) {
+  const all = document.createRange();
+  all.selectNodeContents(cell);
+  return new Set([...all.getClientRects()].map((r) => r.bottom)).size;
+}
+const parts = [...document.querySelectorAll("h1, #state, #skin, h2")];
+const order = parts.map((e) => e.tagName === "H2" ? "h2" : e.id || "h1");
+const values = [...document.querySelectorAll(".numbers td")];
+return { order: order.slice(0, 4), slider: box(document.getElementById("state")).bottom,
+  chart: box(document.querySelector("#body svg")).bottom,
+  broken: values.filter((cell) => lines(cell) > 1).map((cell) => cell.textContent), values: values.length,
+  right: Math.max(...[...document.querySelectorAll("section")].map((e) => box(e).right)),
+  pictures: [...document.querySelectorAll("#pictures figcaption")].map((e) => e.textContent) };
 """
 TEXT = """
 const hidden = [...document.querySelectorAll(".needs-js")].every((e) => getComputedStyle(e).display === "none");
@@ -70,7 +87,7 @@ def page(folder) -> str:
 @pytest.fixture
 def copy(folder, tmp_path) -> Path:
     """A copy of the run's folder, to be spoilt."""
-    return Path(shutil.copytree(folder, tmp_path / "copy", ignore=shutil.ignore_patterns("*.bp", "*.png")))
+    return Path(shutil.copytree(folder, tmp_path / "copy", ignore=shutil.ignore_patterns("*.vtu", "*.png")))
 
 
 # -- a run -------------------------------------------------------------------------------------------------
@@ -93,6 +110,26 @@ def test_browser_opens_it_and_steps_through_the_states(page, tmp_path, size):
     assert {name for name, drawn in found["charts"] if drawn} >= {"body", "skin", "one", "friction", "work"}
     assert all(drawn for _, drawn in found["charts"])
     assert all(gap > 5 for gap in found["gaps"]), "the title of an axis touches its numbers"
+
+
+@pytest.mark.parametrize("size", [*SIZES.values(), (1920, 1080)])
+def test_slider_is_in_the_first_screen(page, tmp_path, size):
+    """Beside or below the finding, with the finger; sections fill the window, and no value is broken into lines."""
+    width, height = size
+    found = asked(page, FIRST, tmp_path, width=width, height=height)
+    assert found["order"] == ["h1", "state", "skin", "h2"]
+    assert max(found["slider"], found["chart"]) < height
+    assert found["broken"] == [] and found["values"] > 30
+    assert found["right"] > width - 40
+
+
+def test_pictures_are_in_the_order_of_the_loads(page, folder, tmp_path):
+    """That of the final mesh in the place of the load whose end it is."""
+    found = asked(page, FIRST, tmp_path)["pictures"]
+    fingers = [words.removeprefix("Deformed finger: ") for words in found if words.startswith("Deformed")]
+    assert fingers == ["uncharged normal contact", "charged normal contact", "full slip"]
+    assert found[: len(fingers)] == [f"Deformed finger: {words}" for words in fingers]
+    assert {f"finger_{words.replace(' ', '_')}.png" for words in fingers} <= {file.name for file in folder.iterdir()}
 
 
 def test_numbers_stand_there_without_scripts(page, folder, tmp_path):
@@ -145,8 +182,8 @@ def test_full_slip_without_a_coefficient_has_its_force(folder):
     found = replace(result, full_slip=slip)
     page = run_page.page(found)
     text = re.sub(r"<script.*?</script>", "", page, flags=re.DOTALL)
-    assert f"f<sub>T</sub> = {cell('f_t', slip.f_t, slip.error.f_t)} N/m" in text
-    assert "would change f_T at full slip by" in text and not re.search(r"\bnan\b", text)
+    assert f"f<sub>T</sub> = {cell('f_t', slip.f_t, slip.error.f_t)} N/m" in text.replace("\u00a0", " ")
+    assert "would change f<sub>T</sub> at full slip by" in text and not re.search(r"\bnan\b", text)
     told = [each.what for each in trust.findings(found)]
     assert "errors are not estimated" not in told and {"mesh", "the mesh is coarse"} & set(told)
 
@@ -171,7 +208,7 @@ def test_contact_lengths_of_the_ridges_add_up(page):
     frames = json.loads(found)["finger"]["frames"]
     assert len(frames) >= 3
     for frame in frames:
-        whole = float(re.search(r"L_R = ([0-9.]+) mm", frame["about"])[1])
+        whole = float(re.search(r"L<sub>R</sub>\s=\s([0-9.]+)\smm", frame["about"])[1])
         assert sum(ridge["length"] for ridge in frame["skin"]) == pytest.approx(whole, abs=1.5e-3)
 
 

@@ -37,7 +37,6 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from fingerpad.afferents.afferent import Afferent
-    from fingerpad.results.drawing import Drawing
     from fingerpad.results.spikes import Spikes
     from fingerpad.scene import Scene
 
@@ -73,9 +72,7 @@ class Result(Answer):
             from fingerpad.results.finger_picture import footprint  # Matplotlib
 
             return footprint(self.finger, None if path is None else Path(path)) if terminal.rank() == 0 else None
-        if (drawing := self.drawing) is None and self.steps and self.folder is not None and terminal.rank() == 0:
-            drawing = _drawing(self, self.folder)
-        if drawing is not None:
+        if (drawing := self._drawn()) is not None:
             return drawing.figure(kind, None if path is None else Path(path))
         if not self.steps:
             raise ValueError(f"the result of the model {self.model!r} has no steps to draw; those of model='full' have")
@@ -241,16 +238,6 @@ def steps_of(folder: Path) -> tuple[ContactState, ...]:
     """
     with (folder / "steps.csv").open(encoding="utf-8", newline="") as file:
         return tuple(ContactState.from_row(row) for row in csv.DictReader(file) if None not in row.values())
-
-
-def _drawing(result: Result, folder: Path) -> "Drawing":
-    """Return what the pictures of a result that was read are drawn from."""
-    from fingerpad.results.drawing import read  # Matplotlib
-
-    meshes = (result.record.get("path_mesh"), result.record.get("accuracy", {}).get("mesh"))
-    path, final = (mesh["contact"] if mesh and all(meshes) else None for mesh in meshes)
-    mu_0 = None if "laws" in result.record.get("parameters", {}) else coefficient(result.scene)
-    return read(folder, result.steps, result.named, mu_0, path, final)
 
 
 def _state(name: str, kept: Mapping[str, Any]) -> ContactState:
