@@ -52,8 +52,8 @@ def test_closed_forms(tmp_path, capsys):
 
 def test_a_run_that_fails(tmp_path, monkeypatch):
     """It is named; no picture is made of others."""
-    monkeypatch.setattr("fingerpad.paper.run.sweep", lambda *_: {})
-    monkeypatch.setattr("fingerpad.paper.run.result", lambda *_: {"failure": "Newton's method"})
+    monkeypatch.setattr("fingerpad.runs.batch.sweep", lambda *_: {})
+    monkeypatch.setattr("fingerpad.runs.batch.result", lambda *_: {"failure": "Newton's method"})
     with pytest.raises(Unfinished, match="did not reach its end: Newton's method"):
         computed({"any": scenes.stiffer()}, tmp_path, 1)
     assert main(["paper", "9A", "--out", str(tmp_path)]) == 1
@@ -98,12 +98,24 @@ def test_map_keeps_what_is_in_view():
     assert back.sed == pytest.approx([123.4], rel=5e-4)
 
 
-@pytest.mark.parametrize("name", FIGURES)
+GRID = kept("paper").numbers["grid"]
+KEPT = kept("paper_figures").numbers | {name: GRID for name, figure in FIGURES.items() if figure.of_loads}
+
+
+@pytest.mark.parametrize("name", KEPT)
 def test_pictures_of_the_kept_numbers(name, tmp_path):
     """Those of docs/paper.json and docs/paper_figures.json; null is no number."""
-    figure = FIGURES[name]
-    numbers = kept("paper").numbers["grid"] if figure.of_loads else kept("paper_figures").numbers[name]
+    figure, numbers = FIGURES[name], KEPT[name]
     draw(figure, numbers, tmp_path / "picture.png")
+    assert (tmp_path / "picture.png").stat().st_size > 5000
+
+
+def test_picture_of_a_sine(tmp_path):
+    """One line a site, which has the paper's number for what it does."""
+    values = [1.0] * len(scenes.PHASES)
+    sites = [{"kind": kind, "ridge": k, "sed": values} for k, kind in enumerate(scenes.NAMED)]
+    columns = {"phase": scenes.PHASES.tolist(), "voltage": values, "mu_app": values}
+    draw(FIGURES["9B"], {"f_ext": 75.0, "sites": sites} | columns, tmp_path / "picture.png")
     assert (tmp_path / "picture.png").stat().st_size > 5000
 
 

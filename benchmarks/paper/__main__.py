@@ -148,6 +148,8 @@ def _section(name: str, figure: PaperFigure, statements: Sequence[Statement], do
     parts = [f"### Fig. {name}: {figure.shows}", f"`fingerpad paper {name}`: {figure.cost or 'a closed form'}."]
     if (docs / f"paper_{name}.png").exists():
         parts.append(f"![{_CAPTIONS[name]}](paper_{name}.png)")
+    else:
+        parts.append("Not drawn yet: its runs are missing here.")
     parts += [_EXPERIMENT.strip()] if name == "6" else []
     mine = _of_figure(name, statements)
     return "\n\n".join([*parts, *([_rows(mine)] if mine else [])])

@@ -12,7 +12,6 @@ from numpy.typing import ArrayLike, NDArray
 from fingerpad.paper import scenes
 from fingerpad.paper.run import computed, known
 from fingerpad.results import style
-from fingerpad.runs.sweep import sweep
 from fingerpad.scene import Scene
 
 Array = NDArray[np.float64]
@@ -29,6 +28,8 @@ def friction(out: Path, jobs: int) -> dict[str, Any]:
     """Return Fig. 6's friction force: of paths where all of them are there, and else of states of full slip."""
     if all(known(scene, out) for scene in scenes.grid().values()):
         return over_loads(out, jobs)
+    from fingerpad.runs.sweep import sweep
+
     scene = Scene(output={"errors": False, "receptors": False})
     found = sweep(scene, out / "full_slip", jobs=jobs, states="full_slip", f_ext=scenes.FORCES, voltage=scenes.VOLTAGES)
     forces = {(each.scene.f_ext, each.scene.volts): each.full_slip.f_t for each in found.results if each.full_slip}

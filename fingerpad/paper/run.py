@@ -9,7 +9,6 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from fingerpad.runs.batch import key, result, sweep
 from fingerpad.scene import Scene
 
 Array = NDArray[np.float64]
@@ -26,6 +25,8 @@ class Run:
 
     def __init__(self, scene: Scene, out: Path) -> None:
         """Open a run; Unfinished if it has not been run or did not reach its end."""
+        from fingerpad.runs.batch import key, result
+
         summary = result(scene, out)
         if summary is None or "failure" in summary:
             why = "is not there" if summary is None else str(summary["failure"])
@@ -89,6 +90,8 @@ class Run:
 
 def known(scene: Scene, out: Path) -> bool:
     """Return whether a folder has a scene's run to full slip, or to its end."""
+    from fingerpad.runs.batch import result
+
     summary = result(scene, out)
     return summary is not None and "failure" not in summary
 
@@ -99,6 +102,8 @@ def computed(scenes: Mapping[Name, Scene], out: Path, jobs: int) -> dict[Name, R
     Raises:
         Unfinished: one did not reach its end.
     """
+    from fingerpad.runs.batch import sweep
+
     named = {_words(name): scene for name, scene in scenes.items()}
     sweep(named, out, jobs, _LIMIT)
     return {name: Run(scene, out) for name, scene in scenes.items()}
