@@ -37,6 +37,7 @@ PAGES = {
     "drive": "benchmarks.drive",
     "errors": "benchmarks.errors",
     "feel": "benchmarks.feel.__main__",
+    "fingers": "benchmarks.fingers",
     "hero": "benchmarks.hero",
     "measured": "benchmarks.measured.__main__",
     "microscale": "benchmarks.microscale.__main__",

@@ -14,7 +14,7 @@ from variational.materials.ogden import Ogden
 from variational.materials.saint_venant import SaintVenant
 from variational.output import Cellwise, Receptors, sed_per_cell
 from variational.problem import Interface, Problem
-from variational.snapshot import gather_mesh
+from variational.snapshot import Lines
 from variational.surface import Surface
 
 pytestmark = pytest.mark.mpi
@@ -142,7 +142,7 @@ def test_gathered_mesh(problem):
     Tolerance: roundoff of a millimetre and of its square.
     """
     deform(problem, F_GIVEN)
-    snapshot = gather_mesh(problem)
+    snapshot = Lines(problem).snapshot(problem)
     assert (snapshot is None) == (problem.mesh.comm.rank > 0)
     if snapshot is None:
         return

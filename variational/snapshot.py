@@ -111,19 +111,31 @@ class Nodes:
         return self.by_cell(places), self.by_cell(u)
 
 
-def gather_mesh(problem: "Problem") -> Snapshot | None:
-    """Bring the current state to rank 0, None on the others; numbered as the mesh was before it was distributed."""
-    nodes, (cells, sed) = Nodes(problem), sed_per_cell(problem)
-    tag = np.zeros(len(cells), dtype=np.int32)
-    own = problem.cell_tags.indices < len(cells)
-    tag[problem.cell_tags.indices[own]] = problem.cell_tags.values[own]
-    vertices = nodes.coordinates, nodes.gather(problem)
-    middles, densities, tags = nodes.middles(problem), nodes.by_cell(sed), nodes.by_cell(tag)
-    stress, strain = map(nodes.by_cell, tensors_per_cell(problem))
-    if problem.mesh.comm.rank > 0:
-        return None
-    ends, beside, edge = outline(nodes.coordinates, nodes.triangles, tags)
-    x, u = (np.concatenate([at, there[beside[:, 0], edge]]) for at, there in zip(vertices, middles, strict=True))
-    middle = len(nodes.coordinates) + np.arange(len(ends))
-    lines = np.stack([ends[:, 0], middle, ends[:, 1]], axis=1)
-    return Snapshot(x, u, nodes.triangles, densities, tags, lines, beside, stress, strain)
+class Lines:
+    """The lines of a body, found once, and its states with them; numbered as the mesh was before it was distributed."""
+
+    def __init__(self, problem: "Problem") -> None:
+        self._nodes, cells = Nodes(problem), problem.mesh.topology.index_map(2).size_local
+        tag = np.zeros(cells, dtype=np.int32)
+        own = problem.cell_tags.indices < cells
+        tag[problem.cell_tags.indices[own]] = problem.cell_tags.values[own]
+        self._tag = self._nodes.by_cell(tag)
+        self._ends, self._beside, self._edge = outline(self._nodes.coordinates, self._nodes.triangles, self._tag)
+
+    def snapshot(self, problem: "Problem", fields: bool = True) -> Snapshot | None:
+        """Bring the current state to rank 0, None on the others; collective.
+
+        Args:
+            problem: on the mesh of these lines.
+            fields: whether energy densities, stresses and strains are computed; densities are 0 otherwise.
+        """
+        nodes, edges = self._nodes, (self._beside[:, 0], self._edge)
+        vertices, middles = (nodes.coordinates, nodes.gather(problem)), nodes.middles(problem)
+        tensors = [nodes.by_cell(each) for each in tensors_per_cell(problem)] if fields else []
+        sed = nodes.by_cell(sed_per_cell(problem)[1]) if fields else np.zeros(len(self._tag))
+        if problem.mesh.comm.rank > 0:
+            return None
+        x, u = (np.concatenate([at, there[edges]]) for at, there in zip(vertices, middles, strict=True))
+        middle = len(nodes.coordinates) + np.arange(len(self._ends))
+        lines = np.stack([self._ends[:, 0], middle, self._ends[:, 1]], axis=1)
+        return Snapshot(x, u, nodes.triangles, sed, self._tag, lines, self._beside, *tensors)

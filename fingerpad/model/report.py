@@ -6,13 +6,14 @@ import time
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from mpi4py import MPI
 
 from fingerpad.model.options import Omission
 from fingerpad.model.record import PathRecord, Viewer
-from fingerpad.results import states
+from fingerpad.results import motion, states
 from fingerpad.results.answer import Cost
 from fingerpad.results.drawing import View
 from fingerpad.results.quantities import Output, valued
@@ -127,9 +128,9 @@ class Report:
             state = replace(state, sites=self._viewer.sites(), stimuli=self._viewer.stimuli(step))
             state = valued(state, self._outputs)
             self.record.states.append(state)
-            skin = self._viewer.skin(step)
-            if skin is not None:
-                self.record.skins[state.step] = skin
+            skin, body = self._viewer.skin(step), self._viewer.body(fields=False)
+            if skin is not None and body is not None:
+                self.record.move(state, skin, body)
             self._show(state, done)
             if self._simulation.finger.problem.mesh.comm.rank == 0:
                 self._log(step, state)
@@ -176,6 +177,7 @@ class Report:
         return {
             "states": self.record.states,
             "skins": self.record.skins,
+            "moved": self.record.moved,
             "ends": self.record.ends,
             "shown": self._shown,
             "logged": self._logged,
@@ -193,9 +195,15 @@ class Report:
         self._writer.take()
         self.record.states, self._logged, self._shown = kept["states"], kept["logged"], kept["shown"]
         if self._simulation.finger.problem.mesh.comm.rank == 0:
-            self.record.skins, self.record.ends = kept["skins"], kept["ends"]
+            self.record.skins, self.record.ends, self.record.moved = kept["skins"], kept["ends"], kept["moved"]
         for state in self.record.states:
             self._show(state, done)
+
+    def write_motion(self, folder: Path) -> None:
+        """Write ``motion.npz``; collective."""
+        body = self._viewer.body(fields=False)
+        if body is not None and self.record.moved:
+            motion.write(folder, body, self.record.moved)
 
     def _log_checks(self) -> None:
         for step, check in list(self._simulation.checks.items())[self._logged :]:

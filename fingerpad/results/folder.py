@@ -42,7 +42,7 @@ LEFT = (
     *("finger_*.npz", "finger_*.png", "surface*.npz", "surface*.png"),
     *("fields_*.vtu", "fields.pvd"),
     *("history.png", "time.png", "footprint.png", "report.html", "report.html*.part"),
-    *("spikes.csv", "spikes.nc", "raster.png"),
+    *("spikes.csv", "spikes.nc", "raster.png", "motion.npz", "animation.webp"),
 )
 T = TypeVar("T")
 _NO_LOCKS = (errno.ENOLCK, errno.ENOSYS, errno.ENOTSUP)  # some network file systems

@@ -212,6 +212,8 @@ class Attempt:
             drawing = record.drawing(mu_0, final, size, named)
             if drawing is not None and self._writer.folder is not None:
                 drawing.write(self._writer.folder, scene.output.each_load)
+            if self._writer.folder is not None and scene.output.each_load:
+                self.report.write_motion(self._writer.folder)
         totals = record.totals()
         left = max(self._model.numerics.tolerance, totals["floor"])
         error = force_error(unknowns, left, finger.solver.force_scale)
