@@ -37,7 +37,9 @@ _SAID = {
     "surface.png": "Pressure, shear traction, attraction and gap along the skin in the named states",
     "history.png": "Friction force, contact length and ridges in contact over sliding",
     "time.png": "Voltage, friction force and contact length over time",
-    "footprint.png": "Gross contact (light), sum of the ridges' contact lengths (dark) and pressure, slice by slice",
+    "field.png": "Electric field between one ridge and the screen: upright, as between plates, the law's approximation",
+    "footprint.png": "Gross contact (light), ridges (dark) and pressure, slice by slice",
+    "solid.png": "The finger in three dimensions from its unloaded slices, from below; ridges by mean pressure",
 }
 _MAX_FINGERS = 4  # pictures of the finger
 

@@ -23,6 +23,7 @@ from fingerpad.results import style
 from fingerpad.results.raster import cells_at, pieces
 from geometry import tags
 from variational.outline import loops
+from variational.state import ContactState
 
 if TYPE_CHECKING:
     from fingerpad.slices.finger import WholeFinger
@@ -52,6 +53,8 @@ _HEIGHT = 6.75  # in, of the picture of a state; the places of its parts follow
 _ABOVE, _NEAR, _COLOURS = (0.85, 6.75, 3.65, 6.2), (0.85, 8.85, 1.25, 2.8), (1.5, 7.5, 0.52, 0.66)
 _STRAIGHT = 0.25  # pixels: the bend of a line that is drawn straight
 _LIGHT = 0.25  # opacity of the gross contact
+_ALONG = 400  # places along the finger at which ridges are drawn
+_ROUNDOFF = 1e-12  # m
 _FOOTPRINT, _APART, _WIDER = (0.95, 8.8, 1.2, 3.8), 0.35, 1.4  # in: all panels; between them; last one over a state's
 _DECADES = 1e3  # span of the colours of the energy density
 
@@ -231,15 +234,24 @@ def density(ax: Axes, snapshot: "Snapshot", scale: Scales, box: Box) -> None:
     ax.axhline(0, color="black", lw=2.5, zorder=3)
 
 
-def footprint(whole: "WholeFinger", path: Path | None = None) -> Figure:
-    """Draw the outline of each state in contact and the mean contact pressure along the finger.
+def footprint(
+    whole: "WholeFinger",
+    path: Path | None = None,
+    named: Mapping[str, ContactState] | None = None,
+    spacing: float = 5e-4,
+) -> Figure:
+    """Draw the ridges and the outline of each state in contact, and the mean contact pressure along the finger.
 
-    A state's title has its colour. The gross width of a slice is drawn about its middle, where sliding shifts it. The
-    darker band is the sum of the contact lengths of all ridges of a slice, which lie apart in the finger.
+    A state's title has its colour. The gross width of a slice is drawn about its middle, where sliding shifts it.
+    Slices give the sum of the contact lengths of their ridges. Its parts are those of the section at the centre of
+    the finger, at equal places within the gross width: an *assumption* of this picture.
 
     Args:
         whole: the finger.
         path: of the PNG file; None for the figure alone.
+        named: states of the section at its centre by name, whose ridges are drawn; without them, ridges bear like a
+            cylinder's contact, by the root of one minus the square of their place.
+        spacing: of ridges (m) where no state has them.
     """
     with style.look():
         figure = style.sheet(4.9, f"Whole finger under {whole.f_ext:.3g} N, as a sum of slices")
@@ -248,27 +260,60 @@ def footprint(whole: "WholeFinger", path: Path | None = None) -> Figure:
         middle, half, end = 0.0, 0.55 * _MM * widest, 1.1 * _MM * longest
         axes = [style.panel(figure, *box) for box in _footprint_boxes(len(whole.states), half, end)]
         for axis, head, (name, total) in zip(axes, whole.heads(), whole.states.items(), strict=False):
-            z, colour = _MM * total.z, style.STATE[name]
-            gross, touching = (_MM * total.columns[key] / 2 for key in ("gross_width", "contact_length"))
-            axis.fill_betweenx(z, -gross, gross, color=colour, alpha=_LIGHT, lw=0)
-            axis.fill_betweenx(z, -touching, touching, color=colour, lw=0)
+            z, colour = np.linspace(total.z.min(initial=0), total.z.max(initial=0), _ALONG), style.STATE[name]
+            gross, touching = (np.interp(z, total.z, total.columns[key]) for key in ("gross_width", "contact_length"))
+            axis.fill_betweenx(_MM * z, -_MM * gross / 2, _MM * gross / 2, color=colour, alpha=_LIGHT, lw=0)
+            x, parts = ridges_along((named or {}).get(name), spacing, gross)
+            lengths: Array = parts * touching
+            for k, place in enumerate(x):
+                left, right = _MM * (place - lengths[k] / 2), _MM * (place + lengths[k] / 2)
+                axis.fill_betweenx(_MM * z, left, right, where=lengths[k] > 0, color=colour, lw=0)
             area, ridges = (1e6 * total.totals[key] for key in ("gross_area", "contact_area"))
             words = head.replace(" normal", "\nnormal")
             axis.set_title(f"{words}\n{area:.1f} mm² gross,\nridges {ridges:.2f} mm²", color=colour)
             axis.set(xlim=(-half, half), ylim=(-end, end), xlabel="x (mm)")
-            axes[-1].plot(total.pressure / 1e3, z, color=colour)
-            middle = max(middle, float(total.pressure[len(z) // 2]) / 1e3 if len(z) else 0.0)
+            axes[-1].plot(total.pressure / 1e3, _MM * total.z, color=colour)
+            middle = max(middle, float(total.pressure[len(total.z) // 2]) / 1e3 if len(total.z) else 0.0)
         for axis in (axes[0], axes[-1]):
             axis.set_ylabel("z along the finger (mm)")
         axes[-1].set(xlabel="mean contact\npressure (kPa)", title="Along the finger")
         axes[-1].set(xlim=(0, 1.3 * middle or None), ylim=(-end, end))
         bands = {
             "light: gross contact, from the first touching ridge to the last": _LIGHT,
-            "dark: sum of the contact lengths of all ridges of a slice; the ridges lie apart": 1.0,
+            "dark: ridges; a slice has the sum of their lengths, the centre gives its parts": 1.0,
         }
         handles = [Patch(fc=style.GREY, alpha=alpha, lw=0, label=words) for words, alpha in bands.items()]
         figure.legend(handles=handles, loc="lower center")
         return style.save(figure, path)
+
+
+def ridges_along(state: ContactState | None, spacing: float, gross: Array) -> tuple[Array, Array]:
+    """Return places of ridges (m) about the middle of the contact, and their parts of the contact length of slices.
+
+    Args:
+        state: at the centre of the finger, if it is known.
+        spacing: of ridges (m).
+        gross: width of the contact of each slice (m), shape (slices,).
+
+    Returns:
+        Shapes (ridges,) and (ridges, slices); a part is 0 where the ridge does not touch.
+    """
+    count = int(gross.max(initial=0) / 2 / spacing)
+    x, length = spacing * np.arange(-count, count + 1.0), np.array([])
+    ridges = None if state is None else state.ridges
+    if ridges is not None and (ridges.length > 0).any():
+        touches = ridges.length > 0
+        x, length = np.asarray(spacing * ridges.number[touches], dtype=np.float64), ridges.length[touches]
+        x -= (x.min() + x.max()) / 2
+    place = x[:, None] / np.maximum(gross / 2, _ROUNDOFF)
+    outer = max(float(np.abs(x).max(initial=0)), _ROUNDOFF)
+    if length.size:
+        parts = np.interp(place * outer, x, length)
+    else:
+        parts = np.sqrt(np.maximum(1 - place**2, 0))
+    nearest = np.abs(place).min(axis=0, initial=np.inf)  # touches where no ridge lies within a narrow contact
+    parts = np.where(np.abs(place) <= np.maximum(1, nearest), parts, 0.0)
+    return x, parts / np.maximum(parts.sum(axis=0), _ROUNDOFF)
 
 
 def _footprint_boxes(states: int, half: float, end: float) -> list[Box]:

@@ -41,7 +41,7 @@ if TYPE_CHECKING:
     from fingerpad.results.spikes import Spikes
     from fingerpad.scene import Scene
 
-KINDS = ("surface", "finger", "history", "footprint", "time")
+KINDS = ("surface", "finger", "history", "footprint", "time", "field", "solid")
 """Pictures of a result."""
 _SECTION = "Middle section of the finger"
 
@@ -53,10 +53,11 @@ class Result(Answer):
     def plot(self, kind: str = "surface", path: str | Path | None = None) -> "Figure | None":
         """Draw the skin, the deformed finger, the history of sliding, or the footprint of the whole finger.
 
-        Loads over time have a fourth picture: ``"time"``.
+        Loads over time have another picture, ``"time"``, charged states the electric field of a ridge, ``"field"``, and
+        full runs the whole finger in three dimensions, ``"solid"``.
 
         Args:
-            kind: ``"surface"``, ``"finger"``, ``"history"``, ``"footprint"`` or ``"time"``.
+            kind: ``"surface"``, ``"finger"``, ``"history"``, ``"footprint"``, ``"time"``, ``"field"`` or ``"solid"``.
             path: PNG file to write; None for the figure alone.
 
         Returns:
@@ -67,12 +68,13 @@ class Result(Answer):
         """
         if kind not in KINDS:
             raise ValueError(f"kind is {kind!r}; it must be one of {', '.join(KINDS)}")
-        if kind == "footprint":
+        if kind in ("footprint", "solid"):
             if self.finger is None:
                 raise ValueError("the result has no whole finger to draw: a history has none, else a note says why")
-            from fingerpad.results.finger_picture import footprint  # Matplotlib
+            from fingerpad.results.whole_picture import draw  # Matplotlib
 
-            return footprint(self.finger, None if path is None else Path(path)) if terminal.rank() == 0 else None
+            place = None if path is None else Path(path)
+            return draw(self, self._drawn(), kind, place) if terminal.rank() == 0 else None
         if (drawing := self._drawn()) is not None:
             return drawing.figure(kind, None if path is None else Path(path))
         if not self.steps:

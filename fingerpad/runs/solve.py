@@ -122,9 +122,9 @@ def solved(scene: Scene, model: "Model", context: RunContext) -> Result:
         raise SceneError(str(error)) from error
     whole = not (result.interrupted and scene.force is not None)  # a force without all of its traces is no result
     if context.report and whole and context.folder is not None and context.ranks.rank == 0:
-        from fingerpad.report.write import attempt, draw_footprint
+        from fingerpad.report.write import attempt, draw_whole
 
-        draw_footprint(result)
+        draw_whole(result)
         attempt(context.folder)
     return result
 
