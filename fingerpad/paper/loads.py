@@ -61,7 +61,7 @@ def paint_friction(figure: Figure, numbers: Numbers) -> None:
     left, right = figure.subplots(1, 2)
     f_ext, f_t = np.array(numbers["f_ext"]), np.array(numbers["full_slip_f_t"], dtype=float)
     for k, voltage in enumerate(numbers["voltage"]):
-        look = {"color": style.voltage(voltage), "marker": "o", "ms": 4, "label": f"{voltage:g} V"}
+        look: dict[str, Any] = {"color": style.voltage(voltage), "marker": "o", "ms": 4, "label": f"{voltage:g} V"}
         left.plot(f_ext, WIDTH * f_t[:, k], **look)
         right.plot(WIDTH * f_ext, f_t[:, k] / f_ext, **look)
     left.set(xlabel="external force $f_{ext}$ (N/m)", ylabel="friction force $F_T$ (N), for 20 mm", ylim=(0, None))
@@ -117,7 +117,7 @@ def paint_reduction(figure: Figure, numbers: Numbers) -> None:
     """Draw Fig. 8B: the reduction of contact length over the mean shear stress."""
     ax, found = figure.subplots(), reduction(numbers)
     for k, voltage in enumerate(numbers["voltage"]):
-        look = {"color": style.voltage(voltage), "marker": "o", "ms": 4, "label": f"{voltage:g} V"}
+        look: dict[str, Any] = {"color": style.voltage(voltage), "marker": "o", "ms": 4, "label": f"{voltage:g} V"}
         ax.plot(found.stress[:, k] / 1e3, 100 * found.lost[:, k], ls="none", **look)
     x = np.array([0, found.stress.max()])
     words = f"fit through the origin,\nR² = {found.r_squared:.2f}"

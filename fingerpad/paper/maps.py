@@ -89,7 +89,7 @@ def _snapshot(kept: Mapping[str, Any]) -> Snapshot:
     """Return a state as it was kept, its places as they are in it."""
     xy = _unpack(kept, "xy", 2) / _MICRO
     columns = {"triangles": 3, "lines": 3, "beside": 2}
-    whole = {name: _unpack(kept, name, count).astype(np.int64) for name, count in columns.items()}
+    whole: dict[str, Any] = {name: _unpack(kept, name, count).astype(np.int64) for name, count in columns.items()}
     sed, tag = _unpack(kept, "sed", 0).astype(np.float64), _unpack(kept, "tag", 0).astype(np.int32)
     return Snapshot(x=xy, u=np.zeros_like(xy), sed=sed, tag=tag, **whole)
 

@@ -45,7 +45,7 @@ def paint_pressure(figure: Figure, numbers: Mapping[str, Any]) -> None:
     """Draw Fig. 5."""
     ax = figure.subplots()
     for voltage, p_ext in zip(numbers["voltage"], numbers["p_ext"], strict=True):
-        look = {"color": style.voltage(voltage), "label": f"{voltage:g} V"}
+        look: dict[str, Any] = {"color": style.voltage(voltage), "label": f"{voltage:g} V"}
         ax.plot(1e6 * np.array(numbers["d_eq"]), 1e-3 * np.array(p_ext), **look)
     ax.axhline(0, color=style.BLACK, lw=0.8)
     ax.set(xlabel="equivalent air gap $d_{eq}$ (µm)", ylabel="external pressure $p_{ext}$ (kPa)", ylim=_PRESSURES)
