@@ -197,9 +197,10 @@ def _finding() -> str:
 
 def _error(region: cylinder_errors.Region) -> str:
     """Return what is known of the error in a region."""
-    of = "the whole finger" if "force" in region.ranges else "the section at its centre"
-    error = 100 * region.errors["full_slip"]["mu_app"]
-    return f"µ_app of {of} is within {error:.1f} % of {cylinder_errors.runs(region)}."
+    of = "the whole finger" if "force" in region.ranges else "the section"
+    errors = region.errors.get("finger" if "force" in region.ranges else "full_slip", region.errors["full_slip"])
+    words, name = ("µ_app", "mu_app") if "mu_app" in errors else ("Attraction", "f_electrostatic")
+    return f"{words} of {of} is within {100 * errors[name]:.1f} % of {cylinder_errors.runs(region)}."
 
 
 def _band() -> str:
