@@ -19,8 +19,8 @@
     ["mu_app", "friction coefficient µ_app of the whole finger", "", 1, 3, "mu_app"],
     ["f_t", "friction force", "N", 1, 3, "f_t"],
     ["f_electrostatic", "attraction", "N", 1, 3, "f_electrostatic"],
-    ["contact_area", "contact area of the ridges", "mm²", 1e6, 2],
-    ["gross_area", "gross area of contact", "mm²", 1e6, 1],
+    ["contact_area", "contact area of the ridges", "mm²", 1e6, 2, "contact_area"],
+    ["gross_area", "gross area of contact", "mm²", 1e6, 1, "gross_area"],
     ["indentation", "indentation", "mm", 1e3, 3],
   ];
   let { texts, kept, said } = state.from_fragment(location.hash);
@@ -68,8 +68,9 @@
   }
 
   const span = ({ key, low, high }) => {
-    const field = state.by_key[key], unit = field.unit && ` ${field.unit}`, per = field.per, ends = [low, high].map((v) => show(v * per));
-    return `${key.split(".").pop()} ${ends[0] === ends[1] ? ends[0] : ends.join(" to ")}${unit}`;
+    const field = state.by_key[key], unit = field && field.unit ? ` ${field.unit}` : "", name = field ? key.split(".").pop() : "attraction over force";
+    const ends = [low, high].map((v) => show(field ? v * field.per : v));
+    return `${name} ${ends[0] === ends[1] ? ends[0] : ends.join(" to ")}${unit}`;
   };
 
   function remarks(found, { values, given }) {
@@ -83,7 +84,7 @@
     if (given) parts.push("The contact is as given along both curves; the error of this answer is not known.");
     else if (error) parts.push(`Known error, beside full runs: µ_app and friction within ${percent(error.mu_app)}, attraction within ${percent(error.f_electrostatic)}.`);
     else {
-      const beyond = modelErrors.outside(values).filter(({ low }) => !Number.isNaN(low)).map(span).join(", ");
+      const beyond = modelErrors.outside(values, found).filter(({ low }) => !Number.isNaN(low)).map(span).join(", ");
       parts.push(`The error is not known here${beyond && `; it is for ${beyond}`}.`);
     }
     const point = found.section || found, at = closedForm.closure_of(values).state(point.p_c, values.voltage);

@@ -4,9 +4,13 @@ A preset sets keys of a scene that the page has a field of. A finger that change
 one that the closed form answers for, and is left out.
 """
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Any
+
+from fingerpad.scene import Scene
+from fingerpad.scene.fingers import FINGERS, NamedFinger
+from fingerpad.scene.reading import flat
 
 
 @dataclass(frozen=True)
@@ -34,9 +38,30 @@ SCREENS = (
 """Coatings of screens."""
 
 
-def presets() -> tuple[Preset, ...]:
-    """Return all presets."""
-    return SCREENS
+_CIRCUIT = ("electric.tissue", "electric.leak")
+"""Keys that the page has as one choice, by the name of the leak."""
+
+
+def presets(keys: Collection[str]) -> tuple[Preset, ...]:
+    """Return all presets whose keys the page has.
+
+    Args:
+        keys: of the page's fields.
+    """
+    found = (_finger(name, each, keys) for name, each in FINGERS.items())
+    return (*SCREENS, *(each for each in found if each is not None))
+
+
+def _finger(name: str, finger: NamedFinger, keys: Collection[str]) -> Preset | None:
+    """Return a finger as a preset, with the default of each key that another finger changes; None of another shape."""
+    values = {key: value for key, value in finger.values.items() if key not in _CIRCUIT}
+    if not set(values) <= set(keys):
+        return None
+    default = flat(Scene().parameters())
+    same = {key: default[key] for each in FINGERS.values() for key in each.values if key in keys}
+    choices = {"circuit": finger.values.get("electric.leak", "lossless")}
+    source = ". ".join(dict.fromkeys(trait.source for trait in finger.traits)) or "The finger of the paper"
+    return Preset("Finger", name, same | values, f"{finger.words}. {source}.", choices)
 
 
 def data(scales: Mapping[str, float]) -> Iterator[dict[str, Any]]:
@@ -45,7 +70,7 @@ def data(scales: Mapping[str, float]) -> Iterator[dict[str, Any]]:
     Args:
         scales: units in one SI unit, by the keys of the fields.
     """
-    for each in presets():
+    for each in presets(scales):
         values = {key: float(f"{value * scales[key]:.12g}") for key, value in each.values.items()}
         yield {"group": each.group, "name": each.name, "values": values, "choices": dict(each.choices),
                "source": f"{each.name[0].upper()}{each.name[1:]}: {each.source}"}  # fmt: skip

@@ -119,7 +119,7 @@ def finger(
         _draw_layers(above, snapshot, xy)
         frame: dict[str, Any] = {"fill": False, "ec": "black", "lw": 1.5, "ls": "--", "zorder": 4}
         above.add_artist(Rectangle((left, bottom), right - left, top - bottom, **frame))
-        _draw_density(near, snapshot, xy, scale)
+        density(near, snapshot, scale, fitted(_NEAR, scale.near))
         near.set_title("Near the contact; white: between layers" + ("; numbers: ridges" if ridges else ""))
         if sites is not None:
             x, y = _MM * np.asarray(sites).T
@@ -134,7 +134,7 @@ def _empty(snapshot: "Snapshot", scale: Scales, sites: bool, title: str) -> Figu
     """Return a figure with what all states have: the axes of both views, names of layers, colours of densities."""
     figure = style.sheet(_HEIGHT, title)
     for box, view in ((_ABOVE, scale.whole), (_NEAR, scale.near)):
-        ax = style.panel(figure, *_fitted(box, view))
+        ax = style.panel(figure, *fitted(box, view))
         ax.set(xlim=view[:2], ylim=view[2:], xlabel="x (mm)", ylabel="height y (mm)")
         ax.set_aspect("equal", adjustable="datalim")  # the panel stays where it is when a reader looks closer
         ax.xaxis.set_major_locator(MaxNLocator(10, steps=[1, 2, 5, 10]))
@@ -147,7 +147,7 @@ def _empty(snapshot: "Snapshot", scale: Scales, sites: bool, title: str) -> Figu
     handles += [Line2D([], [], color="black", lw=2.5, label="screen")]
     handles += [Line2D([], [], **_SITES)] if sites else []
     above.legend(handles=handles, loc="center left", bbox_to_anchor=(1.03, 0.5))
-    colours = ScalarMappable(_norm(scale), style.MAGNITUDE)
+    colours = ScalarMappable(norm(scale), style.MAGNITUDE)
     bar = figure.colorbar(
         colours, cax=style.panel(figure, *_COLOURS), orientation="horizontal", extend="both",
         ticks=style.decades(_KPA * scale.highest / _DECADES, _KPA * scale.highest), format="%g",
@@ -157,7 +157,7 @@ def _empty(snapshot: "Snapshot", scale: Scales, sites: bool, title: str) -> Figu
     return figure
 
 
-def _fitted(box: Box, view: Box) -> Box:
+def fitted(box: Box, view: Box) -> Box:
     """Return the largest part of a box (in), in its middle, in which a view has one scale along both axes."""
     wide, high = view[1] - view[0], view[3] - view[2]
     unit = min((box[1] - box[0]) / wide, (box[3] - box[2]) / high)
@@ -165,7 +165,7 @@ def _fitted(box: Box, view: Box) -> Box:
     return x - unit * wide / 2, x + unit * wide / 2, y - unit * high / 2, y + unit * high / 2
 
 
-def _norm(scale: Scales) -> LogNorm:
+def norm(scale: Scales) -> LogNorm:
     """Return what makes colours of densities (kPa)."""
     return LogNorm(_KPA * scale.highest / _DECADES, _KPA * scale.highest)
 
@@ -203,17 +203,25 @@ def curve(xy: Array, lines: Numbers) -> Curve:
     return Curve(points[kept.ravel()], codes[kept.ravel()])
 
 
-def _draw_density(ax: Axes, snapshot: "Snapshot", xy: Array, scale: Scales) -> None:
+def density(ax: Axes, snapshot: "Snapshot", scale: Scales, box: Box) -> None:
+    """Draw the energy density near the contact into axes, with the lines between layers and the screen.
+
+    Args:
+        ax: whose units are millimetres.
+        snapshot: state of the body.
+        scale: of which the view near the contact and the colours are taken.
+        box: place of the axes in their figure (in), which gives the number of pixels.
+    """
+    xy = _MM * (snapshot.x + snapshot.u)
     left, right, bottom, top = scale.near
-    box = _fitted(_NEAR, scale.near)
     columns, rows = round(style.DPI * (box[1] - box[0])), round(style.DPI * (box[3] - box[2]))
     pixel = (right - left) / columns
     x, y = left + pixel * (np.arange(columns) + 0.5), bottom + (top - bottom) / rows * (np.arange(rows) + 0.5)
     corners, cells = pieces(xy, snapshot.triangles, snapshot.lines, snapshot.beside, _STRAIGHT * pixel)
     seen = _visible(corners, scale.near)
-    norm = _norm(scale)
-    shown = np.clip(_KPA * snapshot.sed[cells[seen]], norm.vmin, norm.vmax)
-    colours = matplotlib.colormaps[style.MAGNITUDE](norm(shown), bytes=True)
+    span = norm(scale)
+    shown = np.clip(_KPA * snapshot.sed[cells[seen]], span.vmin, span.vmax)
+    colours = matplotlib.colormaps[style.MAGNITUDE](span(shown), bytes=True)
     nothing = np.zeros((1, 4), dtype=np.uint8)  # the last one, which -1 is of
     image = np.concatenate([colours, nothing])[cells_at(corners[seen], x, y)]
     ax.imshow(image, extent=scale.near, origin="lower", interpolation="nearest")
@@ -315,6 +323,6 @@ def _footprint_boxes(states: int, half: float, end: float) -> list[Box]:
     boxes = []
     for k in range(states + 1):
         begin = left + k * (each + _APART) + (_APART if k == states else 0)
-        fitted = _fitted((begin, begin + each, bottom, top), (-half, half, -end, end))
-        boxes.append(fitted if k < states else (begin, right, *fitted[2:]))
+        place = fitted((begin, begin + each, bottom, top), (-half, half, -end, end))
+        boxes.append(place if k < states else (begin, right, *place[2:]))
     return boxes
