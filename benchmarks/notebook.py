@@ -55,7 +55,7 @@ def notebook(name: str) -> dict[str, Any]:
 
 
 def _cell(number: int, prose: bool, text: str) -> dict[str, Any]:
-    code = {} if prose else {"execution_count": None, "outputs": []}
+    code: dict[str, Any] = {} if prose else {"execution_count": None, "outputs": []}
     kind = "markdown" if prose else "code"
     return {"cell_type": kind, "id": f"cell-{number}", "metadata": {}, "source": text.splitlines(keepends=True)} | code
 
