@@ -3,8 +3,9 @@
 environment/run python3 -m benchmarks.models [--jobs 2] [--draw]     twenty minutes, mostly full runs
 
 The full runs have a contact size of 10 um. Four more are at loads that no number of a model comes from, and a few
-beyond these forces and voltages; both have tables of their own on the page. Writes docs/models.json, from which the
-cylinders have their known error, and docs/models.md.
+beyond these forces and voltages; both have tables of their own on the page. Writes docs/models.json and docs/models.md,
+and prints what fingerpad/reduced has of them: the lengths that the cylinders interpolate, and their known error. Where
+the lengths differ they are put there, and the command is given again, which runs the cylinders alone.
 """
 
 import argparse
@@ -17,7 +18,7 @@ import numpy as np
 
 from benchmarks import harness
 from benchmarks.runs import FORCES, VOLTAGES, trace
-from fingerpad.reduced import cylinders
+from fingerpad.reduced import cylinder_errors, cylinders
 from fingerpad.runs.batch import Summary
 from fingerpad.scene import Scene, load
 from fingerpad.scene.reading import override
@@ -84,6 +85,7 @@ def compute(args: argparse.Namespace) -> None:
         "beyond": {words: {key: summary.get(key) for key in keys} for words, summary in others.items()},
     }
     harness.keep("models", kept, harness.made([*full.values(), *others.values()]), args.docs)
+    print(in_the_program(kept))
 
 
 def answers(scene: Scene, full: Summary) -> dict[str, Any]:
@@ -97,13 +99,31 @@ def value(found: Mapping[str, Any], model: str, key: str) -> float | None:
     return found.get(model, {}).get("summary", {}).get(key)
 
 
-# -- page ----------------------------------------------------------------------------------------------------
+def in_the_program(kept: Mapping[str, Any]) -> str:
+    """Return the tables of :mod:`fingerpad.reduced.cylinders` and the known errors as kept numbers have them."""
+    runs = [kept["scenes"][name(f, 0.0)]["full"]["summary"] for f in FORCES]
+    lines = []
+    for state in cylinders.LENGTHS:
+        lengths, ridges, heights = (
+            [run[f"{state}_{key}"] for run in runs] for key in ("contact_length", "ridges_in_contact", "bone_height")
+        )
+        lines += [f"LENGTHS {state}: {', '.join(f'{1e3 * each:.4f}e-3' for each in lengths)}"]
+        lines += [f"RIDGES {state}: {', '.join(map(str, ridges))}"]
+        lines += [f"INDENTATIONS {state}: {', '.join(f'{-1e3 * each:.4f}e-3' for each in heights)}"]
+    every = [*kept["scenes"].values(), *kept["held_out"].values()]
+    for key in (f"{state}_{quantity}" for state, bands in cylinder_errors.KNOWN_ERROR.items() for quantity in bands):
+        off = [abs(each) for found in every if (each := _error(found, key)) is not None]
+        lines += [f"KNOWN_ERROR {key}: {np.ceil(10 * max(off) - _ROUNDOFF) / 1e3:.3f}"]
+    return "\n".join(lines)
+
+
 def _error(found: Mapping[str, Any], key: str) -> float | None:
     """Return the cylinders' error against the full run (%), None where either is not known."""
     own, full = value(found, "cylinders", key), value(found, "full", key)
     return None if own is None or not full else 100 * (own / full - 1)
 
 
+# -- page ----------------------------------------------------------------------------------------------------
 def draw(docs: Path) -> Path:
     """Draw the page from the kept numbers."""
     numbers = harness.kept("models", docs).numbers

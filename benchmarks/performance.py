@@ -21,7 +21,7 @@ import numpy as np
 from benchmarks import harness, targets
 from benchmarks.harness import keep, kept, made
 
-FACTORS = (2.0, 1.4, 1.0, 0.7, 0.5, 0.31)  # on the element sizes of the default scene: 45 k to 1.16 M unknowns
+FACTORS = (2.0, 1.4, 1.0, 0.7, 0.5, 0.31)  # on the element sizes of the default scene
 ON_RANKS, REPEATS = (1.0, 0.5), 3
 IDLE = 0.5  # load average above which a ratio of wall times is not measured
 OPERATIONS = ("tangent", "factorisation", "solution", "residual")

@@ -241,6 +241,14 @@ class Profiles:
         s = np.array(self.ridges) * self.finger.ridge_wavelength
         return self.point(s, self.ve_d(s) - self.finger.merkel_offset)
 
+    def pacinian_sites(self) -> Array:
+        """Return one site a ridge, as far below the dermis as Meissner sites are in it; shape (ridge_count, 2).
+
+        *Assumption*: the junction is at some 2 mm, the depth that was fitted to Pacinian afferents.
+        """
+        s = np.array(self.ridges) * self.finger.ridge_wavelength
+        return self.point(s, self.d_sub(s) + self.finger.meissner_offset)
+
     def meissner_sites(self) -> Array:
         """Return two sites a ridge, in the papillae beside it; shape (2 ridge_count, 2)."""
         centres = np.array(self.ridges, dtype=float)[:, None]

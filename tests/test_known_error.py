@@ -69,6 +69,16 @@ def test_lengths_in_the_program_are_the_runs():
             assert cylinders.RIDGES[state][k] == run[f"{state}_ridges_in_contact"]
 
 
+def test_program_of_the_page_prints_what_the_model_has():
+    """So that the lengths and the known errors can be put there when the runs are made anew."""
+    lines = models.in_the_program(harness.kept("models").numbers).splitlines()
+    for state, lengths in cylinders.LENGTHS.items():
+        assert f"LENGTHS {state}: {', '.join(f'{1e3 * each:.4f}e-3' for each in lengths)}" in lines
+        assert f"RIDGES {state}: {', '.join(map(str, cylinders.RIDGES[state]))}" in lines
+    for state, bands in cylinder_errors.KNOWN_ERROR.items():
+        assert all(f"KNOWN_ERROR {state}_{key}: {each:.3f}" in lines for key, each in bands.items())
+
+
 def test_lengths_between_known_forces_are_a_power_law():
     """Halfway on logarithmic axes, between each force and the next; beyond the last as between the two before."""
     forces = cylinders.FORCES

@@ -120,6 +120,15 @@ def test_page_in_git_is_of_its_numbers(tmp_path):
     assert command.draw(tmp_path).read_text(encoding="utf-8").count("| **") == len(numbers["statements"])
 
 
+def test_grid_beside_its_limits(monkeypatch):
+    """Friction at full slip and the contact lengths of both states at 75 N/m and 200 V, the load of the limits."""
+    limits = {"charged_contact_length": 2.0, "full_slip_f_t": 10.0, "full_slip_contact_length": 1.0}
+    monkeypatch.setattr(command, "known", lambda: {name: Limit(value, 0.0, None) for name, value in limits.items()})
+    grid = {name: np.array([[0.0, 0.0], [0.0, 1.01 * value]]) for name, value in limits.items()}
+    found = command.off(grid | {"f_ext": np.array([5.0, 75.0]), "voltage": np.array([0.0, 200.0])})
+    assert found == pytest.approx(dict.fromkeys(limits, 1.0))
+
+
 def test_states_without_paths_are_compared_with_paths(tmp_path):
     """Equal to one of a load's states, or listed with all of them; a path that failed is left out.
 

@@ -62,6 +62,8 @@ def test_each_module_is_imported_by_a_quick_test():
                 "report.sweep_page",
                 "results.drawing",
                 "results.drive_picture",
+                "results.felt",
+                "results.spike_picture",
                 "runs.batch",
             )
         ),

@@ -72,6 +72,20 @@ def test_saw_of_a_dome_and_of_a_sawtooth(monkeypatch):
     assert found[1] == pytest.approx(0.02 / np.sqrt(3), rel=0.05)
 
 
+@pytest.mark.parametrize(("state", "final", "expected"), [("full_slip", True, [3.0]), ("full_slip", False, [2.0, 2.5])])
+def test_named_states_are_read_from_the_final_mesh(tmp_path, state, final, expected):
+    """Where a run has one; its table has them by name, and the path's by step."""
+    (tmp_path / "ridges.csv").write_text("step,ridge,p_c\n1,0,1.0\n2,0,2.0\n2,1,2.5\n", encoding="utf-8")
+    if final:
+        table = "of,ridge,p_c\ncharged,0,9.0\nfull_slip,0,3.0\n"
+        (tmp_path / "ridges_final.csv").write_text(table, encoding="utf-8")
+    run = object.__new__(Run)
+    run.folder, run.summary = tmp_path, {"full_slip_step": 2, "uncharged_step": 7}
+    assert run.final(state, "ridges")["p_c"].tolist() == expected
+    with pytest.raises(FileNotFoundError, match="has no ridges of uncharged"):
+        run.final("uncharged", "ridges")
+
+
 def test_earlier_default_is_judged_by_the_present_limit():
     """Its values are kept, and its errors are those from the limit of the day; none beside numbers of its own day."""
     reference = {name: Limit(2.0, 0.0, None) for name in chart.QUANTITIES}

@@ -9,6 +9,7 @@ import ctypes
 import os
 import re
 from collections.abc import Iterator, Mapping
+from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -206,9 +207,25 @@ class Receptors:
             x, y = self.sites[nowhere[0]]
             raise ValueError(f"receptor site {nowhere[0]} at x = {x:.6g} m, y = {y:.6g} m lies outside the mesh")
         # One kernel for all ranks: it evaluates every pair's reference point, of which each cell needs one.
-        points = np.concatenate(comm.allgather(points))
-        self._density = Cellwise(mesh, problem.cell_tags, problem.densities, points)
-        self._displacement = fem.Expression(problem.u, points, jit_options=jit.OPTIONS)
+        self._points, self._problem = np.concatenate(comm.allgather(points)), problem
+
+    @cached_property
+    def _density(self) -> Cellwise:
+        return Cellwise(self._mesh, self._problem.cell_tags, self._problem.densities, self._points)
+
+    @cached_property
+    def _compression(self) -> Cellwise:
+        F, p = kinematics.deformation_gradient(ufl.grad(self._problem.u)), self._problem.pressures
+        stresses = {tags: -kinematics.cauchy(law, F, p[tags])[1, 1] for tags, law in self._problem.laws.items()}
+        return Cellwise(self._mesh, self._problem.cell_tags, stresses, self._points)
+
+    @cached_property
+    def _displacement(self) -> fem.Expression:
+        return fem.Expression(self._problem.u, self._points, jit_options=jit.OPTIONS)
+
+    def compression(self) -> Array:
+        """Return minus the Cauchy stress normal to the screen (Pa) at the sites, shape (n,), on every rank."""
+        return self._mean(self._compression.evaluate(self._cells))[:, 0]
 
     def sed(self) -> Array:
         """Return the strain energy density (J/m^3 of reference volume) at the sites, shape (n,), on every rank."""

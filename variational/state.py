@@ -70,6 +70,25 @@ class Sites:
 
 
 @dataclass(frozen=True, eq=False)
+class Stimuli:
+    """What mechanoreceptors are given in a state of a run over time; shape (ridges,) each."""
+
+    number: NDArray[np.int64]
+    """Of the ridge, as in :class:`Sites`."""
+    merkel_stress: Array
+    """Compressive stress at the Merkel site: minus the Cauchy stress normal to the screen (Pa)."""
+    meissner_stress_left: Array
+    """The same at the Meissner site to the left, x smaller."""
+    meissner_stress_right: Array
+    pacinian_stress: Array
+    """The same below the ridge's middle, just below the junction of dermis and subcutis."""
+    surface_strain_left: Array
+    """Mean strain along the surface of the left half of the ridge, negative in compression; NaN where it cannot touch.
+    """
+    surface_strain_right: Array
+
+
+@dataclass(frozen=True, eq=False)
 class Skin:
     """The skin that can touch, at the Gauss points of its facets; shape (facets, points) but for :attr:`ridge`."""
 
@@ -157,6 +176,8 @@ class ContactState:
     """Time since the start of the run's first load over time (s); NaN where no load of the run is one."""
     ridges: RidgeStates | None = None
     sites: Sites | None = None
+    stimuli: Stimuli | None = None
+    """Of runs with a load over time."""
     skin: Skin | None = None
     """Of the named states."""
     changes: tuple[float, ...] = ()

@@ -16,6 +16,7 @@ from fingerpad.reduced import cylinders, detection
 from fingerpad.scene import Scene
 from fingerpad.scene.supply import REFERENCE
 from variational.attraction.circuit import LEAKS, GapCircuit, fit_leak
+from variational.attraction.dielectric import VACUUM_PERMITTIVITY
 
 PEAK = 250.0
 """Frequency (Hz) of the peak that sets the leak."""
@@ -133,6 +134,25 @@ def _moist() -> Row:
     same, preset = ratios(circuit(tissue="moist")), ratios(GapCircuit("moist", "moist"))
     numbers = {"low": same.min(), "high": same.max(), "preset_low": preset.min(), "preset_high": preset.max()}
     return numbers | {"leak": LEAKS["moist"].value}, by_share(float((same > 1).mean()))
+
+
+def sliding(rest: tuple[rules.Array, rules.Array], slip: tuple[rules.Array, rules.Array]) -> Row:
+    """Judge by how much the impedance of screen, gap and skin rises from rest to full slip.
+
+    Args:
+        rest: air gap (m) and length in contact (m) at each force and voltage.
+        slip: the same at full slip.
+    """
+    ends = []
+    for gap, length in (rest, slip):
+        f, g = np.array(RISE)[:, None], gap.ravel()
+        gain = circuit().gain(f, g, *layers(REFERENCE)[1:])
+        across = 1 / (2j * np.pi * f * VACUUM_PERMITTIVITY / g + 1 / circuit().resistance)  # of the gap alone
+        ends.append(np.abs(across / gain) / length.ravel())
+    found = ends[1] / ends[0] - 1
+    low, high = float(found.min()), float(found.max())
+    numbers = {"low": low, "high": high, "leak": circuit().resistance}
+    return numbers, by_factor(max(low, 1e-9), max(high, 1e-9), 1.0, 10.0, rules.RATIO)
 
 
 def _constant() -> Row:

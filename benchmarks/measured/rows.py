@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from benchmarks import models
-from benchmarks.measured import fingers, rules
+from benchmarks.measured import drives, fingers, rules
 from benchmarks.measured.rules import (
     CHANGED,
     EXPONENT,
@@ -28,6 +28,7 @@ from benchmarks.measured.rules import (
 from benchmarks.runs import FORCES, VOLTAGES
 from fingerpad.scene import Scene
 from fingerpad.scene.remarks import coefficient
+from variational.attraction.dielectric import VACUUM_PERMITTIVITY
 
 Array = NDArray[np.float64]
 Numbers = dict[str, float]
@@ -193,19 +194,11 @@ def _friction_load(g: Grid) -> dict[str, Row]:
     return {key: ({"factor": factor}, verdict) for key, verdict in verdicts.items()}
 
 
-def _gap_sliding(g: Grid) -> Row:
-    """Impedance of equal plates: attraction F over length L gives the capacitance, in proportion to (F L)^(1/2)."""
-
-    def rise(a: Mapping[str, Array]) -> Array:
-        plates = [
-            np.sqrt(a[f"{s}_f_electrostatic"] * a[f"{s}_contact_length"])[:, 1:] for s in ("charged", "full_slip")
-        ]
-        return np.asarray(plates[0] / plates[1] - 1)
-
-    found = rise(g.coarse)
-    low, high = float(found.min()), float(found.max())
-    seen = max(low, 1e-9), max(high, 1e-9)
-    return {"low": low, "high": high}, by_factor(seen[0], seen[1], 1.0, 10.0, RATIO)
+def _plates(a: Mapping[str, Array], state: str) -> tuple[Array, Array]:
+    """Return air gap (m) and length (m) of equal plates that attract as the ridges do, at each force and voltage."""
+    length, voltages = a[f"{state}_contact_length"][:, 1:], np.array(VOLTAGES[1:])
+    pressure = a[f"{state}_f_electrostatic"][:, 1:] / length
+    return voltages * np.sqrt(VACUUM_PERMITTIVITY / 2 / pressure) - Scene().h_0, length
 
 
 # -- runs of this page ---------------------------------------------------------------------------------------
@@ -279,7 +272,7 @@ def numbers(g: Grid, runs: Mapping[str, Any]) -> dict[str, Row]:
         "friction_power": of_load["friction_power"],
         "softer": _softer(runs),
         "ridges": _ridges(g),
-        "gap_sliding": _gap_sliding(g),
+        "gap_sliding": drives.sliding(*(_plates(g.coarse, state) for state in ("charged", "full_slip"))),
         "friction_occluded": of_load["friction_occluded"],
         "gap": ({"low": low, "high": high}, by_factor(low, high, 1.5, 2.5)),
         "friction_input": ({"mu": mu_0}, by_factor(mu_0, mu_0, 0.25, 0.25)),

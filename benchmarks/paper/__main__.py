@@ -87,6 +87,13 @@ def _sites(statements: Sequence[Statement]) -> list[tuple[str, int, float, float
     ]
 
 
+def off(grid: friction.Grid) -> dict[str, float]:
+    """Return by how much the grid's run at the load of the known limits differs from them (%)."""
+    at = int(np.flatnonzero(grid["f_ext"] == scenes.MAP)[0]), int(np.flatnonzero(grid["voltage"] == scenes.PEAK)[0])
+    names = [f"{state}_{name}" for state in friction.STATES for name in ("f_t", "contact_length")][1:]
+    return {name: float(100 * (grid[name][at] / known()[name].value - 1)) for name in names}
+
+
 def draw(docs: Path) -> Path:
     """Draw the page and its picture from docs/paper.json, and Fig. 6 in newtons from docs/newtons.json."""
     numbers, sums = kept("paper", docs).numbers, (docs / "newtons.json").exists()
@@ -102,9 +109,11 @@ def draw(docs: Path) -> Path:
         "sites": _sites(statements),
         "grid": {key: np.array(values) for key, values in numbers.get("grid", {}).items()},
         "middle": None,
+        "off": None,
         "states": states.shown(docs),
     }
     if names["grid"]:
+        names["off"] = off(names["grid"])
         picture(docs / "paper_friction.png", (10, 4), lambda figure: friction.paint(figure, names["grid"]))
     if sums:
         found = kept("newtons", docs).numbers

@@ -3,6 +3,7 @@
 The whole finger is shown whatever mesh and half of it the model has.
 """
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
@@ -11,12 +12,13 @@ import numpy as np
 from mpi4py import MPI
 from numpy.typing import NDArray
 
+from fingerpad.model.stimuli import SiteStimuli
 from fingerpad.results import states
 from fingerpad.results.drawing import Drawing, View
 from fingerpad.scene import Load
 from variational.output import Receptors
 from variational.snapshot import Snapshot, gather_mesh
-from variational.state import ContactState, Sites, Skin
+from variational.state import ContactState, Sites, Skin, Stimuli
 
 if TYPE_CHECKING:
     from fingerpad.model.checks import Checked
@@ -38,6 +40,7 @@ class Viewer:
         if not finger.options.both_halves:  # where their mirror images are
             sites[:, 0] = np.abs(sites[:, 0])
         self._sites = Receptors(finger.problem, sites) if finger.options.receptors else None
+        self._stimuli: SiteStimuli | None = None
 
     def view(self, step: "Step") -> View:
         """Return all that is shown of the present state, that of the step; collective."""
@@ -76,6 +79,13 @@ class Viewer:
         names, sed = self._finger.profiles.ridges, self._sites.sed()
         left, right = sed[len(names) :].reshape(-1, 2).T
         return Sites(np.array(names), sed[: len(names)], left, right)
+
+    def stimuli(self, step: "Step") -> Stimuli | None:
+        """Return what mechanoreceptors are given in the present state of a run over time, else None; collective."""
+        if self._sites is None or math.isnan(step.state.time):
+            return None
+        self._stimuli = self._stimuli or SiteStimuli(self._finger)
+        return self._stimuli.present()
 
 
 def _both_sides(half: Array, ridge: NDArray[np.int64]) -> tuple[Array, NDArray[np.int64]]:

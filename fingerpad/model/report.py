@@ -125,7 +125,8 @@ class Report:
             assert step.state.record is not None
             self._writer.take(self._simulation.finger.problem)
             record = replace(step.state.record, processor_seconds=self._clock.processor_seconds())
-            state = replace(step.state, record=record, sites=self._viewer.sites(), changes=tuple(step.attempt.changes))
+            state = replace(step.state, record=record, changes=tuple(step.attempt.changes))
+            state = replace(state, sites=self._viewer.sites(), stimuli=self._viewer.stimuli(step))
             state = valued(state, self._outputs)
             self.record.states.append(state)
             skin = self._viewer.skin(step)

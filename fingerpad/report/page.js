@@ -213,6 +213,41 @@
     for (const id of ["body", "skin"]) get(id).on("plotly_click", (event) => nearest(Number(event.points[0].x)));
   }
 
+  // -- what is felt -----------------------------------------------------------------------------------
+  function felt() {
+    const f = data.felt, states = f.states, slider = get("moment"), end = states[states.length - 1].t;
+    const top = Math.max(1, ...states.flatMap((s) => [...s.p, ...s.merkel])), low = Math.min(0, ...states.flatMap((s) => s.merkel));
+    const parts = f.units.map((u) => (u.law === "PC" ? 0.3 : 1)), sum = parts.reduce((a, b) => a + b, 0);
+    let above = 1;
+    const domains = parts.map((part) => { const high = above, size = part / sum; above -= size; return [above + 0.06 * size, high - 0.06 * size]; });
+    function raster(t) {
+      const traces = f.units.map((u, k) => ({ x: u.t, y: u.ridge, yaxis: k ? `y${k + 1}` : "y", mode: "markers", name: u.law,
+        marker: { symbol: "line-ns-open", size: narrow() ? 5 : 7, color: [BLUE, "#D55E00", BLACK][k % 3], line: { width: 1.5 } },
+        hovertemplate: `${u.law}, ridge %{y:.0f}<br>%{x:.2f} ms<extra></extra>` }));
+      const line = (x, color, dash) => ({ type: "line", x0: x, x1: x, y0: 0, y1: 1, yref: "paper", line: { color, width: 1, dash } });
+      const axes = {};
+      f.units.forEach((u, k) => { axes[k ? `yaxis${k + 1}` : "yaxis"] = axis(u.law, { domain: domains[k], fixedrange: true,
+        range: u.law === "PC" ? [-1, 1] : [f.ridges[0] - 1, f.ridges[f.ridges.length - 1] + 1], showticklabels: u.law !== "PC" }); });
+      const named = f.loads.filter(([, a, b]) => b - a > (narrow() ? 0.15 : 0.06) * end);
+      draw("raster", traces, layout(narrow() ? 380 : 440, Object.assign(axes, { showlegend: false,
+        margin: { l: 60, r: 12, t: 28, b: 44 }, shapes: [line(t, BLACK, "solid"), ...f.loads.map(([, a]) => line(a, GREY, "dot"))],
+        annotations: named.map(([name, a, b]) => ({ text: name, x: (a + b) / 2, y: 1, yref: "paper", yanchor: "bottom", showarrow: false })),
+        xaxis: axis("time (ms)", { range: [0, end], anchor: f.units.length > 1 ? `y${f.units.length}` : "y" }) })));
+    }
+    function show() {
+      const s = states[Number(slider.value)];
+      get("then").textContent = `${s.t.toFixed(1)} ms: ${s.about}`;
+      draw("touch", [{ type: "bar", x: f.ridges, y: s.p, name: "mean contact pressure", marker: { color: GREY },
+        hovertemplate: "ridge %{x}: %{y:.3g} kPa<extra></extra>" },
+      { x: f.ridges, y: s.merkel, name: "compressive stress at the Merkel site", mode: "markers", marker: { symbol: "diamond", size: 8, color: BLUE },
+        hovertemplate: "ridge %{x}: %{y:.3g} kPa<extra></extra>" }], layout(260, { margin: { l: 60, r: 12, t: narrow() ? 70 : 40, b: 44 },
+        xaxis: axis("ridge"), yaxis: axis("stress (kPa)", { range: [1.05 * low, 1.05 * top], fixedrange: true }) }));
+      raster(s.t);
+    }
+    slider.addEventListener("input", show);
+    show();
+  }
+
   // -- a sweep ------------------------------------------------------------------------------------------
   function sweep() {
     for (const [key, title] of Object.entries(data.sweep.charts)) {
@@ -228,5 +263,6 @@
   if (frames.length) finger();
   if (get("friction")) sliding();
   if (get("work")) work();
+  if (data.felt) felt();
   if (data.sweep) sweep();
 })();

@@ -9,6 +9,7 @@ import numpy as np
 from fingerpad.reduced.registry import MODELS
 from fingerpad.report import page as html
 from fingerpad.report import trust
+from fingerpad.report.felt import felt
 from fingerpad.report.frames import conditions_of, frames, section
 from fingerpad.report.trust import conditions, head
 from fingerpad.results.arrays import arrays_of
@@ -22,15 +23,15 @@ from variational.state import ContactState, Errors
 _MM = 1e3
 _LINKS = {
     "asked": "Asked", "numbers": "Numbers", "newtons": "Newtons", "trust": "Trust", "finger": "Finger",
-    "sliding": "Sliding", "time": "Time", "receptors": "Receptors", "pictures": "Pictures", "model": "Model",
-    "solver": "Solver", "parameters": "Parameters", "reproduce": "Reproduce",
+    "sliding": "Sliding", "time": "Time", "receptors": "Receptors", "felt": "Felt", "pictures": "Pictures",
+    "model": "Model", "solver": "Solver", "parameters": "Parameters", "reproduce": "Reproduce",
 }  # fmt: skip
 _SECTION = "Section at the centre of the finger"
 _SLIDING = ("bone_x", "f_t", "mu_app", "contact_length", "ridges_in_contact")
 _CHARTED = ("bone_x", "mu_app", "contact_length")
 _RECEPTORS = (
     "Strain energy density per reference volume (kPa) at the Merkel sites, at the tips of the intermediate ridges, and "
-    "at the Meissner sites, in the dermal papillae on either side. How nerves answer to it is not part of the model."
+    "at the Meissner sites, in the dermal papillae on either side."
 )
 _SAID = {
     "footprint.png": "Gross contact (light), sum of the ridges' contact lengths (dark) and pressure, slice by slice",
@@ -44,6 +45,7 @@ def page(result: Result) -> str:
     """Return the page of a run."""
     shown = frames(result)
     title = f"fingerpad: {conditions(result)}"
+    answer, spikes = felt(result)
     first = (_numbers, _newtons) if not result.whole else (_newtons, _numbers)
     sections = [
         _asked(result),
@@ -53,6 +55,7 @@ def page(result: Result) -> str:
         _sliding(result),
         _over_time(result),
         _receptors(result),
+        answer,
         _pictures(result.folder),
         _model(result),
         _solver(result),
@@ -62,7 +65,8 @@ def page(result: Result) -> str:
     there = [name for part in sections for name in _LINKS if f'id="{name}"' in part]
     links = "".join(f'<a href="#{name}">{_LINKS[name]}</a>' for name in there)
     body = "\n".join([head(result), f"<nav>{links}</nav>", *sections])
-    return html.page(title, body, {"finger": shown, "steps": _columns(result), "errors": _errors(result)})
+    data = {"finger": shown, "steps": _columns(result), "errors": _errors(result)}
+    return html.page(title, body, data | ({"felt": spikes} if spikes else {}))
 
 
 def _asked(result: Result) -> str:

@@ -16,10 +16,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fingerpad.results import files, netcdf, quantities
-from fingerpad.results.quantities import FINGER, RIDGES, SITES, SKIN, SLICES, STEPS, Output
+from fingerpad.results.quantities import FINGER, RIDGES, SITES, SKIN, SLICES, STEPS, STIMULI, Output
 from fingerpad.results.states import STATES, UNLOADED
 from fingerpad.scene.reading import flat
-from variational.state import ContactState, Errors, RidgeStates, Sites, Skin
+from variational.state import ContactState, Errors, RidgeStates, Sites, Skin, Stimuli
 
 if TYPE_CHECKING:
     import xarray
@@ -177,7 +177,11 @@ def _of_states(
         about = known.get(name, Output(name, "")).about()
         found["load_name" if prefix + name == "load" else prefix + name] = (dim,), values, about
     place = {number: k for k, number in enumerate(numbers)}
-    groups = (("ridges", f"{prefix}ridge_", RIDGES, OF_RIDGES), ("sites", prefix, SITES, OF_SITES))
+    groups = (
+        ("ridges", f"{prefix}ridge_", RIDGES, OF_RIDGES),
+        ("sites", prefix, SITES, OF_SITES),
+        ("stimuli", prefix, STIMULI, {name: name for name in STIMULI}),
+    )
     for group, start, outputs, names in groups:
         given = [(k, each) for k, s in enumerate(states) if s is not None and (each := getattr(s, group)) is not None]
         for name, output in outputs.items() if given else ():
@@ -313,6 +317,10 @@ def _state(arrays: Mapping[str, NDArray[Any]], prefix: str, k: int, own: Sequenc
         there = np.isfinite(arrays[f"{prefix}merkel_sed"][k])
         left, right = arrays[f"{prefix}meissner_sed"][k][there].T
         more["sites"] = Sites(number[there].astype(int), arrays[f"{prefix}merkel_sed"][k][there], left, right)
+    if f"{prefix}merkel_stress" in arrays:
+        there = np.isfinite(arrays[f"{prefix}merkel_stress"][k])
+        values = {name: arrays[f"{prefix}{name}"][k][there] for name in STIMULI}
+        more["stimuli"] = Stimuli(number[there].astype(int), **values) if there.any() else None
     if not prefix and "coupling_change" in arrays:
         more["changes"] = tuple(map(float, arrays["coupling_change"][k][np.isfinite(arrays["coupling_change"][k])]))
     return replace(ContactState.from_row(row), **more)

@@ -41,6 +41,7 @@ LEFT = (
     ),
     *("displacement.bp", "stress.bp", "sed.bp", "finger_*.npz", "finger_*.png", "surface*.npz", "surface*.png"),
     *("history.png", "time.png", "footprint.png", "report.html", "report.html*.part"),
+    *("spikes.csv", "spikes.nc", "raster.png"),
 )
 T = TypeVar("T")
 _NO_LOCKS = (errno.ENOLCK, errno.ENOSYS, errno.ENOTSUP)  # some network file systems

@@ -190,6 +190,15 @@ SITES = _listed(
     ("meissner_right", "J/m^3", "strain energy density at the right Meissner site of the ridge"),
 )
 """Of the receptor sites of a state, by ridge."""
+STIMULI = _listed(
+    ("merkel_stress", "Pa", "compressive stress normal to the screen at the Merkel site of the ridge"),
+    ("meissner_stress_left", "Pa", "compressive stress normal to the screen at the left Meissner site of the ridge"),
+    ("meissner_stress_right", "Pa", "compressive stress normal to the screen at the right Meissner site of the ridge"),
+    ("pacinian_stress", "Pa", "compressive stress normal to the screen below the dermis, under the ridge's middle"),
+    ("surface_strain_left", "", "mean strain along the surface of the left half of the ridge, negative in compression"),
+    ("surface_strain_right", "", "mean strain along the surface of the right half of the ridge"),
+)
+"""Of the receptor sites of a state of a run over time, by ridge."""
 SKIN = _listed(
     ("x", "m", "current abscissa of the skin"),
     ("y", "m", "current height of the skin above the screen"),

@@ -36,7 +36,9 @@ if TYPE_CHECKING:
     import xarray
     from matplotlib.figure import Figure
 
+    from fingerpad.afferents.afferent import Afferent
     from fingerpad.results.drawing import Drawing
+    from fingerpad.results.spikes import Spikes
 
 KINDS = ("surface", "finger", "history", "footprint", "time")
 """Pictures of a result."""
@@ -81,6 +83,21 @@ class Result(Answer):
     def to_xarray(self) -> "xarray.Dataset":
         """Return steps, loads, ridges, sites and named states as one dataset with units, as ``result.nc`` has it."""
         return dataset.dataset(self)
+
+    def afferents(self, laws: "str | Afferent | Iterable[str | Afferent] | None" = None) -> "Spikes":
+        """Return the spikes of mechanoreceptive afferents below the ridges that can touch, over a run in time.
+
+        Args:
+            laws: names of ``fingerpad.afferents.LAWS``, or laws of one's own; by default SA1, RA1 and PC, of which
+                those are left out for which two states are too far apart.
+
+        Raises:
+            SceneError: the run has no load over time, or no receptor sites; there is no such class; or two states are
+                too far apart for one that is named.
+        """
+        from fingerpad.results.felt import afferents  # SciPy's signals
+
+        return afferents(self, laws)
 
     def with_outputs(self, outputs: Iterable[Output]) -> "Result":
         """Return the result with further outputs, computed from its states; files are not written again.

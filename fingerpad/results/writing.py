@@ -11,7 +11,7 @@ from mpi4py import MPI
 from fingerpad.results import dataset
 from fingerpad.results.files import Table, replace_json
 from fingerpad.results.folder import Folder
-from fingerpad.results.quantities import FIELDS
+from fingerpad.results.quantities import FIELDS, STIMULI
 from variational.output import Fields
 from variational.problem import Problem
 from variational.state import ContactState
@@ -158,4 +158,6 @@ def site_rows(state: ContactState) -> Iterator[dict[str, Any]]:
     if (sites := state.sites) is None:
         return
     for k, number in enumerate(sites.number):
-        yield {"ridge": int(number)} | {name: getattr(sites, each)[k] for name, each in dataset.OF_SITES.items()}
+        row = {name: getattr(sites, each)[k] for name, each in dataset.OF_SITES.items()}
+        more = {} if state.stimuli is None else {name: getattr(state.stimuli, name)[k] for name in STIMULI}
+        yield {"ridge": int(number)} | row | more

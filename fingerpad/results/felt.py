@@ -1,0 +1,177 @@
+r"""What mechanoreceptive afferents answer to a run over time: stimuli at its sites, and spikes.
+
+Stimuli are known in the accepted states. Between two of a load they follow the monotone cubic curve of Fritsch and
+Carlson, cut at the ends of loads; a jump of the voltage takes one sample. The state at time 0 has been there for ever.
+A class is refused where two states are further apart than its ``longest_step`` and its stimulus changes between them
+by more than :data:`CHANGE` of its range.
+"""
+
+import math
+from collections.abc import Iterable, Sequence
+from itertools import groupby
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fingerpad.afferents.afferent import Afferent, History
+from fingerpad.afferents.registry import DEFAULT, find
+from fingerpad.results.over_time import without_parts_of_jumps
+from fingerpad.results.spikes import Span, Spikes, Unit
+from fingerpad.scene.messages import SceneError, show
+from variational.state import ContactState
+
+if TYPE_CHECKING:
+    from fingerpad.results.answer import Answer
+
+Array = NDArray[np.float64]
+CHANGE = 0.01
+"""Part of the range of a stimulus that may change between two states, however far they are apart."""
+SAMPLE = 1e-4  # s, between two samples of a stimulus
+_SIDES = ("left", "right")
+
+
+def afferents(result: "Answer", laws: str | Afferent | Iterable[str | Afferent] | None = None) -> Spikes:
+    """Return the spikes of afferents over a run; see :meth:`fingerpad.results.result.Result.afferents`."""
+    asked: str | Afferent | Iterable[str | Afferent] = DEFAULT if laws is None else laws
+    named = [asked] if isinstance(asked, str | Afferent) else list(asked)
+    chosen = [find(law) for law in named]
+    names = [name if isinstance(name, str) else name.name for name in named]
+    if not chosen:
+        raise SceneError("no class of afferents is given; give one at least, such as 'SA1'")
+    states = _states(result)
+    time, loads = np.array([state.time for state in states]), [state.load for state in states]
+    at_states = _histories(states)
+    scale, notes = result.scene.numerics.step_scale, [_mesh(result, states)]
+    fine: Array = np.arange(int(time[-1] / SAMPLE * (1 + 1e-9)) + 1, dtype=np.float64) * SAMPLE
+    units: list[Unit] = []
+    trains: list[Array] = []
+    refusals: list[str] = []
+    for name, law in zip(names, chosen, strict=True):
+        if law.site not in at_states:
+            raise SceneError(f"the site of {name} is {show(law.site)}; it must be {' or '.join(map(repr, at_states))}")
+        stimulus = law.stimulus(at_states[law.site])
+        if coarse := _too_coarse(law, stimulus, time, loads, scale):
+            refusals.append(coarse)
+            if laws is not None:
+                raise SceneError(coarse)
+            continue
+        trains += law.spikes(_between(time, loads, stimulus, fine), SAMPLE)
+        units += _units(name, law, at_states[law.site], _ridges(states), len(units))
+    if not units:
+        raise SceneError(refusals[0])
+    notes += [f"Left out: {coarse}." for coarse in refusals]
+    spans = tuple(_spans(time, loads))
+    return Spikes(tuple(units), tuple(trains), float(time[-1]), spans, tuple(notes))
+
+
+def _states(result: "Answer") -> list[ContactState]:
+    """Return the states of a run from time 0 on, of which two at a jump have two times.
+
+    Raises:
+        SceneError: there is no time, or there are no sites.
+    """
+    states = list(result.steps)
+    if not states or math.isnan(states[-1].time) or not states[-1].time > 0:
+        raise SceneError(
+            "the run has no load over time, so nothing is felt over time; give its loads a duration or a speed"
+        )
+    if states[-1].stimuli is None or states[-1].sites is None:
+        why = "output.receptors is false" if not result.scene.output.receptors else "its mesh is one of your own"
+        if result.scene.geometry.file is None and result.scene.output.receptors:
+            why = "its states were kept without them, by an earlier version or without result.nc"
+        raise SceneError(f"the run has no stimuli at receptor sites: {why}; run a finger of the package with receptors")
+    begin = max(k for k, state in enumerate(states) if state.time == 0.0)
+    return without_parts_of_jumps(states[begin:])
+
+
+def _ridges(states: Sequence[ContactState]) -> NDArray[np.int64]:
+    """Return the numbers of the ridges that can touch."""
+    stimuli = states[0].stimuli
+    assert stimuli is not None
+    return stimuli.number[np.isfinite(stimuli.surface_strain_left)]
+
+
+def _histories(states: Sequence[ContactState]) -> dict[str, History]:
+    """Return the stimuli in each state by kind of site; below the ridges that can touch, left and right in turn."""
+    first = states[0].stimuli
+    assert first is not None
+    there = np.isfinite(first.surface_strain_left)
+
+    def rows(*names: str, of: str = "stimuli") -> Array:
+        columns = [np.array([getattr(getattr(state, of), name) for state in states]).T[there] for name in names]
+        return np.stack(columns, axis=1).reshape(-1, len(states))
+
+    strain = rows("surface_strain_left", "surface_strain_right")
+    over = (strain[::2] + strain[1::2]) / 2
+    nothing = np.full((int(there.sum()), len(states)), np.nan)
+    return {
+        "merkel": History(rows("merkel_stress"), rows("merkel", of="sites"), over),
+        "meissner": History(
+            rows("meissner_stress_left", "meissner_stress_right"), rows("left", "right", of="sites"), strain
+        ),
+        "pacinian": History(rows("pacinian_stress"), nothing, nothing),
+    }
+
+
+def _too_coarse(law: Afferent, stimulus: Array, time: Array, loads: Sequence[str], scale: float) -> str:
+    """Return in a sentence that two states are too far apart for a class; empty where none are."""
+    apart = np.diff(time)
+    changes = np.abs(np.diff(stimulus, axis=1)).max(axis=0) > CHANGE * np.ptp(stimulus, axis=1).max()
+    wide = np.where(changes & (apart > law.longest_step * (1 + 1e-9)), apart, 0.0)
+    if not wide.any():
+        return ""
+    k = int(wide.argmax())
+    enough = float(f"{0.9 * scale * law.longest_step / wide[k]:.1g}")
+    return (
+        f"{law.name} needs a state every {1e3 * law.longest_step:.2g} ms and the load {show(loads[k + 1])} has two "
+        f"{1e3 * wide[k]:.3g} ms apart; give numerics.step_scale = {enough:g}, or a load that takes less time"
+    )
+
+
+def _between(time: Array, loads: Sequence[str], values: Array, fine: Array) -> Array:
+    """Return values at states, shape (units, states), at fine times, shape (units, times)."""
+    from scipy.interpolate import PchipInterpolator
+
+    moved = time.copy()
+    jumps = np.flatnonzero(np.diff(moved) < SAMPLE / 2) + 1
+    moved[jumps] += SAMPLE / 2
+    found = np.repeat(values[:, -1:], len(fine), axis=1)
+    for _, group in groupby(range(1, len(time)), key=lambda k: loads[k]):
+        part = list(group)
+        places = [part[0] - 1, *part]
+        cuts = [0, *[n for n, k in enumerate(places) if k in jumps and n > 0], len(places) - 1]
+        for a, b in zip(cuts[:-1], cuts[1:], strict=True):
+            mine = places[a : b + 1]
+            inside = (fine >= moved[mine[0]]) & (fine <= moved[mine[-1]])
+            if b > a and inside.any():
+                found[:, inside] = PchipInterpolator(moved[mine], values[:, mine], axis=1)(fine[inside])
+    return found
+
+
+def _units(name: str, law: Afferent, history: History, ridges: NDArray[np.int64], first: int) -> list[Unit]:
+    """Return the units of a law in the order of its stimulus."""
+    if law.population:
+        return [Unit(first, name, None, "")]
+    count = len(history.stress)
+    if count == len(ridges):
+        return [Unit(first + k, name, int(number), "") for k, number in enumerate(ridges)]
+    return [Unit(first + k, name, int(ridges[k // 2]), _SIDES[k % 2]) for k in range(count)]
+
+
+def _spans(time: Array, loads: Sequence[str]) -> Iterable[Span]:
+    """Yield name, begin and end of each load."""
+    for name, group in groupby(range(1, len(time)), key=lambda k: loads[k]):
+        part = list(group)
+        yield Span(name, float(time[part[0] - 1]), float(time[part[-1]]))
+
+
+def _mesh(result: "Answer", states: Sequence[ContactState]) -> str:
+    """Return of which mesh the stimuli are, and what is known of its error."""
+    sizes = result.record.get("path_mesh") or {}
+    contact = f"{1e6 * states[-1].mesh_contact:.3g} µm in contact"
+    sites = f" and {1e6 * sizes['receptor']:.3g} µm at the Merkel sites" if "receptor" in sizes else ""
+    return (
+        f"Stimuli and spikes are of the mesh of the path, with elements of {contact}{sites}. Their discretisation "
+        "error is not estimated; docs/errors.md has that of energy densities at the sites."
+    )

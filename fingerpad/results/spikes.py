@@ -1,0 +1,174 @@
+"""Spikes of afferents over a run: as numbers by unit, text, tables and a picture."""
+
+import csv
+import io
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fingerpad.results import files, netcdf
+from fingerpad.results.quantities import side_by_side
+
+if TYPE_CHECKING:
+    import xarray
+    from matplotlib.figure import Figure
+
+Array = NDArray[np.float64]
+CAUTION = (
+    "Thresholds are relative: the laws are of other skins, and their gains those of a flat pin. Compare runs and "
+    "ridges; rates of a person do not follow from them."
+)
+COLUMNS = ("unit", "class", "ridge", "t")
+"""Of the table of spikes; t in s."""
+_ABOUT = {
+    "class": ("1", "law of the unit"),
+    "ridge": ("1", "number of the ridge, 0 central; -9999 of a population"),
+    "side": ("1", "side of the ridge where its units have one"),
+    "spikes": ("s", "times of the spikes; NaN beyond the last"),
+    "rate": ("1/s", "number of spikes over the length of the run"),
+    "first": ("s", "time of the first spike; NaN without one"),
+}
+_POPULATION = -9999
+
+
+class Unit(NamedTuple):
+    """A unit of a class."""
+
+    number: int
+    law: str
+    ridge: int | None
+    """None for a population."""
+    side: str
+    """``left``, ``right`` or empty."""
+
+
+class Span(NamedTuple):
+    """A load and its times (s)."""
+
+    name: str
+    begin: float
+    end: float
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Spikes:
+    """Spikes of all units over a run, from time 0 to its end."""
+
+    units: tuple[Unit, ...]
+    trains: tuple[Array, ...]
+    """Times (s) of the spikes of each unit."""
+    seconds: float
+    """Length of the run (s)."""
+    loads: tuple[Span, ...]
+    notes: tuple[str, ...] = ()
+    """Of which mesh they are, and which classes are left out."""
+
+    def of(self, law: str) -> list[Array]:
+        """Return the trains of a class, in the order of its units."""
+        return [train for unit, train in zip(self.units, self.trains, strict=True) if unit.law == law]
+
+    def count(self, law: str, load: str | None = None) -> int:
+        """Return the number of spikes of a class, in all or in the loads of a name."""
+        spans = [span for span in self.loads if load in (None, span.name)]
+        every = np.concatenate([np.empty(0), *self.of(law)])
+        return sum(int(((every > span.begin) & (every <= span.end)).sum()) for span in spans)
+
+    @property
+    def laws(self) -> list[str]:
+        """The classes, in order."""
+        return list(dict.fromkeys(unit.law for unit in self.units))
+
+    @property
+    def rate(self) -> Array:
+        """Spikes of each unit over the length of the run (1/s), shape (units,)."""
+        return np.array([len(train) for train in self.trains]) / self.seconds
+
+    @property
+    def first(self) -> Array:
+        """Time of the first spike of each unit (s), shape (units,); NaN without one."""
+        return np.array([train[0] if len(train) else np.nan for train in self.trains])
+
+    def rows(self) -> Iterator[dict[str, Any]]:
+        """Yield a row of :data:`COLUMNS` for each spike, unit by unit; the ridge of a population is empty."""
+        for unit, train in zip(self.units, self.trains, strict=True):
+            ridge = "" if unit.ridge is None else unit.ridge
+            yield from ({"unit": unit.number, "class": unit.law, "ridge": ridge, "t": float(t)} for t in train)
+
+    def to_csv(self, path: str | Path) -> None:
+        """Write a table of all spikes."""
+        text = io.StringIO()
+        writer = csv.DictWriter(text, COLUMNS, lineterminator="\n")
+        writer.writeheader()
+        writer.writerows({**row, "t": f"{row['t']:.7g}"} for row in self.rows())
+        files.replace(Path(path), text.getvalue())
+
+    def _variables(self) -> dict[str, Any]:
+        longest = max([1, *map(len, self.trains)])
+        padded = np.array([np.pad(train, (0, longest - len(train)), constant_values=np.nan) for train in self.trains])
+        values = {
+            "class": np.array([unit.law for unit in self.units], object),
+            "ridge": np.array([_POPULATION if u.ridge is None else u.ridge for u in self.units], np.int32),
+            "side": np.array([unit.side for unit in self.units], object),
+            "spikes": padded,
+            "rate": self.rate,
+            "first": self.first,
+        }
+        about = {name: {"units": unit, "long_name": words} for name, (unit, words) in _ABOUT.items()}
+        return {name: (("unit", "spike")[: each.ndim], each, about[name]) for name, each in values.items()}
+
+    def _attributes(self) -> dict[str, Any]:
+        return {"title": "fingerpad: spikes of afferents", "seconds": self.seconds, "notes": "\n".join(self.remarks)}
+
+    def to_xarray(self) -> "xarray.Dataset":
+        """Return classes, ridges, spikes, rates and first spikes along the units, as a dataset with units."""
+        import xarray
+
+        return xarray.Dataset(self._variables(), attrs=self._attributes())
+
+    def to_netcdf(self, path: str | Path) -> None:
+        """Write the dataset as NetCDF 3."""
+        files.replace(Path(path), netcdf.encoded(self._variables(), (), self._attributes()))
+
+    def plot(self, path: str | Path | None = None) -> "Figure":
+        """Draw a raster: each spike over time, unit by unit; write it as PNG where a path is given."""
+        from fingerpad.results.spike_picture import Panel, raster  # Matplotlib
+
+        beside = {"": 0.0, "left": -0.25, "right": 0.25}
+        panels = []
+        for law in self.laws:
+            units = [unit for unit in self.units if unit.law == law]
+            places = [(unit.ridge or 0) + beside[unit.side] for unit in units]
+            population, half = units[0].ridge is None, bool(units[0].side)
+            panels.append(Panel(law, places, [1e3 * train for train in self.of(law)], population, 0.4 if half else 0.8))
+        loads = [(span.name, 1e3 * span.begin, 1e3 * span.end) for span in self.loads]
+        return raster(panels, loads, 1e3 * self.seconds, None if path is None else Path(path))
+
+    @property
+    def remarks(self) -> tuple[str, ...]:
+        """The caution, and the notes."""
+        return CAUTION, *self.notes
+
+    def table(self) -> list[list[str]]:
+        """Return a head and a row for each class: units, those that fired, spikes, rates, first spike, and by load."""
+        spans = list(dict.fromkeys(span.name for span in self.loads))
+        rows = [["class", "units", "fired", "spikes", "highest rate (1/s)", "first (ms)", *spans]]
+        for law in self.laws:
+            trains = self.of(law)
+            fired = [train for train in trains if len(train)]
+            intervals = [np.diff(train).min() for train in fired if len(train) > 1]
+            most = f"{1 / min(intervals):.1f}" if intervals else "–"
+            first = f"{1e3 * min(train[0] for train in fired):.1f}" if fired else "–"
+            each = [str(self.count(law, span)) for span in spans]
+            rows.append([law, str(len(trains)), str(len(fired)), str(sum(map(len, trains))), most, first, *each])
+        return rows
+
+    def __str__(self) -> str:
+        """Return a table of the classes, with the number of spikes in each load, and remarks."""
+        head = f"Spikes in {self.seconds:.4g} s; the last columns have their number in each load"
+        return "\n".join([head, *side_by_side(self.table()), *(f"  {remark}" for remark in self.remarks)])
+
+    __repr__ = __str__
