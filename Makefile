@@ -12,9 +12,9 @@
 # make paper  the statements of the paper beside this model's numbers; docs/paper.md, a quarter of an hour or more
 # make measured  measured fingers beside this model's numbers; docs/measured.md, two minutes
 # make drive  friction over frequency and waveform of the voltage; docs/drive.md, a minute
-# make performance  counts, ratios and seconds, part by part, on an idle machine; docs/performance.md, half an hour
+# make performance  counts, ratios and seconds, part by part, on an idle machine; docs/performance.md, half an hour; prints the targets
 # make calibration  estimated errors beside known ones, scene by scene; docs/two_meshes.md, ten minutes
-# make chart  error over work, one numerical setting after the other; docs/chart.md, hours
+# make chart  error over work, one numerical setting after the other; docs/errors.md and chart.md, half an hour or more
 #
 # With SUITE=sid in Debian unstable, that is with a newer dolfinx: make test SUITE=sid
 # All but test-pip need nothing but Debian 12, root, apt and PyPI: environment/run finds or makes what they run in.

@@ -1,6 +1,6 @@
 """Error estimate and requested accuracy against known errors.
 
-environment/run python3 -m benchmarks.accuracy [--jobs 2] [--draw]     after benchmarks.errors; some hours
+environment/run python3 -m benchmarks.accuracy [--jobs 2] [--draw]     after benchmarks.errors; an hour of one core
 
 Whole runs: scenes with an ``[accuracy]``, ten of them drawn at random, against their limits on finer meshes
 (benchmarks/limits.py), with the same penalty. Beside them the estimate for one mesh parameter at a time, from

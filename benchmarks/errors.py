@@ -1,6 +1,6 @@
 """Discretisation error of the default scene: its limit under refinement, and the effect of each size and the penalty.
 
-environment/run python3 -m benchmarks.errors [--jobs 2] [--draw]     some hours
+environment/run python3 -m benchmarks.errors [--jobs 2] [--draw]     twenty minutes of one core
 
 The default scene to full slip with one setting changed at a time, and its states solved again on meshes with all sizes
 halved (benchmarks/limits.py). Writes docs/errors.json, from which docs/errors.md, docs/errors.png and the errors on
@@ -39,10 +39,14 @@ QUANTITIES: Mapping[str, tuple[str, float]] = {  # name: words, and the value of
     **{f"{state}_ridges_in_contact": (f"ridges, {STATES[state]}", 1) for state in ("charged", "full_slip")},
     **{f"{state}_sed_{j}": (f"SED at ridge {j}, {words} (J/m³)", 1) for state, words in STATES.items() for j in SITES},
 }
-PRESSED = by_rule(from_data({"history": [{"name": "press", "bone_height": -0.74e-3}], "friction": 0.0}))
+PRESSED = by_rule(
+    from_data(
+        {"history": [{"name": "press", "bone_height": -0.74e-3}], "friction": 0.0, "output": {"receptors": False}}
+    )
+)
 """The default finger at a given indentation, that of the default scene, of which the force is judged."""
 LENGTHS = [f"{state}_contact_length" for state in STATES]
-FORCE = "uncharged_f_contact"  # that is judged
+FORCE = "charged_f_contact"  # that is judged
 _COST = ("unknowns", "factorisations")
 _DOME = 6  # degree of the polynomial through the pressures of a ridge
 STUDIES = {  # settings, from coarse to fine
@@ -115,8 +119,8 @@ def compute(args: Any) -> None:
     """Run what is missing and keep the numbers."""
     scenes = {f"{name} {value:g}": scene for name in STUDIES for value, scene in study(name).items()}
     summaries = harness.run({"default": DEFAULT} | scenes, args, _LIMIT)
-    solved = limits.solve_all({"default": DEFAULT, "pressed": PRESSED}, LEVELS, args)
-    again, pressed = solved["default"], solved["pressed"]
+    again = limits.solve_all({"default": DEFAULT}, LEVELS, args)["default"]
+    pressed = limits.solve_all({"pressed": PRESSED}, LEVELS - 1, args)["pressed"]
     default = finished(DEFAULT, args.out)
     if failed := [found["failure"] for found in (again, pressed) if "failure" in found]:
         raise SystemExit(f"the default scene has no limit: {failed[0]}")

@@ -17,7 +17,8 @@ A path is followed on the coarse mesh that an ``[accuracy]`` starts from, and it
 :func:`meshes`: by halves, since a state put onto elements a quarter of its own is far from equilibrium. All meshes have
 curved facets, and facets of a sixteenth where the contact of their states ends, as those of a run. The states are also
 solved again on the scene's own mesh, for the effect of the coarse path on normal contact (``docs/errors.md``). Where a
-state is not found on a mesh after the third, the limit is that of the meshes before, with their larger bar.
+state is not found on a mesh after the third, or that mesh needs too much memory, the limit is that of the meshes
+before, with their larger bar.
 """
 
 import argparse
@@ -39,6 +40,7 @@ from fingerpad.model.simulation import Simulation
 from fingerpad.runs.processes import limit_processor_time
 from fingerpad.scene import Scene, from_data, start
 from geometry.parameters import MeshSize
+from geometry.profiles import GeometryError
 from variational.solvers.continuation import StepFailed
 
 _SAFETY, _UNSAFE = 1.25, 3.0
@@ -143,7 +145,7 @@ def _solve(scene: Scene, levels: int) -> dict[str, Any]:
     for mesh in meshes(scene.mesh, levels):
         try:
             solves.append(again(mesh, solves[-1]))
-        except StepFailed as error:
+        except (StepFailed, GeometryError) as error:  # the latter needs more memory than a run may take
             if len(solves) <= _FEWEST:
                 raise
             print(error, file=sys.stderr)

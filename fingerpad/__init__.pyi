@@ -16,6 +16,8 @@ from fingerpad.scene import SceneError as SceneError
 from variational.attraction.circuit import GapCircuit as GapCircuit
 from variational.attraction.dielectric import ColeCole as ColeCole
 from variational.attraction.dielectric import TabledTissue as TabledTissue
+from variational.contact.aging import Occlusion as Occlusion
+from variational.contact.aging import Speed as Speed
 from variational.contact.augmented import AugmentedLagrangian as AugmentedLagrangian
 from variational.contact.formulation import Formulation as Formulation
 from variational.contact.friction import Coulomb as Coulomb
@@ -26,7 +28,9 @@ from variational.contact.penalty import Penalty as Penalty
 from variational.materials.material import Material as Material
 from variational.materials.neo_hooke import NeoHooke as NeoHooke
 from variational.materials.ogden import Ogden as Ogden
+from variational.materials.qlv import QLV as QLV
 from variational.materials.saint_venant import SaintVenant as SaintVenant
+from variational.materials.viscoelastic import Viscoelastic as Viscoelastic
 from variational.roughness.bam import BearingArea as BearingArea
 from variational.roughness.boundary_elements import BoundaryElements as BoundaryElements
 from variational.roughness.closure import AirGap as AirGap

@@ -119,8 +119,10 @@ def of_two_meshes(
 
     Lengths in contact have the error of the facets where contact ends, of first order in these, and r is how much
     shorter they are. All else has that of all elements, r = 2, with p = 2 (1 with linear elements), and p = 3/2 for the
-    highest pressure, which lies between points of a facet. The change at a single site in the skin may come out small
-    by accident: its relative error is at least a part of the median of all sites' of its state.
+    highest pressure, which means over facets give. The change of a single number may come out small by accident. So
+    the relative error at a site in the skin is at least a part of the median of all sites' of its state, and that of a
+    highest pressure a part of the median of all states'. Lengths and friction are sums over ridges, whose changes are
+    taken as independent: their root of squares counts where it is larger.
 
     Args:
         coarse: values on the mesh with elements twice as large.
@@ -137,20 +139,20 @@ def of_two_meshes(
         ratio = facets[state][0] / facets[state][1] if of_ends and state else 2.0
         order = 1 if of_ends else min(degree, 1.5 if name.endswith("p_max") else 2)
         found[name] = safety * _change(coarse[name], fine[name]) / (ratio**order - 1)
-    for names in _sites(found):
-        densities = np.array([float(np.sum(fine[name])) for name in names])
-        relative = np.array([found[name] for name in names]) / np.where(densities > 0, densities, np.inf)
-        found |= dict(zip(names, np.maximum(relative, sites * np.median(relative)) * densities, strict=True))
+    for names in _alike(found):
+        values = np.array([float(np.sum(fine[name])) for name in names])
+        relative = np.array([found[name] for name in names]) / np.where(values > 0, values, np.inf)
+        found |= dict(zip(names, np.maximum(relative, sites * np.median(relative)) * values, strict=True))
     return {name: float(error) for name, error in found.items()}
 
 
-def _sites(names: Iterable[str]) -> list[list[str]]:
-    """Return the names of energy densities, in a list for each state."""
+def _alike(names: Iterable[str]) -> list[list[str]]:
+    """Return the names of numbers of one kind: energy densities of each state, and highest pressures."""
     found: dict[str, list[str]] = {}
     for name in names:
         state, of_site, _ = name.partition("_sed_")
-        if of_site:
-            found.setdefault(state, []).append(name)
+        if of_site or name.endswith("p_max"):
+            found.setdefault(state if of_site else "p_max", []).append(name)
     return list(found.values())
 
 

@@ -19,6 +19,7 @@ Array = NDArray[np.float64]
 _MM = 1e3  # gmsh's tolerances suit models in mm
 _HALF_ARC = 5e-3  # m
 _SAMPLES = 32  # spline points a ridge
+_PRECISION = 1e-3  # of a curve's number of facets; gmsh's 1e-9 takes as long as all the rest of a mesh
 _SHARP_SAMPLES = 128  # of the VE-D junction, whose tips have a radius of some um
 
 
@@ -272,6 +273,7 @@ def _sizes(p: Profiles, size: MeshSize, c: _Curves, touching: list[int], recepto
     fields.setAsBackgroundMesh(smallest)
     for option in ("MeshSizeExtendFromBoundary", "MeshSizeFromPoints", "MeshSizeFromCurvature"):
         gmsh.option.setNumber(f"Mesh.{option}", 0)
+    gmsh.option.setNumber("Mesh.LcIntegrationPrecision", _PRECISION)
     gmsh.option.setNumber("Mesh.Algorithm", 6)
 
 

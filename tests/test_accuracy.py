@@ -41,7 +41,9 @@ contact = partial(
 
 def change(solve: Solve, **values) -> None:
     kept = solve.states["full_slip"]
-    solve.states["full_slip"] = replace(kept, state=replace(kept.state, **values))
+    state = replace(kept.state, **values)
+    frictions = np.full(17, -(state.f_ext * state.mu_app if state.mu_app > 0 else state.f_t) / 17)
+    solve.states["full_slip"] = replace(kept, state=state, frictions=frictions)
 
 
 def model_of(data) -> FingerModel:
@@ -52,7 +54,7 @@ def model_of(data) -> FingerModel:
 def known(model, states, comm, views=False, stiffer=None) -> Solve:
     row = contact(mu_app=mu_app(model.mesh), f_t=75 * mu_app(model.mesh))
     sed = {0: 1e3 * (1 + (model.mesh.receptor / 60e-6) ** 2), 1: 10.0}
-    state = State(NOTHING, 1, row, np.full(17, 1e-3 / 17), sed, model.mesh.contact)
+    state = State(NOTHING, 1, row, np.full(17, 1e-3 / 17), np.full(17, -row.f_t / 17), sed, model.mesh.contact)
     return Solve({"full_slip": state}, model.mesh, 1000, 10, 1.0)
 
 
@@ -104,7 +106,8 @@ def test_steps_are_halved_where_normal_contact_feels_them(monkeypatch):
     def stepped(scale: float, mesh) -> Solve:
         length = 1e-3 * (1 + 0.1 * scale)
         row = contact(contact_length=length)
-        return Solve({"charged": State(NOTHING, 0, row, np.array([length]), {}, 1e-6)}, mesh, 1000, 10, 1.0)
+        state = State(NOTHING, 0, row, np.array([length]), np.zeros(1), {}, 1e-6)
+        return Solve({"charged": state}, mesh, 1000, 10, 1.0)
 
     def with_steps(search, scale: float) -> Solve:
         paths.append(scale)
@@ -240,7 +243,7 @@ def test_uncharged_state_that_is_the_charged_one_is_of_the_final_mesh(monkeypatc
 
     def solve(model, states, comm, views=(), stiffer=None):
         row = contact(contact_length=1e-3)
-        state = State(NOTHING, 0, row, np.array([1e-3]), {}, model.mesh.contact)
+        state = State(NOTHING, 0, row, np.array([1e-3]), np.zeros(1), {}, model.mesh.contact)
         return Solve({"charged": state}, model.mesh, 1000, 10, 1.0)
 
     monkeypatch.setattr(solves, "solve_again", solve)

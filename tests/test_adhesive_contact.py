@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from benchmarks.microscale.adhesive import attraction_of, pressed
+from variational.attraction.electroadhesion import VACUUM_PERMITTIVITY
 from variational.roughness.halfspace import NoContactError, press
 from variational.roughness.spectrum import SelfAffine
 
@@ -50,3 +51,39 @@ def test_no_rest(rough, monkeypatch):
     monkeypatch.setattr("benchmarks.microscale.adhesive._ITERATIONS", 2)
     with pytest.raises(NoContactError, match="attraction and gaps do not settle at 20000 Pa and 50 V"):
         pressed(rough, 20e3, MODULUS, H_0, 50.0, True, deforms=True)
+
+
+@pytest.mark.parametrize("voltage", [20.0, 30.0, 50.0, 100.0])
+def test_same_as_adhesion(voltage):
+    """Pressure, attraction, contact and gap of another program on the same map (MIT licence), where it is installed.
+
+    It minimises the energy at a held approach, here in kPa and um; its Coulomb potential repels, and is negated. The
+    tolerance is ten times that of the iteration here.
+    """
+    adhesion = pytest.importorskip("Adhesion.System")
+    interactions = pytest.importorskip("Adhesion.Interactions")
+    mechanics, topography = pytest.importorskip("ContactMechanics"), pytest.importorskip("SurfaceTopography")
+
+    class Attraction(interactions.Coulomb):
+        def evaluate(self, *args, **options):
+            return tuple(None if part is None else -part for part in super().evaluate(*args, **options))
+
+    n, side, p_ext = 128, 200e-6, 20e3
+    spectrum = SelfAffine(3.1e-6, 0.75, 100e-6, plateau=False, shortest=12.5e-6)
+    rough = spectrum.surface((n, n), (side, side), 2)
+    found = pressed(rough, p_ext, MODULUS, H_0, voltage, True, deforms=True, tolerance=1e-6)
+    size = (side * 1e6, side * 1e6)
+    substrate = mechanics.PeriodicFFTElasticHalfSpace((n, n), MODULUS / 1e3, size)
+    h = rough.heights * 1e6
+    insulators = (VACUUM_PERMITTIVITY * 1e9, 1.0, 1.0, 1.0, H_0 * 1e6 / 2, H_0 * 1e6 / 2, voltage)
+    other = adhesion.BoundedSmoothContactSystem(
+        substrate, Attraction(*insulators), topography.Topography(h, size, periodic=True)
+    )
+    sunk = p_ext / 1e3 / float(substrate.surface_stiffness.flat[0].real)  # of the whole surface, under the mean
+    tight = {"maxiter": 20000, "maxfun": 100000, "gtol": 1e-7, "ftol": 1e-18, "maxcor": 20}
+    other.minimize_proxy(offset=sunk - h.mean() - found.gap * 1e6, lbounds="auto", method="L-BFGS-B", options=tight)
+    gap = other.gap * 1e-6
+    assert other.compute_normal_force() / size[0] ** 2 * 1e3 == pytest.approx(p_ext, rel=1e-5)
+    assert attraction_of(gap, gap == 0, voltage, H_0, True).mean() == pytest.approx(found.attraction, rel=1e-5)
+    assert (gap == 0).mean() == pytest.approx(found.fraction, rel=1e-3)
+    assert gap.mean() == pytest.approx(found.gap, rel=1e-5)

@@ -40,6 +40,17 @@ def test_band_scales_the_result(result):
     assert found == {words: pytest.approx(2 * value) for words, value in kept.items()}
 
 
+def test_points_of_a_sweep_have_the_band(result):
+    """That of a run, kept or not; none without voltage."""
+    none, point = fp.sweep(fp.Scene(), model="cylinders", voltage=[0.0, 70.7])
+    assert none.closures == {} and point.closures == pytest.approx(result.closures, rel=1e-9)
+
+
+def test_section_of_a_force_has_the_band():
+    found = fp.run(fp.Scene(force="0.5 N", voltage=70.7), model="cylinders")
+    assert found.closures["bearing area"] == pytest.approx(found.full_slip.mu_app, rel=1e-9)
+
+
 def test_own_closure_is_in_the_band():
     """With boundary elements of another shortest wave the others have it too."""
     given = {"law": "BoundaryElements", "shortest_wave": 4e-6, "field_in_contact": False}

@@ -19,7 +19,8 @@ ROOT = Path(__file__).resolve().parents[1]
 DEMOS = sorted((ROOT / "demos").glob("*.py"))
 OUTPUT = ROOT / "demos" / "output"  # by python3 -m benchmarks.demos
 BODIES = ("ridge_against_hertz", "pull_off_and_energy", "own_mesh", "results_with_other_tools")
-OWN_LAWS = ("own_closure", "own_material", "own_friction")
+SPIKES = ("press_hold_slide_spikes", "voltage_step_felt")
+OWN = ("own_closure", "own_material", "own_friction")
 STRICT = ["-W", "error", "-W", "ignore::ImportWarning"]  # dolfinx's of what it can do without
 
 
@@ -55,7 +56,7 @@ def test_demo(demo, tmp_path):
 
 @pytest.mark.mpi
 @pytest.mark.skipif(MPI.COMM_WORLD.size == 1, reason="test_demo runs it on one rank")
-@pytest.mark.parametrize("stem", [*BODIES, *(pytest.param(stem, marks=pytest.mark.long) for stem in OWN_LAWS)])
+@pytest.mark.parametrize("stem", [*BODIES, *SPIKES, *(pytest.param(stem, marks=pytest.mark.long) for stem in OWN)])
 def test_demo_on_two_ranks(stem, tmp_path, capfd):
     """Of the demos of small bodies: the assertions hold, and rank 0 alone prints: no line comes twice."""
     spec = importlib.util.spec_from_file_location(stem, ROOT / "demos" / f"{stem}.py")

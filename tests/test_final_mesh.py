@@ -60,6 +60,20 @@ def test_site_that_changes_by_accident_less_than_others_has_half_their_error():
     assert found["full_slip_sed_0"] == 0.0
 
 
+def test_highest_pressure_that_changes_by_accident_less_than_those_of_other_states_has_half_their_error():
+    fine = {"uncharged_p_max": 88e3, "charged_p_max": 135e3, "full_slip_p_max": 153e3}
+    coarse = {"uncharged_p_max": 88e3 * 1.02, "charged_p_max": 135e3 * 1.01, "full_slip_p_max": 153e3}
+    found = of_two_meshes(coarse, fine, {})
+    part = TWO * 0.01 / (2**1.5 - 1)
+    assert found["charged_p_max"] == pytest.approx(part * 135e3, rel=1e-9)
+    assert found["full_slip_p_max"] == pytest.approx(SITES * part * 153e3, rel=1e-9)
+
+
+def test_friction_of_ridges_whose_changes_cancel_has_the_root_of_their_squares_as_its_change():
+    coarse, fine = {"full_slip_f_t": [10.03, 9.96, 10.0]}, {"full_slip_f_t": [10.0, 10.0, 10.0]}
+    assert of_two_meshes(coarse, fine, {})["full_slip_f_t"] == pytest.approx(TWO * 0.05 / 3, rel=1e-9)
+
+
 @pytest.mark.parametrize("lost_there", [False, True])
 def test_path_is_followed_on_the_final_mesh_where_other_ridges_touch_there(monkeypatch, lost_there):
     """Or where a state is not found again. From the finer path a coarser mesh gives the estimate."""

@@ -93,7 +93,7 @@ def test_derjaguin_begins_without_a_jump():
 def test_dissipation_is_the_limit_times_the_way():
     """At constant pressure the trapezoidal rule is exact and sure."""
     p, slip = np.full((2, 3), 2e4), np.full((2, 3), 1e-6)
-    spent, unsure = LAW.dissipated(p, p, slip)
+    spent, unsure = LAW.dissipated(LAW.limit(p), LAW.limit(p), slip)
     np.testing.assert_allclose(spent, LAW.limit(2e4) * 1e-6, rtol=1e-15)
     assert not unsure.any()
 

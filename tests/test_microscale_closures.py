@@ -24,6 +24,7 @@ CLOSURES = {
     "boundary elements": fp.BoundaryElements(H_0),
     "outside": fp.BoundaryElements(H_0, field_in_contact=False),
     "between": fp.BoundaryElements(H_0, shortest_wave=4e-6),
+    "hurst": fp.BoundaryElements(H_0, hurst=0.825),
     "persson": fp.Persson(H_0),
     "bearing area": fp.BearingArea(H_0),
 }
@@ -66,7 +67,7 @@ def test_slopes(closure):
     np.testing.assert_array_equal(closure(p).derivative, here.slopes.d_eq)
 
 
-@pytest.mark.parametrize("name", ["boundary elements", "between", "persson"])
+@pytest.mark.parametrize("name", ["boundary elements", "between", "hurst", "persson"])
 def test_monotone(name):
     """Contact grows, gaps close, at ten thousand pressures: no oscillation between the nodes."""
     found = CLOSURES[name].statistics(np.geomspace(1.01e3, 5e5, 10_000))
@@ -128,6 +129,14 @@ def test_past_the_fold():
     assert falls.any() and not falls.all()
 
 
+def test_part_that_attraction_balances():
+    """That of Eq. 3 at no gap, over the area in contact, beside the pressure; none without a field in contact."""
+    closure = CLOSURES["boundary elements"]
+    exact = 8.854e-12 * 70.0**2 / 2 / H_0**2 * closure.statistics(PRESSURES).area / PRESSURES
+    np.testing.assert_allclose(closure.balanced(PRESSURES, -70.0), exact, rtol=1e-12)
+    assert not CLOSURES["outside"].balanced(PRESSURES, 200.0).any()
+
+
 # -- breakdown ---------------------------------------------------------------------------------------------
 def test_gaps_that_break_down():
     """The voltage over the air of each is above what the air bears, by sampling; none at 100 V."""
@@ -185,10 +194,18 @@ def test_distribution_of_persson():
     assert table.area[0, 0] == pytest.approx(np.sqrt(8 / np.pi) * table.pressure[0] / slope, rel=1e-4)
 
 
-def test_persson_is_near_boundary_elements():
+@pytest.mark.parametrize("hurst", [0.6, 0.65, 0.75, 0.8, 0.9])
+def test_persson_is_near_boundary_elements(hurst):
     """Air gaps within 30 %: between 5 and 100 kPa, theory and contacts of six surfaces."""
-    gaps = [CLOSURES[name](PRESSURES).d_eq for name in ("persson", "boundary elements")]
+    gaps = [law(H_0, hurst=hurst)(PRESSURES).d_eq for law in (fp.Persson, fp.BoundaryElements)]
     np.testing.assert_allclose(*gaps, rtol=0.3)
+
+
+def test_roughness_of_larger_exponents_has_less_slope():
+    """At equal rms height fewer short waves: more contact area, in the theory and in contacts."""
+    for law in (fp.Persson, fp.BoundaryElements):
+        areas = [law(H_0, hurst=hurst).statistics(2e4).area for hurst in (0.6, 0.7, 0.75, 0.82, 0.9)]
+        assert (np.diff(areas) > 0).all()
 
 
 # -- scenes ------------------------------------------------------------------------------------------------
@@ -204,6 +221,7 @@ def test_scene_and_back(law):
     ("table", "words"),
     [
         ({"shortest_wave": 1e-6}, "roughness.shortest_wave is 1e-06 m; .* so take 1.563e-06 to 1.25e-05 m"),
+        ({"hurst": 0.5}, "roughness.hurst is 0.5; tables of the package are for 0.6 to 0.9, and Persson has no such"),
         ({"p_floor": 1e6}, "roughness.p_floor is 1000000; it must be below the pressure of the table's end"),
         ({"surface": "abc"}, "roughness.surface is 'abc', and .* has no table of that name"),
         ({"field_in_contact": 2}, "roughness.field_in_contact is 2; it must be true or false"),

@@ -7,7 +7,7 @@ from mpi4py import MPI
 from geometry.bodies import block, ridge
 from geometry.mesh import load
 from tests.test_contact import HEIGHT, MU_F, WIDTH, make
-from variational.problem import SLIPS, STICKS
+from variational.contact.formulation import SLIPS, STICKS
 from variational.solvers import iteration as module
 from variational.solvers.equations import Control
 from variational.solvers.outcome import NotConverged

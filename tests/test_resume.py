@@ -24,11 +24,14 @@ pytestmark = pytest.mark.slow
 ROOT = Path(__file__).resolve().parents[1]
 PRESS, CHARGE = {"name": "press", "f_ext": 2.0}, {"name": "charge", "voltage": 100.0}
 SLIDE = {"name": "slide", "bone_x": 0.5e-3, "until_full_slip": True}
+HELD = {"name": "held", "f_ext": 2.0, "duration": 0.5}
+VISCOUS = {name: {"viscosity": {"preset": "fingerpad"}} for name in ("dermis", "stratum_corneum")}
 DRIVE, LOSSY = {"waveform": "sine", "amplitude": 150.0, "frequency": 100.0}, {"tissue": "dry", "leak": 300.0}
 WAVE = {"name": "wave", "voltage": DRIVE, "duration": 2e-3, "bone_x": 0.1e-3}
 HISTORIES = {
     "charged at rest": ([PRESS, CHARGE, SLIDE], {}),
     "there and back": ([PRESS, SLIDE, CHARGE, {"name": "back", "bone_x": -0.1e-3}], {}),
+    "viscous": ([PRESS, HELD, CHARGE, SLIDE | {"bone_x": 0.3e-3, "speed": 0.01}], {"materials": VISCOUS}),
     "bone height": ([{"name": "press", "bone_height": -0.2e-3}, CHARGE, SLIDE], {}),
     "Nitsche": ([PRESS, CHARGE, SLIDE], {"contact": {"formulation": "nitsche"}}),
     "augmented": ([PRESS, CHARGE, SLIDE], {"contact": {"formulation": "augmented"}}),
@@ -79,7 +82,7 @@ def killed_at(monkeypatch):
 
 
 # -- the same numbers ------------------------------------------------------------------------------------
-ALWAYS = ["charged at rest", "there and back", "receptors", "drive over time"]
+ALWAYS = ["charged at rest", "there and back", "receptors", "drive over time", "viscous"]
 LONG = [pytest.param(name, marks=pytest.mark.long) for name in HISTORIES if name not in ALWAYS]
 
 
@@ -108,18 +111,19 @@ def test_goes_on_to_the_last_bit(history, tmp_path, killed_at):
 
 
 @pytest.mark.mpi
-def test_on_another_number_of_ranks(tmp_path, killed_at):
+@pytest.mark.parametrize("history", ["charged at rest", "viscous"])
+def test_on_another_number_of_ranks(history, tmp_path, killed_at):
     """Begun on one rank and finished on all; to 1e-8 the numbers of one rank."""
     comm = MPI.COMM_WORLD
     place = Path(comm.bcast(str(tmp_path)))
     if comm.rank == 0:
-        fp.run(scene(), out=place / "whole", comm=MPI.COMM_SELF)
+        fp.run(scene(history), out=place / "whole", comm=MPI.COMM_SELF)
         killed_at(15)
         with pytest.raises(Killed):
-            fp.run(scene(), out=place / "cut", comm=MPI.COMM_SELF)
+            fp.run(scene(history), out=place / "cut", comm=MPI.COMM_SELF)
     comm.barrier()
     killed_at(None)
-    fp.run(scene(), out=place / "cut", resume=True)
+    fp.run(scene(history), out=place / "cut", resume=True)
     whole, cut = tables(place / "whole"), tables(place / "cut")
     assert len(whole["steps"]) == len(cut["steps"])
     for name in ("f_ext", "f_t", "f_contact", "contact_length", "mu_app", "bone_height"):

@@ -45,14 +45,16 @@ def test_figure_that_no_command_has_computed_is_a_dash(tmp_path):
 
 
 def test_figures_of_states_without_paths(tmp_path):
-    """Forty loads of 6 s each, two at a time; all but the first from a neighbour, by four factorisations."""
+    """Forty loads in 240 s, two at a time; all but the first from a neighbour, by four factorisations."""
     one = {"processor_seconds": 6.0, "factorisations": 4}
     rows = [one | {"reached": "path" if k == 0 else "neighbour"} for k in range(40)]
     one = {"f_ext": 5.0, "voltage": 0.0, "f_t": 2.0, "ridges": 7, "states": [2.0], "touching": 7, "reached": "path"}
     listed = [one, one | {"states": [2.1]}, one | {"states": [2.1], "touching": 8}]
-    keep("paper_states", {"default": rows, "beside": listed}, BY, tmp_path)
+    seconds = {"seconds_of_sweep": 240.0, "seconds_of_paths": [18.0] * 40}
+    keep("paper_states", {"default": rows, "beside": listed} | seconds, BY, tmp_path)
     keep("performance", {"run": {"found": {"processor": 60.0}}}, BY, tmp_path)
     assert (row("40 states", tmp_path).reached, row("40 states", tmp_path).met) == ("2", "yes")
+    assert (row("twice as large", tmp_path).reached, row("twice as large", tmp_path).met) == ("6", "no")
     assert row("factorisations", tmp_path).reached == "4"
     assert (row("further state over", tmp_path).reached, row("further state over", tmp_path).met) == ("0.1", "no")
     assert row("states equal", tmp_path).reached == "2"

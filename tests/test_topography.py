@@ -280,3 +280,13 @@ def test_fit_of_a_surface_made_by_surface_topography(other):
     assert fit.hurst == pytest.approx(0.75, abs=0.04)
     assert fit.wavelength == pytest.approx(100 * UM, rel=0.15)
     assert fit.h_rms(plateau=True) == pytest.approx(3.1 * UM, rel=0.1)
+
+
+def test_pixels_that_do_not_resolve_the_shortest_wave():
+    """Two pixels to the shortest wave are enough; fewer, and pixels larger than all waves, are refused."""
+    spectrum = SelfAffine(3.1e-6, 0.75, 100e-6, plateau=False, shortest=12.5e-6)
+    assert spectrum.surface((32, 32), (200e-6, 200e-6), 0).h_rms > 0
+    with pytest.raises(ValueError, match="pixels of 1.25e-05 m do not resolve the shortest wavelength of 1.25e-05 m"):
+        spectrum.surface((16, 32), (200e-6, 200e-6), 0)
+    with pytest.raises(ValueError, match="are too large for wavelengths below 0.0001 m"):
+        SelfAffine(3.1e-6, 0.75, 100e-6, plateau=False).surface((2, 2), (400e-6, 400e-6), 0)

@@ -102,6 +102,10 @@ class Law:
         """Return the names of the numbers that a form reads."""
         return self._numbers() if self.coefficients is None else self.coefficients
 
+    def number(self, name: str) -> Any:
+        """Return one of the numbers that a form reads."""
+        return getattr(self, name)
+
     def with_values(self, values: Mapping[str, Any]) -> Self:
         """Return a copy that carries ``values`` in the place of its numbers; other numbers it has no longer."""
         found = copy.copy(self)

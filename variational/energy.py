@@ -5,8 +5,10 @@ At an equilibrium the residual (:mod:`~variational.problem`) is work free but fo
 .. math:: d\Big(E + \int \tfrac12 \epsilon_n \langle -y \rangle^2 + \tfrac12 \epsilon_t (u_x - s)^2 \,dS\Big)
           = -R \cdot du^{bone} + \frac{\partial E}{\partial U^2}\, dU^2
           + \sum_j \frac{\partial E}{\partial d_{eq,j}}\, d d_{eq,j} - \int |t_t| \, |ds| \,dS
+          - \int \sum_i Q_i : dE \,dX
 
-with E strain energy and the attraction's potential, R the force on the bone, s the friction's anchor. The potential is
+with E strain energy and the attraction's potential, R the force on the bone, s the friction's anchor, Q_i the stresses
+of viscous branches and dE the change of Green's strain (:mod:`~variational.relaxation`). The potential is
 proportional to U^2; its derivative is the work of the voltage source less what the charged gap keeps. An air gap that
 follows the pressure (:mod:`~variational.solvers.coupling`) does work as well. Work is taken by the trapezoidal rule,
 that of the air gaps as the mean of the energy's changes at both shapes: an air gap may jump tenfold while the skin
@@ -15,6 +17,7 @@ both ends, whatever it bore before it slipped: that is of second order along smo
 where a step spans sticking and slipping or a reversal. What is left over,
 
 .. math:: \text{released} = \text{external} + \text{voltage} + \text{air gap} - \Delta \text{stored} - \text{dissipated}
+          - \text{viscous}
 
 vanishes with the square of the step on a smooth path. At a jump, where the body moves without the loads, it is the
 energy that a viscous or inertial body dissipates (Mielke and Roubicek 2015, doi 10.1007/978-1-4939-2706-7), but for
@@ -63,13 +66,15 @@ class Balance:
     """Work of the changing equivalent air gaps at frozen shape."""
     dissipation: float
     """Spent by friction, >= 0."""
+    viscous: float
+    """Work done on the branches of viscous layers, which store and dissipate it; 0 without such layers."""
     released_error: float
     """Bound of the error of :attr:`released` in a step that jumps; far above it on a smooth path."""
 
     @property
     def released(self) -> float:
         """What the loads' work leaves unexplained: the energy released by a jump, otherwise the step's error."""
-        return self.external + self.voltage + self.air_gap - self.change - self.dissipation
+        return self.external + self.voltage + self.air_gap - self.change - self.dissipation - self.viscous
 
 
 @dataclass(frozen=True)
@@ -80,6 +85,7 @@ class _State:
     square: float  # U^2
     d_eq: Array
     surface: SurfaceState
+    viscous: float  # work so far
 
 
 class EnergyBook:
@@ -100,7 +106,10 @@ class EnergyBook:
 
     def _state(self, surface: SurfaceState, bone: Array, reaction: Array, d_eq: Array) -> _State:
         problem, integrate = self._problem, self._problem.surface.per_ridge
-        bulk = problem.mesh.comm.allreduce(float(fem.assemble_scalar(problem.energy)), op=MPI.SUM)
+        bulk, spent = (
+            0.0 if form is None else problem.mesh.comm.allreduce(float(fem.assemble_scalar(form)), op=MPI.SUM)
+            for form in (problem.energy, problem.viscous_work)
+        )
         springs = float(integrate(problem.interface.formulation.stored(surface)).sum())
         square = float(problem.voltage.value) ** 2
         return _State(
@@ -110,6 +119,7 @@ class EnergyBook:
             square,
             np.array(d_eq),
             surface,
+            self._copies * spent,
         )
 
     def _potential(self, surface: SurfaceState, d_eq: Array) -> Array:
@@ -153,6 +163,7 @@ class EnergyBook:
             voltage=float(charges.sum()) / 2,
             air_gap=float(gaps.sum()) / 2,
             dissipation=slid,
+            viscous=b.viscous - a.viscous,
             released_error=unsure,
         )
 
@@ -164,5 +175,6 @@ class EnergyBook:
         # A point without pressure does not slip.
         slip = np.where(b.p_n > 0, np.abs(self._problem.interface.formulation.slip(a, b)), 0.0)
         integrate = self._problem.surface.per_ridge
-        spent, unsure = (self._copies * float(integrate(d).sum()) for d in law.dissipated(a.p_n, b.p_n, slip))
+        found = law.dissipated(law.limit_in(a), law.limit_in(b), slip)
+        spent, unsure = (self._copies * float(integrate(each).sum()) for each in found)
         return spent, unsure

@@ -44,6 +44,17 @@ def cofactor(F):
     return ufl.as_matrix([[F[1, 1], -F[1, 0]], [-F[0, 1], F[0, 0]]])
 
 
+def green_strain(H):
+    """Return Green's strain (C - I) / 2 in the plane, its components 11, 22 and 12, of a displacement gradient H."""
+    E = (H + H.T + H.T * H) / 2
+    return ufl.as_vector([E[0, 0], E[1, 1], E[0, 1]])
+
+
+def work(stress, strain):
+    """Return S : E (J/m^3) of a stress (Pa), components 11, 22, 12 and more, and a strain in the plane, 11, 22, 12."""
+    return stress[0] * strain[0] + stress[1] * strain[1] + 2 * stress[2] * strain[2]
+
+
 def current_height(mesh, u):
     """Return the height of a material point above the screen (m), its last coordinate."""
     return ufl.SpatialCoordinate(mesh)[len(u) - 1] + u[len(u) - 1]

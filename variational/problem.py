@@ -22,7 +22,7 @@ never solves.
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from functools import cache
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import dolfinx
 import numpy as np
@@ -31,16 +31,16 @@ from dolfinx import fem
 
 from variational import jit, kinematics
 from variational.attraction import electroadhesion
-from variational.contact.formulation import Contact, Formulation, Skin
+from variational.contact.formulation import STICKS, Contact, Formulation, Skin
 from variational.contact.friction import Friction, law_of
 from variational.element import ELEMENTS, Centroid, LayerwisePressure
 from variational.history import History, SkinField
+from variational.layers import grouped
+from variational.relaxation import relaxations, viscous_work
 
 if TYPE_CHECKING:
     from variational.materials.material import Material
     from variational.surface import Surface
-
-STICKS, SLIPS = 1e-9, -1e-9  # first guesses for points on the friction cone
 
 
 @dataclass(frozen=True)
@@ -88,7 +88,10 @@ class Problem:
         pressure: the mixed element's pressure, None for the others.
         voltage, eta: constants (V; Pa/m, the shift of the Jacobian).
         dt: constant, the duration of the present step (s); 0 where loads change at once.
-        guess: constant, what points on the friction cone are first taken for: STICKS or SLIPS.
+        lapse: constant, the time (s) since the history that forms read was accepted: dt on the way to a state, and 0
+            once it is accepted.
+        guess: constant, what points on the friction cone are first taken for:
+            :data:`~variational.contact.formulation.STICKS` or SLIPS.
         ease: constant, part of the tangential stiffness of the contact that acts: 1 but on the way to an equilibrium.
         d_eq: equivalent air gap (m), one value a cell, read on the ridges.
         share: share of the voltage, as d_eq; None where it is the same for all ridges.
@@ -97,10 +100,15 @@ class Problem:
         history: fields that accepted steps leave to the next one, these two among them.
         contact: the projected tractions.
         opening: length (m) that is negative in contact.
-        laws, pressures, densities: each group of layers' material with its numbers as fields, volumetric pressure (Pa),
-            positive in tension, and strain energy density (J/m^3), UFL.
+        laws, pressures, densities: each group of layers' material with its numbers as fields, viscous ones with the law
+            of the step; volumetric pressure (Pa), positive in tension; and strain energy density (J/m^3), UFL.
+        relaxations: history of each group of viscous layers.
+        in_time: whether a state depends on the time that the way to it took.
+        shortest_time: of all times (s) in which a law ages; infinite where none does.
         weak: residual and Jacobian in w and its test function, UFL.
         residual, jacobian: the same, compiled.
+        energy: compiled, of strain and attraction (J/m), without what branches of viscous layers store.
+        viscous_work: compiled work (J/m) of viscous stresses so far; None without such layers.
         skin_mass: compiled mass of the touching skin per unit density.
         pressure_residual: the equation of the pressure; with one only.
         pressure_jacobian: compiled blocks of the Jacobian in (v, dp), (q, du), (q, dp); with a pressure only.
@@ -143,7 +151,7 @@ class Problem:
             return fem.Constant(mesh, np.float64(value))
 
         self.voltage, self.eta, self.guess = constant(0.0), constant(0.0), constant(STICKS)
-        self.ease, self.dt = constant(1.0), constant(0.0)
+        self.ease, self.dt, self.lapse = constant(1.0), constant(0.0), constant(0.0)
         self._friction = friction = None if interface.friction is None else interface.friction.with_constants(constant)
         self._h_0 = h_0 = constant(interface.h_0)
         self.share = None if interface.share is None else fem.Function(cellwise)
@@ -157,28 +165,40 @@ class Problem:
         w, v = self.w, ufl.TestFunction(self.V)
         H = ufl.grad(w)
         F = kinematics.deformation_gradient(H)
-        energy = 0
         dx = ufl.Measure("dx", mesh, subdomain_data=cell_tags, metadata={"quadrature_degree": kind.quadrature_degree})
         centroid = Centroid(mesh) if kind.reduced else None
-        self.laws = self._laws(solids, cellwise)
+        self.laws = grouped(solids, cellwise, cell_tags)
+        self.relaxations = relaxations(self.laws, w, self.lapse, cell_tags, kind.quadrature_degree)
+        remembers = interface.friction is not None and interface.friction.memory is not None
+        aging: list[Any] = [*solids.values(), *([interface.friction] if interface.friction else [])]
+        self.shortest_time = min((t for law in aging for t in law.times), default=np.inf)
+        self.in_time = bool(self.relaxations) or remembers
+        self.laws |= {tags: each.law for tags, each in self.relaxations.items()}
         self.pressure = self._pressure(solids) if kind.mixed else None
         self.pressures = {tags: law.pressure(H) for tags, law in self.laws.items()}
-        for tags, law in self.laws.items():
-            energy += law.distortion(H) * dx(tags)
-            bulk = law.volumetric
-            if bulk is None:
-                continue
-            if self.pressure:
-                p = self.pressures[tags] = self.pressure.p
-                energy += (p * kinematics.dilation(H) - p**2 / (2 * bulk)) * dx(tags)
-            else:
-                rule = {"quadrature_degree": kind.volumetric_degree}
-                energy += law.pressure(H) ** 2 / (2 * bulk) * dx(tags, metadata=rule)
-            if centroid:
-                self.pressures[tags] = law.pressure(centroid.value(H))
+
+        def strained(laws: Mapping[tuple[int, ...], "Material"]):
+            energy = 0
+            for tags, law in laws.items():
+                energy += law.distortion(H) * dx(tags)
+                bulk = law.volumetric
+                if bulk is None:
+                    continue
+                if self.pressure:
+                    p = self.pressures[tags] = self.pressure.p
+                    energy += (p * kinematics.dilation(H) - p**2 / (2 * bulk)) * dx(tags)
+                else:
+                    rule = {"quadrature_degree": kind.volumetric_degree}
+                    energy += law.pressure(H) ** 2 / (2 * bulk) * dx(tags, metadata=rule)
+                if centroid:
+                    self.pressures[tags] = law.pressure(centroid.value(H))
+            return energy
+
+        energy = strained(self.laws)
         self.densities = {tags: law.density(F, self.pressures[tags]) for tags, law in self.laws.items()}
 
         self.x, self.y = ufl.SpatialCoordinate(mesh)[0] + self.u[0], kinematics.current_height(mesh, self.u)
+        memory, before = (fem.Function(surface.history_space) if remembers else None for _ in range(2))
         attraction = interface.attraction
         self.p_el = attraction.pressure(self.y, self.d_eq, voltage, h_0) if attraction else ufl.zero()
         normal = ufl.FacetNormal(mesh)
@@ -193,20 +213,25 @@ class Problem:
             self.p_el * self.area,
             lambda: self._skin_stiffness(solids, cellwise),
             of_springs,
+            memory,
+            None if before is None else self.x - before,
+            self.lapse,
         )
         formulation = interface.formulation
         self._skin = skin
         self.contact = Contact(skin, formulation.springs(skin), friction, self.guess, self.ease)
         self.opening = formulation.opening(skin, self.contact)
         dS = surface.measure
+        stored = strained({tags: law.at_rest for tags, law in self.laws.items()}) if self.relaxations else energy
         if attraction:
-            energy += -attraction.potential(self.y, self.d_eq, voltage, h_0) * self.area[1] * dS
+            pulled = -attraction.potential(self.y, self.d_eq, voltage, h_0) * self.area[1] * dS
+            energy, stored = energy + pulled, stored + pulled
         residual = ufl.derivative(energy, w, v) + formulation.virtual_work(skin, self.contact, v) * dS
         du = ufl.TrialFunction(self.V)
         skin_mass = ufl.dot(du, v) * dS
         jacobian = ufl.derivative(residual, w, du) + self.eta * skin_mass
         self.skin_mass = fem.form(skin_mass, jit_options=jit.OPTIONS)
-        self.energy = fem.form(energy, jit_options=jit.OPTIONS)
+        self.energy = fem.form(stored, jit_options=jit.OPTIONS)
         self.weak = residual, jacobian
         self.residual, self.jacobian = (fem.form(form, jit_options=jit.OPTIONS) for form in self.weak)
         if self.pressure:
@@ -220,29 +245,14 @@ class Problem:
         unloaded = surface.evaluate(surface.compile([ufl.SpatialCoordinate(mesh)[0]]))[0]
         self.history.add(SkinField("anchor", self.contact.new_anchor, self.anchor, follows=self.u[0]))
         self.history.add(SkinField("pressure", self.contact.p_n, self.multiplier))
-        self.history.add(SkinField("x", self.x, follows=self.x), unloaded)
-
-    def _laws(self, solids: Mapping[int, "Material"], cellwise: fem.FunctionSpace) -> dict[tuple[int, ...], "Material"]:
-        """Return the law of each group of layers, one kernel a law: numbers are fields with one value a cell."""
-        groups: list[list[int]] = []
-        for tag, solid in solids.items():
-            solid.check()
-            mine = next((g for g in groups if solids[g[0]].kind() == solid.kind()), None)
-            groups.append([tag]) if mine is None else mine.append(tag)
-
-        def field(values: Mapping[int, float]) -> fem.Function:
-            f = fem.Function(cellwise)
-            for tag, value in values.items():
-                f.x.array[self.cell_tags.find(tag)] = value
-            f.x.scatter_forward()
-            return f
-
-        found: dict[tuple[int, ...], Material] = {}
-        for group in groups:
-            first = solids[group[0]]
-            fields = {name: field({tag: getattr(solids[tag], name) for tag in group}) for name in first.names()}
-            found[tuple(group)] = first.with_values(fields)
-        return found
+        self.history.add(SkinField("x", self.x, before, follows=self.x), unloaded)
+        if memory is not None:
+            start = np.full_like(unloaded, interface.friction.memory)  # type: ignore[union-attr]
+            self.history.add(SkinField("memory", self.contact.memory, memory), start)
+            self.history.impose(self.history.accepted)
+        for field in (field for each in self.relaxations.values() for field in each.fields):
+            self.history.add(field)
+        self.viscous_work = viscous_work(self.relaxations, dx)
 
     def _pressure(self, solids: Mapping[int, "Material"]) -> LayerwisePressure | None:
         """Return the pressure of the layers whose law has a volumetric part, None if there is none."""

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from variational.contact.formulation import SurfaceState
 from variational.contact.friction import CONE_ROUNDOFF
+from variational.highest import highest
 
 if TYPE_CHECKING:
     from variational.problem import Problem
@@ -98,7 +99,7 @@ class Observer:
     def limit(self, state: SurfaceState) -> Array:
         """Return the largest friction that the law allows (Pa of reference area) at this rank's points."""
         law = self.problem.interface.friction
-        return np.zeros_like(state.p_n) if law is None else np.asarray(law.limit(state.p_n))
+        return np.zeros_like(state.p_n) if law is None else law.limit_in(state)
 
     def slip(self, state: SurfaceState) -> tuple[float, bool]:
         """Return the part of the contact points at the friction cone, and whether all slip one way."""
@@ -117,9 +118,17 @@ class Observer:
         return float(total[3] / total[0]), bool(one_way)
 
     def highest_pressure(self, state: SurfaceState) -> float:
-        """Return the highest contact pressure (Pa of current area) at all ranks' points."""
-        highest = float(np.max(state.p_n / np.hypot(state.area_x, state.area_y), initial=0.0))
-        return float(np.max(self.problem.mesh.comm.allgather(highest)))
+        """Return the highest contact pressure (Pa of current area), see :mod:`variational.highest`; collective."""
+        surface, density = self.surface, (state.p_n, np.hypot(state.area_x, state.area_y))
+        force, width = ((each * surface.measure_at) @ surface.weights for each in density)
+        closed = np.minimum(surface.closed_length(state.x, state.y, state.gap), width)
+        mine = force, width, closed, surface.ends()
+        ranks = self.problem.mesh.comm.allgather(mine)
+        force, width, closed, ends = (np.concatenate(each) for each in zip(*ranks, strict=True))
+        if self._mirrored:
+            force, width, closed = (np.concatenate([each, each]) for each in (force, width, closed))
+            ends = np.concatenate([ends, ends * [-1.0, 1.0]])
+        return highest(force, width, closed, ends)
 
     def penetration(self, state: SurfaceState) -> float:
         """Return how deep the skin is in the screen where it bears pressure (m), the largest of all ranks' points."""

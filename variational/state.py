@@ -128,6 +128,10 @@ class StepRecord:
     """Whether skin or an air gap moved without the loads."""
     processor_seconds: float = math.nan
     """Of all ranks since the run began."""
+    viscous: float = math.nan
+    """Work done on the branches of viscous layers (J/m), which store and dissipate it; NaN without such layers."""
+    viscous_least: float = math.nan
+    """Least such work so far at a point of these layers over the largest one; below 0 a point gave more than it got."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -235,7 +239,10 @@ class ContactState:
     def row(self) -> dict[str, Any]:
         """Return conditions, results and the record of the step as one flat row, as ``steps.csv`` holds it."""
         row: dict[str, Any] = {f.name: getattr(self, f.name) for f in _FIELDS}
-        record = {} if self.record is None else vars(self.record)
+        record = {} if self.record is None else {**vars(self.record)}
+        for name in _VISCOUS:
+            if math.isnan(record.get(name, 0.0)):
+                del record[name]
         last = {f.name: value for f in _LAST if not math.isnan(value := getattr(self, f.name))}
         return row | record | last | dict(self.own)
 
@@ -252,6 +259,7 @@ RESULTS = (
     "p_max",
 )
 _FIELDS = fields(ContactState)[: [f.name for f in fields(ContactState)].index("record")]
+_VISCOUS = ("viscous", "viscous_least")  # columns of a record where layers are viscous
 _LAST = tuple(f for f in fields(ContactState) if f.name in ("mesh_contact", "time"))  # columns where they are known
 
 

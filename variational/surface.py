@@ -97,6 +97,10 @@ class Surface:
         nodes = np.take_along_axis(geometry[self.pairs[:, 0]], on_facet[self.pairs[:, 1]], axis=1)
         return np.asarray(self.mesh.geometry.x[nodes][:, :, :2])
 
+    def ends(self) -> Array:
+        """Return the places (m) of the ends of this rank's facets, shape (facets, 2, 2)."""
+        return self._nodes()[:, :2]
+
     def _slopes(self, nodes: int) -> Array:
         """Return the derivatives of a facet's nodes' functions at the points, shape (nodes, points)."""
         element = basix.create_element(basix.ElementFamily.P, basix.CellType.interval, nodes - 1)

@@ -2,9 +2,9 @@
 
 What is compared is the quantity that was measured. The apparent area is the gross area of the whole finger, a sum of
 slices (:mod:`benchmarks.measured.fingers`). The real area is the contact length of the ridges, of the paper's page
-(docs/paper.json: default mesh). Attraction is of docs/models.json, at a contact size of 10 µm. The stated error is the
-difference of the two meshes. Whole fingers of the finer mesh have its contact lengths and counts of ridges, over the
-indentations of the coarser one. Of trends the other mesh has a count.
+(docs/paper.json: default mesh); over the voltage it is the area of asperities. Attraction is of docs/models.json, at a
+contact size of 10 µm. The stated error is the difference of the two meshes. Whole fingers of the finer mesh have its
+contact lengths and counts of ridges, over the indentations of the coarser one. Of trends the other mesh has a count.
 """
 
 from collections.abc import Callable, Mapping
@@ -91,7 +91,10 @@ def _power(g: Grid, name: str, *ranges: tuple[float, ...]) -> Row:
 
 
 def _real_area(g: Grid) -> Row:
-    """Judge the area of asperities at full slip, by exact contact; the numbers have that of whole fingers in mm²."""
+    """Judge the area of asperities at full slip, by exact contact.
+
+    The numbers also have that of whole fingers in mm², and the exponents of the ridges' contact length.
+    """
 
     def lengths(a: Mapping[str, Array]) -> Mapping[str, Array]:
         force = a["full_slip_f_t"] / (coefficient(Scene()) or 1.0)
@@ -101,7 +104,9 @@ def _real_area(g: Grid) -> Row:
     for name in fingers.CLOSURES:
         area = 1e6 * g.full_finger[f"full_slip_200_{name}_area"]
         numbers |= {f"{name}_least": float(area.min()), f"{name}_most": float(area.max())}
-    return numbers, verdict
+    length, _ = _power(g, "full_slip_contact_length", *AMPLITUDES)
+    numbers |= {"length_low": min(length["low"], length["other_low"]), "length_holds": length["holds"]}
+    return numbers | {"length_high": max(length["high"], length["other_high"])}, verdict
 
 
 def _trend(g: Grid, holds: Callable[[Mapping[str, Array]], NDArray[np.bool_]], **more: float) -> Row:
@@ -255,7 +260,6 @@ def numbers(g: Grid, runs: Mapping[str, Any]) -> dict[str, Row]:
     return {
         "friction_voltage": _power(g, "full_slip_f_t", VOLTAGES[1:]),
         "friction_range": _power(g, "full_slip_f_t", *AMPLITUDES),
-        "area_voltage": _power(g, "full_slip_contact_length", *AMPLITUDES),
         "real_area": _real_area(g),
         "friction_slip": _friction_slip(g),
         "area_before": _apparent(g, "charged_200", "charged_0", _same),

@@ -20,7 +20,7 @@ from benchmarks import harness
 from benchmarks.microscale import contacts
 from fingerpad.reduced import cylinders
 from fingerpad.results import style
-from fingerpad.scene import Scene
+from fingerpad.scene import Scene, load
 from fingerpad.scene.messages import SceneError
 from variational.attraction.electroadhesion import VACUUM_PERMITTIVITY
 from variational.roughness.bam import BearingArea
@@ -43,6 +43,7 @@ ELECTRIC = {"tissue": "dry", "leak": "sliding dry"}
 PAPER, NEAR = 0.55, 0.1  # µ_app at 75 N/m; what counts as equal to it
 GAPS = (1.5e-6, 2.5e-6)  # m, published equivalent air gaps
 _FINE = 100e-6 / 64
+HURST, HELD = (0.6, 0.675, 0.75, 0.825, 0.9), 20e3  # exponents of a table, and its pressure (Pa)
 Law = BearingArea | TabulatedClosure
 
 
@@ -82,6 +83,18 @@ def full_scenes() -> dict[str, Scene]:
     }
 
 
+_ADHERING = ("charged_ridges_in_contact", "full_slip_ridges_in_contact", "full_slip_stable", "jumps", "penetration")
+SMALL, LOADED = harness.DOCS.parent / "demos" / "scenes" / "small_finger.toml", 10.0  # N/m, of three ridges
+
+
+def adhering() -> Scene:
+    """Return the scene of a small finger whose ridges adhere: boundary elements, a field in contact, 200 V."""
+    law = {"law": "BoundaryElements"}
+    return load(SMALL).replace(
+        f_ext=LOADED, voltage=NUMBER, roughness=law, output={"errors": False, "receptors": False}
+    )
+
+
 # -- numbers -------------------------------------------------------------------------------------------------
 def over_pressure(law: Law) -> dict[str, Any]:
     """Return what a closure has at the pressures of the page, and from which voltage a ridge would stick."""
@@ -117,10 +130,23 @@ def _given() -> dict[str, float | Mapping[str, Any]]:
     return {**{name: NUMBER * part for name, part in READINGS.items()}, **CIRCUIT}
 
 
+def over_hurst() -> list[dict[str, Any]]:
+    """Return air gap (m), area and friction read as peak to peak of closures over the Hurst exponent."""
+    h_0, rows, voltage = Scene().h_0, [], NUMBER * READINGS["peak to peak"]
+    for words, law in (("boundary elements", BoundaryElements), ("Persson's theory", Persson)):
+        for hurst in HURST:
+            each = law(h_0, hurst=hurst)
+            gaps, slip = each.statistics(HELD), friction(each, 75.0, voltage)
+            values = {"d_eq": float(gaps.d_eq), "spread": float(each.spread(HELD)), "area": float(gaps.area)}
+            rows.append({"closure": words, "hurst": hurst, "mu": _mu(slip)} | values)
+    return rows
+
+
 def compute(args: argparse.Namespace) -> None:
     """Compute and keep the numbers."""
     exact = {"direct": contacts.direct(), "grids": contacts.grids(), "adhesive": contacts.adhesive()}
-    full = harness.run(full_scenes(), args, _LIMIT)
+    full = harness.run(full_scenes() | {"small": adhering()}, args, _LIMIT)
+    small = full.pop("small")
     closures = laws()
     keys = ("full_slip_mu_app", "full_slip_contact_length", "full_slip_f_electrostatic", "failure")
     found = {
@@ -133,6 +159,8 @@ def compute(args: argparse.Namespace) -> None:
             words: {f"{f:g}": [_mu(friction(law, f, u)) for u in VOLTAGES] for f in FORCES}
             for words, law in closures.items()
         },
+        "hurst": over_hurst(),
+        "small": {key: small.get(key) for key in (*keys, *_ADHERING)},
         "full": {words: {key: summary.get(key) for key in keys} for words, summary in full.items()},
     }
     harness.keep("microscale", found | exact, harness.made(full.values()), args.docs)
@@ -217,6 +245,7 @@ def draw(docs: Path) -> Path:
         "gap": lambda found, k: _gap(found["d_eq"][k] * 1e6, found["spread"][k] * 1e6),
         "line": _line, "reaches": _reaches, "compared": rows, "inside": sum(inside), "known_pairs": inside,
         "least_voltage": min(u for u in needed if u), "most_voltage": max(u for u in needed if u),
+        "small": numbers["small"],
         "broken": [part for found in numbers["closures"].values() for part in found["broken"]],
         "first_off": deformed[0], "area_error": areas[min(areas)] / areas[max(areas)],
         "gap_span": f"{max(gaps):.2f} to {min(gaps):.2f} µm; other code has 5.60 to 1.37 µm", "kPa": 1e-3,

@@ -22,7 +22,7 @@ from variational.roughness.halfspace import NoContactError, press
 from variational.roughness.topography import HeightMap
 
 Array = NDArray[np.float64]
-_TOLERANCE = 3e-3  # of the mean attraction: what the gaps would change it by
+_TOLERANCE = 3e-3
 _IN_A_ROW = 3  # iterations within it
 _PART = 0.5
 _ITERATIONS = 150
@@ -48,7 +48,14 @@ def attraction_of(gap: Array, touching: NDArray[np.bool_], voltage: float, h_0: 
 
 
 def pressed(
-    surface: HeightMap, p_ext: float, modulus: float, h_0: float, voltage: float, in_contact: bool, deforms: bool
+    surface: HeightMap,
+    p_ext: float,
+    modulus: float,
+    h_0: float,
+    voltage: float,
+    in_contact: bool,
+    deforms: bool,
+    tolerance: float = _TOLERANCE,
 ) -> Adhered:
     """Return the state of a surface under an external pressure and a voltage.
 
@@ -60,6 +67,7 @@ def pressed(
         voltage: (V).
         in_contact: whether the field acts where the surfaces touch.
         deforms: whether the attraction deforms the surface.
+        tolerance: part of the mean attraction that the gaps may still change.
 
     Raises:
         NoContactError: the iteration does not settle; the surface jumps into contact.
@@ -69,7 +77,7 @@ def pressed(
         found = press(surface, p_ext + float(a.mean()), modulus, start, attraction=a if deforms else None)
         touching, start = found.pressure > 0, found.pressure
         new = attraction_of(found.gap, touching, voltage, h_0, in_contact)
-        settled = settled + 1 if abs(float((new - a).mean())) <= _TOLERANCE * float(new.mean()) else 0
+        settled = settled + 1 if abs(float((new - a).mean())) <= tolerance * float(new.mean()) else 0
         if settled == _IN_A_ROW:
             return Adhered(float(found.pressure.mean()), float(new.mean()), found.fraction, float(found.gap.mean()))
         a = a + _PART * (new - a)

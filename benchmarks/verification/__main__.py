@@ -16,6 +16,7 @@ from benchmarks.verification import (
     cook,
     discretisation,
     friction,
+    halfspace,
     microscale,
     normal_contact,
     tube,
@@ -28,6 +29,7 @@ AREAS: dict[str, tuple[Case, ...]] = {
     "Normal contact": normal_contact.CASES,
     "Friction": friction.CASES,
     "Adhesion": adhesion.CASES,
+    "Rough contact": halfspace.CASES,
     "Microscale": microscale.CASES,
     "Two scales": microscale.TWO_SCALES,
 }

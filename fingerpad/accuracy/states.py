@@ -33,6 +33,8 @@ class State:
     state: ContactState
     lengths: Array
     """Length in contact (m) of every ridge of the finger, shape (ridges,)."""
+    frictions: Array
+    """Friction on the skin (N/m), likewise; negative where the bone slides towards x > 0."""
     sed: dict[int, float]
     """Strain energy density (J/m^3) at the Merkel sites of the ridges that can touch."""
     facet: float
@@ -68,9 +70,14 @@ class Solve:
         }
 
     def parts(self) -> dict[str, ArrayLike]:
-        """Return the same, contact lengths by ridge, shape (ridges,)."""
-        lengths = {f"{name}_contact_length": state.lengths for name, state in self.states.items()}
-        return {**self.values(), **lengths}
+        """Return the same, contact lengths and friction by ridge, shape (ridges,)."""
+        found: dict[str, ArrayLike] = dict(self.values())
+        for name, state in self.states.items():
+            found[f"{name}_contact_length"] = state.lengths
+            for key, unit in (("f_t", 1.0), ("mu_app", state.state.f_ext)):
+                if f"{name}_{key}" in found:
+                    found[f"{name}_{key}"] = -state.frictions / unit
+        return found
 
 
 def quantities(name: str, state: State) -> dict[str, float]:
@@ -137,15 +144,16 @@ class StateRecorder:
     def _state(self, direction: int) -> State:
         f = self._simulation.finger
         loads = f.ridge_loads()
-        lengths = np.zeros(f.profiles.finger.ridge_count)
-        lengths[np.array(f.ridges) + len(lengths) // 2] = loads.length
+        lengths, frictions = np.zeros((2, f.profiles.finger.ridge_count))
+        of_ridges = np.array(f.ridges) + len(lengths) // 2
+        lengths[of_ridges], frictions[of_ridges] = loads.length, loads.f_friction
         sed = {j: float(density) for j, density in zip(f.problem.surface.ridge_numbers, self._sites.sed(), strict=True)}
         if not f.options.both_halves:
             sed |= {-j: density for j, density in sed.items()}
         present = self._simulation.present(loads).state
         snapshot = take_snapshot(f.coupling, f.continuation.surface_state)
         facet = f.size.edge if self._simulation.model.edges else f.contact_size
-        return State(snapshot, direction, present, lengths, sed, facet)
+        return State(snapshot, direction, present, lengths, frictions, sed, facet)
 
     def solve(self) -> Solve:
         """Return what was kept."""

@@ -8,6 +8,7 @@ from fingerpad.cli import mesh as meshes
 from fingerpad.cli.arguments import Parser, echo, scene_of
 from fingerpad.model.options import COARSER, FingerModel, ModelOptions, by_rule, memory, plan, refuse_mesh, unknowns
 from fingerpad.reduced.cylinder_errors import outside, where
+from fingerpad.reduced.slide import too_short
 from fingerpad.results.files import check_folder
 from fingerpad.results.terminal import about
 from fingerpad.scene import Load, Scene, SceneError
@@ -97,7 +98,7 @@ def _aims(load: Load) -> Iterator[str]:
 
 
 def _model(scene: Scene, needed: ModelOptions) -> Iterator[str]:
-    yield from (*remarks(scene), *leakage(scene))
+    yield from (*remarks(scene), *leakage(scene), *too_short(scene))
     if caution := scene.contact.law.caution:
         yield caution
     if scene.geometry.file is None:

@@ -1,15 +1,16 @@
 """``fingerpad drive``: friction over the period of a drive, and whether it is felt, without finite elements."""
 
+import argparse
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 from fingerpad.cli import output, ranges
-from fingerpad.cli.arguments import PICTURE, Parser, echo, scene_of
+from fingerpad.cli.arguments import PICTURE, Parser, changes, echo, refuse_twice, scene_of
 from fingerpad.reduced.detection import REFERENCE
 from fingerpad.results.quantities import Output
 from fingerpad.runs.drive import FREQUENCIES, Drive, drive, thresholds
-from fingerpad.scene import Scene
+from fingerpad.scene import Scene, load
 from fingerpad.scene.messages import SceneError
 from fingerpad.scene.remarks import circuit_in_words, leakage
 from geometry.units import to_si
@@ -22,6 +23,7 @@ _COLUMNS = (
 )
 _EXAMPLES = """
     fingerpad drive --set "voltage={waveform='sine', amplitude='200 V', frequency='100 Hz'}" --plot drive.png
+    fingerpad drive --file scope.csv --column CH1 --probe 100 --plot drive.png
     fingerpad drive --set electric.tissue=dry --set electric.leak="sliding dry" --frequency 15:480:20:log
 """
 
@@ -32,11 +34,14 @@ def main(argv: Sequence[str]) -> int:
     parser.add_scene()
     words = "frequencies (Hz) of the relative thresholds, as 10:480:20 or 10:480:20:log"
     parser.add_argument("--frequency", metavar="RANGE", help=words)
+    parser.add_argument("--file", metavar="CSV", help="drive: one period from a file, as an oscilloscope writes it")
+    parser.add_argument("--column", metavar="NAME", help="its column of voltages, where it has several")
+    parser.add_argument("--probe", type=float, metavar="FACTOR", help="factor on its voltages, as 100 of a 1:100 one")
     words = "picture: voltage, attraction and friction over a period, and the spectrum of friction"
     parser.add_file("--plot", PICTURE, words, dest="period")
     output.add_files(parser, _COLUMNS, "picture: relative thresholds over the frequency", "--thresholds")
     args = parser.read(argv)
-    scene = scene_of(args, meshed=False)
+    scene = _scene(args)
     if args.period and scene.supply is None:
         raise SceneError(
             f"--plot is given and voltage is {scene.volts:g} V; it must be a drive to be drawn over a period"
@@ -57,6 +62,18 @@ def main(argv: Sequence[str]) -> int:
         found.plot(args.period)
         echo(f"Written: {args.period}")
     return 0
+
+
+def _scene(args: argparse.Namespace) -> Scene:
+    """Return the scene of the options, with the drive of a file."""
+    refuse_twice(args, "voltage", "--file")
+    if args.file is None:
+        lone = next((name for name in ("column", "probe") if getattr(args, name) is not None), None)
+        if lone is not None:
+            raise SceneError(f"--{lone} is given without --file; give the file that it is of")
+        return scene_of(args, meshed=False)
+    drive = {"waveform": "file", "file": args.file, "column": args.column, "probe": args.probe}
+    return load(args.scene, changes(args.set) | {"voltage": drive})
 
 
 def _over_period(scene: Scene) -> Drive | None:

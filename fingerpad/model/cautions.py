@@ -1,4 +1,4 @@
-"""Cautions on states: where the closure is outside of its range, or the skin is deep in the screen.
+"""Cautions on states: where the closure is outside of its range or overestimates, or the skin is deep in the screen.
 
 They belong to a state, whatever computed it: runs, bodies, cheaper models and tables of the microscale take them here.
 """
@@ -11,10 +11,13 @@ from numpy.typing import ArrayLike, NDArray
 
 from variational.contact.formulation import Formulation
 from variational.roughness.closure import Closure, air_gaps
+from variational.roughness.tabulated import TabulatedClosure
 from variational.state import ContactState
 
 Array = NDArray[np.float64]
 _SHARE = 0.1  # of the contact force, from which ridges outside of the closure's range are mentioned
+_BALANCED = 0.1  # of the pressure in contact, from which its attraction is overestimated by some 8 %
+_GIVEN = 1e-6  # of the largest viscous work of a point: what another one may give back
 _DEEP = 0.1  # of the air gap: largest penetration that is of no matter
 
 
@@ -25,14 +28,16 @@ def on_states(
 
     Args:
         states: in any order; those without contact have none, and those without a voltage none on the closure.
-        closure: from a ridge's pressure to its air gap; without it there are none.
+        closure: from a ridge's pressure to its air gap; without it there are none on it.
         formulation: of the contact, which has the remedy against deep skin; None of states without a mesh.
     """
+    states = list(states)
+    viscous = _given_back(states)
     touching = [state for state in states if state.contact_length > 0]
     if closure is None or not touching:
-        return []
+        return viscous
     charged = [(*_pressures(state), state.voltage) for state in touching if state.voltage]
-    return [*on_closure(closure, charged, "states"), *_deep(touching, closure, formulation)]
+    return [*on_closure(closure, charged, "states"), *_deep(touching, closure, formulation), *viscous]
 
 
 def on_closure(closure: Closure, points: Sequence[tuple[ArrayLike, ArrayLike, float]], noun: str) -> list[str]:
@@ -52,6 +57,22 @@ def on_closure(closure: Closure, points: Sequence[tuple[ArrayLike, ArrayLike, fl
     return [
         f"in {count} of {len(points)} {noun} the closure is out of its range: the mean pressure of ridges is {place}"
         for place, count in counts.items()
+    ] + _undeformed(closure, points, noun)
+
+
+def _undeformed(closure: Closure, points: Sequence[tuple[ArrayLike, ArrayLike, float]], noun: str) -> list[str]:
+    """Return the caution on attraction in contact that the closure takes as a load, though it is balanced there."""
+    if not isinstance(closure, TabulatedClosure):
+        return []
+    shares = [float(closure.balanced(p_c, voltage).max(initial=0.0)) for p_c, _, voltage in points]
+    count = sum(share >= _BALANCED for share in shares)
+    if not count:
+        return []
+    return [
+        f"in {count} of {len(points)} {noun} the closure {type(closure).__name__} overestimates the attraction, which "
+        f"deforms the asperities: it balances up to {100 * min(max(shares), 1.0):.0f} % of the pressure in contact "
+        "(overestimated by 11 % at a share of 14 %, by 85 % at 50 %: docs/microscale.md); the values are upper bounds, "
+        "and roughness.field_in_contact=false gives lower ones"
     ]
 
 
@@ -78,4 +99,17 @@ def _deep(touching: Sequence[ContactState], closure: Closure, formulation: Formu
         f"in {len(deep)} of {len(found)} states the skin is deeper in the screen than a tenth of the air gap, "
         f"{depth * 1e6:.2g} µm where the gap is {gap * 1e6:.2g} µm: attraction and contact length depend on the depth"
         + ("" if formulation is None else f"; {formulation.less_penetration}")
+    ]
+
+
+def _given_back(states: Sequence[ContactState]) -> list[str]:
+    """Return the caution on viscous layers of which a point gave back more energy than it got."""
+    least = [state.record.viscous_least for state in states if state.record is not None]
+    found = [each for each in least if each < -_GIVEN]
+    if not found:
+        return []
+    return [
+        f"in {len(found)} of {len(least)} steps viscous layers had points that gave back more energy than they got, "
+        f"{-min(found):.1g} of the largest at most: quasi-linear viscoelasticity allows that at large strain, and no "
+        "material does"
     ]

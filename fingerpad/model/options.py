@@ -28,6 +28,7 @@ from typing import TYPE_CHECKING
 
 from fingerpad.results.terminal import about
 from fingerpad.scene.messages import SceneError, qualify
+from fingerpad.scene.viscosity import viscous_layers
 from geometry import sizing
 from geometry.parameters import Fingertip, MeshSize
 from geometry.profiles import GeometryError
@@ -88,6 +89,7 @@ class ModelOptions:
 
 
 _FILE = "the mesh is of a file"
+_PAST = "viscous layers carry the past of their own mesh, on which the whole path is followed"
 _HALF = Omission(
     "the half at x < 0, but in tables and pictures (displacement.bp, stress.bp and sed.bp hold the other)",
     "no load moves the bone sideways, and the finger is its own mirror image",
@@ -105,9 +107,11 @@ def plan(scene: "Scene") -> ModelOptions:
         omitted.append(Omission("friction and its history", "the friction coefficient is 0"))
     if not receptors:
         omitted.append(Omission("receptor sites and their fine elements", "output.receptors is false"))
-    errors = scene.output.errors or scene.accuracy is not None
+    viscous = bool(viscous_layers(scene.materials))
+    wanted = scene.output.errors or scene.accuracy is not None
+    errors = wanted and not viscous
     if not errors:
-        omitted.append(Omission("discretisation errors", "output.errors is false"))
+        omitted.append(Omission("discretisation errors", _PAST if wanted else "output.errors is false"))
     symmetric = all(solid.keeps_symmetry() for solid in scene.own_laws().values() if isinstance(solid, Material))
     both_halves = any(load.moves for load in scene.loads()) or not symmetric
     if scene.geometry.file is not None:  # the whole of it, and no other mesh of the same finger

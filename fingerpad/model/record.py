@@ -156,14 +156,14 @@ class PathRecord:
         same = [other.step for other in self.states if other.slip_began == state.slip_began > 0]
         return next((self._checks[k] for k in (state.step, *same) if k in self._checks), None)
 
-    def loads(self, loads: Sequence[Load]) -> list[states.LoadResult]:
-        """Return the result of each load of a history."""
+    def loads(self, loads: Sequence[Load], mu_0: float | None) -> list[states.LoadResult]:
+        """Return the result of each load of a history; see :func:`fingerpad.results.states.load_results`."""
 
         def stable(k: int, end: ContactState) -> bool | None:
             check = self._check(end)
             return None if check is None else check.stable
 
-        return list(states.load_results(self.states, loads, stable))
+        return list(states.load_results(self.states, loads, stable, mu_0))
 
     def drawing(
         self, mu_0: float | None, final: Mapping[str, View], size: float | None, named: Mapping[str, ContactState]

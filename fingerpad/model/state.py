@@ -86,7 +86,14 @@ def step_record(path: Continuation, energy: Balance, imbalance: float, attempt: 
         coupling_iterations=attempt.coupling_iterations,
         cutbacks=len(attempt.cutbacks),
         jump=attempt.jump,
+        **({} if path.problem.viscous_work is None else {"viscous": energy.viscous, "viscous_least": least_work(path)}),
     )
+
+
+def least_work(path: Continuation) -> float:
+    """Return the least viscous work so far at a point over the largest one; collective."""
+    least, most = zip(*(each.extreme_work() for each in path.problem.relaxations.values()), strict=True)
+    return min(least) / max(most) if max(most) > 0 else 0.0
 
 
 def force_error(unknowns: int, tolerance: float, force_scale: float) -> float:
@@ -176,6 +183,8 @@ def refuse_strained(
     Raises:
         StepFailed: the energy is above roundoff of the largest one stored under a load before.
     """
+    if not math.isnan(record.viscous):  # whose layers are still on their way back
+        return
     loaded = (state.record.stored for state in before if state.record and state.f_contact > BALANCED * scale)
     if record.stored > _AT_REST * max(loaded, default=math.inf):
         own = "a material of one's own may have a second state without stress, else " + _DEFECT

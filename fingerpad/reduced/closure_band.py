@@ -6,7 +6,7 @@ the result, times the ratio of the charged cylinders' with the two closures. The
 voltage where it has one, else the default finger's.
 """
 
-from dataclasses import fields, replace
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from fingerpad.reduced.cylinders import over_forces
@@ -30,21 +30,20 @@ _SHARED = ("h_0", "h_rms", "wavelength", "young", "p_floor")
 def closures(own: Closure) -> dict[str, Closure]:
     """Return the closures of the package on the roughness of one of them, by words; empty for a law of one's own.
 
-    Boundary elements are left out where the package has no table of the ratio of waves.
+    Boundary elements are left out where the package has no table of the ratio of waves or the Hurst exponent.
     """
     if not isinstance(own, BearingArea | TabulatedClosure):
         return {}
     shared = {name: getattr(own, name) for name in _SHARED}
-    wave = getattr(own, "shortest_wave", own.wavelength / 16)
+    waves: dict[str, Any] = {"shortest_wave": own.wavelength / 16, "hurst": 0.75}
+    waves |= {name: getattr(own, name) for name in waves if hasattr(own, name)}
     found: dict[str, Closure] = {"bearing area": BearingArea(**shared)}
     for law, words in ((BoundaryElements, "boundary elements"), (Persson, "Persson's theory")):
-        surface = (
-            {f.name: getattr(own, f.name) for f in fields(law) if f.name in ("surface", "hurst")}
-            if (isinstance(own, law))
-            else {}
-        )
+        measured: dict[str, Any] = {}
+        if law is BoundaryElements and isinstance(own, BoundaryElements):
+            measured["surface"] = own.surface
         for touching, more in ((True, ""), (False, f", {OUTSIDE}")):
-            found[words + more] = law(**shared, **surface, shortest_wave=wave, field_in_contact=touching)
+            found[words + more] = law(**shared, **waves, **measured, field_in_contact=touching)
     return {words: law for words, law in found.items() if _is_there(law)}
 
 

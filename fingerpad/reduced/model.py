@@ -9,6 +9,7 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from fingerpad.scene.messages import SceneError, show
+from fingerpad.scene.viscosity import viscous_layers
 from variational.state import ContactState
 
 if TYPE_CHECKING:
@@ -98,11 +99,23 @@ def reduced_state(scene: "Scene", contact: Mapping[str, float], slips: bool) -> 
 
 
 def refuse_others(scene: "Scene", model: str) -> None:
-    """Refuse a scene whose loads are not press, charge and slide, or whose finger has a mesh of its own.
+    """Refuse a scene whose loads are not press, charge and slide, or whose finger has a mesh of its own or is viscous.
 
     Raises:
-        SceneError: it has a history, or a mesh.
+        SceneError: it has a history, a mesh, or viscous layers.
     """
+    viscous = viscous_layers(scene.materials)
+    if viscous:
+        raise SceneError(
+            f"{viscous[0]}.viscosity is given; the model '{model}' has no time, so use the model 'full' with loads "
+            "over time, or leave the viscosity out"
+        )
+    law = scene.friction_law()
+    if law is not None and law.memory is not None:
+        raise SceneError(
+            f"friction is {type(law).__name__}; the model '{model}' has no time, so use the model 'full' with loads "
+            "over time, or another law"
+        )
     if scene.geometry.file is not None:
         raise SceneError(
             f"geometry.file is {show(scene.geometry.file)}; the model '{model}' answers for fingers of the scene's own "

@@ -247,7 +247,7 @@ def _model(result: Result) -> str:
     rows = [(name.replace("_", " "), law) for name, law in laws.items()] if isinstance(laws, dict) else []
     omitted = [f"{each['what']}: {each['reason']}" for each in result.record.get("omitted") or []]
     always = (
-        "Never in the model: inertia, viscous skin, waves, leakage of charge, moisture, the deformation and roughness "
+        "Never in the model: inertia, waves, leakage of charge, moisture, the deformation and roughness "
         "of the screen, and the direction along the finger (plane strain). See docs/model.md."
     )
     words = MODELS[result.model].words if result.model in MODELS else "A model that is not registered here"

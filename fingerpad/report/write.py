@@ -12,6 +12,7 @@ from fingerpad.results.states import load_results, named
 from fingerpad.scene import SceneError, as_kept
 from fingerpad.scene.messages import clip
 from fingerpad.scene.reading import DEFAULT_MODEL
+from fingerpad.scene.remarks import coefficient
 
 if TYPE_CHECKING:
     from fingerpad.report.sweep_page import Table
@@ -113,7 +114,7 @@ def _unfinished(folder: Path) -> Result:
         found.get("charged"),
         found.get("full_slip"),
         steps=steps,
-        loads=tuple(load_results(steps, scene.loads(), lambda k, end: None)),
+        loads=tuple(load_results(steps, scene.loads(), lambda k, end: None, coefficient(scene))),
         failure=f"the run has not ended, or was killed, after step {steps[-1].step}: these are its steps so far",
         folder=folder,
     )

@@ -51,7 +51,7 @@ def over_period(found: Period, title: str, path: Path | None) -> Figure:
         panels[-1].axhline(
             found.f_t.mean(), color=style.GREY, ls="--", label=f"mean {found.f_t.mean():.4g} {found.unit}"
         )
-        panels[-1].legend()
+        panels[-1].legend(frameon=True)
         panels[-1].set_xlabel("time (ms)")
         _spectrum(figure.add_subplot(grid[:, 1]), found)
         figure.suptitle(style.plain(title))

@@ -164,6 +164,8 @@ STEPS = _listed(
     ("cutbacks", "", "number of times that the step was cut"),
     ("jump", "", "whether skin or an air gap moved without the loads"),
     ("processor_seconds", "s", "processor time of all ranks since the start of the run"),
+    ("viscous", "J/m", "work done in the step on the branches of viscous layers, which store and dissipate it"),
+    ("viscous_least", "", "least work on branches at a point so far over the largest; below 0 more came out than in"),
     ("mesh_contact", "m", "contact size of the mesh"),
     ("time", "s", "time since the start of the first load over time"),
 )  # fmt: skip

@@ -2,7 +2,7 @@
 
 import csv
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass, fields, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -39,6 +39,7 @@ if TYPE_CHECKING:
     from fingerpad.afferents.afferent import Afferent
     from fingerpad.results.drawing import Drawing
     from fingerpad.results.spikes import Spikes
+    from fingerpad.scene import Scene
 
 KINDS = ("surface", "finger", "history", "footprint", "time")
 """Pictures of a result."""
@@ -108,7 +109,7 @@ class Result(Answer):
         new = checked(outputs)
         named: dict[str, Any] = {name: valued(state, new) for name, state in self.named.items()}
         steps = tuple(valued(state, new) for state in self.steps)
-        loads = tuple(load_results(steps, self.scene.loads(), lambda k, end: self.loads[k].stable)) if steps else ()
+        loads = _loads(self.scene, steps, [load.stable for load in self.loads])
         kept = tuple(each for each in self.outputs if each.name not in {one.name for one in new})
         return replace(self, steps=steps, loads=loads, outputs=(*kept, *new), **named)
 
@@ -209,8 +210,7 @@ class Result(Answer):
             if not found.steps:
                 return found  # of no path, or of one without an accepted step
             stable = [load.get("stable") for load in summary.get("loads", ())]
-            loads = load_results(found.steps, found.scene.loads(), lambda k, end: (*stable, *[None] * (k + 1))[k])
-            return replace(found, loads=tuple(loads))
+            return replace(found, loads=_loads(found.scene, found.steps, stable))
         except (OSError, ValueError, KeyError, TypeError, AttributeError, csv.Error) as error:  # JSON of other things
             if isinstance(error, SceneError) and name in str(error):
                 raise
@@ -224,6 +224,12 @@ class Result(Answer):
 
     __repr__ = __str__
     """In a notebook, too: the values of all steps are hundreds of pages."""
+
+
+def _loads(scene: "Scene", steps: Sequence[ContactState], stable: Sequence[bool | None]) -> tuple[LoadResult, ...]:
+    """Return the result of each load, with the stability of its end as far as that is known."""
+    known = (*stable, *[None] * (len(scene.loads()) + 1))
+    return tuple(load_results(steps, scene.loads(), lambda k, end: known[k], coefficient(scene)))
 
 
 def steps_of(folder: Path) -> tuple[ContactState, ...]:

@@ -189,6 +189,9 @@ class LoadResult:
     """Means over time and spectrum of friction; None where the load takes no time."""
     full_slip_part: float = math.nan
     """Part of the load's states after its begin that are of full slip; NaN where its voltage is no waveform."""
+    needs: float = math.nan
+    """About how far from where it was unloaded the bone must be for full slip at every voltage of the load (m); NaN
+    where it is there, or where friction does not grow from there on."""
 
     @property
     def sticking(self) -> str:
@@ -197,7 +200,11 @@ class LoadResult:
         if math.isnan(part) or part == 1:
             return ""
         if part == 0:
-            return "part of the skin sticks in every state, so that friction stays below that of sliding"
+            words = "part of the skin sticks in every state, so that friction stays below that of sliding"
+            if math.isnan(self.needs):
+                return words
+            goes = 1e3 * abs(self.end.bone_x)
+            return f"{words}: full slip needs some {1e3 * self.needs:.2g} mm, and the bone goes {goes:.2g} mm"
         return f"full slip in {100 * part:.0f} % of its states; in the others part of the skin sticks"
 
     def rubs(self, least: float) -> bool:
@@ -218,7 +225,10 @@ class LoadResult:
 
 
 def load_results(
-    rows: Sequence[ContactState], loads: Sequence["Load"], stable: Callable[[int, ContactState], bool | None]
+    rows: Sequence[ContactState],
+    loads: Sequence["Load"],
+    stable: Callable[[int, ContactState], bool | None],
+    mu_0: float | None = None,
 ) -> Iterator[LoadResult]:
     """Yield the result of each load.
 
@@ -227,12 +237,13 @@ def load_results(
         loads: its loads.
         stable: whether the state at the end of a load is stable, by the load's place among those with a state; None
             where this was not examined.
+        mu_0: friction coefficient of Coulomb's law; None of another law.
     """
     before: list[ContactState] = []
     for k, (name, mine) in enumerate(by_load(rows)):
         load = next(iter(loads[mine[-1].load_number - 1 :]), None)
         named, wave = (name, None) if load is None else (load.name, load.wave)  # a first touch may be all there is
-        yield load_result(named, mine, stable(k, mine[-1]), before, wave)
+        yield load_result(named, mine, stable(k, mine[-1]), before, wave, mu_0)
         before = mine[-1:]
 
 
@@ -242,6 +253,7 @@ def load_result(
     stable: bool | None,
     before: Sequence[ContactState] = (),
     wave: "Waveform | None" = None,
+    mu_0: float | None = None,
 ) -> LoadResult:
     """Return the result of a load.
 
@@ -251,6 +263,7 @@ def load_result(
         stable: whether the state at its end is stable, None where this was not examined.
         before: the state at its begin, if there is one.
         wave: its voltage over time; None where it is constant.
+        mu_0: see :func:`load_results`.
     """
     # A waveform has a state of its own at its begin, after a jump from the voltage before.
     begin = [] if wave is not None else before or ([UNLOADED] if mine[0].time > 0 else [])
@@ -270,7 +283,21 @@ def load_result(
     # The state at the begin of a waveform may be that at the end of a slide.
     under = [] if wave is None or passed is None else [state for state in own if state.time > passed.start]
     slides = sum(state.slip_began > 0 for state in under) / len(under) if under else math.nan
-    return LoadResult(name, mine[-1], extremes, *slips, stable, passed, slides)
+    needs = _needed(own, mu_0) if slides == 0 else math.nan
+    return LoadResult(name, mine[-1], extremes, *slips, stable, passed, slides, needs)
+
+
+def _needed(states: Sequence[ContactState], mu_0: float | None) -> float:
+    """Return how far from where it was unloaded the bone must be for full slip (m), about; NaN where not known.
+
+    *Assumption*: friction grows in proportion to the way. In full runs of the default finger, 10 and 75 N/m, 150 and
+    200 V, this is within a tenth from the first steps of sliding on.
+    """
+    end, contact = states[-1], max(state.f_contact for state in states)
+    if not mu_0 or end.f_t * end.bone_x <= 0 or any(abs(state.bone_x) > abs(end.bone_x) for state in states):
+        return math.nan
+    found = abs(end.bone_x) * mu_0 * contact / abs(end.f_t)
+    return found if found > abs(end.bone_x) else math.nan
 
 
 def long_steps(loads: Iterable[LoadResult], least: float) -> list[str]:

@@ -131,7 +131,9 @@ def between(low: float, high: float) -> str:
 
 
 def in_words(seconds: float) -> str:
-    """Return a time (s) in words, in the unit in which it is read."""
+    """Return a time (s) in words, in the unit in which it is read; that it is short below a second."""
+    if seconds < _SHORT:
+        return f"less than {_SHORT:g} s"
     size, unit = _unit(seconds)
     return f"{about(seconds / size)} {unit}"
 

@@ -217,7 +217,7 @@ class Attempt:
         left = max(self._model.numerics.tolerance, totals["floor"])
         error = force_error(unknowns, left, finger.solver.force_scale)
         more |= self._comm.bcast(self._path() | totals | {"force_error": error})
-        loads = tuple(record.loads(scene.loads()))
+        loads = tuple(record.loads(scene.loads(), mu_0))
         more |= {"restarts": restarts.table, "laws": used(scene), "provenance": provenance()}
         result = Result(
             scene,

@@ -23,6 +23,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from fingerpad.reduced.closure_band import with_band
 from fingerpad.results.files import below
 from fingerpad.results.result import Result
 from fingerpad.runs import batch
@@ -235,7 +236,7 @@ def main(asked: Path, folder: Path) -> None:
     scenes = [from_data(each) for each in data["scenes"]]
     chain = Chain(scenes, data["half_arc"], MPI.COMM_WORLD)
     for k in chain.follow():
-        kept(chain.results[k], RunContext(below(folder, batch.key(scenes[k])), report=False))
+        kept(with_band(chain.results[k]), RunContext(below(folder, batch.key(scenes[k])), report=False))
 
 
 if __name__ == "__main__":

@@ -28,7 +28,7 @@ class RunContext:
     bar: bool = True
     """Whether a progress bar is shown where a person watches."""
     report: bool = True
-    """Whether ``report.html`` is written beside the results, and friction by other models of roughness computed."""
+    """Whether ``report.html`` is written beside the results."""
     resume: bool = False
     """Whether the run goes on from the checkpoint in its folder."""
     outputs: Sequence[Output] = ()

@@ -112,7 +112,7 @@ def solved(scene: Scene, model: "Model", context: RunContext) -> Result:
     if context.resume:
         scene.refuse_laws_of_program("a run that goes on")
     try:
-        result = _solved(scene, model, context) if scene.force is None else _whole(scene, model, context)
+        result = _section(scene, model, context) if scene.force is None else _whole(scene, model, context)
     except LawError as error:
         raise SceneError(str(error)) from error
     whole = not (result.interrupted and scene.force is not None)  # a force without all of its traces is no result
@@ -124,8 +124,14 @@ def solved(scene: Scene, model: "Model", context: RunContext) -> Result:
     return result
 
 
+def _section(scene: Scene, model: "Model", context: RunContext) -> Result:
+    """Return what a model answers to a scene without a force, with its band, written into a folder; collective."""
+    result = _solved(scene, model, context)
+    return result if model.path else kept(with_band(result), context)
+
+
 def _solved(scene: Scene, model: "Model", context: RunContext) -> Result:
-    """Return what a model answers to a scene without a force, written into a folder; collective."""
+    """Return what a model answers to a scene without a force; one with a path writes into a folder; collective."""
     with needed_by(f"the model {model.name!r}"):
         if model.meshes:
             from fingerpad.startup import MPI  # before any other import of the libraries that it starts
@@ -138,8 +144,7 @@ def _solved(scene: Scene, model: "Model", context: RunContext) -> Result:
         return result
     versions = {"versions": {"fingerpad": version(), "source": source()}}
     result = replace(result, record={**result.record, "provenance": versions})
-    result = with_band(result) if context.report else result
-    return kept(result.with_outputs(context.outputs), context)
+    return result.with_outputs(context.outputs)
 
 
 def _refuse_different(scene: Scene, comm: "MPI.Comm | Serial") -> None:
@@ -183,7 +188,7 @@ def _whole(scene: Scene, model: "Model", context: RunContext) -> Result:
         model.check(scene)
         try:
             found = newtons.run(scene, context)
-            return found if found.interrupted else kept(found, context)
+            return found if found.interrupted else kept(with_band(found), context)
         except newtons.Unsuited as why:
             notes = [f"The traces are runs of their own: {why}."]
             if followed.share(scene) is not None:
@@ -191,14 +196,14 @@ def _whole(scene: Scene, model: "Model", context: RunContext) -> Result:
 
     def solve(each: Scene, name: str) -> Result:
         if not model.path:
-            return _solved(each, model, replace(context, folder=None, report=False))
+            return _solved(each, model, replace(context, folder=None))
         if context.lines and context.ranks.rank == 0:
             print(f"\nTrace of the cross-section, {name.replace('_', ' ')}", flush=True)
         return gone_on(each, model, replace(context, folder=context.folder and below(context.folder, name)))
 
     found = traces.whole(scene, model, solve)
     found = replace(found, notes=(*found.notes, *notes))
-    return found if found.interrupted else kept(found, context)
+    return found if found.interrupted else kept(with_band(found), context)
 
 
 def gone_on(scene: Scene, model: "Model", context: RunContext) -> Result:

@@ -254,9 +254,15 @@ def parameters(law: Any) -> dict[str, Any]:
 
 
 def table(law: Any) -> Any:
-    """Return a law as a table with its class, without what the scene sets; any other value as it is."""
+    """Return a law as a table with its class, without what the scene sets; any other value as it is.
+
+    A law of :attr:`made_of`, another law and keys beside that one's, has these in one table.
+    """
     if isinstance(law, Kept):
         return dict(law.table)
+    if hasattr(law, "made_of"):
+        inner, more = law.made_of
+        return table(inner) | more
     return {"law": type(law)} | parameters(law) if is_dataclass(law) else law
 
 
@@ -275,10 +281,12 @@ def whole(text: str, *keys: str) -> PydanticCustomError:
     return PydanticCustomError(LAW, "{text}", {"text": text, "keys": keys})
 
 
-def inside(error: ValidationError, *where: str) -> PydanticCustomError:
+def inside(error: ValidationError, table: type[BaseModel], *where: str) -> PydanticCustomError:
     """Return the first error of a table inside a key's value, whose place is where."""
     first = error.errors(include_url=False)[0]
-    context = first.get("ctx", {}) | {"at": (*where, *first["loc"]), "value": first["input"], "said": first["msg"]}
+    keys = {"keys": tuple(table.model_fields)} if first["type"] == "extra_forbidden" else {}
+    at = {"at": (*where, *first["loc"]), "value": first["input"], "said": first["msg"]}
+    context = first.get("ctx", {}) | keys | at
     return PydanticCustomError(first["type"], "{said}", context)  # type: ignore[arg-type]
 
 

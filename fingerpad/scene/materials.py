@@ -11,19 +11,23 @@ from numbers import Real
 from typing import Annotated, Any, Literal
 
 import numpy as np
-from pydantic import BaseModel, ConfigDict, ValidationError
+from pydantic import BaseModel, ConfigDict, ValidationError, ValidationInfo
 
 from fingerpad.scene.electric import Electric
-from fingerpad.scene.law_keys import Kind, LawKey, fail, inside, whole
+from fingerpad.scene.law_keys import Kept, Kind, LawKey, fail, inside, keys_of, whole
 from fingerpad.scene.messages import show
+from fingerpad.scene.viscosity import Viscosity
 from geometry import tags
 from geometry.parameters import Fingertip
 from geometry.units import Finite, Table, within
+from variational.contact.aging import Occlusion, Speed
 from variational.contact.friction import Coulomb, Derjaguin, Friction
 from variational.materials.material import Material
 from variational.materials.neo_hooke import NeoHooke
 from variational.materials.ogden import Ogden
+from variational.materials.qlv import QLV
 from variational.materials.saint_venant import SaintVenant
+from variational.materials.viscoelastic import Viscoelastic
 from variational.roughness import closure
 from variational.roughness.bam import BearingArea
 from variational.roughness.boundary_elements import BoundaryElements
@@ -36,7 +40,7 @@ def _named(*laws: type) -> dict[str, type]:
 
 
 MATERIALS = Kind(Material, "a Material", _named(Ogden, NeoHooke, SaintVenant), Material.check)
-FRICTION_LAWS = Kind(Friction, "a Friction", _named(Coulomb, Derjaguin), Friction.check)
+FRICTION_LAWS = Kind(Friction, "a Friction", _named(Coulomb, Derjaguin, Occlusion, Speed), Friction.check)
 CLOSURES = Kind(closure.Closure, "a Closure", _named(BearingArea, BoundaryElements, Persson), closure.check)
 """Laws of the package by kind: a new one is a line here."""
 LAYERS = {name.replace(" ", "_"): tag for name, tag in tags.LAYERS.items()}
@@ -46,9 +50,53 @@ _MAX_DIFFERENCE = 1e-6  # relative difference of thicknesses that are the same
 LARGEST_GAP = 1.0  # m, with which the attraction is as good as none
 
 
+class MaterialKey(LawKey):
+    """The key of a layer's material, which may be viscous."""
+
+    def tables(self, law: type) -> tuple[type[BaseModel], ...]:
+        """Return the table of the viscosity; a law without a volumetric part of its own cannot have one."""
+        return (Viscosity,) if hasattr(law, "bulk") or "bulk" in keys_of(law) else ()
+
+    def read(self, value: Any, info: ValidationInfo) -> Any:
+        """Return the law of a value, see :meth:`fingerpad.scene.law_keys.LawKey.read`."""
+        given: Any = value.table if isinstance(value, Kept) else value
+        if isinstance(given, Viscoelastic):
+            return self._viscous(super().read(given.elastic, info), given.viscosity)
+        if not isinstance(given, Mapping) or "viscosity" not in given:
+            return super().read(value, info)
+        found = super().read({key: each for key, each in given.items() if key != "viscosity"}, info)
+        if given["viscosity"] is None:
+            return found
+        return Kept(given) if isinstance(found, Kept) else self._viscous(found, given["viscosity"])
+
+    @staticmethod
+    def _viscous(elastic: Material, viscosity: Any) -> Viscoelastic:
+        if not isinstance(viscosity, QLV):
+            try:
+                viscosity = Viscosity.model_validate(viscosity).qlv()
+            except ValidationError as error:
+                first = error.errors(include_url=False)[0]
+                if first["type"] != "value_error":
+                    raise inside(error, Viscosity, "viscosity") from None
+                raise whole(f"viscosity.{first['ctx']['error']}", "viscosity") from None
+        found = Viscoelastic(elastic, viscosity)
+        try:
+            found.check()
+        except ValueError as error:
+            raise whole(str(error), "viscosity") from None
+        return found
+
+    def written(self, law: Any) -> Any:
+        """Return a law as it stands in a file."""
+        if not isinstance(law, Viscoelastic):
+            return super().written(law)
+        branches = {"moduli": law.viscosity.moduli, "times": law.viscosity.times}
+        return super().written(law.elastic) | {"viscosity": {"law": "QLV", **branches}}
+
+
 def _layer(default: Material) -> Any:
     """Return the annotation of a layer's material; an Ogden solid has its exponent from the key before it."""
-    return LawKey(MATERIALS, default, of_scene=lambda data: {"convention": data.get("exponent")})
+    return MaterialKey(MATERIALS, default, of_scene=lambda data: {"convention": data.get("exponent")})
 
 
 _SUBCUTIS, _DERMIS = Ogden(25e3, 5.0), Ogden(2.55e3, -14.53)
@@ -139,7 +187,7 @@ class RoughnessKey(LawKey):
             try:
                 table |= Topography.model_validate(topography).roughness(law)  # type: ignore[arg-type]
             except ValidationError as error:
-                raise inside(error, "topography") from None
+                raise inside(error, Topography, "topography") from None
             except ValueError as error:
                 raise whole(re.sub(r"(?<=\s)topography\.", "roughness.topography.", str(error)), "topography") from None
         return super().completed(table, law)

@@ -26,7 +26,7 @@ _MAX_BITS = 1000  # of a whole number; floating point has 1024
 _PATH = 80  # characters of a path in a message
 _AFTER_VALUE = "Expected newline or end of document after a statement"  # tomllib, of 50,0 and of 50 N/m
 _NAME = r"[A-Za-z0-9_-]+(\[[0-9]{1,6}\])?"
-_FILES = r"geometry\.file|roughness\.topography\.file|history\[\d+\]\.voltage\.file"
+_FILES = r"geometry\.file|roughness\.topography\.file|(history\[\d+\]\.)?voltage\.file"
 _QUOTED = re.compile(
     r'''#[^\n]*|"""(?:[^\\]|\\.)*?(?:"""|\Z)|\'{3}.*?(?:\'{3}|\Z)|"(?:[^"\\\n]|\\.)*"?|'[^'\n]*'?''', re.DOTALL
 )  # comments and texts of TOML

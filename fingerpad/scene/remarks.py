@@ -17,9 +17,11 @@ from fingerpad.scene.law_keys import Kept
 from fingerpad.scene.materials import LAYERS
 from fingerpad.scene.messages import clip, show
 from fingerpad.scene.supply import leak_in_words, remains, supply_of
+from fingerpad.scene.viscosity import viscous_layers
 from fingerpad.scene.waveform import Waveform
 from variational.attraction.circuit import GapCircuit
 from variational.contact.friction import Coulomb, Friction
+from variational.materials.viscoelastic import Viscoelastic
 from variational.roughness.bam import BearingArea
 from variational.roughness.tabulated import TabulatedClosure
 
@@ -72,6 +74,8 @@ def _call(name: str, numbers: Mapping[str, Any]) -> str:
 def _words(law: Any) -> str:
     if isinstance(law, Kept):
         return _call(str(law.table.get("law")), {k: v for k, v in law.table.items() if k not in ("law", "sha256")})
+    if isinstance(law, Viscoelastic):
+        return f"{_words(law.elastic)}, {_words(law.viscosity)}"
     return _call(type(law).__name__, {f.name: getattr(law, f.name) for f in fields(law)})
 
 
@@ -85,7 +89,7 @@ def remarks(scene: "Scene") -> list[str]:
 
     There is none on the roughness of a closure of one's own, or of a mesh of a file.
     """
-    found = [*offsets(scene)]
+    found = [*offsets(scene), *nothing_ages(scene)]
     if isinstance(scene.roughness, BearingArea | TabulatedClosure) and scene.geometry.file is None:
         found += ridges_as_roughness(scene.roughness.wavelength, scene.geometry.ridge_wavelength)
         found += missing_waves(scene.roughness.wavelength)
@@ -147,6 +151,22 @@ def offsets(scene: "Scene") -> list[str]:
         f"the drive {name} has a mean of {wave.mean:.4g} V, which leaks away in a real finger; here it "
         "attracts all the time, without leakage (Eq. 3), so that the attraction is too large"
     ]
+
+
+def nothing_ages(scene: "Scene") -> list[str]:
+    """Return a remark on viscous layers and on friction with a memory where no load takes time."""
+    if any(load.takes_time for load in scene.loads()):
+        return []
+    timeless, remedy = "no load takes time, so that", "give loads of a history a duration or a speed"
+    found = [
+        f"{layer}.viscosity is given and {timeless} nothing will relax and viscous layers have their modulus at once; "
+        f"{remedy}"
+        for layer in viscous_layers(scene.materials)[:1]
+    ]
+    law = scene.friction
+    if isinstance(law, Friction) and law.memory is not None:
+        found.append(f"friction is {type(law).__name__} and {timeless} friction stays as it begins; {remedy}")
+    return found
 
 
 def missing_waves(longest: float) -> list[str]:

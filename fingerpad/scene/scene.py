@@ -31,6 +31,7 @@ from fingerpad.scene.parameters import (
 )
 from fingerpad.scene.reading import plain, put_all, read_scene
 from fingerpad.scene.supply import Supply, refuse_drives, supply_of
+from fingerpad.scene.viscosity import elastic, refuse_beside, viscous_layers
 from fingerpad.scene.waveform import Waveform
 from geometry.parameters import MeshSize
 from geometry.units import Finite, Table, computed, within
@@ -106,6 +107,12 @@ class Scene(Table):
         if self.history is not None:
             steps = math.inf if self.electric.follows == "mean" else self.numerics.step_scale
             refuse_contradictions(self.history, given, self.output.errors, steps)
+        if self.force is not None and isinstance(self.friction, Friction) and self.friction.memory is not None:
+            raise ValueError(
+                "force is given and friction has a memory, and the sum of slices has no common time; give f_ext or a "
+                "history"
+            )
+        refuse_beside(viscous_layers(self.materials), {"force": self.force, "accuracy": self.accuracy})
         refuse_thickness(self.roughness, self.h_0)
         refuse_drives(self.drives(), self.electric, self.geometry.sc_thickness)
         return self
@@ -166,7 +173,7 @@ class Scene(Table):
     # -- laws ------------------------------------------------------------------------------------------
     def laws(self) -> dict[str, Any]:
         """Return what each key has that holds a law: an object, or the number of a friction coefficient."""
-        layers = {f"materials.{name}": getattr(self.materials, name) for name in LAYERS}
+        layers = {f"materials.{name}": elastic(getattr(self.materials, name)) for name in LAYERS}
         return {"friction": self.friction, "roughness": self.roughness, "contact": self.contact.law} | layers
 
     def own_laws(self) -> dict[str, Any]:

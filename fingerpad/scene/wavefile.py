@@ -1,21 +1,41 @@
-"""Voltages over time from a CSV file, with the header ``time (s),voltage (V)``."""
+"""Voltages over time from a CSV file: of two columns under a header, or as an oscilloscope writes it.
+
+The first column of numbers has the times, the others have voltages. Lines before them are a preamble. Its last lines
+name the columns and their units, in brackets behind the names or in a line of their own; some instruments write it in
+columns beside the numbers. Without units the times are in s and the voltages in V. Times may begin anywhere: the first
+becomes 0, and the last sample closes the period.
+
+Files of more than :data:`POINTS` samples are averaged in groups, all of as many. Where this would take more than
+:data:`_LOST` of the mean square, a carrier for example, the file is refused.
+"""
 
 import csv
 import math
+from collections.abc import Sequence
 from typing import Annotated, Any
 
+import numpy as np
+from numpy.typing import NDArray
+
 from fingerpad.scene.messages import clip, show
-from geometry.units import Finite, Range, within
+from geometry.units import Finite, Range, to_si, within
 from variational import files
 
 POINTS = 2000
-"""Most points of a file."""
+"""Most points of a waveform."""
 HIGHEST = 5e3
 """Largest voltage (V)."""
+Probe = Annotated[Finite, within(1e-3, 1e5)]
 _LEAST = 1e-3  # V; what is less in a table is 0: noise, or roundoff of a computed sine
-_TIME, _VOLTAGE = "time (s)", "voltage (V)"
+_LOST = 0.01  # of the mean square
 Volts = Annotated[Finite, within(_LEAST, HIGHEST, "V", zero=True, sides=2)]
 Seconds = Annotated[Finite, within(1e-9, 1e5, "s", zero=True)]
+_WORDS = {"second": "s", "sec": "s", "seconds": "s", "volt": "V", "volts": "V"}
+_TIMES = {*_WORDS, "s", "ms", "us", "µs", "μs", "ns", "sequence", "sample", "samples", "point", "points"}
+"""Of the first column in a line of units; some are none, and are refused."""
+_SIDE = {"s": "horizontal units", "V": "vertical units"}  # keys of a preamble beside the numbers
+Array = NDArray[np.float64]
+_Rows = list[tuple[int, list[str]]]  # number of a line, and its cells
 
 
 def or_zero(value: Any) -> Any:
@@ -23,43 +43,158 @@ def or_zero(value: Any) -> Any:
     return 0.0 if isinstance(value, float) and abs(value) < _LEAST else value
 
 
-def table(file: str) -> dict[str, Any]:
-    """Return times and voltages of a CSV file.
+def table(file: str, column: str | None = None, probe: float = 1.0) -> dict[str, Any]:
+    """Return times (s) and voltages (V) of a CSV file.
+
+    Args:
+        file: its path.
+        column: name of the voltages' column, or its number where it has no name, that of the times being 1; None where
+            there is one alone.
+        probe: factor on the voltages.
 
     Raises:
-        ValueError: it cannot be read, has another header, or a row without two numbers in range.
+        ValueError: it cannot be read, or has no such column, another unit, or a line without numbers in range; in one
+            sentence that begins with the key.
     """
     name = f"file is {show(file)}"
+    rows = _rows(file, name)
+    places = _numbers(rows)
+    if len(places) < 2:
+        raise ValueError(f"{name}, which has no two columns of numbers; it must have one in s and one in V")
+    wide = places[-1]
+    first = next(k for k, (_, row) in enumerate(rows) if len(row) > wide and all(_number(row[j]) for j in places))
+    labels = _labels(rows, first, places)
+    place = _chosen(name, labels, places, column)
+    factors = [_factor(name, *label, unit) for label, unit in zip((labels[0], labels[place]), ("s", "V"), strict=True)]
+    for line, cells in rows[first:]:
+        _refuse_line(name, line, cells, places)
+    t, u = (np.array([float(cells[places[k]]) for _, cells in rows[first:]]) for k in (0, place))
+    t, u = _fewer(name, factors[0] * (t - t[0]), factors[1] * probe * u)
+    allowed = range_of(Volts)
+    wrong = next((k for k, value in enumerate(u) if or_zero(float(value)) not in allowed), None)
+    if wrong is not None:
+        words = allowed.words(float(u[wrong])).partition(" (")[0]
+        raise ValueError(f"{name}, which at {t[wrong]:.6g} s has a number that {words}")
+    return {"times": t.tolist(), "voltages": [or_zero(float(value)) for value in u]}
+
+
+# -- text --------------------------------------------------------------------------------------------------------
+def _rows(file: str, name: str) -> _Rows:
+    """Return the lines that are not empty, parted by what makes most numbers of them: commas, semicolons or tabs."""
     try:
-        lines = list(csv.reader(files.read(file, files.MOST_OF_TEXT).decode("utf-8-sig").splitlines(), strict=True))
+        data = files.read(file, files.MOST_OF_TEXT)
     except OSError as error:
         raise ValueError(f"{name}, which cannot be read: {show(error.strerror or str(error))}") from None
+    try:
+        text = data.decode("utf-8-sig")
+    except ValueError:
+        text = data.decode("latin-1")  # µ of an instrument
+    return max((_parted(text, mark, name) for mark in ",;\t"), key=_count)
+
+
+def _parted(text: str, mark: str, name: str) -> _Rows:
+    """Return the lines of a text with their cells; a decimal comma is none where commas part the cells."""
+    try:
+        lines = list(csv.reader(text.splitlines(), delimiter=mark, strict=True))
     except (ValueError, csv.Error) as error:
         raise ValueError(f"{name}, which is no table in CSV: {show(clip(str(error), 100))}") from None
-    rows = [(k, [cell.strip() for cell in row]) for k, row in enumerate(lines, start=1) if any(map(str.strip, row))]
-    header = rows[0][1] if rows else []
-    if header != [_TIME, _VOLTAGE]:
-        raise ValueError(f"{name} with the header {show(','.join(header))}; it must be '{_TIME},{_VOLTAGE}'")
-    if len(rows) - 1 > POINTS:
-        raise ValueError(f"{name} with {len(rows) - 1} points; there must be from 2 to {POINTS} of them")
-    times, voltages = list[float](), list[float]()
-    for line, row in rows[1:]:
-        if len(row) != 2:
-            raise ValueError(f"{name}, whose line {line} has {len(row)} cells; it must have 2, a time and a voltage")
-        for text, found, allowed in ((row[0], times, _range(Seconds)), (row[1], voltages, _range(Volts))):
-            try:
-                value = float(text)
-            except ValueError:
-                value = math.nan
-            if not math.isfinite(value):
-                raise ValueError(f"{name}, whose line {line} has {show(text)}; it must be a finite number")
-            value = or_zero(value) if found is voltages else value
-            if value not in allowed:
-                raise ValueError(f"{name}, whose line {line} has a number that {allowed.words(value)}")
-            found.append(value)
-    return {"times": times, "voltages": voltages}
+    cells = ([cell.strip() if mark == "," else cell.strip().replace(",", ".") for cell in line] for line in lines)
+    return [(k, line) for k, line in enumerate(cells, start=1) if any(line)]
 
 
-def _range(annotation: Any) -> Range:
+def _count(rows: _Rows) -> int:
+    """Return how many lines are of two numbers or more, and of nothing else."""
+    return sum(sum(map(bool, cells)) > 1 and all(not cell or _number(cell) for cell in cells) for _, cells in rows)
+
+
+def _number(text: str) -> bool:
+    """Return whether a text is a number, be it infinite or none."""
+    try:
+        float(text)
+    except ValueError:
+        return False
+    return True
+
+
+def _numbers(rows: _Rows) -> list[int]:
+    """Return the places of columns of numbers, as many as half of those of the column with most of them, or more."""
+    counts = dict[int, int]()
+    for _, cells in rows:
+        for k, cell in enumerate(cells):
+            counts[k] = counts.get(k, 0) + _number(cell)
+    most = max(counts.values(), default=0)
+    return [k for k, count in counts.items() if count > most / 2]
+
+
+def _refuse_line(name: str, line: int, cells: Sequence[str], places: Sequence[int]) -> None:
+    texts = [cells[k] if k < len(cells) else "" for k in places]
+    wrong = next((text for text in texts if not (_number(text) and math.isfinite(float(text)))), None)
+    if wrong is not None:
+        raise ValueError(f"{name}, whose line {line} has {show(wrong)}; it must be a finite number")
+    count = sum(map(bool, cells))
+    if places[0] == 0 and count > len(places):
+        raise ValueError(f"{name}, whose line {line} has {count} cells; it must have {len(places)}, as the others")
+
+
+# -- columns -----------------------------------------------------------------------------------------------------
+def _labels(rows: _Rows, first: int, places: Sequence[int]) -> list[tuple[str, str]]:
+    """Return name and unit of each column of numbers, empty where there is none."""
+    if places[0] > 0:
+        beside = {cells[0].casefold(): cells[1] for _, cells in rows if len(cells) > 1 and cells[0]}
+        units = [beside.get(_SIDE[unit], "") for unit in ("s", "V")]
+        names = ["", *[beside.get("source", "")] * (len(places) - 1)]
+        return [(names[k], units[min(k, 1)]) for k in range(len(places))]
+    above = [cells for _, cells in rows[max(first - 2, 0) : first] if all(k < len(cells) and cells[k] for k in places)]
+    last = above[-1] if above else [""] * (places[-1] + 1)
+    bare = [cell.strip("()[]") for cell in last]
+    if len(above) > 1 and bare[0].casefold() in _TIMES:  # names, and a line of units
+        return [(above[0][k], bare[k]) for k in places]
+    parted = [last[k].rstrip(")]").replace("[", "(").partition("(") for k in places]
+    return [(words.strip(), unit.strip()) for words, _, unit in parted]
+
+
+def _chosen(name: str, labels: Sequence[tuple[str, str]], places: Sequence[int], column: str | None) -> int:
+    """Return which of the columns of numbers has the voltages."""
+    if column is None and len(places) == 2:
+        return 1
+    names = [label or str(place + 1) for (label, _), place in zip(labels, places, strict=True)]
+    same = [k for k in range(1, len(places)) if column is not None and names[k].casefold() == column.casefold()]
+    if same:
+        return same[0]
+    given = "is not given" if column is None else f"is {show(column)}"
+    raise ValueError(f"column {given} and {name}; it must be {' or '.join(map(show, names[1:]))}, as named there")
+
+
+def _factor(name: str, column: str, unit: str, si: str) -> float:
+    """Return the unit of a column over the SI unit."""
+    if not unit:
+        return 1.0
+    try:
+        return to_si(f"1 {_WORDS.get(unit.casefold(), unit)}", si)
+    except ValueError:
+        what = "first numbers" if si == "s" else f"numbers of {show(column)}"
+        raise ValueError(f"{name}, whose {what} are in {show(clip(unit, 40))}; they must be in {si} or m{si}") from None
+
+
+def _fewer(name: str, t: Array, u: Array) -> tuple[Array, Array]:
+    """Return samples that are few enough: the first, means of groups, and the last."""
+    count = len(t)
+    if count <= POINTS:
+        return t, u
+    size = math.ceil((count - 2) / (POINTS - 2))
+    starts = np.arange(1, count - 1, size)
+    number = np.diff(np.append(starts, count - 1))
+    means = [np.concatenate([x[:1], np.add.reduceat(x[1:-1], starts - 1) / number, x[-1:]]) for x in (t, u)]
+    square = float(np.mean(u**2))
+    left = float(np.sum(np.concatenate([[1], number, [1]]) * means[1] ** 2)) / count
+    if left < (1 - _LOST) * square:
+        raise ValueError(
+            f"{name} with {count} points; there must be from 2 to {POINTS} of them, and means of {size} have "
+            f"{left / square:.2g} of the mean square: give a shorter part, or fewer points"
+        )
+    return means[0], means[1]
+
+
+def range_of(annotation: Any) -> Range:
     """Return the range of a key's annotation."""
     return next(part.func for part in annotation.__metadata__ if isinstance(getattr(part, "func", None), Range))

@@ -22,8 +22,8 @@ from pydantic import BeforeValidator, Field, model_validator
 
 from fingerpad.scene.messages import show
 from fingerpad.scene.modulation import Burst, Carrier, refuse_carrier, square_mean
-from fingerpad.scene.wavefile import HIGHEST, POINTS, Seconds, Volts, or_zero, table
-from geometry.units import Finite, Table, within
+from fingerpad.scene.wavefile import HIGHEST, POINTS, Probe, Seconds, Volts, or_zero, range_of, table
+from geometry.units import Finite, Switch, Table, within
 
 SAMPLES = 24
 """Samples of a period at ``numerics.step_scale`` 1."""
@@ -40,6 +40,8 @@ _Tabled = Annotated[Volts, BeforeValidator(or_zero)]
 _LISTED = BeforeValidator(lambda value: tuple(value) if isinstance(value, list) else value)
 MEASURES = ("amplitude", "peak_to_peak", "rms")
 """Keys that say how large a wave is; one of them is given."""
+OF_FILE = ("file", "column", "probe")
+"""Keys of a file, of which a scene keeps the points alone."""
 
 
 class Waveform(Table):
@@ -63,8 +65,15 @@ class Waveform(Table):
     burst: Burst | None = None
     """Whole periods of the wave, and a pause at the offset."""
     file: Annotated[str | None, Field(exclude=True)] = None
-    """CSV file with the header ``time (s),voltage (V)``, straight between its points; a relative path starts at the
-    scene file. The times start at 0 and increase. The file is read at once: a scene stores only its points."""
+    """CSV file with the header ``time (s),voltage (V)``, or of an oscilloscope (:mod:`fingerpad.scene.wavefile`),
+    straight between its points; a relative path starts at the scene file. The times increase; the first counts as 0,
+    and the last sample closes the period. The file is read at once: a scene stores only its points."""
+    column: Annotated[str | None, Field(exclude=True, max_length=100)] = None
+    """Name of the column of voltages in a file with several. Without names it is a number, and that of times is 1."""
+    probe: Annotated[Probe | None, Field(exclude=True)] = None
+    """Factor on the voltages of a file, 1 by default; 100 for a channel without the factor of its 1:100 probe."""
+    repeat: Switch = False
+    """Whether a file's points repeat themselves for as long as a load takes, as the other waveforms do."""
     times: Annotated[tuple[Seconds, ...], _LISTED] | None = None
     """Times (s) of a file's points, or in place of a file."""
     voltages: Annotated[tuple[_Tabled, ...], _LISTED] | None = None
@@ -75,16 +84,26 @@ class Waveform(Table):
     def _read(cls, data: Any) -> Any:
         if not isinstance(data, dict) or not isinstance(data.get("file"), str) or data.get("waveform") != "file":
             return data
+        column, probe = data.get("column"), data.get("probe")
+        factor = 1.0 if probe is None else probe
+        if not isinstance(column, str | None) or type(factor) not in (int, float) or factor not in range_of(Probe):
+            return data  # for the checks of these keys
         for name in ("times", "voltages"):
             if data.get(name) is not None:
                 raise ValueError(f"{name} and file are both given; give the file alone, which has them")
-        return {key: value for key, value in data.items() if key != "file"} | table(data["file"])
+        rest = {key: value for key, value in data.items() if key not in OF_FILE}
+        return rest | table(data["file"], column, factor)
 
     @model_validator(mode="after")
     def _consistent(self) -> "Waveform":
+        for name in OF_FILE[1:]:
+            if getattr(self, name) is not None:
+                raise ValueError(f"{name} is {show(getattr(self, name))} and no file is given; {name} is one of a file")
         if self.waveform == "file":
             self._refuse_table()
             return self
+        if self.repeat:
+            raise ValueError(f"repeat is true and waveform is {show(self.waveform)}, which always is so; leave it out")
         for name in ("file", "times", "voltages"):
             if getattr(self, name) is not None:
                 raise ValueError(f"{name} is given and waveform is {show(self.waveform)}; it must be 'file'")
@@ -144,8 +163,8 @@ class Waveform(Table):
 
     @property
     def end(self) -> float:
-        """Time (s) at which it ends: a file's last, else infinite."""
-        return math.inf if self.times is None else self.times[-1]
+        """Time (s) at which it ends: a file's last, unless it is repeated, else infinite."""
+        return math.inf if self.times is None or self.repeat else self.times[-1]
 
     @property
     def peak(self) -> float:
@@ -163,7 +182,8 @@ class Waveform(Table):
     def __str__(self) -> str:
         """Return the wave in words."""
         if self.times is not None:
-            return f"by a table of {len(self.times)} points over {self.times[-1]:g} s, up to {self.peak:g} V"
+            repeated = ", repeated" if self.repeat else ""
+            return f"by a table of {len(self.times)} points over {self.times[-1]:g} s, up to {self.peak:g} V{repeated}"
         offset = f" about {self.offset:g} V" if self.offset else ""
         measure = next(name for name in MEASURES if getattr(self, name) is not None)
         how = "" if measure == "amplitude" else f" {measure.replace('_', ' ')}"
@@ -175,7 +195,8 @@ class Waveform(Table):
     def count(self, seconds: float, step_scale: float) -> float:
         """Return how many samples a load of some seconds has; zeros of a periodic voltage come on top."""
         if self.times is not None:
-            return len(self.samples(seconds, step_scale))
+            periods = max(seconds / self.period, 1.0) if self.repeat else 1.0
+            return periods * len(self.samples(seconds / periods, step_scale))
         return seconds * (self.frequency or math.nan) * _per_period(step_scale)
 
     def samples(self, seconds: float, step_scale: float) -> list[Sample]:
@@ -208,7 +229,9 @@ class Waveform(Table):
     def corners(self, seconds: float) -> list[float]:
         """Return the times (s) at which the voltage bends sharply, up to some seconds; jumps are not among them."""
         if self.times is not None:
-            return [time for time in self.times if time <= seconds]
+            periods = math.ceil(seconds / self.period) if self.repeat else 1
+            found = (k * self.period + time for k in range(periods) for time in self.times)
+            return [time for time in found if time <= seconds]
         if self.waveform != "triangle":
             return []
         return [(k + 0.5) / 2 * self.period for k in range(math.ceil(2 * seconds / self.period))]
@@ -223,7 +246,12 @@ class Waveform(Table):
     def _points(self, n: int) -> Iterator[tuple[float, ...]]:
         """Yield a time and the voltage there, before and after a jump, without end but for a file."""
         if self.times is not None and self.voltages is not None:
-            yield from _refined(self.times, self.voltages, 2 * math.pi / n * self.peak, n // 2)
+            table = [*_refined(self.times, self.voltages, 2 * math.pi / n * self.peak, n // 2)]
+            yield table[0]
+            for period in count() if self.repeat else range(1):
+                yield from ((period * self.period + time, value) for time, value in table[1:-1])
+                jump = [table[0][1]] if self.repeat and table[0][1] != table[-1][1] else []
+                yield (period + 1) * self.period, table[-1][1], *jump
             return
         one = self._one_period(n)
         for period in count():

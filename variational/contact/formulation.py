@@ -37,6 +37,8 @@ if TYPE_CHECKING:
     from variational.contact.friction import Friction
 
 Array = NDArray[np.float64]
+STICKS, SLIPS = 1e-9, -1e-9
+"""First guesses for points on the friction cone, see :func:`traction`."""
 
 
 def traction(u_x, anchor, limit, gamma_t, guess=0.0, lambda_t=0.0):
@@ -93,6 +95,12 @@ class Skin:
     """Gives the constrained modulus of the skin over the facet's length (Pa/m)."""
     constant: Callable[[float], Any]
     """Gives a constant that leaves the compiled form as it is when its value changes."""
+    memory: Any = None
+    """Accepted memory of the law of friction; None where it has none."""
+    way: Any = None
+    """Of the skin over the screen since (m), with a memory."""
+    lapse: Any = None
+    """Time since (s), with a memory."""
 
 
 @dataclass(frozen=True)
@@ -115,6 +123,7 @@ class Contact:
         t_t: tangential traction on the skin (Pa of reference area).
         traction: the two as a vector (t_t, p_n).
         new_anchor: anchor that a step leaves when it is accepted (m).
+        memory: that of the law of friction which a step leaves; None where it has none.
     """
 
     def __init__(self, skin: Skin, springs: Springs, friction: "Friction | None", guess, ease=1.0) -> None:
@@ -132,16 +141,19 @@ class Contact:
         self.springs = s = springs
         self.gap = skin.y - s.lambda_n / s.gamma_n
         self.p_n = pressure(self.gap, s.gamma_n)
+        self.memory = None
         if friction is None:
             self.t_t, self.new_anchor = ufl.zero(), skin.u[0]
         else:
-            limit = _limit(friction, self.p_n)
+            if skin.memory is not None:
+                self.memory = friction.remembered(skin.memory, self.p_n, skin.way, skin.lapse)
+            limit = _limit(friction, self.p_n, self.memory)
             self.t_t = traction(skin.u[0], skin.anchor, limit, ease * s.gamma_t, guess, s.lambda_t)
             self.new_anchor = new_anchor(skin.u[0], self.t_t, s.gamma_t, s.lambda_t)
         self.traction = ufl.as_vector([self.t_t, self.p_n])
 
 
-def _limit(friction: "Friction", p_n):
+def _limit(friction: "Friction", p_n, memory):
     """Return the limit of friction (Pa) as the weak form has it.
 
     Raises:
@@ -150,7 +162,7 @@ def _limit(friction: "Friction", p_n):
     import ufl
 
     try:
-        return ufl.as_ufl(friction.limit(p_n))
+        return ufl.as_ufl(friction.limit(p_n) if memory is None else friction.limit(p_n, memory))  # type: ignore[call-arg]
     except Exception as error:  # whatever the user's limit raises
         raise LawError(
             f"the limit of the law {type(friction).__name__} cannot be put into the weak form: {said(error)}; write it "

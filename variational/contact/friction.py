@@ -23,7 +23,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable
 from dataclasses import dataclass
 from numbers import Real
-from typing import Any, Self
+from typing import Any, ClassVar, Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -41,6 +41,31 @@ _SMALL, _STEEPER = (1e-6, 1.0), 1.5  # Pa, between which the limit over the pres
 class Friction(Law, ABC):
     """A law of friction."""
 
+    memory: ClassVar[float | None] = None
+    """Memory of a point that never touched, where the law has one: :meth:`limit` then takes the memory as a second
+    argument with this default, and :meth:`remembered` is its rule (:mod:`variational.contact.aging`)."""
+
+    @property
+    def times(self) -> tuple[float, ...]:
+        """Times (s) in which the memory ages; steps in time are short beside the shortest."""
+        return ()
+
+    def remembered(self, memory, p, way, lapse):
+        """Return the memory that a step leaves, of a law that has one; UFL.
+
+        Args:
+            memory: accepted before the step.
+            p: contact pressure p_n (Pa of reference area) after it.
+            way: of the point over the screen in the step (m).
+            lapse: duration of the step (s), 0 where loads change at once.
+        """
+        raise NotImplementedError
+
+    def limit_in(self, state: Any) -> Array:
+        """Return the limit (Pa) at the points of a :class:`variational.contact.formulation.SurfaceState`."""
+        more = [] if self.memory is None else [state.history["memory"]]
+        return np.asarray(self.limit(state.p_n, *more))  # type: ignore[call-arg]
+
     @abstractmethod
     def limit(self, p):
         """Return the largest tangential traction t_max (Pa) under a contact pressure p_n >= 0 (Pa).
@@ -56,11 +81,11 @@ class Friction(Law, ABC):
         By the trapezoidal rule, see :mod:`variational.energy`.
 
         Args:
-            before: contact pressures (Pa) before.
-            after: contact pressures (Pa) after, of the same shape as the others.
+            before: limits (Pa) before.
+            after: limits (Pa) after, of the same shape as the others.
             slip: how far the points slipped (m), >= 0.
         """
-        a, b = self.limit(before), self.limit(after)
+        a, b = before, after
         return np.asarray((a + b) / 2 * slip), np.asarray(np.abs(b - a) / 2 * slip)
 
     def coefficient(self, p: float) -> float:

@@ -73,6 +73,16 @@ class Material(Law):
         return self.bulk if named else None
 
     @property
+    def times(self) -> tuple[float, ...]:
+        """Times (s) in which the stress relaxes; none of an elastic solid."""
+        return ()
+
+    @property
+    def at_rest(self) -> "Material":
+        """The law without what time adds to it."""
+        return self
+
+    @property
     def constrained_modulus(self) -> float:
         """Stress over strain where the strain is confined to one direction, K + 4 G / 3 (Pa), unloaded."""
         if self.volumetric is None:

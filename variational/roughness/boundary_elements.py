@@ -3,8 +3,8 @@ r"""Exact linear-elastic contact of a rough ridge as a closure: a periodic half-
 :mod:`~variational.roughness.halfspace` solves the contact, attraction does not deform it (Derjaguin, Muller and
 Toporov, as in the paper's model), and the equivalent air gap has the attraction of all gaps that are found. By linear
 elasticity one table, :mod:`~variational.roughness.gaps`, serves every modulus, height, wavelength, insulator and
-voltage. The package has tables of self-affine Gaussian surfaces with the paper's Hurst exponent of 0.75; a measured
-height map has its own.
+voltage. The package has tables of self-affine Gaussian surfaces with Hurst exponents of 0.6 to 0.9; a measured height
+map has its own.
 """
 
 from dataclasses import dataclass
@@ -25,10 +25,10 @@ class BoundaryElements(TabulatedClosure):
 
     surface: str = ""
     """Name of a measured map's table, which ``topography`` computes; empty for the package's Gaussian surfaces. With
-    it ``shortest_wave`` is that of the map, and the key is not read."""
+    it ``shortest_wave`` and ``hurst`` are those of the map, and the keys are not read."""
 
     def tables(self) -> list[tuple[float, GapTable]]:
-        """Return the tables of the ratio of waves, or that of the measured map.
+        """Return the tables of the spectrum, or that of the measured map.
 
         Raises:
             ValueError: there is none; in one sentence.
@@ -36,9 +36,12 @@ class BoundaryElements(TabulatedClosure):
         if self.surface:
             return tables.of_map(self.surface)
         try:
-            return tables.of_ratio(self.wavelength / self.shortest_wave)
+            return tables.of_spectrum(self.hurst, self.wavelength / self.shortest_wave)
         except ValueError as error:
-            low, high = (self.wavelength / ratio for ratio in (tables.RATIOS[-1], tables.RATIOS[0]))
+            if str(error).startswith("hurst"):
+                raise ValueError(f"{error}, and Persson has no such limits") from None
+            ratios = tables.ratios(self.hurst)
+            low, high = self.wavelength / ratios[-1], self.wavelength / ratios[0]
             raise ValueError(
                 f"shortest_wave is {self.shortest_wave:g} m; {error}, so take {low:.4g} to {high:.4g} m"
             ) from None

@@ -29,7 +29,6 @@ import numpy as np
 import scipy  # its parts are imported where they are used first: to read a scene needs none
 from numpy.typing import NDArray
 
-from variational.coefficients import parameter
 from variational.roughness.gaps import EDGES, FULL, PRESSURES, GapTable
 from variational.roughness.tabulated import TabulatedClosure
 
@@ -43,9 +42,6 @@ _LEAST, _MOST = 1e-9, 10.0  # arguments between which the inner integral is tabu
 @dataclass(frozen=True)
 class Persson(TabulatedClosure):
     """A rough ridge by Persson's contact theory; SI units."""
-
-    hurst: float = parameter(0.05, 0.99, default=0.75)
-    """Hurst exponent of the roughness."""
 
     def tables(self) -> list[tuple[float, GapTable]]:
         """Return the table of the spectrum.

@@ -107,8 +107,14 @@ class SelfAffine:
             size: lengths (m) along x and y.
 
         Raises:
-            ValueError: no mode of the map has a wavelength of the surface.
+            ValueError: no mode of the map has a wavelength of the surface, or its pixels do not resolve the shortest.
         """
+        pixel = max(size[0] / shape[0], size[1] / shape[1])
+        if 0 < self.shortest < 2 * pixel * (1 - 1e-9):
+            raise ValueError(
+                f"pixels of {pixel:g} m do not resolve the shortest wavelength of {self.shortest:g} m; they must be "
+                f"{self.shortest / 2:g} m or less"
+            )
         expected = self.psd(wavevectors(shape, size))
         mean_square = expected.sum() / (size[0] * size[1])
         if mean_square == 0:

@@ -4,8 +4,9 @@ The equivalent air gap has the attraction of all gaps g, :math:`(h_0 + d_{eq})^{
 
 **Breakdown.** Over a gap g the air bears the voltage :math:`U g / (h_0 + g)`. It breaks down above
 :math:`V_b = \min(350\,V/\mu m \cdot g,\ 340\,V)`: below a micrometre field emission sets a field, 350 V/um in air
-between metals, and deviations from Paschen's law end at four (Peschot et al. 2014, doi:10.1063/1.4895630). Between the
-two the voltage is nearly constant, 330 to 350 V. *Assumption* for skin. The constant stays above four micrometres too;
+between metals, and deviations from Paschen's law end at four (A. Peschot et al. 2014, "Deviations from the Paschen's
+law at short gap distances from 100 nm to 10 µm in air and nitrogen", read in its abstract). Between the two the voltage
+is nearly constant, 330 to 350 V. *Assumption* for skin. The constant stays above four micrometres too;
 it is too low for gaps above some ten, where Paschen's law holds.
 """
 

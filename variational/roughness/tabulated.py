@@ -64,6 +64,8 @@ class TabulatedClosure(Closure):
     If false, the area in contact does not attract."""
     p_floor: float = parameter(1e-3, 1e9, "Pa", default=1e3)
     """Mean contact pressure (Pa) below which the air gap is held constant (*assumption*)."""
+    hurst: float = parameter(0.05, 0.99, default=0.75)
+    """Hurst exponent of the roughness; tables of boundary elements are for 0.6 to 0.9."""
 
     @abstractmethod
     def tables(self) -> list[tuple[float, GapTable]]:
@@ -187,6 +189,20 @@ class TabulatedClosure(Closure):
     def attraction(self, p_c: ArrayLike, voltage: float) -> Array:
         """Return the attraction (Pa) at mean contact pressures (Pa) and a voltage (V)."""
         return np.asarray(_EPS_0 * voltage**2 / 2 / (self.h_0 + self(p_c).d_eq) ** 2)
+
+    def balanced(self, p_c: ArrayLike, voltage: float) -> Array:
+        """Return the part of the contact pressure that attraction balances where asperities touch; 0 to about 1.
+
+        There both act on one spot, and press nothing else together. The closure takes the whole pressure as the load
+        that deforms, so this part is a measure of what it overestimates; zero without a field in contact.
+
+        Args:
+            p_c: mean contact pressures (Pa), held as in a call.
+            voltage: (V).
+        """
+        held = np.clip(np.asarray(p_c, dtype=float), *self.pressures)
+        most = _EPS_0 * voltage**2 / 2 / self.h_0**2 * self.field_in_contact
+        return np.asarray(most * np.exp(self._area(np.log(held))[0]) / held)
 
     def state(self, p_c: float, voltage: float) -> str:
         """Return where a ridge is on the closure; empty where it is stable and within the table."""

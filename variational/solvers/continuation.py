@@ -118,6 +118,7 @@ class Continuation:
         self.slip = self.observer.slip(self.surface_state)
         history = self.problem.history
         history.accept(history.updated(self.surface_state.history))
+        self.problem.lapse.value = 0.0
         self._now = AcceptedState.of(self.coupling)
         self.steps += 1
         PETSc.garbage_cleanup(self.problem.mesh.comm)  # objects that several ranks have dropped wait for this
@@ -194,7 +195,7 @@ class Continuation:
             if self.steps - p.steps >= most:
                 slow = NotConverged(f"TOO_SMALL_STEPS, {most} of them, do not get to the end of the load", False)
                 raise StepFailed(self._describe(target, p.part, slow)) from slow
-            step = min(p.step, 1 - p.part)
+            step = min(p.step, 1 - p.part, self.step_scale * way.longest(p.part, self.problem.shortest_time))
             if 1 - p.part - step < 0.05 * step:
                 step = 1 - p.part
             attempt, within = Attempt(), step
@@ -220,7 +221,8 @@ class Continuation:
                     smallest = _SMALLEST_SLIP if target.slips else _SMALLEST * largest
                     if failure.irrecoverable or pseudo_transient and within < smallest:
                         raise StepFailed(self._describe(target, p.part, failure)) from failure
-            if target.until_full_slip and slides:
+            # What depends on time is another at another time, so that it is not taken back.
+            if target.until_full_slip and slides and not (self.problem.in_time and target.duration):
                 step -= return_to_onset(self.solver, self.observer, way.length) / abs(way.length)
             self.accept()
             p.part += step
@@ -323,7 +325,7 @@ class Continuation:
         behind: float = 0.0,
     ) -> None:
         counts = self.solver.counts
-        self.problem.dt.value = dt
+        self.problem.dt.value = self.problem.lapse.value = dt
         newton, factorisations, shifted = counts.newton, counts.factorisations, counts.pseudo_transient
         if behind:
             history = self.problem.history

@@ -21,7 +21,7 @@ from mpi4py import MPI
 from numpy.typing import NDArray
 from petsc4py import PETSc
 
-from variational.problem import SLIPS, STICKS
+from variational.contact.formulation import SLIPS, STICKS
 from variational.solvers.iteration import EXACT, Iteration, StopRule
 from variational.solvers.outcome import OUTSIDE, Counts, snes_failure
 from variational.solvers.target import Control

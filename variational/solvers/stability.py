@@ -32,7 +32,7 @@ import numpy as np
 from numpy.typing import NDArray
 from petsc4py import PETSc
 
-from variational.problem import SLIPS
+from variational.contact.formulation import SLIPS
 from variational.solvers.outcome import NotConverged, linear_failure
 
 if TYPE_CHECKING:

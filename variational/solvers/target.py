@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 # How far one step may go: parts of sqrt(f_ext) and of U^2, and metres of the bone.
 _FORCE, _VOLTAGE, _SINK, _SLIDE = 0.134, 0.5, 40e-6, 120e-6
+_AGES = 0.25  # longest step (s) over the time since the load began, with the shortest time in which a law ages
 
 
 @dataclass
@@ -127,3 +128,16 @@ class Way:
             steps.append((_SINK, abs(target.bone_height - a.height)))
         steps.append((_SLIDE, abs(self.length)))
         return float(min([1.0, *(scale * most / whole for most, whole in steps if whole > 0)]))
+
+    def longest(self, part: float, shortest_time: float) -> float:
+        """Return the largest part of the target that time lets one step have, after a part of it.
+
+        Relaxation is fastest after a change and slows down, so that steps grow with the time since. A step of a quarter
+        of a branch's time leaves out 0.3 % of what the branch does in it.
+
+        Args:
+            part: that is reached.
+            shortest_time: of what ages (s), infinite where nothing does.
+        """
+        seconds = self.target.duration
+        return _AGES * (shortest_time + part * seconds) / seconds if seconds > 0 else 1.0

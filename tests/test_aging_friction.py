@@ -1,0 +1,151 @@
+"""Friction in time: it grows with the time of contact or depends on the speed, by closed forms on a block."""
+
+import numpy as np
+import pytest
+from mpi4py import MPI
+
+import fingerpad as fp
+from fingerpad.scene import SceneError
+from fingerpad.scene.remarks import remarks
+from geometry import tags
+from geometry.bodies import block, ridge
+from geometry.mesh import load
+from tests.runs import followed
+from tests.small_finger import NINE
+from variational.body import Body
+from variational.contact.aging import Occlusion, Speed
+from variational.contact.augmented import AugmentedLagrangian
+from variational.contact.nitsche import Nitsche
+from variational.contact.penalty import Penalty
+from variational.energy import EnergyBook
+from variational.materials.ogden import Ogden
+from variational.problem import Interface
+from variational.solvers.continuation import Target
+
+pytestmark = pytest.mark.mpi
+GROWS = Occlusion(mu_dry=0.2, mu_wet=0.8, time=0.5)
+
+
+def over(law, formulation=None, body=None) -> Body:
+    """Return a body over the screen: by default a block whose sides move with the bone."""
+    made = body or load(MPI.COMM_WORLD, block(1e-3, 0.5e-3, 0.25e-3))
+    interface = Interface(formulation or Penalty(), law, 0.5e-6, None)
+    solids = {tags.STRATUM_CORNEUM: Ogden(86.76e3, -14.53)}
+    sides = made.facets(tags.SIDES) if body is None else None
+    return Body(made, solids, interface, moving_sides=sides, tolerance=1e-10)
+
+
+def ratio(made: Body) -> float:
+    """Return friction over the contact force of the accepted state."""
+    loads = made.observer.ridge_loads(made.continuation.surface_state)
+    return float(abs(loads.f_friction.sum()) / loads.f_contact.sum())
+
+
+@pytest.mark.parametrize("formulation", [Penalty(), Nitsche(), AugmentedLagrangian()], ids=["own", "Nitsche", "Uzawa"])
+def test_grows_in_contact(formulation):
+    """At full slip friction is mu(t) p, whatever the steps in time. Tolerance: that of the solve."""
+    made = over(GROWS, formulation)
+    path, found = made.continuation, []
+    path.run(Target("press", f_ext=20.0))
+    path.on_accept = lambda target, part, attempt: found.append((path.time, ratio(made), path.slip[1]))
+    path.run(Target("slide", bone_x=0.3e-3, duration=1.0))
+    slid = [each for each in found if each[2]]
+    assert len(slid) > 3
+    for t, mu, _ in slid:
+        assert mu == pytest.approx(0.8 - 0.6 * np.exp(-t / 0.5), rel=1e-8)
+
+
+def test_dry_out_of_contact():
+    """Lifted and pressed again, all begins anew; a load that takes no time leaves friction as it is."""
+    made = over(GROWS)
+    path = made.continuation
+    memory = lambda: path.problem.history.accepted["memory"]  # noqa: E731
+    path.run(Target("press", bone_height=-5e-6))
+    path.run(Target("hold", bone_height=-5e-6, duration=0.5))
+    np.testing.assert_allclose(memory(), 1 - np.exp(-1), rtol=1e-12)
+    path.run(Target("further", bone_height=-6e-6))
+    np.testing.assert_allclose(memory(), 1 - np.exp(-1), rtol=1e-12)
+    path.run(Target("lift", bone_height=1e-6))
+    np.testing.assert_array_equal(memory(), 0.0)
+
+
+def test_renewed_contact():
+    """On a ridge that rolls on, points that touched for long have more friction than new ones: by point."""
+    made = over(GROWS, body=load(MPI.COMM_WORLD, ridge(30e-6)))
+    path = made.continuation
+    path.run(Target("press", f_ext=2.0))
+    path.run(Target("hold", f_ext=2.0, duration=0.5))
+    path.run(Target("deeper", f_ext=4.0))
+    state = path.surface_state
+    touching, memory = state.p_n > 0, path.problem.history.accepted["memory"]
+    values = np.concatenate(MPI.COMM_WORLD.allgather(memory[touching]))
+    assert values.min() == 0.0
+    assert values.max() == pytest.approx(1 - np.exp(-1), rel=1e-9)
+
+
+@pytest.mark.parametrize("speed", [1e-3, 10e-3])
+def test_speed(speed):
+    """In steady sliding friction is that of the speed; a step without time keeps it. Tolerance: that of the solve."""
+    law = Speed(mu_f=0.5, v_0=2e-3, exponent=-0.3)
+    made = over(law)
+    path = made.continuation
+    path.run(Target("press", f_ext=20.0))
+    path.run(Target("slide", bone_x=0.5e-3, duration=0.5e-3 / speed))
+    mu = 0.5 * (1 + speed / 2e-3) ** -0.3
+    assert ratio(made) == pytest.approx(mu, rel=1e-7)
+    path.run(Target("at once", bone_x=0.55e-3))
+    assert ratio(made) == pytest.approx(mu, rel=1e-7)
+
+
+def test_energy():
+    """What friction spends is the work of its limits; the balance closes to second order in a step."""
+    made = over(GROWS, body=load(MPI.COMM_WORLD, ridge(30e-6)))
+    path, left = made.continuation, []
+    path.run(Target("press", f_ext=4.0))
+    now = lambda: (path.surface_state, made.solver.bone, made.solver.reaction, made.coupling.d_eq)  # noqa: E731
+    book = EnergyBook(made.problem, *now())
+    path.on_accept = lambda target, part, attempt: left.append(book.step(*now()))
+    path.run(Target("slide", bone_x=0.3e-3, duration=1.0))
+    spent = sum(each.dissipation for each in left)
+    assert abs(sum(each.released for each in left)) < 1e-2 * spent
+
+
+# -- scenes --------------------------------------------------------------------------------------------
+OCCLUSION = {"law": "Occlusion", "mu_dry": 0.3, "mu_wet": 0.6, "time": "0.2 s"}
+
+
+@pytest.mark.slow
+def test_scene():
+    """A finger that is held on the screen before it slides has more friction. Tolerance: that of the solves."""
+    hold, slide = {"name": "hold", "duration": 0.2}, {"name": "slide", "bone_x_by": 0.3e-3, "speed": 1.0}
+    history = [{"name": "press", "bone_height": -30e-6}, {"bone_height": -30e-6} | hold, slide]
+    scene = fp.Scene(**NINE, friction=OCCLUSION, history=history, output={"receptors": False, "errors": False})
+    end = followed(scene).states[-1]
+    assert end.all_slip
+    assert 0.3 < end.f_t / end.f_contact < 0.6 - 0.3 * np.exp(-0.2003 / 0.2) + 1e-9
+    again = fp.Scene(**scene.parameters())
+    assert again.friction == scene.friction == Occlusion(0.3, 0.6, 0.2)
+
+
+@pytest.mark.parametrize(
+    ("friction", "message"),
+    [
+        (OCCLUSION | {"time": 0}, "friction.time is 0 s; it must be from 1e-06"),
+        (OCCLUSION | {"time": "-1 s"}, "friction.time is -1 s"),
+        ({"law": "Occlusion", "mu_dry": 0.3}, "friction.mu_wet is missing"),
+        ({"law": "Speed", "mu_f": 0.3, "v_0": "3 m"}, "friction.v_0 is '3 m'; its unit is not a unit of speed"),
+    ],
+)
+def test_refused(friction, message):
+    with pytest.raises(SceneError, match=message):
+        fp.Scene(friction=friction)
+
+
+def test_without_time():
+    """Without a load over time a remark says so; newtons and models without time are refused."""
+    scene = fp.Scene(friction=OCCLUSION)
+    assert [text for text in remarks(scene) if "friction is Occlusion and no load takes time" in text]
+    with pytest.raises(SceneError, match="force is given and friction has a memory"):
+        fp.Scene(force=0.5, friction=OCCLUSION)
+    with pytest.raises(SceneError, match="friction is Occlusion; the model 'cylinders' has no time"):
+        fp.run(scene, model="cylinders")

@@ -1,0 +1,92 @@
+"""Loads over time that end before the finger slips fully: what a check and a result report of them."""
+
+import math
+
+import pytest
+
+from fingerpad.cli import main
+from fingerpad.reduced.slide import too_short, way
+from fingerpad.results.states import load_result
+from fingerpad.results.terminal import in_words
+from fingerpad.scene import Scene
+from variational.state import ContactState
+
+SINE = {"waveform": "sine", "amplitude": 200.0, "frequency": 10.0}
+PRESS = {"name": "press", "f_ext": 75.0}
+WAVE = {"name": "wave", "voltage": SINE, "bone_x_by": 1e-3, "speed": 0.01}
+SCENE = Scene(history=[PRESS, WAVE])
+
+
+def states(ways=(0.2e-3, 0.4e-3, 0.6e-3), contact=(75.0, 150.0, 100.0), stiffness=30e3, slips=False):
+    """Return states whose friction is in proportion to the way."""
+    return [
+        ContactState(
+            f_ext=75.0, voltage=100.0, f_t=stiffness * x, mu_app=0.0, f_contact=force, f_electrostatic=0.0,
+            ridges_in_contact=9, contact_length=1e-3, bone_x=x, step=k, load="wave", load_number=2, time=0.01 * (k + 1),
+            slip_began=int(slips),
+        )
+        for k, (x, force) in enumerate(zip(ways, contact, strict=True))
+    ]  # fmt: skip
+
+
+def result(rows, mu_0=0.25):
+    return load_result("wave", rows, None, (), SCENE.history[1].wave, mu_0)
+
+
+def test_result_has_the_way_that_full_slip_needs():
+    """At the largest contact force of the load: 0.25 * 150 N/m over 30 kN/m²."""
+    found = result(states())
+    assert found.needs == pytest.approx(1.25e-3)
+    assert found.sticking.endswith("below that of sliding: full slip needs some 1.2 mm, and the bone goes 0.6 mm")
+
+
+@pytest.mark.parametrize(
+    ("rows", "mu_0"),
+    [
+        (states(), None),
+        (states(ways=(0.2e-3, 0.7e-3, 0.6e-3)), 0.25),
+        (states(stiffness=-30e3), 0.25),
+        (states(stiffness=70e3), 0.25),
+    ],
+    ids=["another law", "back", "the other way", "far enough"],
+)
+def test_way_is_not_known(rows, mu_0):
+    """Then the words are those without numbers."""
+    found = result(rows, mu_0)
+    assert math.isnan(found.needs) and found.sticking.endswith("below that of sliding")
+
+
+def test_full_slip_needs_no_more():
+    found = result(states(slips=True))
+    assert math.isnan(found.needs) and found.sticking == ""
+
+
+@pytest.mark.parametrize(("force", "voltage", "run"), [(75, 200, 1.36e-3), (75, 150, 1.17e-3), (10, 200, 0.83e-3)])
+def test_rule_of_thumb(force, voltage, run):
+    """Where full slip begins in full runs of the default finger; within the 15 % that are stated."""
+    assert way(Scene(), float(force), float(voltage)) == pytest.approx(run, rel=0.15)
+
+
+def test_check_reports_a_short_load(tmp_path, capsys):
+    """Not one that is long enough, after a slide to full slip, or on a finger for which the rule is not."""
+    (said,) = too_short(SCENE)
+    assert said.startswith("wave: the finger may never slip fully, since that needs some 1.5 mm from where it was")
+    assert said.endswith("and the bone goes 1 mm")
+    slide = {"name": "slide", "bone_x": 3e-3, "until_full_slip": True}
+    long, still = WAVE | {"bone_x_by": 2e-3}, slide | {"until_full_slip": False}
+    for history in ([PRESS, long], [PRESS, slide, WAVE], [PRESS, still]):
+        assert list(too_short(Scene(history=history))) == []
+    assert list(too_short(SCENE.replace(geometry={"ridge_count": 9}))) == []
+    assert list(too_short(Scene())) == []
+    scene = tmp_path / "scene.toml"
+    scene.write_text(
+        '[[history]]\nname = "press"\nf_ext = 75\n[[history]]\nname = "wave"\nbone_x_by = 1e-3\nspeed = 0.01\n'
+        'voltage = {waveform = "sine", amplitude = 200, frequency = 10}\n',
+        encoding="utf-8",
+    )
+    assert main(["check", str(scene), "--out", str(tmp_path)]) == 0
+    assert said in capsys.readouterr().out
+
+
+def test_short_times_in_words():
+    assert in_words(9e-10) == "less than 1 s" and in_words(3.0) == "3 s"

@@ -1,0 +1,287 @@
+"""Viscous layers: relaxation, creep and oscillation against closed forms and the convolution, and refusals."""
+
+import numpy as np
+import pytest
+import ufl
+from dolfinx import fem
+from mpi4py import MPI
+
+from geometry import tags
+from geometry.bodies import block
+from geometry.mesh import load
+from tests.test_element import confined_stress
+from variational import kinematics
+from variational.body import Body
+from variational.contact.penalty import Penalty
+from variational.materials.neo_hooke import NeoHooke
+from variational.materials.ogden import Ogden
+from variational.materials.qlv import QLV
+from variational.materials.saint_venant import SaintVenant
+from variational.materials.viscoelastic import Viscoelastic
+from variational.problem import Interface, Problem
+from variational.solvers.continuation import Target
+
+pytestmark = pytest.mark.mpi
+MOUSE = QLV((0.154, 0.495), (1.111, 0.092))
+ELASTIC = Ogden(86.76e3, -14.53)
+LAW = Viscoelastic(ELASTIC, MOUSE)
+HEIGHT = 0.5e-3
+
+
+@pytest.fixture(scope="module")
+def body():
+    """A block of 4 x 2 x 2 cells on the screen."""
+    return load(MPI.COMM_WORLD, block(1e-3, HEIGHT, 0.25e-3))
+
+
+def over(body, law=LAW, mu_f=0.0, element="P2", **more) -> Body:
+    """Return a block over the screen whose sides do not move sideways."""
+    interface = Interface(Penalty(), mu_f, 0.5e-6, None)
+    solids = {tags.STRATUM_CORNEUM: law}
+    return Body(body, solids, interface, element=element, held=body.facets(tags.SIDES), tolerance=1e-10, **more)
+
+
+class Strained:
+    """A body whose history follows a displacement that is prescribed everywhere, without a solve."""
+
+    def __init__(self, problem: Problem) -> None:
+        self.problem = problem
+        ((group, self.law),) = problem.laws.items()
+        F = kinematics.deformation_gradient(ufl.grad(problem.w))
+        self._sigma = fem.Expression(kinematics.cauchy(self.law, F, 0.0), np.array([[0.2, 0.5]]))
+        self.fields = problem.relaxations[group].fields
+
+    def to(self, F: np.ndarray, lapse: float) -> np.ndarray:
+        """Take a step to a homogeneous F; return the Cauchy stress (Pa) without the volumetric part, (3, 3)."""
+        problem = self.problem
+        problem.w.interpolate(lambda x: (F - np.eye(2)) @ x[:2])
+        problem.lapse.value = lapse
+        history = problem.history
+        on_the_way = self.stress()
+        history.accept({**history.accepted, **{each.name: each.updated() for each in self.fields}})
+        problem.lapse.value = 0.0
+        np.testing.assert_allclose(self.stress(), on_the_way, atol=1e-12 * np.abs(on_the_way).max())
+        return on_the_way
+
+    def stress(self) -> np.ndarray:
+        values = self._sigma.eval(self.problem.mesh, np.array([0], dtype=np.int32)).reshape(3, 3)
+        return np.asarray(values)
+
+    def value(self, name: str) -> np.ndarray:
+        """Return the values of a field at all points, which are the same, as one."""
+        field = next(each for each in self.fields if each.name.startswith(name))
+        found = field.at_points(field.function.x.array)
+        np.testing.assert_allclose(found, np.broadcast_to(found[0, 0], found.shape), atol=1e-9 * np.abs(found).max())
+        return np.asarray(found[0, 0])
+
+
+def sheared(a: float, b: float) -> np.ndarray:
+    return np.array([[1 + a, b], [0.3 * b, 1 - 0.5 * a]])
+
+
+# -- closed forms --------------------------------------------------------------------------------------
+def test_relaxation_function():
+    """Golden values of the mouse's set, computed apart. Tolerance: their four digits."""
+    times = [0.01, 0.05, 0.092, 0.2, 0.5, 1, 2, 5]
+    expected = [0.9476, 0.7857, 0.6749, 0.5359, 0.4513, 0.4136, 0.3765, 0.3527]
+    np.testing.assert_allclose(MOUSE.relaxation(times), expected, atol=5.1e-5)
+
+
+def test_complex_modulus():
+    """Golden values of the mouse's set, computed apart. Tolerance: their four digits."""
+    expected = [0.4031 + 0.1008j, 0.6259 + 0.2361j, 0.9856 + 0.0853j, 0.9999 + 0.0088j]
+    np.testing.assert_allclose(MOUSE.complex_modulus([0.1, 1, 10, 100]), expected, atol=7.2e-5)
+
+
+@pytest.mark.parametrize("element", ["P1", "P2", "P2 reduced", "P2-P1", "P3"])
+def test_stress_relaxes(body, element):
+    """After a step of strain the stress falls as G(t), whatever the steps in time. Tolerance: roundoff."""
+    strained = Strained(over(body, element=element).problem)
+    at_once = strained.to(sheared(-0.05, 0.08), 0.0)
+    t = 0.0
+    for lapse in (0.003, 0.04, 0.2, 0.01, 3.0):
+        t += lapse
+        found = strained.to(sheared(-0.05, 0.08), lapse)
+        np.testing.assert_allclose(found, at_once * MOUSE.relaxation(t), atol=1e-10 * np.abs(at_once).max())
+
+
+def test_long_time(body):
+    """After a long time the elastic law is left. Tolerance: exp(-30) of the longest time."""
+    strained = Strained(over(body).problem)
+    strained.to(sheared(0.1, 0.05), 0.1)
+    problem, F = strained.problem, kinematics.deformation_gradient(ufl.grad(strained.problem.w))
+    sigma = fem.Expression(kinematics.cauchy(ELASTIC, F, 0.0), np.array([[0.2, 0.5]]))
+    elastic = sigma.eval(problem.mesh, np.array([0], dtype=np.int32)).reshape(3, 3)
+    found = strained.to(sheared(0.1, 0.05), 40.0)
+    np.testing.assert_allclose(found, elastic, atol=1e-9 * np.abs(elastic).max())
+
+
+def test_convolution(body):
+    """Along a random history the stress is the sum over all past steps of S. Tolerance: 1e-10, roundoff of 30 steps."""
+    strained, rng = Strained(over(body).problem), np.random.default_rng(1)
+    jumps, places, before, t = [], [], np.zeros(4), 0.0
+    for _ in range(30):
+        lapse = 10 ** rng.uniform(-3, 0)
+        strained.to(sheared(*rng.uniform(-0.1, 0.1, 2)), lapse)
+        now = strained.value("isochoric stress")
+        jumps.append(now - before)
+        places.append(t + lapse / 2)
+        before, t = now, t + lapse
+    for k, (beta, tau) in enumerate(LAW.branches, 1):
+        direct = beta * sum(np.exp(-(t - place) / tau) * jump for jump, place in zip(jumps, places, strict=True))
+        np.testing.assert_allclose(strained.value(f"overstress {k}"), direct, atol=1e-10 * np.abs(direct).max())
+
+
+def test_second_order(body):
+    """Under a ramp the error of Q falls with the square of the step; the limit is the convolution's closed form."""
+    errors = []
+    for steps in (4, 8, 16, 32):
+        strained = Strained(over(body, Viscoelastic(NeoHooke(1e3), MOUSE)).problem)
+        for k in range(steps):
+            strained.to(np.eye(2) + np.array([[0, 1e-6], [0, 0]]) * (k + 1) / steps, 0.1 / steps)
+        S = strained.value("isochoric stress")[2]
+        closed = sum(beta * S * tau / 0.1 * -np.expm1(-0.1 / tau) for beta, tau in LAW.branches)
+        errors.append(abs(sum(strained.value(f"overstress {k}")[2] for k in (1, 2)) / closed - 1))
+    np.testing.assert_allclose(np.log2(np.array(errors[:-1]) / errors[1:]), 2.0, atol=0.05)
+
+
+@pytest.mark.parametrize("frequency", [0.1, 1.0, 10.0, 100.0])
+def test_storage_and_loss(body, frequency):
+    """Stress under a small oscillation has the complex modulus's two parts.
+
+    Tolerance: 1e-6, with Richardson's extrapolation of the second-order error of 200 and 400 steps a period; 12 of the
+    longest times pass before, in steps of a fifth of the period but for the last period.
+    """
+    found = []
+    for steps in (200, 400):
+        strained = Strained(over(body, Viscoelastic(NeoHooke(1e3), MOUSE)).problem)
+        amplitude, parts = 1e-5, []
+        times = np.arange(1, 1 + steps) / steps / frequency
+        # The steady state's history at t = 0, in place of many periods on the way to it.
+        w = 2 * np.pi * frequency
+        history = strained.problem.history
+        start = {}
+        for k, (beta, tau) in enumerate(LAW.branches, 1):
+            field = next(each for each in strained.fields if each.name.startswith(f"overstress {k}"))
+            values = field.function.x.array.reshape(-1, 4) * 0
+            values[:, 2] = beta * 1e3 * amplitude * (1j * w * tau / (1 + 1j * w * tau)).imag
+            start[field.name] = values.ravel()
+        history.accept({**history.accepted, **start})
+        for t in times:
+            F = np.eye(2) + np.array([[0, amplitude * np.sin(w * t)], [0, 0]])
+            parts.append(strained.to(F, 1 / frequency / steps)[0, 1])
+        wave = 2 / steps * np.sum(np.array(parts) * np.exp(-1j * w * times)) * 1j
+        found.append(wave * (1 - sum(MOUSE.moduli)) / (1e3 * amplitude))
+    limit = (4 * found[1] - found[0]) / 3
+    assert limit == pytest.approx(MOUSE.complex_modulus(frequency), abs=1e-6)
+
+
+# -- solved bodies -------------------------------------------------------------------------------------
+def test_creep(body):
+    """Under a held force the confined block creeps as the closed form of its spring and branches.
+
+    Small strain: with M(t) = K + 4/3 G(t) the creep has the retardation times of the roots of M's transform. Tolerance:
+    the error of the steps, 1e-4 of the creep, and of second order.
+    """
+    K, G = ELASTIC.bulk, ELASTIC.shear_modulus * 4 / 3
+    f, seconds, errors = 1e-6 * (K + G) * 1e-3, 0.3, []
+    for scale in (1.0, 0.5):
+        made = over(body, step_scale=scale)
+        path = made.continuation
+        path.run(Target("press", f_ext=f))
+        at_once = float(made.solver.bone[1])
+        path.run(Target("hold", f_ext=f, duration=seconds))
+        creep = float(made.solver.bone[1]) - at_once
+        assert path.time == pytest.approx(seconds, rel=1e-12)
+        errors.append(creep / (compliance(K, G, seconds) - compliance(K, G, 0.0)) / (-f / 1e-3 * HEIGHT) - 1)
+    assert abs(errors[0]) < 1e-3
+    assert abs(errors[1]) < 0.4 * abs(errors[0])
+
+
+@pytest.mark.parametrize("held", ["force", "depth"])
+def test_convolution_of_a_solved_body(body, held):
+    """At each step of a creep or a relaxation the pressure is the convolution of all strains before it.
+
+    The confined block has the closed form of its elastic stress; the sum over all past steps is independent of the
+    recursion. Tolerance: 1e-10 of the pressure, that of the solve.
+    """
+    made, path = (found := over(body)), found.continuation
+    bulk, places, jumps, before = ELASTIC.bulk, [], [], 0.0
+    last = 0.0
+
+    def check(target, part, attempt):
+        nonlocal before, last
+        p_n = float(path.surface_state.p_n.max(initial=0.0))
+        p_n = MPI.COMM_WORLD.allreduce(p_n, op=MPI.MAX)
+        stretch = 1 + (float(made.solver.bone[1]) + p_n / Penalty().eps_n) / HEIGHT
+        S = (confined_stress(ELASTIC, stretch) - bulk * (stretch - 1)) / stretch
+        places.append((last + path.time) / 2)
+        jumps.append(S - before)
+        Q = sum(
+            beta * np.exp(-(path.time - place) / tau) * jump
+            for beta, tau in LAW.branches
+            for place, jump in zip(places, jumps, strict=True)
+        )
+        before, last = S, path.time
+        assert -(bulk * (stretch - 1) + stretch * (S + Q)) == pytest.approx(p_n, rel=1e-10)
+
+    path.on_accept = check
+    load = {"force": {"f_ext": 20.0}, "depth": {"bone_height": -20e-6}}[held]
+    path.run(Target("press", **load, duration=0.02))
+    path.run(Target("hold", **load, duration=0.5))
+    assert path.steps > 5
+
+
+def compliance(K: float, G: float, t: float) -> float:
+    """Return the creep compliance (1/Pa) of a spring K beside G (1 + sum of branches), by partial fractions."""
+    (b1, t1), (b2, t2) = LAW.branches
+    # s M(s) = (K + G) + G sum b s tau / (1 + s tau), over a common denominator
+    d = np.polymul([t1, 1], [t2, 1])
+    n = np.polyadd((K + G) * d, G * np.polyadd(np.polymul([b1 * t1, 0], [t2, 1]), np.polymul([b2 * t2, 0], [t1, 1])))
+    roots = np.roots(n)
+    slope = np.polyder(n)
+    return 1 / (K + G) + sum(np.polyval(d, r) / (r * np.polyval(slope, r)) * np.exp(r * t) for r in roots).real
+
+
+def test_accepted_state_stays(body):
+    """An accepted state is an equilibrium of the history that it left. Tolerance: that of the solve, 1e-10 N/m."""
+    made = over(body, mu_f=0.3)
+    made.continuation.run(Target("press", bone_height=-10e-6, duration=0.01))
+    made.continuation.run(Target("drag", bone_x=10e-6, duration=0.01))
+    made.solver.equations.residual(made.solver.x, made.solver.iteration.f)
+    assert made.solver.iteration.f.norm() < 1e-9
+
+
+def test_weak_branches(body):
+    """With branches of a modulus of 1e-12 the state is the elastic one. Tolerance: 1e-10."""
+    found = []
+    for law in (ELASTIC, Viscoelastic(ELASTIC, QLV([1e-13], [0.1]))):
+        made = over(body, law, mu_f=0.3)
+        made.continuation.run(Target("press", bone_height=-10e-6, duration=0.1))
+        made.continuation.run(Target("drag", bone_x=10e-6, duration=0.1))
+        found.append(made.solver.reaction)
+    np.testing.assert_allclose(found[0], found[1], rtol=1e-9)
+
+
+# -- refusals ------------------------------------------------------------------------------------------
+@pytest.mark.parametrize(
+    ("moduli", "times", "message"),
+    [
+        ([0.5, 0.5], [1.0, 2.0], r"moduli sum to 1; .* below 1"),
+        ([0.5], [0.0], "times has 0; it must be finite and greater than 0"),
+        ([0.5], [-1.0], "times has -1"),
+        ([-0.5], [1.0], "moduli has -0.5"),
+        ([0.5], [float("nan")], "times has nan"),
+        ([0.5], [1.0, 2.0], "moduli has 1 entries and times 2"),
+        ([], [], "moduli has 0 entries and times 0; .* at least one branch"),
+        ("soft", [1.0], "two lists of numbers"),
+    ],
+)
+def test_refused(moduli, times, message):
+    with pytest.raises(ValueError, match=message):
+        QLV(moduli, times)
+
+
+def test_refused_without_volumetric_part():
+    with pytest.raises(ValueError, match="SaintVenant has no volumetric part"):
+        Viscoelastic(SaintVenant(1e6), MOUSE).check()

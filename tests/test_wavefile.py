@@ -1,0 +1,162 @@
+"""Voltages over time as oscilloscopes write them: preambles, units, columns, probes, many samples; and repeated."""
+
+import re
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+import fingerpad as fp
+from fingerpad.cli import main
+from fingerpad.model import followed
+from fingerpad.scene.wavefile import POINTS, table
+from fingerpad.scene.waveform import Waveform
+
+T = np.linspace(-0.01, 0.01, 41)
+U = 1.5 * np.sin(2 * np.pi * 100 * T)
+PLAIN = "".join(f"{t:.6e},{u:.6e}\n" for t, u in zip(T, U, strict=True))
+TWO = "".join(f"{t:.6e},{u:.6e},{-u / 2:.6e}\n" for t, u in zip(T, U, strict=True))
+COMMAS = "".join(f"{1e3 * t:.4f};{1e3 * u:.4f}\n" for t, u in zip(T, U, strict=True)).replace(".", ",")
+BESIDE = ("Record Length,41", "Source,CH1", "Vertical Units,mV", "Horizontal Units,ms")
+SIDE = "".join(
+    f"{BESIDE[k] if k < 4 else ','},,{1e3 * t:.6f},{1e3 * u:.4f},\n" for k, (t, u) in enumerate(zip(T, U, strict=True))
+)
+FILES = {
+    "units in a line of their own": "Record Length,41\nSample Interval,5e-4\nSource,CH1\nSecond,Volt\n" + PLAIN,
+    "units in brackets": "Model,X\n\ntime [s],Channel 1 (V)\n" + PLAIN,
+    "semicolons and decimal commas": "Zeit;Kanal A\n(ms);(mV)\n\n" + COMMAS,
+    "preamble beside the numbers": SIDE,
+    "micro": "time (µs),U (kV)\n" + "".join(f"{1e6 * t:.2f},{u / 1e3:.9f}\n" for t, u in zip(T, U, strict=True)),
+    "no header": PLAIN,
+}
+
+
+def write(folder, text) -> str:
+    file = folder / "scope.csv"
+    file.write_bytes(text.encode("latin-1"))
+    return str(file)
+
+
+@pytest.mark.parametrize("text", FILES.values(), ids=FILES)
+def test_files_of_instruments(text, tmp_path):
+    """The same sine: from 0 on, whose last sample closes the period. Tolerance: of the digits that are written."""
+    found = table(write(tmp_path, text), probe=100.0)
+    assert found["times"][0] == 0
+    assert_allclose(found["times"], T + 0.01, atol=1e-8)
+    assert_allclose(found["voltages"], 100 * U, atol=0.01)
+    wave = Waveform(waveform="file", **found)
+    assert wave.period == pytest.approx(0.02)
+
+
+def test_columns_are_chosen_by_name(tmp_path):
+    """Without regard to capitals; one of two must be named."""
+    file = write(tmp_path, "TIME,CH1,CH2\n" + TWO)
+    for column, factor in (("CH1", 1.0), ("ch2", -0.5)):
+        wave = fp.Scene(voltage={"waveform": "file", "file": file, "column": column}).voltage
+        assert wave.voltages[5] == pytest.approx(factor * U[5], rel=1e-5)
+        assert wave.column is None, "a scene keeps the points alone"
+    for column, given in ((None, "is not given"), ("CH3", "is 'CH3'")):
+        with pytest.raises(fp.SceneError, match=f"^voltage.column {given} and .*; it must be 'CH1' or 'CH2', as named"):
+            fp.Scene(voltage={"waveform": "file", "file": file, "column": column})
+
+
+def test_many_samples_are_averaged(tmp_path):
+    """To fewer than a waveform may have; ends, mean and mean square stay, and noise falls."""
+    t = np.linspace(0, 0.02, 20001)
+    u = 150 * np.sin(2 * np.pi * 100 * t) + np.random.default_rng(1).normal(size=len(t))
+    text = "Second,Volt\n" + "".join(f"{a:.8e},{b:.6e}\n" for a, b in zip(t, u, strict=True))
+    found = table(write(tmp_path, text))
+    v = np.array(found["voltages"])
+    assert POINTS / 2 < len(v) <= POINTS
+    assert (found["times"][-1], v[-1]) == pytest.approx((0.02, u[-1]))
+    assert np.mean(v**2) == pytest.approx(np.mean(u**2), rel=2e-3)
+    assert np.std(v - 150 * np.sin(2 * np.pi * 100 * np.array(found["times"]))) < 0.5
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("X,CH1,Start,Increment\nSequence,Volt,0,1e-4\n0,1\n1,2\n2,1\n", "whose first numbers are in 'Sequence'"),
+        ("Source,CH1\nSecond,Ampere\n0,1\n1,2\n", "whose numbers of 'CH1' are in 'Ampere'"),
+        ("Second,Volt\n0,1\n1,\n2,3\n", "whose line 3 has ''; it must be a finite number"),
+        ("Second,Volt\n0,1\nx,2\n2,3\n", "whose line 3 has 'x'; it must be a finite number"),
+        ("Second,Volt\n0,nan\n1,2\n2,3\n", "whose line 2 has 'nan'; it must be a finite number"),
+        ("a,b\nc,d\n", "which has no two columns of numbers"),
+        ("", "which has no two columns of numbers"),
+        ("t,u\n0,1\n1,2\n1,3\n", "times are 1 and then 1 s; each must be later"),
+    ],
+)
+def test_refusals(text, message, tmp_path):
+    with pytest.raises(fp.SceneError, match=re.escape(message)) as refused:
+        fp.Scene(voltage={"waveform": "file", "file": write(tmp_path, text)})
+    assert str(refused.value).startswith("voltage.") and ". " not in str(refused.value)
+
+
+@pytest.mark.parametrize(
+    ("wave", "words"),
+    [
+        ({"waveform": "sine", "amplitude": 1.0, "frequency": 1.0, "probe": 10.0}, "voltage.probe is 10 and no volt"),
+        ({"waveform": "file", "times": [0, 1], "voltages": [0, 1], "column": "CH1"}, "voltage.column is 'CH1' and no"),
+        ({"waveform": "file", "file": "x.csv", "probe": 0.0}, "voltage.probe is 0; it must be from 0.001 to 100000"),
+        ({"waveform": "file", "file": "x.csv", "column": 2}, "voltage.column is 2; it must be text"),
+        ({"waveform": "sine", "amplitude": 1.0, "frequency": 1.0, "repeat": True}, "voltage.repeat is true and volt"),
+    ],
+)
+def test_keys_of_files_are_refused(wave, words):
+    with pytest.raises(fp.SceneError) as refused:
+        fp.Scene(voltage=wave)
+    assert str(refused.value).startswith(words)
+
+
+def test_file_of_the_voltage_is_beside_the_scene(tmp_path):
+    """As that of a load."""
+    write(tmp_path, FILES["no header"])
+    scene = tmp_path / "scene.toml"
+    scene.write_text('voltage = {waveform = "file", file = "scope.csv", probe = 100}\n', encoding="utf-8")
+    assert fp.Scene.load(scene).voltage.peak == pytest.approx(150.0)
+
+
+# -- repeated ----------------------------------------------------------------------------------------------------
+def test_repeated_table_is_that_of_its_periods():
+    """Samples, corners and count of three periods and a half, with a jump where the ends differ."""
+    one, values = [0.0, 0.01, 0.03, 0.04], [0.0, 100.0, 100.0, 50.0]
+    again = Waveform(waveform="file", times=one, voltages=values, repeat=True)
+    samples = again.samples(0.14, 1.0)
+    assert [t for t, u in samples if u == 0.0] == pytest.approx([0.0, 0.04, 0.08, 0.12])
+    assert samples.count((0.04, 50.0)) == samples.count((0.04, 0.0)) == 1
+    assert samples[-1] == pytest.approx((0.14, 100.0))
+    assert again.end == np.inf and again.corners(0.05) == pytest.approx([*one, 0.04, 0.05])
+    assert again.count(0.12, 1.0) == 3 * len(again.samples(0.04, 1.0))
+    closed = Waveform(waveform="file", times=one, voltages=[0.0, 100.0, 100.0, 0.0], repeat=True)
+    times = [t for t, _ in closed.samples(0.12, 1.0)]
+    assert len(set(times)) == len(times), "no jump where the last sample is the first one"
+
+
+def test_repeated_table_is_followed_in_a_load(tmp_path):
+    """For longer than its file; through a circuit with losses as a sine of the same voltages."""
+    t = np.linspace(0, 0.02, 49)
+    values = 150 * np.sin(100 * np.pi * t)
+    file = {"waveform": "file", "times": t.tolist(), "voltages": values.tolist(), "repeat": True}
+    sine = {"waveform": "sine", "amplitude": 150.0, "frequency": 50.0}
+    found = []
+    for voltage in (file, sine):
+        loads = [{"name": "press", "f_ext": 1.0}, {"name": "wave", "duration": 0.05, "voltage": voltage}]
+        wave = followed.loads(fp.Scene(history=loads, electric={"tissue": "dry", "leak": 300.0}))[1].wave
+        found.append(np.interp(np.linspace(0, 0.05, 101), wave.times, wave.voltages))
+    assert_allclose(*found, atol=1.5)
+    once = file | {"repeat": False}
+    with pytest.raises(fp.SceneError, match="has values up to 0.02 s and the load takes 0.05 s"):
+        fp.Scene(history=[{"name": "press", "f_ext": 1.0}, {"name": "wave", "duration": 0.05, "voltage": once}])
+
+
+def test_command_reads_a_file(tmp_path, capsys):
+    """Of a channel and a probe; neither without a file, nor a file beside a voltage."""
+    file = write(tmp_path, "TIME,CH1,CH2\n" + TWO)
+    assert main(["drive", "--file", file, "--column", "CH2", "--probe", "100", "--frequency", "60"]) == 0
+    assert "U: amplitude 75 V, peak to peak 150 V" in capsys.readouterr().out
+    for words, refusal in (
+        (["--probe", "10"], "--probe is given without --file"),
+        (["--file", file, "--set", "voltage=3"], "--set voltage is given and --file too"),
+    ):
+        assert main(["drive", *words]) == 2
+        assert capsys.readouterr().err.startswith(f"fingerpad: {refusal}")
