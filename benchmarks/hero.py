@@ -1,6 +1,6 @@
-"""The picture that opens the README: finger, one ridge with air gap and attraction, friction over voltage.
+"""The pictures of the README: finger, one ridge with gap and attraction, friction over voltage; and the moving run.
 
-environment/run python3 -m benchmarks.hero FOLDER    keep the numbers of a default run's folder, then draw
+environment/run python3 -m benchmarks.hero FOLDER    keep the numbers of a default run's folder, then draw both
 environment/run python3 -m benchmarks.pages hero     draw from docs/hero.json, without a run
 """
 
@@ -19,6 +19,7 @@ from benchmarks.harness import DOCS, keep, kept, made, picture
 from fingerpad.results import style
 from fingerpad.results.arrays import finger_of
 from fingerpad.results.finger_picture import LAYER_COLOURS
+from fingerpad.results.result import Result
 from geometry import tags
 from variational.outline import loops
 
@@ -49,6 +50,7 @@ def main(folder: str) -> None:
     numbers = {"default": default, "finger": outlines, "ridge": along, "friction": friction}
     keep("hero", numbers, made([summary]))
     draw(DOCS)
+    Result.load(folder).animate(DOCS / "animation.webp")
 
 
 def _rows(values: list[Any]) -> list[list[Any]]:

@@ -111,7 +111,8 @@ def in_the_program(kept: Mapping[str, Any]) -> str:
         lines += [f"RIDGES {state}: {', '.join(map(str, ridges))}"]
         lines += [f"INDENTATIONS {state}: {', '.join(f'{-1e3 * each:.4f}e-3' for each in heights)}"]
     every = [*kept["scenes"].values(), *kept["held_out"].values()]
-    for key in (f"{state}_{quantity}" for state, bands in cylinder_errors.KNOWN_ERROR.items() for quantity in bands):
+    known = cylinder_errors.REGIONS[0].errors
+    for key in (f"{state}_{quantity}" for state, bands in known.items() for quantity in bands):
         off = [abs(each) for found in every if (each := _error(found, key)) is not None]
         lines += [f"KNOWN_ERROR {key}: {np.ceil(10 * max(off) - _ROUNDOFF) / 1e3:.3f}"]
     return "\n".join(lines)

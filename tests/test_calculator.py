@@ -88,14 +88,15 @@ def by_python(values: dict[str, float]) -> dict[str, float] | str:
 
 
 def by_script(program: str, folder: Path) -> Any:
-    """Return what a program prints beside the closed form of the page; skip the test without an interpreter."""
+    """Return what a program prints beside the closed form of the page; in a browser where there is no interpreter."""
     interpreter = shutil.which("qjs") or shutil.which("node")
+    parts = map(fields.part, fields.SCRIPTS[: fields.SCRIPTS.index("plot.js")])
+    text = "\n".join([f"const data = {json.dumps(fields.data())};", *parts, program])
     if not interpreter:
-        pytest.skip("neither qjs nor node is installed")
-    folder_of = Path(fields.__file__).parent
-    closed_form, drive = ((folder_of / name).read_text(encoding="utf-8") for name in ("closed_form.js", "drive.js"))
+        begin, end = "const lines = []; console.log = (line) => lines.push(line);", "return JSON.parse(lines.join(''));"
+        return asked("<!DOCTYPE html><title>no page</title>", "\n".join([begin, text, end]), folder)
     script = folder / "script.js"
-    script.write_text(f"const data = {json.dumps(fields.data())};\n{closed_form}\n{drive}\n{program}", encoding="utf-8")
+    script.write_text(text, encoding="utf-8")
     done = subprocess.run([interpreter, str(script)], capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stdout + done.stderr
     return json.loads(done.stdout)
@@ -270,8 +271,35 @@ def test_command_writes_the_page(tmp_path, capsys, whole):
     assert main(["calculator", "--out", str(tmp_path / "none" / "mine.html")]) == 2
 
 
+def test_errors_of_the_script_are_those_of_python(tmp_path):
+    """And the keys for which none is known, at the ends of all ranges, beyond them, and for each field."""
+    some = [values for values in sets() if "length" not in values]
+    for key, (low, high) in cylinder_errors.REGIONS[-1].ranges.items():
+        per = FIELDS[key].per
+        some += [{key: end * per} for end in (low, high, low * 0.999, high * 1.001) if end]
+    some = [values for values in some if not isinstance(by_python(values), str)]
+    fixed = in_si({key: field.value for key, field in FIELDS.items()})
+    asked_for = [fixed | in_si(values) for values in some]
+    program = (
+        f"const asked = {json.dumps(asked_for)};\nconsole.log(JSON.stringify(asked.map((values) => "
+        "[modelErrors.of(values, closedForm.solve(values)), modelErrors.outside(values)])));"
+    )
+    inside = 0
+    for values, (error, outside) in zip(some, by_script(program, tmp_path), strict=True):
+        data: dict[str, Any] = {}
+        for key, value in in_si(values).items():
+            put(data, key, value)
+        found = cylinders.solve(Scene(**data))
+        expected = found.record["model_error"].get("full_slip", {})
+        assert {each["key"] for each in outside} == {each.key for each in cylinder_errors.outside(found.scene)}, values
+        assert (error or {}).keys() - {"f_t"} == expected.keys(), values
+        assert {key: error[key] for key in expected} == pytest.approx(expected, rel=SAME), values
+        inside += bool(error)
+    assert 0 < inside < len(some)
+
+
 # -- The calculator's ±, band and solid line are where full runs are, and nowhere else ---
-BANDS = cylinder_errors.KNOWN_ERROR["full_slip"]
+BANDS = cylinder_errors.REGIONS[0].errors["full_slip"]
 # Sets values into fields; returns what the page shows of its error.
 SHOWN = """
 function shown(values) {

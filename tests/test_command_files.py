@@ -56,7 +56,7 @@ def test_own_file_is_replaced(capsys, tmp_path):
     table.touch()
     for voltage in ("100", "200"):
         assert main(["estimate", "--voltage", voltage, "--csv", str(table)]) == 0
-        assert f"75.0,{voltage}.0," in table.read_text()
+        assert f"0.5427,{voltage}.0," in table.read_text()
     page.write_text((files("fingerpad.calculator") / "page.html").read_text(encoding="utf-8").partition("{{")[0])
     assert main(["calculator", "--out", str(page)]) == 0 and "</html>" in page.read_text(encoding="utf-8")
 
@@ -118,7 +118,7 @@ def test_loads_that_were_never_tried_are_named(tmp_path, capsys):
     assert main([*argv, "--set", "voltage=5000"]) == 0
     text = capsys.readouterr().out
     assert "can be run" not in text
-    assert "charge has 75 N/m and 5000 V, and tried were 5 to 150 N/m and 0 to 200 V" in text
+    assert "charge has 75 N/m and 5000 V, and tried were f_ext 5 to 150 N/m, voltage 0 to 200 V" in text
     assert main(argv) == 0
     assert capsys.readouterr().out.endswith("The scene can be run.\n")
 

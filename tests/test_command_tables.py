@@ -4,6 +4,7 @@ import shlex
 
 import pytest
 
+import fingerpad as fp
 from fingerpad.cli import main, ranges, roughness, sweep
 from fingerpad.reduced import cylinders
 from fingerpad.runs.sweep import sweep as run_sweep
@@ -18,19 +19,40 @@ def test_estimate_is_the_closed_form(tmp_path, capsys):
     file = tmp_path / "mu.csv"
     assert main(["estimate", "--f-ext", "50,75", "--voltage", "0:100:2", "--csv", str(file)]) == 0
     out = capsys.readouterr().out
-    assert "Known error: µ_app and f_T within 2.4 %, f_el within 5.0 %, L_R within 6.3 % of 44" in out
+    assert "Known error of the section, at most: µ_app and f_T 2.4 %, f_el 5.0 %, L_R 6.3 %." in out
     rows = rows_of(tmp_path, "mu")
-    assert [(float(r["f_ext"]), float(r["voltage"])) for r in rows] == [(50, 0), (50, 100), (75, 0), (75, 100)]
+    loads = [(float(r["f_ext_of_section"]), float(r["voltage"])) for r in rows]
+    assert loads == [(50, 0), (50, 100), (75, 0), (75, 100)]
     one = cylinders.solve(from_data({"f_ext": 75.0, "voltage": 100.0})).full_slip
-    assert float(rows[-1]["mu_app"]) == one.mu_app
-    assert float(rows[0]["mu_app"]) == pytest.approx(0.25, rel=1e-12)
+    assert float(rows[-1]["mu_app_of_section"]) == one.mu_app
+    assert float(rows[0]["mu_app_of_section"]) == pytest.approx(0.25, rel=1e-12)
+
+
+def test_estimate_has_the_whole_finger_first(tmp_path, capsys):
+    """With newtons and without: the same finger, whose centre bears 75 N/m without voltage."""
+    assert main(["estimate", "--voltage", "0,200", "--csv", str(tmp_path / "one.csv")]) == 0
+    assert capsys.readouterr().out.startswith("Friction of the whole finger at full slip")
+    _, charged = rows_of(tmp_path, "one")
+    assert main(["estimate", "--force", charged["force"], "--voltage", "200", "--csv", str(tmp_path / "two.csv")]) == 0
+    (again,) = rows_of(tmp_path, "two")
+    assert charged["mu_app"] == again["mu_app"] and float(charged["mu_app"]) > float(charged["mu_app_of_section"])
+    finger = fp.run(Scene(force=float(charged["force"])), model="cylinders").finger
+    assert float(again["mu_app"]) == pytest.approx(finger.states["full_slip"].mu_app, rel=1e-12)
+
+
+def test_estimate_without_a_whole_finger_has_the_section(capsys):
+    """Under 4 kN/m at its centre the contact is longer than the finger."""
+    assert main(["estimate", "--f-ext", "4000"]) == 0
+    text = capsys.readouterr().out
+    assert text.startswith("Friction of the section at full slip")
+    assert "At 4000 N/m there is no whole finger: the finger ends at" in text
 
 
 def test_estimate_says_where_its_error_is_not_known(capsys):
-    assert main(["estimate", "--f-ext", "75,500", "--set", "friction=0.3"]) == 0
+    assert main(["estimate", "--f-ext", "75,5000", "--set", "roughness.gamma=0.6"]) == 0
     text = capsys.readouterr().out
-    assert "1 of 2 points are outside of that" in text
-    assert "Those runs have the default friction; here the error is not known." in text
+    assert "At 1 of 2 points the error is not known: f_ext is known for" in text
+    assert "Here the error is not known: roughness.gamma is known for 0.5." in text
 
 
 @pytest.mark.parametrize(

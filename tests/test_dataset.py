@@ -5,7 +5,6 @@ import json
 import shutil
 from dataclasses import replace
 from pathlib import Path
-from xml.etree import ElementTree
 
 import numpy as np
 import pytest
@@ -141,7 +140,7 @@ def test_skin_that_was_read_back_is_that_of_the_run(folder, data):
 @pytest.mark.parametrize("content", [None, "half"])
 def test_skin_is_left_out_where_the_dataset_is_not_whole(folder, tmp_path, content):
     """All other numbers are those of the tables."""
-    copy = Path(shutil.copytree(folder, tmp_path / "run", ignore=shutil.ignore_patterns("*.bp", "*.png", "*.npz")))
+    copy = Path(shutil.copytree(folder, tmp_path / "run", ignore=shutil.ignore_patterns("*.vtu", "*.png", "*.npz")))
     whole = (copy / "result.nc").read_bytes()
     (copy / "result.nc").unlink()
     if content is not None:
@@ -150,28 +149,6 @@ def test_skin_is_left_out_where_the_dataset_is_not_whole(folder, tmp_path, conte
     assert all(state.skin is None and state.ridges is None for state in again.named.values())
     assert [state.row() for state in again.steps] == [state.row() for state in Result.load(folder).steps]
     assert again.charged.contact_length == Result.load(folder).charged.contact_length
-
-
-# -- fields ----------------------------------------------------------------------------------------------
-@pytest.mark.parametrize(
-    ("name", "components", "unit"), [("displacement", 3, "m"), ("stress", 9, "Pa"), ("sed", 1, "J/m^3")]
-)
-def test_fields_are_what_a_reader_of_vtx_asks_for(folder, data, monkeypatch, name, components, unit):
-    """The schema names variables that are there; a vector has three components, to warp by; times have their loads."""
-    monkeypatch.setenv("ADIOS2_ALWAYS_USE_MPI", "1")
-    adios2 = pytest.importorskip("adios2")
-    rows = [row for row in rows_of(folder, "fields") if row["variable"] == name]
-    assert [row["load"] for row in rows] == list(data["load"].values)
-    assert {(row["file"], row["unit"]) for row in rows} == {(f"{name}.bp", unit)}
-    with adios2.FileReader(str(folder / f"{name}.bp")) as file:
-        schema = ElementTree.fromstring(file.available_attributes()["vtk.xml"]["Value"].strip('"').replace("\\n", "\n"))
-        arrays = {
-            array.attrib["Name"]: (array.text or array.attrib["Name"]).strip() for array in schema.iter("DataArray")
-        }
-        times = file.read(arrays["TIME"], step_selection=[0, file.num_steps()])
-        assert set(arrays.values()) <= set(file.available_variables()) and arrays[name] == name
-        assert file.read(name, block_id=0, step_selection=[0, 1]).shape[1] == components
-    assert [float(row["time"]) for row in rows] == list(times) == [float(k) for k in data["load_last_step"]]
 
 
 # -- sweeps ----------------------------------------------------------------------------------------------

@@ -218,7 +218,7 @@ def within(path: Path, links: set[str]) -> Iterator[tuple[Path, str]]:
 def test_site(site):
     """Built whole and without a warning; links and anchors exist; nothing comes from a network. One build for all."""
     pages = {path: Page(path.read_text(encoding="utf-8")) for path in site.rglob("*.html")}
-    expected = {site / page.with_suffix(".html") for page in SITE if page != Path("docs/README.md")}
+    expected = {site / page.with_suffix(".html") for page in SITE if page != Path("docs/site/contents.md")}
     expected |= {site / "demos" / f"{demo.stem}.html" for demo in (ROOT / "demos").glob("*.py")}
     assert expected - set(pages) == set()
     assert broken(site, pages) == set()
@@ -228,6 +228,12 @@ def test_site(site):
     model = site / "docs" / "model.html"
     source = text(Path("docs/model.md"))
     assert pages[model].formulas == source.count("$$") // 2 > 5  # as MathML, without a script
+    assert (site / "_static" / "math.woff").read_bytes()[:4] == b"wOFF"
+    questions = text("docs/README.md").count("? | ")
+    assert (site / "docs" / "README.html").read_text(encoding="utf-8").count("?</p></td>") == questions > 20
+    index = json.loads((site / "searchindex.js").read_text(encoding="utf-8").partition("(")[2].rpartition(")")[0])
+    first = {word: index["docnames"][pages[0][0]] for word, pages in index["indexentries"].items()}
+    assert first | {"coating": "docs/scene", "viscous": "docs/viscosity", "windows": "docs/command"} == first
     places = set(re.findall(r"`([a-z_.]+:\w+)`", source))
     linked = set(LINK.findall(model.read_text(encoding="utf-8")))
     assert len(places) > 25 and places - linked == set()  # to the reference, which leads to the source

@@ -147,7 +147,7 @@ def test_what_one_rank_raises_ends_all(tmp_path, rank):
 
 # -- a full disk -------------------------------------------------------------------------------------------
 def test_full_disk(tmp_path):
-    """ADIOS2 cannot write the first load's fields; a limit of file sizes stands for the disk."""
+    """The first checkpoint finds no room; a limit of file sizes stands for the disk."""
     code = "import resource, runpy, sys\nimport fingerpad.startup\n"
     code += "resource.setrlimit(resource.RLIMIT_FSIZE, (100_000, 100_000))\n"
     code += "runpy.run_module('fingerpad', run_name='__main__')"

@@ -112,7 +112,13 @@ LINES = {"lines": np.array([[0, 2, 1]]), "beside": np.array([[0, -1]])}
 
 @pytest.mark.parametrize(
     "changes",
-    [{"triangles": np.array([[0, 1, 3]])}, {"sed": np.zeros(2)}, {"u": np.zeros(3)}, {"x": np.array(["a"] * 3)}],
+    [
+        {"triangles": np.array([[0, 1, 3]])},
+        {"sed": np.zeros(2)},
+        {"u": np.zeros(3)},
+        {"x": np.array(["a"] * 3)},
+        {"stress": np.zeros((1, 3))},
+    ],
 )
 def test_arrays_of_no_finger_are_none(tmp_path, changes):
     np.savez(tmp_path / "whole.npz", **FINGER)
@@ -174,7 +180,7 @@ def test_lock_keeps_what_it_opens(out, victim):
     assert (out / "mine").read_text() == "mine"
 
 
-@pytest.mark.parametrize("name", ["steps.csv", "run.log", "finger_press.png", "scene.json", "checkpoint", "sed.bp"])
+@pytest.mark.parametrize("name", ["steps.csv", "run.log", "finger_press.png", "scene.json", "checkpoint", "fields.pvd"])
 @pytest.mark.parametrize("target", ["victim", "none", "."])
 def test_link_under_the_name_of_a_result_is_refused(out, victim, name, target):
     (out / name).symlink_to(victim / target)
@@ -217,7 +223,7 @@ def test_writers_take_the_place_of_a_link(out, victim):
     replace(out / "a.html", "page")
     Checkpoint(out, {}, {}).write({"x": np.zeros(1)})
     assert not any((out / name).is_symlink() for name in ("a.csv", "a.png", "a.html", "checkpoint"))
-    assert json.loads((out / "checkpoint" / "head.json").read_text())["format"] == 1
+    assert json.loads((out / "checkpoint" / "head.json").read_text())["format"] == 2
 
 
 def test_mesh_of_a_check_is_written_through_no_link(out, victim):

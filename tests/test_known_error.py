@@ -14,12 +14,13 @@ def test_known_error_is_that_of_the_kept_runs():
     """The figures printed are the largest differences from the full runs in docs/models.json, rounded up to 0.1 %."""
     numbers = kept("models.json")
     runs = numbers["scenes"] | numbers["held_out"]
-    assert len(runs) == cylinder_errors.KNOWN_RUNS and len(numbers["held_out"]) == 4
+    region = cylinder_errors.REGIONS[0]
+    assert len(runs) == region.runs and len(numbers["held_out"]) == 4
     points = [tuple(float(part.split()[0]) for part in name.split(",")) for name in runs]
-    assert cylinder_errors.KNOWN_FORCES == (min(f for f, _ in points), max(f for f, _ in points))
-    assert cylinder_errors.KNOWN_VOLTAGES == (min(u for _, u in points), max(u for _, u in points))
-    assert set(cylinder_errors.KNOWN_ERROR) == {"full_slip", "charged"}
-    for state, bands in cylinder_errors.KNOWN_ERROR.items():
+    ends = [(min(each), max(each)) for each in zip(*points, strict=True)]
+    assert region.ranges == dict(zip(("f_ext", "voltage"), ends, strict=True))
+    assert set(region.errors) == {"full_slip", "charged"}
+    for state, bands in region.errors.items():
         for key, largest in bands.items():
             name = f"{state}_{key}"
             pairs = [(each["cylinders"]["summary"][name], each["full"]["summary"][name]) for each in runs.values()]
@@ -29,11 +30,23 @@ def test_known_error_is_that_of_the_kept_runs():
 
 def test_band_is_named_where_the_runs_are():
     """Every quantity that has one, normal contact too."""
-    words = cylinder_errors.in_words(cylinder_errors.errors(from_data({"f_ext": 42.0, "voltage": -120.0})))
-    for bands in cylinder_errors.KNOWN_ERROR.values():
+    scene = from_data({"f_ext": 42.0, "voltage": -120.0})
+    words, region = cylinder_errors.in_words(cylinder_errors.errors(scene)), cylinder_errors.find(scene)
+    assert region is not None
+    for bands in region.errors.values():
         for error in bands.values():
             assert f" {100 * error:.1f} %" in words
-    assert "44 full runs at 5 to 150 N/m and 0 to 200 V" in words and "in charged normal contact" in words
+    assert "in charged normal contact" in words
+    assert cylinder_errors.runs(region) == "44 full runs at f_ext 5 to 150 N/m, voltage 0 to 200 V"
+
+
+def test_ends_of_a_range_belong_to_it():
+    """The next number beyond roundoff does not, and the caution names the key, its value and the range."""
+    for key, end, beyond in (("f_ext", 5.0, 4.999), ("f_ext", 150.0, 150.01), ("voltage", -200.0, -200.1)):
+        assert cylinder_errors.errors(from_data({key: end})) and not cylinder_errors.outside(from_data({key: end}))
+        (found,) = cylinder_errors.outside(from_data({key: beyond}))
+        assert found.key == key and found.value.startswith(f"{beyond:g} ")
+        assert str(found) in cylinder_errors.cautions(from_data({key: beyond}))[0]
 
 
 @pytest.mark.parametrize(
@@ -54,6 +67,8 @@ def test_band_is_named_where_the_runs_are():
 def test_no_band_where_no_run_is(scene):
     """Beyond the loads, and with anything else than those runs have; a caution names it."""
     assert cylinder_errors.errors(scene) == {} and len(cylinder_errors.cautions(scene)) == 1
+    (key,) = (each.key for each in cylinder_errors.outside(scene) if not each.key.startswith("friction."))
+    assert scene.parameters()[key.partition(".")[0]] != Scene().parameters()[key.partition(".")[0]]
 
 
 # -- the kept runs ---------------------------------------------------------------------------------------------------
@@ -75,7 +90,7 @@ def test_program_of_the_page_prints_what_the_model_has():
     for state, lengths in cylinders.LENGTHS.items():
         assert f"LENGTHS {state}: {', '.join(f'{1e3 * each:.4f}e-3' for each in lengths)}" in lines
         assert f"RIDGES {state}: {', '.join(map(str, cylinders.RIDGES[state]))}" in lines
-    for state, bands in cylinder_errors.KNOWN_ERROR.items():
+    for state, bands in cylinder_errors.REGIONS[0].errors.items():
         assert all(f"KNOWN_ERROR {state}_{key}: {each:.3f}" in lines for key, each in bands.items())
 
 

@@ -1,6 +1,4 @@
-"""Fields, cell means and receptor sites against closed forms under homogeneous deformation."""
-
-from pathlib import Path
+"""Cell means and receptor sites against closed forms under homogeneous deformation."""
 
 import dolfinx
 import numpy as np
@@ -14,9 +12,9 @@ from variational.contact.penalty import Penalty
 from variational.materials import ogden, saint_venant
 from variational.materials.ogden import Ogden
 from variational.materials.saint_venant import SaintVenant
-from variational.output import Cellwise, Fields, Receptors, sed_per_cell
+from variational.output import Cellwise, Receptors, sed_per_cell
 from variational.problem import Interface, Problem
-from variational.snapshot import gather_mesh
+from variational.snapshot import Lines
 from variational.surface import Surface
 
 pytestmark = pytest.mark.mpi
@@ -144,7 +142,7 @@ def test_gathered_mesh(problem):
     Tolerance: roundoff of a millimetre and of its square.
     """
     deform(problem, F_GIVEN)
-    snapshot = gather_mesh(problem)
+    snapshot = Lines(problem).snapshot(problem)
     assert (snapshot is None) == (problem.mesh.comm.rank > 0)
     if snapshot is None:
         return
@@ -154,6 +152,12 @@ def test_gathered_mesh(problem):
     assert np.abs(middle - (begin + end) / 2).max() < 1e-17
     assert snapshot.triangles.shape == (72, 3)
     assert np.abs(snapshot.x + snapshot.u - snapshot.x @ F_GIVEN.T).max() < 1e-17
+    strain = (F_GIVEN.T @ F_GIVEN - np.eye(2)) / 2
+    assert snapshot.strain == pytest.approx(np.tile(strain[[0, 1, 0], [0, 1, 1]], (72, 1)), abs=1e-13)
+    for tag in SOLIDS:  # 5e-9 is of the central differences
+        sigma = cauchy_3d(tag, F_GIVEN)
+        error = snapshot.stress[snapshot.tag == tag] - sigma[[0, 1, 2, 0], [0, 1, 2, 1]]
+        assert np.abs(error).max() < 5e-9 * np.abs(sigma).max()
     corners = snapshot.x[snapshot.triangles]
     a, b = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
     assert np.abs(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]).sum() / 2 == pytest.approx(1e-6, rel=1e-12, abs=0)
@@ -200,33 +204,3 @@ def test_receptor_outside(problem):
         Receptors(problem, np.array([[0.5e-3, 0.5e-3], [2e-3, 0.5e-3]]))
     with pytest.raises(ValueError, match="no receptor site"):
         Receptors(problem, np.zeros((0, 2)))
-
-
-def test_files(problem, tmp_path, capfd):
-    """Three files with two steps each, and not a word on the terminal."""
-    folder = Path(problem.mesh.comm.bcast(str(tmp_path))) / "new" / "fields"
-    fields = Fields(problem, folder)
-    for time, F in enumerate((np.eye(2), F_GIVEN)):
-        deform(problem, F)
-        fields.write(float(time))
-    fields.close()
-    assert {path.name for path in folder.iterdir()} >= {"displacement.bp", "stress.bp", "sed.bp"}
-    assert all((folder / name / "md.idx").stat().st_size > 0 for name in ("displacement.bp", "stress.bp", "sed.bp"))
-    assert capfd.readouterr() == ("", "")
-
-
-def test_written_values(tmp_path):
-    """The function handed to the writer has both solids' nine components in every cell (the file is not read back).
-
-    Tolerance: that of the central differences.
-    """
-    problem = block(MPI.COMM_SELF)
-    deform(problem, F_GIVEN)
-    fields = Fields(problem, tmp_path)
-    fields.write(0.0)
-    fields.close()
-    found = np.asarray(fields.stress.x.array).reshape(-1, 9)
-    for tag in SOLIDS:
-        expected = cauchy_3d(tag, F_GIVEN).ravel()
-        dofs = fields.stress.function_space.dofmap.list[problem.cell_tags.find(tag)]
-        assert np.abs(found[dofs] - expected).max() < 5e-9 * np.abs(expected).max()

@@ -57,7 +57,7 @@ def test_pypi(project):
     found = {name: set(_split(listed)) for name, listed in extras.items()}
     # gmsh is on PyPI under its own name; the other finite elements are in the wheel or come with it.
     assert found.pop("pip") == _column(3, "pip") | {"gmsh"}
-    assert found == {name: _column(3, name) for name in ("fem", "test", "docs", "topography")}
+    assert found == {name: _column(3, name) for name in ("fem", "test", "docs", "topography", "pyvista")}
 
 
 def test_wheel_of_dolfinx_is_pinned(project):
@@ -116,7 +116,8 @@ def test_wheel_runs(wheel, tmp_path):
 
 # -- environment/lint, docs, wheels and venv -------------------------------------------------------------------------
 RUFF = "0.17.6"
-SURFACE = re.search(r"^version=(\S+)$", (ROOT / "environment/wheels").read_text(), re.MULTILINE)[1]
+WANTED = re.search(r"^wanted=\((.*)\)$", (ROOT / "environment/wheels").read_text(), re.MULTILINE)[1].lower().split()
+WHEELS = [f"{name.replace('==', '-')}.dist-info" for name in WANTED]
 PACKAGES = "local/lib/python3.13/dist-packages"
 # Names the root's folder of packages, or installs as pip does, from nowhere; other commands are told and not run.
 ENTER = f"""#!/bin/bash
@@ -125,7 +126,7 @@ words=("$@")
 while [ $# -gt 0 ] && [ "$1" != --target ] && [ "$1" != --prefix ]; do shift; done
 [ $# -gt 0 ] || {{ echo "run ${{words[*]}}"; exit; }}
 [ -z "$OFFLINE" ] || {{ echo "no network"; exit 1; }}
-mkdir -p "$2/bin" "$2/{PACKAGES}/surfacetopography-{SURFACE}.dist-info"
+mkdir -p "$2/bin" {" ".join(f'"$2/{PACKAGES}/{wheel}"' for wheel in WHEELS)}
 echo "${{@:3}}" >"$2/wanted"
 cp "$RUFF" "$2/bin/ruff"
 """
@@ -206,7 +207,7 @@ def test_another_version_of_a_wheel_is_replaced(tool, tmp_path):
     place = tmp_path / "cache" / "root" / "usr" / PACKAGES
     (place / "surfacetopography-1.0.0.dist-info").mkdir()
     tool("wheels")
-    assert [path.name for path in place.iterdir()] == [f"surfacetopography-{SURFACE}.dist-info"]
+    assert sorted(path.name for path in place.iterdir()) == sorted(WHEELS)
 
 
 @pytest.mark.skipif("FINGERPAD_ROOT" not in os.environ, reason="not in the private root")

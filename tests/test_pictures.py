@@ -321,7 +321,7 @@ def test_picture_is_that_of_the_run(ran, kind):
 @pytest.mark.slow
 @pytest.mark.parametrize(("kind", "missing"), [("surface", "surface.npz"), ("finger", "finger_*.npz")])
 def test_picture_whose_arrays_are_gone_is_refused(ran, tmp_path, kind, missing):
-    bare = shutil.copytree(ran.folder, tmp_path / "bare", ignore=shutil.ignore_patterns("*.npz", "*.bp"))
+    bare = shutil.copytree(ran.folder, tmp_path / "bare", ignore=shutil.ignore_patterns("*.npz", "*.vtu"))
     read = fp.Result.load(bare)
     assert read.plot("history").axes
     with pytest.raises(ValueError, match=re.escape(f"its folder has no {missing}")):
@@ -331,7 +331,7 @@ def test_picture_whose_arrays_are_gone_is_refused(ran, tmp_path, kind, missing):
 @pytest.mark.slow
 def test_folder_is_kept_and_a_damaged_file_is_none(ran, tmp_path, monkeypatch):
     """Where the program goes to another folder; and where a file was cut short."""
-    shutil.copytree(ran.folder, tmp_path / "a", ignore=shutil.ignore_patterns("*.bp"))
+    shutil.copytree(ran.folder, tmp_path / "a", ignore=shutil.ignore_patterns("*.vtu"))
     (tmp_path / "b").mkdir()
     monkeypatch.chdir(tmp_path)
     read = fp.Result.load("a")

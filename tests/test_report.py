@@ -7,12 +7,17 @@ import shutil
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
+from PIL import Image
 
 from fingerpad.cli import main
 from fingerpad.reduced.registry import find
 from fingerpad.report import run_page, trust
 from fingerpad.report.write import NAME, write
+from fingerpad.results import motion
+from fingerpad.results.animation import ENDINGS
+from fingerpad.results.arrays import skin_of
 from fingerpad.results.quantities import cell
 from fingerpad.results.result import Result
 from fingerpad.runs.context import RunContext
@@ -30,7 +35,8 @@ for (let k = 0; k <= Number(slider.max); k++) {
   slider.value = String(k);
   slider.dispatchEvent(new Event("input"));
   const curve = document.querySelectorAll("#skin .scatterlayer .trace path.js-line")[0];
-  seen.push([document.getElementById("about").textContent, curve ? curve.getAttribute("d") : ""]);
+  const about = document.getElementById("about").textContent.replaceAll("\u00a0", " ");
+  seen.push([about, curve ? curve.getAttribute("d") : ""]);
 }
 const ridges = document.getElementById("ridge"), values = [];
 for (const option of ridges.options) {
@@ -47,6 +53,22 @@ const gaps = ["y", "y2"].map((name) => {
 });
 const root = document.documentElement;
 return { seen, values, gaps, charts, fetched, wide: root.scrollWidth, width: root.clientWidth };
+"""
+FIRST = """
+const box = (element) => element.getBoundingClientRect();
+function lines(cell) {
+  const all = document.createRange();
+  all.selectNodeContents(cell);
+  return new Set([...all.getClientRects()].map((r) => r.bottom)).size;
+}
+const parts = [...document.querySelectorAll("h1, #state, #skin, h2")];
+const order = parts.map((e) => e.tagName === "H2" ? "h2" : e.id || "h1");
+const values = [...document.querySelectorAll(".numbers td")];
+return { order: order.slice(0, 4), slider: box(document.getElementById("state")).bottom,
+  chart: box(document.querySelector("#body svg")).bottom,
+  broken: values.filter((cell) => lines(cell) > 1).map((cell) => cell.textContent), values: values.length,
+  right: Math.max(...[...document.querySelectorAll("section")].map((e) => box(e).right)),
+  pictures: [...document.querySelectorAll("#pictures figcaption")].map((e) => e.textContent) };
 """
 TEXT = """
 const hidden = [...document.querySelectorAll(".needs-js")].every((e) => getComputedStyle(e).display === "none");
@@ -70,7 +92,7 @@ def page(folder) -> str:
 @pytest.fixture
 def copy(folder, tmp_path) -> Path:
     """A copy of the run's folder, to be spoilt."""
-    return Path(shutil.copytree(folder, tmp_path / "copy", ignore=shutil.ignore_patterns("*.bp", "*.png")))
+    return Path(shutil.copytree(folder, tmp_path / "copy", ignore=shutil.ignore_patterns("*.vtu", "*.png")))
 
 
 # -- a run -------------------------------------------------------------------------------------------------
@@ -95,12 +117,76 @@ def test_browser_opens_it_and_steps_through_the_states(page, tmp_path, size):
     assert all(gap > 5 for gap in found["gaps"]), "the title of an axis touches its numbers"
 
 
+@pytest.mark.parametrize("size", [*SIZES.values(), (1920, 1080)])
+def test_slider_is_in_the_first_screen(page, tmp_path, size):
+    """Beside or below the finding, with the finger; sections fill the window, and no value is broken into lines."""
+    width, height = size
+    found = asked(page, FIRST, tmp_path, width=width, height=height)
+    assert found["order"] == ["h1", "state", "skin", "h2"]
+    assert max(found["slider"], found["chart"]) < height
+    assert found["broken"] == [] and found["values"] > 30
+    assert found["right"] > width - 40
+
+
+def test_pictures_are_in_the_order_of_the_loads(page, folder, tmp_path):
+    """That of the final mesh in the place of the load whose end it is."""
+    found = asked(page, FIRST, tmp_path)["pictures"]
+    fingers = [words.removeprefix("Deformed finger: ") for words in found if words.startswith("Deformed")]
+    assert fingers == ["uncharged normal contact", "charged normal contact", "full slip"]
+    assert found[: len(fingers)] == [f"Deformed finger: {words}" for words in fingers]
+    assert {f"finger_{words.replace(' ', '_')}.png" for words in fingers} <= {file.name for file in folder.iterdir()}
+
+
 def test_numbers_stand_there_without_scripts(page, folder, tmp_path):
     result = Result.load(folder)
     found = asked(page, TEXT, tmp_path, width=390, height=844, scripts=False)
     assert f"{result.full_slip.f_electrostatic:.3f}" in found["text"]
     assert found["hidden"], "controls that do nothing are shown"
     assert found["wide"] <= 390
+
+
+# -- animation ---------------------------------------------------------------------------------------------
+@pytest.mark.parametrize("ending", ENDINGS)
+def test_animation_has_a_frame_for_each_state(folder, tmp_path, capsys, ending):
+    """And some between states, each load at least as many as it is said to have; the last frame stands longest."""
+    file = tmp_path / f"run{ending}"
+    assert main(["animate", str(folder), "--out", str(file)]) == 0 and str(file) in capsys.readouterr().out
+    with Image.open(file) as shown:
+        assert shown.size == (810, 540) and shown.n_frames > len(Result.load(folder).steps)
+        first = shown.convert("RGB").tobytes()
+        shown.seek(shown.n_frames - 1)
+        assert shown.convert("RGB").tobytes() != first
+    assert file.stat().st_size < 3e6
+
+
+def test_motion_ends_in_the_last_state(folder):
+    """Its skin is that of the last step, in single precision, and its places are the reference plus displacements."""
+    kept, state = motion.read(folder), Result.load(folder).steps[-1]
+    assert kept.step[-1] == state.step and len(kept.step) == len(Result.load(folder).steps)
+    xy, skin = kept.between(len(kept.step) - 1, 0.0)
+    last = skin_of(folder / "surface_slide.npz", "end")
+    assert skin == pytest.approx(np.stack([last[name] for name in motion.ROWS]), rel=1e-6, abs=1e-9, nan_ok=True)
+    assert xy.min(axis=0)[1] == pytest.approx(0.0, abs=1e-6), "the skin is not on the screen"
+
+
+def test_long_run_keeps_some_of_its_states():
+    """The first and the last are among them, and there are never more than a few hundred."""
+    kept: dict[int, motion.Moved] = {}
+    for step in range(1, 2001):
+        kept[step] = {}
+        motion.thin(kept)
+        assert list(kept) == sorted(kept) and step in kept and len(kept) <= 160
+    assert len(kept) > 50
+
+
+@pytest.mark.parametrize(
+    ("name", "words"), [("a.mp4", "must end with one of .webp, .gif"), ("a.webp", "has no motion.npz")]
+)
+def test_animation_that_cannot_be_made_is_refused(copy, capsys, name, words):
+    (copy / motion.FILE).unlink()
+    assert main(["animate", str(copy), "--out", str(copy / name)]) == 2
+    said = capsys.readouterr().err
+    assert words in said and said.count("\n") == 1
 
 
 # -- trust -------------------------------------------------------------------------------------------------
@@ -145,8 +231,8 @@ def test_full_slip_without_a_coefficient_has_its_force(folder):
     found = replace(result, full_slip=slip)
     page = run_page.page(found)
     text = re.sub(r"<script.*?</script>", "", page, flags=re.DOTALL)
-    assert f"f<sub>T</sub> = {cell('f_t', slip.f_t, slip.error.f_t)} N/m" in text
-    assert "would change f_T at full slip by" in text and not re.search(r"\bnan\b", text)
+    assert f"f<sub>T</sub> = {cell('f_t', slip.f_t, slip.error.f_t)} N/m" in text.replace("\u00a0", " ")
+    assert "would change f<sub>T</sub> at full slip by" in text and not re.search(r"\bnan\b", text)
     told = [each.what for each in trust.findings(found)]
     assert "errors are not estimated" not in told and {"mesh", "the mesh is coarse"} & set(told)
 
@@ -171,7 +257,7 @@ def test_contact_lengths_of_the_ridges_add_up(page):
     frames = json.loads(found)["finger"]["frames"]
     assert len(frames) >= 3
     for frame in frames:
-        whole = float(re.search(r"L_R = ([0-9.]+) mm", frame["about"])[1])
+        whole = float(re.search(r"L<sub>R</sub>\s=\s([0-9.]+)\smm", frame["about"])[1])
         assert sum(ridge["length"] for ridge in frame["skin"]) == pytest.approx(whole, abs=1.5e-3)
 
 

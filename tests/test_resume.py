@@ -179,7 +179,7 @@ def test_refusals(cut_short, tmp_path_factory, capsys):
     shutil.copytree(cut_short / "checkpoint", other / "checkpoint")
     refused("is of another scene", other, friction=0.3)
     for old, new, match in (
-        ('"format": 1', '"format": 0', "another format"),
+        ('"format": 2', '"format": 0', "another format"),
         ('"source": "', '"source": "x', "source"),
     ):
         head.write_text(text.replace(old, new), encoding="utf-8")

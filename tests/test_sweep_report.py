@@ -49,9 +49,9 @@ def test_browser_opens_a_sweep(table, tmp_path, size):
 
 
 def test_failed_points_are_listed_with_their_reason(table):
-    page = (table / NAME).read_text(encoding="utf-8")
+    page = (table / NAME).read_text(encoding="utf-8").replace("\u00a0", " ")
     assert "1 of 6 points failed" in page
-    assert "voltage = 200, f_ext = 75</th><td>no equilibrium at part 0.31 of &lt;slide&gt;" in page
+    assert "voltage = 200, f<sub>ext</sub> = 75</th><td>no equilibrium at part 0.31 of &lt;slide&gt;" in page
 
 
 @pytest.mark.parametrize(

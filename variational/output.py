@@ -1,16 +1,10 @@
-"""What is evaluated inside of the body: fields for ParaView, mean energy densities, densities at receptor sites.
+"""What is evaluated inside of the body: means of each cell, and energy densities at receptor sites.
 
-ParaView shows the deformed body with *Warp By Vector* on ``displacement.bp``. Stress and energy density jump from
-layer to layer; they are sampled in the corners of each cell by itself and stay discontinuous.
+Stress, strain and energy density jump from layer to layer, so that each cell has its own.
 """
 
-import contextlib
-import ctypes
-import os
-import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from functools import cached_property
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import basix
@@ -18,7 +12,6 @@ import dolfinx
 import numpy as np
 import ufl
 from dolfinx import fem, geometry
-from dolfinx.io import VTXWriter
 from mpi4py import MPI
 from numpy.typing import NDArray
 
@@ -81,85 +74,24 @@ class Cellwise:
         return values
 
 
-class Fields:
-    """Writes displacement (m), Cauchy stress (Pa, 3 x 3) and strain energy density (J/m^3 of reference volume).
+def _stresses(problem: "Problem") -> dict[tuple[int, ...], Any]:
+    """Return the Cauchy stress (Pa), shape (3, 3), of each law by the tags of its cells."""
+    F = kinematics.deformation_gradient(ufl.grad(problem.u))
+    return {tags: kinematics.cauchy(law, F, problem.pressures[tags]) for tags, law in problem.laws.items()}
 
-    Attributes:
-        displacement, stress, sed: as they were last written; the last two discontinuous and linear in each cell.
+
+def tensors_per_cell(problem: "Problem") -> tuple[Array, Array]:
+    """Return means over the corners of each cell of this rank, which for linear fields are those over the cell.
+
+    Returns:
+        Cauchy stress (Pa), components xx, yy, zz and xy, shape (cells, 4), and Green's strain, xx, yy and xy, shape
+        (cells, 3).
     """
-
-    def __init__(self, problem: "Problem", folder: Path | str) -> None:
-        """Open ``displacement.bp``, ``stress.bp`` and ``sed.bp``.
-
-        Args:
-            problem: whose current state each :meth:`write` writes.
-            folder: made if need be, parents included.
-        """
-        mesh, folder = problem.mesh, Path(folder)
-        if mesh.comm.rank == 0:
-            folder.mkdir(parents=True, exist_ok=True)
-        mesh.comm.barrier()
-        F = kinematics.deformation_gradient(ufl.grad(problem.u))
-        stresses = {tags: kinematics.cauchy(law, F, problem.pressures[tags]) for tags, law in problem.laws.items()}
-        self.stress, self._sample_stress = _sampled(problem, "stress", stresses)
-        self.sed, self._sample_sed = _sampled(problem, "sed", problem.densities)
-        self._problem, self.displacement = problem, fem.Function(problem.V, name="displacement")
-        # One writer a field: a file holds functions of one element.
-        files = {"displacement": self.displacement, "stress": self.stress, "sed": self.sed}
-        self._writers = [VTXWriter(mesh.comm, folder / f"{name}.bp", [f], engine="BP4") for name, f in files.items()]
-
-    def write(self, time: float) -> None:
-        """Append the current state; ``time`` is what ParaView calls it, a step's number for instance."""
-        self.displacement.x.array[:] = self._problem.displacement().ravel()
-        for function, sample in ((self.stress, self._sample_stress), (self.sed, self._sample_sed)):
-            values = sample.evaluate()
-            dofs = function.function_space.dofmap.list[: len(values)]
-            function.x.array.reshape(-1, values.shape[2])[dofs] = values
-            function.x.scatter_forward()
-        with self._room():
-            for writer in self._writers:
-                writer.write(time)
-
-    def close(self) -> None:
-        """Close the files; collective.
-
-        Raises:
-            OSError: there is no room for what is left to write.
-        """
-        with self._room():
-            for writer in self._writers:
-                writer.close()
-
-    def abandon(self) -> None:
-        """Leave the files as they are; not collective.
-
-        What has been written can be read. A writer that is deleted closes its file, and ends the process where that
-        fails: these are never deleted.
-        """
-        for writer in self._writers:
-            ctypes.pythonapi.Py_IncRef(ctypes.py_object(writer))
-
-    @contextlib.contextmanager
-    def _room(self) -> Iterator[None]:
-        """Turn ADIOS2's message of a full disk into the right error."""
-        try:
-            yield
-        except RuntimeError as error:
-            found = re.search(r"errno = (\d+)", str(error))
-            if found is None:
-                raise
-            self.abandon()
-            raise OSError(int(found[1]), os.strerror(int(found[1]))) from None
-
-
-def _sampled(
-    problem: "Problem", name: str, expressions: Mapping[tuple[int, ...], Any]
-) -> tuple[fem.Function, Cellwise]:
-    """Return a function, discontinuous and linear in each cell, and what samples the expressions at its nodes."""
-    shape = next(iter(expressions.values())).ufl_shape
-    space = fem.functionspace(problem.mesh, ("Discontinuous Lagrange", 1, shape))
-    points = compat.interpolation_points(space.element)
-    return fem.Function(space, name=name), Cellwise(problem.mesh, problem.cell_tags, expressions, points)
+    corners = np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]])
+    stress = Cellwise(problem.mesh, problem.cell_tags, _stresses(problem), corners).evaluate().mean(axis=1)
+    strains = dict.fromkeys(problem.laws, kinematics.green_strain(ufl.grad(problem.u)))
+    strain = Cellwise(problem.mesh, problem.cell_tags, strains, corners).evaluate().mean(axis=1)
+    return stress[:, [0, 4, 8, 1]], strain
 
 
 def sed_per_cell(problem: "Problem") -> tuple[NDArray[np.int32], Array]:
@@ -215,8 +147,7 @@ class Receptors:
 
     @cached_property
     def _compression(self) -> Cellwise:
-        F, p = kinematics.deformation_gradient(ufl.grad(self._problem.u)), self._problem.pressures
-        stresses = {tags: -kinematics.cauchy(law, F, p[tags])[1, 1] for tags, law in self._problem.laws.items()}
+        stresses = {tags: -stress[1, 1] for tags, stress in _stresses(self._problem).items()}
         return Cellwise(self._mesh, self._problem.cell_tags, stresses, self._points)
 
     @cached_property

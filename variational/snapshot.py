@@ -1,4 +1,4 @@
-"""The whole body on one rank, as a picture shows it: its vertices, triangles, densities and lines."""
+"""The whole body on one rank, as a picture shows it: its vertices, triangles, densities, tensors and lines."""
 
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from variational import compat
 from variational.outline import outline
-from variational.output import sed_per_cell
+from variational.output import sed_per_cell, tensors_per_cell
 
 if TYPE_CHECKING:
     from variational.problem import Problem
@@ -36,6 +36,10 @@ class Snapshot:
     """Edges between tags and on the boundary: points where each begins, has its middle and ends, shape (lines, 3)."""
     beside: NDArray[np.int64] = field(default_factory=lambda: np.empty((0, 2), dtype=np.int64))
     """Cells on the left and on the right of each line, -1 outside, shape (lines, 2)."""
+    stress: Array = field(default_factory=lambda: np.empty((0, 4)))
+    """Mean Cauchy stress of each cell (Pa), components xx, yy, zz and xy, shape (cells, 4)."""
+    strain: Array = field(default_factory=lambda: np.empty((0, 3)))
+    """Mean Green's strain of each cell, components xx, yy and xy, shape (cells, 3)."""
 
     def whole(self) -> "Snapshot":
         """Return the body whose half at x >= 0 this is, one body along the line of symmetry."""
@@ -53,6 +57,8 @@ class Snapshot:
             np.concatenate([self.tag, self.tag]),
             np.concatenate([lines, image[lines][:, ::-1]]),
             np.concatenate([beside, other]),
+            np.concatenate([self.stress, self.stress * [1, 1, 1, -1]]),
+            np.concatenate([self.strain, self.strain * [1, 1, -1]]),
         )
 
 
@@ -105,18 +111,31 @@ class Nodes:
         return self.by_cell(places), self.by_cell(u)
 
 
-def gather_mesh(problem: "Problem") -> Snapshot | None:
-    """Bring the current state to rank 0, None on the others; numbered as the mesh was before it was distributed."""
-    nodes, (cells, sed) = Nodes(problem), sed_per_cell(problem)
-    tag = np.zeros(len(cells), dtype=np.int32)
-    own = problem.cell_tags.indices < len(cells)
-    tag[problem.cell_tags.indices[own]] = problem.cell_tags.values[own]
-    vertices = nodes.coordinates, nodes.gather(problem)
-    middles, densities, tags = nodes.middles(problem), nodes.by_cell(sed), nodes.by_cell(tag)
-    if problem.mesh.comm.rank > 0:
-        return None
-    ends, beside, edge = outline(nodes.coordinates, nodes.triangles, tags)
-    x, u = (np.concatenate([at, there[beside[:, 0], edge]]) for at, there in zip(vertices, middles, strict=True))
-    middle = len(nodes.coordinates) + np.arange(len(ends))
-    lines = np.stack([ends[:, 0], middle, ends[:, 1]], axis=1)
-    return Snapshot(x, u, nodes.triangles, densities, tags, lines, beside)
+class Lines:
+    """The lines of a body, found once, and its states with them; numbered as the mesh was before it was distributed."""
+
+    def __init__(self, problem: "Problem") -> None:
+        self._nodes, cells = Nodes(problem), problem.mesh.topology.index_map(2).size_local
+        tag = np.zeros(cells, dtype=np.int32)
+        own = problem.cell_tags.indices < cells
+        tag[problem.cell_tags.indices[own]] = problem.cell_tags.values[own]
+        self._tag = self._nodes.by_cell(tag)
+        self._ends, self._beside, self._edge = outline(self._nodes.coordinates, self._nodes.triangles, self._tag)
+
+    def snapshot(self, problem: "Problem", fields: bool = True) -> Snapshot | None:
+        """Bring the current state to rank 0, None on the others; collective.
+
+        Args:
+            problem: on the mesh of these lines.
+            fields: whether energy densities, stresses and strains are computed; densities are 0 otherwise.
+        """
+        nodes, edges = self._nodes, (self._beside[:, 0], self._edge)
+        vertices, middles = (nodes.coordinates, nodes.gather(problem)), nodes.middles(problem)
+        tensors = [nodes.by_cell(each) for each in tensors_per_cell(problem)] if fields else []
+        sed = nodes.by_cell(sed_per_cell(problem)[1]) if fields else np.zeros(len(self._tag))
+        if problem.mesh.comm.rank > 0:
+            return None
+        x, u = (np.concatenate([at, there[edges]]) for at, there in zip(vertices, middles, strict=True))
+        middle = len(nodes.coordinates) + np.arange(len(self._ends))
+        lines = np.stack([self._ends[:, 0], middle, self._ends[:, 1]], axis=1)
+        return Snapshot(x, u, nodes.triangles, sed, self._tag, lines, self._beside, *tensors)

@@ -94,7 +94,7 @@ def _read(name: str) -> list[dict[str, str]]:
 
 def draw(docs: Path) -> Path:
     """Write docs/measured.md and its picture from docs/measured.json."""
-    picture(docs / "measured.png", (10, 3.6), lambda figure: _paint(figure, kept("measured", docs).numbers))
+    picture(docs / "measured.png", (11, 4), lambda figure: _paint(figure, kept("measured", docs).numbers))
     every = judged(docs)
     names = {"judged": every, "found": [row.verdict for row in every if row.kind != "simulated"]}
     return page(docs, "measured", "make measured", globals() | names)
@@ -102,6 +102,7 @@ def draw(docs: Path) -> Path:
 
 # -- picture -------------------------------------------------------------------------------------------------
 def _paint(figure: Figure, numbers: Mapping[str, Any]) -> None:
+    figure.suptitle("Shapes, not values: this model beside the form of measured curves, scaled to it")
     voltage, force, pressure = figure.subplots(1, 3)
     _over_voltage(voltage, numbers["curves"])
     _over_depth(force, *(np.array(numbers["curves"][name]) for name in ("depth", "force")))
@@ -115,7 +116,7 @@ def _over_voltage(ax: Axes, curves: Mapping[str, list[float]]) -> None:
         rise = (values[1:] - values[0]) / (values[VOLTAGES.index(100.0)] - values[0])
         look = {"color": style.CATEGORIES[k], "marker": style.MARKERS[k], "ms": 5}
         ax.loglog(u, rise, **look, label=f"{words[name]}, {force:g} N/m")
-    ax.loglog(u, (u / 100) ** 2, color="black", ls="--", zorder=0, label="U², measured")
+    ax.loglog(u, (u / 100) ** 2, color="black", ls="--", zorder=0, label="U², measured shape")
     ax.set(xlabel="voltage (V)", ylabel="rise over 0 V / rise at 100 V (–)", title="A  full slip")
     ax.set_xticks(u, [f"{each:g}" for each in u])
     ax.minorticks_off()
@@ -125,16 +126,16 @@ def _over_voltage(ax: Axes, curves: Mapping[str, list[float]]) -> None:
 def _over_depth(ax: Axes, depth: rows.Array, force: rows.Array) -> None:
     ax.plot(1e3 * depth, force, "o", color=style.BLUE, label="this model, 0 V")
     exponent = rules.of_largest(rules.power, depth, force).parameter
-    _fitted(ax, rules.exponential, (depth, force), 1.0, ("--", "black", "exponential, measured"))
+    _fitted(ax, rules.exponential, (depth, force), 1.0, ("--", "black", "exponential, measured shape"))
     _fitted(ax, rules.power, (depth, force), 1.0, (":", style.VERMILION, f"power law, {exponent:.2f}"))
-    ax.set(xlabel="depth (mm)", ylabel="force of the whole finger (N)", title="B  pressed")
+    ax.set(xlabel="depth (mm)", ylabel="force of the whole finger (N)", title="B  pressed, 0 V")
     ax.legend(fontsize=8)
 
 
 def _over_width(ax: Axes, run: Mapping[str, Any]) -> None:
     points = np.array(run["place"]), np.array(run["pressure"])
     ax.plot(1e3 * points[0], points[1] / 1e3, "o", color=style.BLUE, label="ridges of this model")
-    _fitted(ax, rules.paraboloid, points, 1e-3, ("--", "black", "paraboloid, measured"))
+    _fitted(ax, rules.paraboloid, points, 1e-3, ("--", "black", "paraboloid, measured shape"))
     _fitted(ax, rules.ellipse, points, 1e-3, (":", style.VERMILION, "half an ellipse"))
     ax.set(xlabel="x (mm)", ylabel="force over area of a ridge (kPa)", title="C  75 N/m, 0 V")
     ax.set_ylim(0, 1.55e-3 * points[1].max())

@@ -19,12 +19,12 @@ project, author = "fingerpad", "The fingerpad developers"
 version = re.search(r'^version = "(.*)"', (ROOT / "pyproject.toml").read_text(), re.MULTILINE)[1]
 copyright = f"{author}; text and program under the GNU Lesser General Public License, version 3 or later"
 
-root_doc = "docs/site/index"
+root_doc = "docs/README"
 include_patterns = [
     "docs/*.md", "docs/site/*.md", "docs/site/modules/*.md", "demos/README.md", "demos/*.py", "CONTRIBUTING.md",
     "CHANGELOG.md",
 ]  # fmt: skip
-exclude_patterns = ["build/**", "results/**", "docs/README.md", "docs/site/*.py"]
+exclude_patterns = ["build/**", "results/**", "docs/site/contents.md", "docs/site/*.py"]
 source_suffix = {".md": "markdown", ".py": "percent"}
 extensions = [
     "myst_parser", "mathml", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "sphinx.ext.viewcode",
@@ -55,19 +55,42 @@ html_static_path = ["_static"]
 html_css_files = ["site.css"]
 html_extra_path = ["_extra"]
 html_math_renderer = "mathml"
+html_search_scorer = str(HERE / "scorer.js")
 html_copy_source = False
 html_show_sphinx = False
 
 # Pages of a code host, which the site has elsewhere or in another form.
-ELSEWHERE = {"](../demos/scenes)": "](site/scenes.md)", "](README.md)": "](site/index.md)"}
+ELSEWHERE = {"](../demos/scenes)": "](site/scenes.md)", "](../README.md)": "](README.md)"}
 PLACE = re.compile(r"`((?:geometry|variational|fingerpad)[a-z_.]*):(\w+)`")
 
 
+# Words of readers, which lead a search to a page or to its part under a heading.
+WORDS = {
+    "docs/command": {"": ["Windows", "WSL", "macOS", "Docker", "conda", "install"], "## Targets": ["target"]},
+    "docs/drive": {"": ["alternating voltage", "frequency", "waveform"]},
+    "docs/feel": {"": ["nerve", "perception", "spike"]},
+    "docs/newtons": {"": ["newton", "contact area"]},
+    "docs/scene": {"## `[electric]`": ["coating", "insulator", "dielectric", "permittivity"]},
+    "docs/viscosity": {"": ["viscous", "relaxation", "creep"]},
+}
+
+
 def adapt(app: Any, docname: str, source: list[str]) -> None:
-    """Make places in the code links to the reference, and lead links to folders to pages."""
+    """Make places in the code links to the reference, lead links to folders to pages, and index words of readers.
+
+    The front page is the table from a question to a page, with the beginning of the README and the table of contents.
+    """
+    if docname == root_doc:
+        questions = source[0].replace("# Documentation: from", "## From", 1)
+        source[0] = (HERE / "contents.md").read_text(encoding="utf-8").replace("<!-- questions -->", questions)
+    for heading, words in WORDS.get(docname, {}).items():
+        index = "```{index} " + ", ".join(f"!{word}" for word in words) + "\n```\n\n"
+        before, found, after = source[0].partition(f"{heading}\n" if heading else "# ")
+        assert found, f"{docname} has no heading {heading}"
+        source[0] = before + index + found + after
     if docname.startswith("docs/") and "/site/" not in docname:
         text = PLACE.sub(r"{py:obj}`\1:\2 <\1.\2>`", source[0])
-        text = re.sub(r"\[(\w+\.md)\]\(\1\)", r"[](\1)", text)  # by the title of the page, not by its file
+        text = re.sub(r"\[(\w+\.md)\]\((\1(?:#[\w-]+)?)\)", r"[](\2)", text)  # by titles of pages, not by files
         for before, after in ELSEWHERE.items():
             text = text.replace(before, after)
         source[0] = text

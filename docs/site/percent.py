@@ -30,7 +30,7 @@ def kept(demo: Path) -> str:
     folder = demo.parent / OUTPUT
     text, pictures = folder / f"{demo.stem}.txt", sorted(folder.glob(f"{demo.stem}_*.png"))
     if not text.exists():
-        return "\n## Output\n\n[The first page](../docs/site/index.md) shows what the scene prints.\n"
+        return "\n## Output\n\n[The first page](../docs/README.md) shows what the scene prints.\n"
     shown = [f"![Picture of this demo: {p.stem.removeprefix(demo.stem + '_')}]({OUTPUT}/{p.name})" for p in pictures]
     return "\n".join(["", "## Output", "", "```text", text.read_text(encoding="utf-8").strip(), "```", "", *shown, ""])
 

@@ -3,72 +3,11 @@
  *   Cylinder, RidgeState    variational/attraction/cylinder.py
  *   fitted, given, solve    fingerpad/reduced/cylinders.py
  *   refuse                  fingerpad/scene/materials.py
- *   pchip, trace, whole     fingerpad/slices/trace.py, total.py and traces.py
- * The numbers of the default finger come from Python (fingerpad/calculator/fields.py). tests/test_calculator.py compares
+ * The numbers of the default finger come from Python (fingerpad/calculator/page.py). tests/test_calculator.py compares
  * the answers of both. Equations are those of Forsbach et al. 2023. SI units, forces per metre of finger. */
-"use strict";
-
 const closedForm = (function () {
+  const { geomspace, root, erfc, show } = numerics;
   class NoEquilibriumError extends Error {}
-
-  // -- what NumPy and SciPy are in Python ---------------------------------------------------------------
-  function geomspace(first, last, count) {
-    const step = Math.log(last / first) / (count - 1);
-    const values = Array.from({ length: count }, (_, k) => first * Math.exp(k * step));
-    values[count - 1] = last;
-    return values;
-  }
-
-  /** Return the root of f between a and b, where f changes its sign: false position (Illinois), every third step halves. */
-  function root(f, a, b) {
-    let f_a = f(a), f_b = f(b), side = 0;
-    for (let k = 1; k < 400 && b - a > 1e-15 * Math.abs(b); k++) {
-      let c = k % 3 ? (f_a * b - f_b * a) / (f_a - f_b) : NaN;
-      if (!(c > a && c < b)) c = a + (b - a) / 2;
-      if (c === a || c === b) break;
-      const value = f(c);
-      if (value === 0) return c;
-      if (value < 0 === f_b < 0) {
-        [b, f_b] = [c, value];
-        if (side < 0) f_a /= 2;
-        side = -1;
-      } else {
-        [a, f_a] = [c, value];
-        if (side > 0) f_b /= 2;
-        side = 1;
-      }
-    }
-    return a + (b - a) / 2;
-  }
-
-  /** Return the complementary error function: its series below 2, its continued fraction (by Lentz) from there. */
-  function erfc(x) {
-    if (x < 0) return 2 - erfc(-x);
-    if (x < 2) {
-      let term = x, sum = x;
-      for (let n = 1; term > 1e-18 * sum; n++) {
-        term *= (2 * x * x) / (2 * n + 1);
-        sum += term;
-      }
-      return 1 - (2 / Math.sqrt(Math.PI)) * Math.exp(-x * x) * sum;
-    }
-    let c = x, d = 0, fraction = x;
-    for (let n = 1; n < 500; n++) {
-      d = 1 / (x + (n / 2) * d);
-      c = x + n / 2 / c;
-      fraction *= c * d;
-      if (Math.abs(c * d - 1) < 1e-16) break;
-    }
-    return Math.exp(-x * x) / (Math.sqrt(Math.PI) * fraction);
-  }
-
-  /** Return a number as Python's format with so many digits ("g") has it, but for zeros in exponents. */
-  function show(value, digits) {
-    const text = Number(value).toPrecision(digits || 6);
-    const [number, power] = text.split("e");
-    const short = number.includes(".") ? number.replace(/\.?0+$/, "") : number;
-    return power === undefined ? String(Number(text)) : short + "e" + power;
-  }
 
   // -- roughness: bam.py ---------------------------------------------------------------------------------
   class BearingArea {
@@ -89,6 +28,12 @@ const closedForm = (function () {
     d_eq(p_c) { // Eq. 13, held below p_floor and above full_pressure
       const held = Math.min(Math.max(p_c, this.p_floor), this.full_pressure);
       return this.h_0 * (Math.sqrt(2 / this.twice_area(this.separation(held))) - 1);
+    }
+    /** Return d_eq at a pressure of PRESSURES, each computed once. */
+    gap(k) {
+      this.gaps = this.gaps || [];
+      if (this.gaps[k] === undefined) this.gaps[k] = this.d_eq(PRESSURES[k]);
+      return this.gaps[k];
     }
     state(p_c, voltage) {
       if (p_c < this.p_floor) return "below p_floor";
@@ -121,86 +66,103 @@ const closedForm = (function () {
 
   // -- one ridge: cylinder.py ----------------------------------------------------------------------------
   const PRESSURES = geomspace(10, 1e7, 181);
-  const [LEAST, LARGEST] = [1e-9, 1e6]; // of m - 1
-
+  const [LEAST, LARGEST] = [1e-9, 1e6], [LOG_LEAST, LOG_LARGEST] = [Math.log(LEAST), Math.log(LARGEST)]; // of m - 1
+  const [EXACT, ROUGH] = [1e-9, 1e-3]; // last steps of ln(m - 1)
 
   class Cylinder {
     constructor(radius, modulus, h_0, closure) {
-      Object.assign(this, { radius, modulus, h_0, closure });
+      Object.assign(this, { radius, modulus, h_0, closure, near: 0 });
     }
     under_load(f, voltage) {
       const stiffness = (Math.PI * this.modulus) / (2 * this.radius);
       const half_width = (beyond, sigma) => { // the root of the force's equation, quadratic in a; and its slope over m
         const width = Math.sqrt(beyond * (2 + beyond)), pull = 2 * sigma * width;
         const both = Math.sqrt(pull * pull + 2 * stiffness * f);
-        return [(pull + both) / stiffness, ((2 * sigma * (1 + beyond)) / width) * ((1 + pull / both) / stiffness)];
+        this.slope = ((2 * sigma * (1 + beyond)) / width) * ((1 + pull / both) / stiffness);
+        return (pull + both) / stiffness;
       };
-      return this.branch((sigma, d_eq) => {
-        const beyond = this.edge(half_width, sigma, d_eq);
+      return this.branch((sigma, d_eq, tolerance) => {
+        const beyond = this.edge(half_width, sigma, d_eq, tolerance);
         if (!(beyond > LEAST && beyond < LARGEST))
           throw new NoEquilibriumError(
             `no contact bears ${show(f)} N/m under an attraction of ${show(sigma, 3)} Pa; try a smaller voltage ` +
               "or another force");
-        return [half_width(beyond, sigma)[0], beyond];
+        this.half = half_width(beyond, sigma);
+        return beyond;
       }, f, voltage);
     }
     over_length(length, f, voltage) {
-      const half = [length / 2, 0];
-      return this.branch((sigma, d_eq) => {
-        const beyond = this.edge(() => half, sigma, d_eq);
+      this.half = length / 2;
+      this.slope = 0;
+      return this.branch((sigma, d_eq, tolerance) => {
+        const beyond = this.edge(() => this.half, sigma, d_eq, tolerance);
         if (beyond >= LARGEST)
           throw new NoEquilibriumError(
             `a contact of ${show(length, 3)} m is too short for an attraction that reaches ` +
               `${show(this.h_0 + 2 * d_eq, 3)} m; try a longer one`);
-        return [half[0], beyond];
+        return beyond;
       }, f, voltage);
     }
     /** Return m - 1 where the gap at c, which grows with m, is the reach of the attraction; an end beyond all. */
-    edge(half_width, sigma, d_eq) {
+    edge(half_width, sigma, d_eq, tolerance) {
       const reach = this.h_0 + 2 * d_eq, { radius } = this, pull = (4 * sigma) / (Math.PI * this.modulus);
+      let slope = 0;
       const opening = (y) => { // the logarithm of the gap over the reach, and its slope over y = ln(m - 1)
         const beyond = Math.exp(y), m = 1 + beyond, width = Math.sqrt(beyond * (2 + beyond));
-        const angle = Math.asinh(width), log = Math.log1p(beyond);
-        const round = m * width - angle, pulled = width * angle - m * log, [a, slope] = half_width(beyond, sigma);
+        const angle = Math.asinh(width), log = Math.log1p(beyond), a = half_width(beyond, sigma);
+        const round = m * width - angle, pulled = width * angle - m * log;
         const gap = ((a * a) / (2 * radius)) * round + pull * a * pulled;
-        const grows = slope * ((a / radius) * round + pull * pulled) + ((a * a) / radius) * width + pull * a * ((m / width) * angle - log);
-        return [Math.log(gap / reach), (beyond * grows) / gap];
+        const grows = this.slope * ((a / radius) * round + pull * pulled) + ((a * a) / radius) * width + pull * a * ((m / width) * angle - log);
+        slope = (beyond * grows) / gap;
+        return Math.log(gap / reach);
       };
-      let low = Math.log(LEAST), high = Math.log(LARGEST), y = 0;
-      if (opening(high)[0] < 0) return LARGEST;
-      if (opening(low)[0] > 0) return LEAST;
-      for (let k = 0; k < 100; k++) { // Newton's method between bounds
-        const [value, slope] = opening(y), next = y - value / slope;
+      let low = LOG_LEAST, high = LOG_LARGEST, y = this.near;
+      for (let k = 0; k < 100; k++) { // Newton's method between bounds, from the edge before
+        const value = opening(y), next = y - value / slope;
         if (value < 0) low = y;
         else high = y;
-        const small = Math.abs(next - y) <= 1e-9 + 1e-15 * Math.exp(-y);
+        const small = Math.abs(next - y) <= tolerance + 1e-15 * Math.exp(-y);
         y = small || (next > low && next < high) ? next : (low + high) / 2;
         if (small) break;
       }
+      if (!(y > LOG_LEAST + 1e-6) && opening(LOG_LEAST) > 0) return LEAST;
+      if (!(y < LOG_LARGEST - 1e-6) && opening(LOG_LARGEST) < 0) return LARGEST;
+      this.near = y;
       return Math.exp(y);
     }
-    /** Return the branch in contact: the root of highest pressure. */
+    /** Return the branch in contact: the root of highest pressure. Its search has edges that are good for a sign. */
     branch(shape, f, voltage) {
-      const at = (p_c) => {
-        const d_eq = this.closure.d_eq(p_c);
-        const sigma = (data.eps_0 * voltage ** 2) / 2 / (this.h_0 + d_eq) ** 2; // Eq. 3
-        return [...shape(sigma, d_eq), sigma, d_eq];
+      const strength = (data.eps_0 * voltage ** 2) / 2; // over the square of the distance, Eq. 3
+      const borne = (p_c, d_eq, tolerance) => {
+        const sigma = strength / (this.h_0 + d_eq) ** 2, beyond = shape(sigma, d_eq, tolerance);
+        return 2 * this.half * (p_c - sigma * (1 + beyond)) - f;
       };
-      const excess = (p_c) => {
-        const [a, beyond, sigma] = at(p_c);
-        return 2 * a * (p_c - sigma * (1 + beyond)) - f;
+      const excess = (p_c) => borne(p_c, this.closure.d_eq(p_c), EXACT);
+      const count = PRESSURES.length, values = new Float64Array(count).fill(NaN);
+      const value = (k, tolerance) => {
+        if (Number.isNaN(values[k]) || tolerance === EXACT) values[k] = borne(PRESSURES[k], this.closure.gap(k), tolerance);
+        return values[k];
       };
-      const values = PRESSURES.map(excess), found = [];
-      for (let k = 0; k + 1 < values.length; k++)
-        if (Math.sign(values[k]) !== Math.sign(values[k + 1]))
-          found.push(root(excess, PRESSURES[k], PRESSURES[k + 1]));
-      if (!found.length || values[values.length - 1] <= 0)
+      const changes = (k, tolerance) => Math.sign(value(k, tolerance)) !== Math.sign(value(k + 1, tolerance));
+      const next_root = (k) => { // the next one of lower pressure, from below PRESSURES[k]
+        while (k-- > 0)
+          if (changes(k, ROUGH) && changes(k, EXACT)) return [k, root(excess, PRESSURES[k], PRESSURES[k + 1])];
+        return null;
+      };
+      value(0, EXACT); // where a contact that is too short for its attraction is found
+      const first = value(count - 1, EXACT) > 0 ? next_root(count - 1) : null;
+      if (!first)
         throw new NoEquilibriumError(
           `no contact pressure from ${show(PRESSURES[0])} to 1e+07 Pa bears ${show(f)} N/m on a ridge at ` +
             `${show(voltage)} V; try another force or length`);
-      const p_c = found[found.length - 1], [a, beyond, sigma, d_eq] = at(p_c);
-      const f_attraction = 2 * sigma * a * (1 + beyond);
-      return { length: 2 * a, p_c, d_eq, f_contact: f + f_attraction, f_attraction, others: found.slice(0, -1) };
+      const [place, p_c] = first, d_eq = this.closure.d_eq(p_c), sigma = strength / (this.h_0 + d_eq) ** 2;
+      const beyond = shape(sigma, d_eq, EXACT), length = 2 * this.half, f_attraction = sigma * length * (1 + beyond);
+      const others = () => { // pressures of further equilibria, the lowest first
+        const found = [];
+        for (let k = place, next; (next = next_root(k)); [k] = next) found.unshift(next[1]);
+        return found;
+      };
+      return { length, p_c, d_eq, f_contact: f + f_attraction, f_attraction, others };
     }
   }
 
@@ -253,10 +215,11 @@ const closedForm = (function () {
   /** Return full slip, which needs normal contact before; p has the values of a scene by dotted key, in SI units. */
   function solve(p, footprint) {
     const known = footprint || fitted(p.f_ext);
+    const closure = closure_of(p);
     let ridge = null;
     for (const state of STATES) {
       try {
-        ridge = ridge_of(p, known, state);
+        ridge = ridge_of(p, known, state, closure);
       } catch (error) {
         if (error instanceof NoEquilibriumError) error.message = `${data.words[state]}: ${error.message}`;
         throw error;
@@ -266,120 +229,17 @@ const closedForm = (function () {
     return {
       mu_app: f_t / p.f_ext, f_ext: p.f_ext, f_t, f_contact, f_electrostatic: n * ridge.f_attraction,
       contact_length: n * ridge.length, ridges_in_contact: n, p_c: ridge.p_c, d_eq: ridge.d_eq,
-      others: ridge.others, closure: closure_of(p),
+      others: ridge.others(), closure,
     };
   }
 
-  function ridge_of(p, footprint, state) {
+  function ridge_of(p, footprint, state, closure) {
     const n = footprint.ridges[state], length = footprint.length[state], f = p.f_ext / n;
-    const closure = closure_of(p), radius = data.tip_radius, h_0 = closure.h_0;
+    const radius = data.tip_radius, h_0 = closure.h_0;
     if (footprint.charged)
       return new Cylinder(radius, data.skin_modulus, h_0, closure).over_length(length / n, f, p.voltage);
     return new Cylinder(radius, hertz_modulus(radius, f, length / n), h_0, closure).under_load(f, p.voltage);
   }
 
-  // -- the whole finger: slices/ ---------------------------------------------------------------------------
-  /** Return monotone cubics through points, as SciPy's PchipInterpolator. */
-  function pchip(x, y) {
-    const n = x.length, h = x.slice(1).map((v, k) => v - x[k]), m = h.map((v, k) => (y[k + 1] - y[k]) / v);
-    const end = (h_0, h_1, m_0, m_1) => {
-      const d = ((2 * h_0 + h_1) * m_0 - h_0 * m_1) / (h_0 + h_1);
-      if (Math.sign(d) !== Math.sign(m_0)) return 0;
-      return Math.sign(m_0) !== Math.sign(m_1) && Math.abs(d) > 3 * Math.abs(m_0) ? 3 * m_0 : d;
-    };
-    const d = x.map((_, k) => {
-      if (k === 0) return end(h[0], h[1], m[0], m[1]);
-      if (k === n - 1) return end(h[n - 2], h[n - 3], m[n - 2], m[n - 3]);
-      if (m[k - 1] * m[k] <= 0) return 0;
-      const a = 2 * h[k] + h[k - 1], b = h[k] + 2 * h[k - 1];
-      return (a + b) / (a / m[k - 1] + b / m[k]);
-    });
-    return (v) => {
-      let k = 0;
-      while (k < n - 2 && v >= x[k + 1]) k++;
-      const t = (v - x[k]) / h[k], c = (3 * m[k] - 2 * d[k] - d[k + 1]) * h[k], b = (d[k] + d[k + 1] - 2 * m[k]) * h[k];
-      return y[k] + t * (d[k] * h[k] + t * (c + t * b));
-    };
-  }
-
-  /** Return the trace of a state up to a force per metre: its last indentation, and its columns at an indentation. */
-  function trace(p, state, top) {
-    const kind = state === "full_slip" ? state : "charged", voltage = state === "uncharged" ? 0 : p.voltage;
-    const forces = geomspace(top * data.traces.light, top, data.traces.forces), columns = {};
-    const add = (name, value) => (columns[name] = columns[name] || []).push(value);
-    for (const f_ext of forces) {
-      const known = fitted(f_ext), n = known.ridges[kind], ridge = ridge_of({ ...p, f_ext, voltage }, known, kind);
-      add("depth", interpolate(f_ext, data.indentations[kind]));
-      add("f_ext", f_ext);
-      add("f_electrostatic", n * ridge.f_attraction);
-      add("contact_length", n * ridge.length);
-      add("gross_width", (n - 1) * data.wavelength + ridge.length);
-    }
-    const { depth } = columns, x = depth.map(Math.log), slopes = {}, cubics = {};
-    for (const name of ["f_ext", "f_electrostatic", "contact_length", "gross_width"]) {
-      const [a, b] = columns[name];
-      slopes[name] = a > 0 && b > 0 ? Math.max(Math.log(b / a) / (x[1] - x[0]), 0) : 0;
-      if (columns[name].some((v) => v > 1e-12 * top)) cubics[name] = pchip(x, columns[name].map(Math.log));
-    }
-    const pulls = cubics.f_electrostatic ? [slopes.f_electrostatic] : [];
-    slopes.contact_length = Math.min(slopes.contact_length, slopes.f_ext, ...pulls);
-    slopes.gross_width = Math.min(slopes.gross_width, slopes.contact_length);
-    const last = x[x.length - 1];
-    return {
-      deepest: depth[depth.length - 1],
-      at(name, indentation) {
-        if (!cubics[name] || indentation <= 0) return 0;
-        const v = Math.min(Math.log(indentation), last);
-        return Math.exp(cubics[name](Math.max(v, x[0])) + slopes[name] * Math.min(v - x[0], 0));
-      },
-    };
-  }
-
-  /** Return the sum of a column over the slices of a finger (m) lowered by delta, a Gauss rule over its contact. */
-  function sum(made, name, delta) {
-    const half = Math.sqrt(2 * data.slices.radius * delta), { nodes, weights } = data.slices;
-    return nodes.reduce((found, node, k) => {
-      const phi = (Math.PI / 2) * node, z = half * Math.sin(phi);
-      const thickness = ((half * Math.PI) / 2) * Math.cos(phi) * weights[k];
-      return found + thickness * made.at(name, delta - z ** 2 / (2 * data.slices.radius));
-    }, 0);
-  }
-
-  /** Return the whole finger under p.force (N) in its last state, full slip with friction; and the section at its centre. */
-  function whole(p) {
-    const { start, margin, more, tries, shortest, largest } = data.traces;
-    const states = ["uncharged", ...(p.voltage ? ["charged"] : []), ...(p.friction ? ["full_slip"] : [])];
-    let top = start.line * (p.force / start.point) ** start.power * margin, made, delta, centre;
-    for (const state of states) {
-      for (let k = 0; ; k++) {
-        const asked = Math.min(Math.max(top, shortest), largest);
-        try {
-          made = trace(p, state, asked);
-        } catch (error) {
-          if (error instanceof NoEquilibriumError) error.message = `${data.words[state] || state}: ${error.message}`;
-          throw error;
-        }
-        const end = data.slices.length ** 2 / (8 * data.slices.radius), high = Math.min(made.deepest, end);
-        const excess = (d) => sum(made, "f_ext", d) - p.force;
-        if (excess(high) >= 0) {
-          delta = root(excess, 0, high);
-          break;
-        }
-        if (high === end)
-          throw new NoEquilibriumError(`the finger is ${show(1e3 * data.slices.length)} mm long, and its contact would be longer`);
-        if (k === tries - 1 || asked === largest)
-          throw new NoEquilibriumError(`no trace of the cross-section reaches ${show(p.force)} N`);
-        top *= more;
-      }
-      centre = made.at("f_ext", delta);
-      top = centre * margin;
-    }
-    if (centre < data.traces.smallest) throw new NoEquilibriumError(`the centre of the finger bears ${show(centre, 2)} N/m alone`);
-    const total = Object.fromEntries([["f_electrostatic", "f_electrostatic"], ["contact_area", "contact_length"],
-      ["gross_area", "gross_width"]].map(([name, column]) => [name, sum(made, column, delta)]));
-    const f_t = p.friction * (p.force + total.f_electrostatic); // Coulomb's law
-    return { mu_app: f_t / p.force, f_t, ...total, indentation: delta, centre, section: solve({ ...p, f_ext: centre }) };
-  }
-
-  return { NoEquilibriumError, solve, given, whole, refuse, show, erfc, pchip };
+  return { NoEquilibriumError, solve, given, refuse, interpolate, fitted, closure_of, ridge_of };
 })();

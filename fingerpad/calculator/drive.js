@@ -79,7 +79,7 @@ const drive = (function () {
     const most = Math.max(...table.filter((_, k) => gaps[k] >= 0.7 * still.d_eq && gaps[k] <= still.d_eq).flat().map(Math.abs), 1e-9);
     const squares = Array.from({ length: POINTS }, (_, k) => (most ** 2 * k) / (POINTS - 1));
     const known = squares.map((square, k) => (k ? solve(Math.sqrt(square)) : still));
-    const friction = closedForm.pchip(squares, known.map((v) => v.f_t)), gap = closedForm.pchip(squares, known.map((v) => v.d_eq));
+    const friction = numerics.pchip(squares, known.map((v) => v.f_t)), gap = numerics.pchip(squares, known.map((v) => v.d_eq));
     const sigma_el = [], f_t = [];
     for (let j = 0; j < SAMPLES; j++) {
       let g = still.d_eq, volts = 0;

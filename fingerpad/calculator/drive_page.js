@@ -1,6 +1,6 @@
 /* The part of the page on an alternating voltage: its fields, friction over a period, and three curves over time. */
 const drivePage = (function () {
-  const { show } = closedForm;
+  const { show } = numerics;
   const find = (id) => document.getElementById("drive_" + id);
   const WAVEFORMS = ["sine", "square", "triangle"];
   const BOUNDS = { frequency: [1e-3, 1e6, "Hz"], offset: [-500, 500, "V"] };

@@ -1,6 +1,6 @@
 /* The page: fields of a scene's keys, refused where a scene would refuse them, and the answer of the closed form. */
 (function () {
-  const { show } = closedForm;
+  const { show } = numerics;
   const find = (id) => document.getElementById(id);
   const POINTS = 41, POINTS_OF_FINGERS = 13; // of a curve
   const fields = data.fields, by_key = Object.fromEntries(fields.map((field) => [field.key, field]));

@@ -28,6 +28,8 @@ from geometry.units import Range
 from variational.attraction.circuit import LEAKS
 from variational.attraction.dielectric import TISSUES, VACUUM_PERMITTIVITY
 
+SCRIPTS = ("numerics.js", "closed_form.js", "whole.js", "errors.js", "drive.js", "plot.js", "drive_page.js", "page.js")
+"""In order; those before ``plot.js`` need no page."""
 _TABLE = (20.0, 50.0, 75.0, 100.0, 150.0), (0.0, 50.0, 100.0, 150.0, 200.0)  # N/m, V
 
 
@@ -104,10 +106,10 @@ def _in_unit(value: float, per: float) -> float:
 
 def data() -> dict[str, Any]:
     """Return all numbers that the page has from Python, ready for JSON; SI units but for those of the fields."""
-    scene, error = Scene(), cylinder_errors.KNOWN_ERROR["full_slip"]
+    scene, first, shown = Scene(), cylinder_errors.REGIONS[0], [*fields()]
     nodes, weights = (each.tolist() for each in leggauss(scene.slices.count))
     return {
-        "fields": [asdict(field) for field in fields()],
+        "fields": [asdict(field) for field in shown],
         "eps_0": VACUUM_PERMITTIVITY,
         "sc_thickness": scene.geometry.sc_thickness,
         "tip_radius": cylinders.tip_radius(scene.geometry),
@@ -122,8 +124,9 @@ def data() -> dict[str, Any]:
         "traces": traces.CONSTANTS,
         "words": {state: WORDS[state] for state in STATES},
         "circuits": circuits(),
-        "known": {"error": error, "runs": cylinder_errors.KNOWN_RUNS}
-        | {"forces": cylinder_errors.KNOWN_FORCES, "voltages": cylinder_errors.KNOWN_VOLTAGES},
+        "known": {"error": first.errors["full_slip"], "runs": first.runs}
+        | {"forces": first.ranges["f_ext"], "voltages": first.ranges["voltage"]}
+        | {"regions": cylinder_errors.data(field.key for field in shown)},
     }
 
 
@@ -141,31 +144,26 @@ def circuits() -> dict[str, Any]:
 
 def page() -> str:
     """Return the page."""
-    own = files("fingerpad.calculator")
-    style, closed_form, plot, drive, drive_page, program = (
-        (own / name).read_text(encoding="utf-8").rstrip()
-        for name in ("page.css", "closed_form.js", "plot.js", "drive.js", "drive_page.js", "page.js")
-    )
     values = {
-        "error": f"{100 * cylinder_errors.KNOWN_ERROR['full_slip']['mu_app']:.1f} %",
-        "runs": str(cylinder_errors.KNOWN_RUNS),
-        "where": cylinder_errors.where(),
+        "error": f"{100 * cylinder_errors.REGIONS[0].errors['full_slip']['mu_app']:.1f} %",
+        "runs": str(cylinder_errors.REGIONS[0].runs),
+        "where": cylinder_errors.where(cylinder_errors.REGIONS[0]),
         "leakage": html.escape(LEAKAGE),
         "table": _table(),
         "defaults": _defaults(),
         "per_length": html.escape(PER_LENGTH),
         "version": version(),
-        "style": style,
+        "style": part("page.css"),
         # Inside a script "</" could end it.
         "data": json.dumps(data(), ensure_ascii=False).replace("</", "<\\/"),
-        "closed_form": closed_form,
-        "plot": plot,
-        "drive": drive,
-        "drive_page": drive_page,
-        "page": program,
+        "script": "\n".join(map(part, SCRIPTS)),
     }
-    template = (own / "page.html").read_text(encoding="utf-8")
-    return re.sub(r"\{\{(\w+)\}\}", lambda name: values[name[1]], template)
+    return re.sub(r"\{\{(\w+)\}\}", lambda name: values[name[1]], part("page.html"))
+
+
+def part(name: str) -> str:
+    """Return the text of a file of this folder."""
+    return (files("fingerpad.calculator") / name).read_text(encoding="utf-8").rstrip()
 
 
 def _table() -> str:

@@ -47,11 +47,11 @@ const plot = (function () {
     for (const v of ticks(most_x, width < 420 ? 4 : 8)) {
       svg.append(element("line", { x1: at_x(v), x2: at_x(v), y1: bottom, y2: bottom + 5, stroke: "#111" }));
       const anchor = at_x(v) > right - 8 ? "end" : "middle";
-      svg.append(element("text", { x: at_x(v), y: bottom + 19, "text-anchor": anchor }, closedForm.show(v)));
+      svg.append(element("text", { x: at_x(v), y: bottom + 19, "text-anchor": anchor }, numerics.show(v)));
     }
     for (const v of ticks(most_y, 6)) {
       svg.append(element("line", { x1: left, x2: right, y1: at_y(v), y2: at_y(v), stroke: v ? "#ddd" : "#111" }));
-      svg.append(element("text", { x: left - 6, y: at_y(v) + 4, "text-anchor": "end" }, closedForm.show(v)));
+      svg.append(element("text", { x: left - 6, y: at_y(v) + 4, "text-anchor": "end" }, numerics.show(v)));
     }
     svg.append(element("text", { x: (left + right) / 2, y: height - 8, "text-anchor": "middle" }, x));
     const up = { x: 0, y: 0, transform: `translate(14 ${(MARGIN.top + bottom) / 2}) rotate(-90)`, "text-anchor": "middle" };

@@ -21,6 +21,7 @@ COMMANDS = {
     "run": "contact and friction of a finger that is pressed, charged and slid: tables, pictures, fields",
     "sweep": "a scene over values of its keys: a table; a stopped sweep continues, and no run is repeated",
     "report": "a folder of a run or of a sweep as one HTML file that needs no network, to read and to pass on",
+    "animate": "a run as a moving picture: finger, pressure and attraction of its ridges, forces",
     "feel": "spikes of mechanoreceptive afferents over a run in time: table, raster, NetCDF",
     "compare": "models of a scene side by side: their results and their cost",
     "compare-data": "tables of measurements beside a run or a sweep: misfit as a ratio, picture",

@@ -7,7 +7,7 @@ from pathlib import Path
 from fingerpad.cli import mesh as meshes
 from fingerpad.cli.arguments import Parser, echo, scene_of
 from fingerpad.model.options import COARSER, FingerModel, ModelOptions, by_rule, memory, plan, refuse_mesh, unknowns
-from fingerpad.reduced.cylinder_errors import outside, where
+from fingerpad.reduced.cylinder_errors import REGIONS, where, within
 from fingerpad.reduced.slide import too_short
 from fingerpad.results.files import check_folder
 from fingerpad.results.terminal import about
@@ -68,10 +68,11 @@ def _verdict(scene: Scene) -> str:
     for load in scene.loads():
         force = load.f_ext if load.f_ext is not None else force
         voltage = load.wave.peak if load.wave is not None else voltage if load.level is None else load.level
-        if outside(force, voltage):
+        tried = REGIONS[-1]
+        if not (within(force, tried.ranges["f_ext"]) and within(voltage, tried.ranges["voltage"])):
             return (
                 f"The scene is valid; whether its loads can be reached is not known: {load.name} has {force:g} N/m and "
-                f"{voltage:g} V, and tried were {where()}."
+                f"{voltage:g} V, and tried were {where(tried)}."
             )
     return "The scene can be run."
 

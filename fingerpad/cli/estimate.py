@@ -1,7 +1,9 @@
 """``fingerpad estimate``: friction over force and voltage by the closed form, without finite elements."""
 
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -9,29 +11,35 @@ from fingerpad.cli import output
 from fingerpad.cli.arguments import Parser, echo, scene_of, several
 from fingerpad.model.cautions import on_states
 from fingerpad.reduced import cylinder_errors, cylinders
-from fingerpad.results.quantities import FINGER, PER_LENGTH, QUANTITIES
+from fingerpad.results.quantities import FINGER, PER_LENGTH, QUANTITIES, Output
 from fingerpad.results.result import Result
-from fingerpad.runs.context import RunContext
+from fingerpad.runs.closed_form import ClosedForm
 from fingerpad.runs.drive import drive
-from fingerpad.runs.solve import solved
 from fingerpad.scene import Scene
 from fingerpad.scene.messages import SceneError
 from fingerpad.scene.remarks import LEAKAGE, coefficient, remarks, used
 from fingerpad.slices import errors
 
-_SECTION = ("f_ext", "voltage", "mu_app", "f_t", "f_electrostatic", "contact_length", "ridges_in_contact")
-_COLUMNS = tuple(QUANTITIES[key] for key in _SECTION)
 _WHOLE = ("mu_app", "f_t", "f_electrostatic", "contact_area", "gross_area")
-_NEWTONS = (
-    replace(FINGER["f_ext"], name="force"),
-    QUANTITIES["voltage"],
-    *(FINGER[key] for key in _WHOLE),
-    replace(QUANTITIES["f_ext"], words="f_ext of section"),
-    replace(QUANTITIES["mu_app"], name="mu_app_of_section", words="µ_app of section"),
-)
+_SECTION = ("f_ext", "mu_app", "f_t", "f_electrostatic", "contact_length", "ridges_in_contact")
+
+
+def _of_section(key: str) -> Output:
+    quantity = QUANTITIES[key]
+    return replace(quantity, name=f"{key}_of_section", words=f"{quantity.symbol} of section")
+
+
+_OF_SECTION = {key: _of_section(key) for key in _SECTION}
+_COLUMNS = (replace(FINGER["f_ext"], name="force"), QUANTITIES["voltage"], *(FINGER[key] for key in _WHOLE),
+            *_OF_SECTION.values())  # fmt: skip
+_OF_FILES = ("f_t_of_section", "f_electrostatic_of_section", "ridges_in_contact_of_section")
+_SHOWN = tuple(each for each in _COLUMNS if each.name not in _OF_FILES)
+_NAME = {"force": "force", "f_ext": "f_ext_of_section"}
+"""Columns of the keys of forces."""
 _EXAMPLES = """
     fingerpad estimate --force "0.1, 0.3, 0.5 N" --voltage 0,100,200
-    fingerpad estimate --f-ext 20:75:3 --voltage 0:200:41 --plot mu.png
+    fingerpad estimate --force "0.5 N" --voltage 0:200:41 --plot mu.png
+    fingerpad estimate --over voltage --over electric.d_i --target mu_app=2x --plot map.png --csv map.csv
     fingerpad estimate --set friction=0.3 --f-ext 50 --voltage 0,100,200 --csv mu.csv
 """
 
@@ -41,38 +49,50 @@ def main(argv: Sequence[str]) -> int:
     parser = Parser("estimate", _EXAMPLES)
     parser.add_scene()
     parser.add_ranges("force", "f_ext", "voltage")
-    output.add_files(parser, _COLUMNS, "picture: one curve a force")
+    words = "a key of a heat map, given for two keys; its range as in --over voltage=0:400:11 may be left out"
+    parser.add_argument("--over", action="append", default=[], metavar="KEY[=RANGE]", help=words)
+    words = "line of the heat map, as mu_app=2x (twice the value without voltage), 'F_T=0.3 N', 'contrast=10 %%'"
+    parser.add_argument("--target", metavar="QUANTITY=VALUE", help=words)
+    mapped = any(word.partition("=")[0] == "--over" for word in argv)
+    columns = (output.ERROR_KNOWN,) if mapped else _COLUMNS
+    output.add_files(parser, columns, "picture: one curve a force, or the heat map", more=mapped)
     args = parser.read(argv)
     if args.force is not None and args.f_ext is not None:
         raise SceneError("--force is given and --f-ext too; give newtons on the whole finger or N/m at its centre")
     scene = scene_of(args, meshed=False)
     cylinders.Cylinders().check(scene)
+    if args.over:
+        from fingerpad.cli import estimate_map
+
+        return estimate_map.main(args, scene)
+    if args.target is not None:
+        raise SceneError("--target is given without --over; a map draws it, and fingerpad solve finds its value")
     key = "force" if args.force is not None or (scene.force is not None and args.f_ext is None) else "f_ext"
     forces = several(args, scene, key)
     over = scene.supply is not None and args.voltage is None
     voltages = [scene.volts] if over else several(args, scene, "voltage")
     rows, lost = grid(scene, forces, voltages, key)
-    columns = _COLUMNS if key == "f_ext" else _NEWTONS
-    of = "Friction" if key == "f_ext" else "Friction of the whole finger"
-    echo(f"{of} at full slip by a closed form, every ridge in contact the same charged cylinder.")
+    whole = any("mu_app" in row for row in rows)
+    echo("Friction of the whole finger" if whole else "Friction of the section", end="")
+    echo(" at full slip by a closed form, every ridge in contact the same charged cylinder.")
     mu_0 = coefficient(scene)
     echo(f"Friction coefficient {mu_0:g}.\n" if mu_0 is not None else f"Friction {used(scene)['friction']}.\n")
-    echo(output.text(columns, rows))
+    echo(output.text(_SHOWN, rows))
+    echo("\nµ_app is friction over force, at full slip: first of the whole finger, as a sum of slices, then of the")
+    echo("section at its centre. L_R is the length of skin on the screen.")
     if key == "f_ext":
-        echo("\nµ_app is friction over force, at full slip; L_R is the length of skin on the screen.")
-    else:
-        echo("\nµ_app is friction over force of the whole finger, at full slip; the last two columns are of the")
-        echo("section at the centre of the finger.")
+        echo("The force on the whole finger has that f_ext at the finger's centre without voltage.")
     states = [row["state"] for row in rows if "state" in row]
     limits = (f"{text[0].upper()}{text[1:]}." for text in on_states(states, scene.closure()))
     if over:
         for force in forces:
             echo(f"\nAt {force:g} {'N' if key == 'force' else 'N/m'}. {drive(scene.replace(**{key: force}))}")
     said = (*([LEAKAGE] if any(voltages) and not over else []), *(f"{text}." for text in remarks(scene)), *limits)
-    notes = [PER_LENGTH] if key == "f_ext" else errors.remarks(forces)
-    for note in (*notes, *_known(scene, rows), *said, *lost):
+    notes = errors.remarks([row["force"] for row in rows if "force" in row])
+    notes = [PER_LENGTH, *notes] if key == "f_ext" else notes
+    for note in (*notes, *_known(rows), *said, *lost):
         echo(note)
-    output.write_files(args, columns, rows, draw)
+    output.write_files(args, _COLUMNS, rows, partial(draw, key))
     return 0
 
 
@@ -90,72 +110,93 @@ def grid(
     Raises:
         SceneError: every point is refused.
     """
-    rows, lost, model, unit = [], [], cylinders.Cylinders(), "N/m" if key == "f_ext" else "N"
+    rows, lost, form, unit = [], [], ClosedForm(cylinders.Cylinders()), "N/m" if key == "f_ext" else "N"
+    scene = scene.resolved()
     for force in forces:
+        newtons, why = _newtons(form, scene, force) if key == "f_ext" else (force, "")
+        lost += [f"At {force:g} {unit} there is no whole finger: {why}."] if why else []
         for voltage in voltages:
-            row: dict[str, Any] = {key: force, "voltage": voltage}
-            asked = (
-                {key: force}
-                if scene.supply is not None and voltage == scene.volts
-                else {key: force, "voltage": voltage}
-            )
+            changed = {} if scene.supply is not None and voltage == scene.volts else {"voltage": voltage}
+            row: dict[str, Any] = {_NAME[key]: force, "voltage": voltage}
             try:
-                found = solved(scene.replace(**asked), model, RunContext())
-                row |= _row(found)
+                if newtons is not None:
+                    row |= {"force": newtons} | _row(form.result(scene.replace(force=newtons, **changed)))
+                if key == "f_ext":
+                    row |= _row(form.result(scene.replace(force=None, f_ext=force, **changed)))
             except SceneError as error:
                 lost.append(f"At {force:g} {unit} and {voltage:g} V: {error}.")
             rows.append(row)
-    if len(lost) == len(rows):
-        raise SceneError(lost[0].partition(": ")[2].rstrip("."))
+    if not any("state" in row for row in rows):
+        raise SceneError(lost[-1].partition(": ")[2].rstrip("."))
     return rows, lost
 
 
+def _newtons(form: ClosedForm, scene: Scene, f_ext: float) -> tuple[float | None, str]:
+    """Return the force (N) on the finger whose centre bears a force (N/m); None and why where there is none."""
+    try:
+        return float(f"{form.newtons(scene.replace(force=None, f_ext=f_ext)):.4g}"), ""
+    except SceneError as error:
+        return None, str(error)
+
+
 def _row(found: Result) -> dict[str, Any]:
-    """Return what the columns show of a result."""
-    slip, finger = found.full_slip, found.finger
-    if finger is None:
-        return {key: getattr(slip, key) for key in _SECTION} | {"state": slip}
-    total = finger.values(list(finger.states)[-1])
-    values = {key: total[key] for key in _WHOLE if key in total}
-    section = slip or found.charged
+    """Return what the columns show of a result: of the whole finger where it has one, and of its section."""
+    section = found.full_slip or found.charged
     assert section is not None
-    return values | {"f_ext": section.f_ext, "mu_app_of_section": section.mu_app, "state": section}
+    of = found.scene.model_copy(update={"force": None, "f_ext": section.f_ext})
+    values: dict[str, Any] = {f"{key}_of_section": getattr(section, key) for key in _SECTION}
+    values |= {"state": section, "error": found.record["model_error"], "outside": cylinder_errors.outside(of)}
+    if found.finger is None:
+        return values
+    total = found.finger.values(list(found.finger.states)[-1])
+    return values | {key: total[key] for key in _WHOLE if key in total}
 
 
-def _known(scene: Scene, rows: Sequence[Mapping[str, Any]]) -> list[str]:
-    """Return what is known of the error of these rows."""
-    bands = cylinder_errors.KNOWN_ERROR["full_slip"]
-    mu, length, pull = (f"within {100 * bands[key]:.1f} %" for key in ("mu_app", "contact_length", "f_electrostatic"))
-    runs = f"{cylinder_errors.KNOWN_RUNS} full runs at {cylinder_errors.where()}"
-    of = "" if "force" not in rows[0] else " of the section"
-    said = [f"Known error{of}: µ_app and f_T {mu}, f_el {pull}, L_R {length} of {runs}."]
-    beyond = sum(cylinder_errors.outside(row["f_ext"], row["voltage"]) for row in rows if "f_ext" in row)
-    if beyond:
-        said.append(f"{beyond} of {len(rows)} points are outside of that; their error is not known.")
-    if keys := cylinder_errors.changed(scene):
-        said.append(f"Those runs have the default {', '.join(keys)}; here the error is not known.")
+def _known(rows: Sequence[Mapping[str, Any]]) -> list[str]:
+    """Return what is known of the error of these rows, and for which keys it is not."""
+    of, said = " of the section", []
+    bands = [row["error"]["full_slip"] for row in rows if row.get("error")]
+    if bands:
+        shown = ", ".join(
+            f"{words} {100 * max(band[key] for band in bands):.1f} %"
+            for key, words in (("mu_app", "µ_app and f_T"), ("f_electrostatic", "f_el"), ("contact_length", "L_R"))
+        )
+        said.append(f"Known error{of}, at most: {shown}.")
+    beyond: dict[cylinder_errors.Outside, int] = Counter(
+        each._replace(value="") for row in rows for each in row.get("outside", [])
+    )
+    for each, count in beyond.items():
+        points = f"At {count} of {len(rows)} points" if count < len(rows) else "Here"
+        said.append(f"{points} the error{of} is not known: {each.key} is known for {each.known}.")
     return said
 
 
-def draw(file: Path, rows: Sequence[Mapping[str, Any]]) -> None:
-    """Draw friction over voltage, one curve a force; over force where there is one voltage."""
-    key = "force" if "force" in rows[0] else "f_ext"
-    forces, voltages = (list(dict.fromkeys(row[each] for row in rows)) for each in (key, "voltage"))
-    over, each = ("voltage", key) if len(voltages) > 1 or len(forces) == 1 else (key, "voltage")
-    label = {"voltage": "{:g} V", "f_ext": "{:g} N/m", "force": "{:g} N"}
+def draw(key: str, file: Path, rows: Sequence[Mapping[str, Any]]) -> None:
+    """Draw friction over voltage, one curve a force; over force where there is one voltage.
+
+    Args:
+        key: of the forces, ``f_ext`` or ``force``.
+        file: picture.
+        rows: of :func:`grid`.
+    """
+    name, whole = _NAME[key], any("mu_app" in row for row in rows)
+    mu_app = "mu_app" if whole else "mu_app_of_section"
+    forces, voltages = (list(dict.fromkeys(row[each] for row in rows)) for each in (name, "voltage"))
+    over, each = ("voltage", name) if len(voltages) > 1 or len(forces) == 1 else (name, "voltage")
+    label = {"voltage": "{:g} V", name: "{:g} N/m" if key == "f_ext" else "{:g} N"}
     axis = {
         "voltage": "voltage U (V)",
-        "f_ext": "normal force per length $f_{ext}$ (N/m)",
+        "f_ext_of_section": "normal force per length at the centre $f_{ext}$ (N/m)",
         "force": "force on the whole finger $F_{ext}$ (N)",
     }
-    of = " of the whole finger" if key == "force" else ""
-    with output.panels(file, f"Friction{of} at full slip, closed form") as (_, (ax,)):
+    of = "whole finger" if whole else "section"
+    with output.panels(file, f"Friction of the {of} at full slip, closed form") as (_, (ax,)):
         from fingerpad.results import style
 
         for k, value in enumerate(voltages if each == "voltage" else forces):
-            points = [row for row in rows if row[each] == value and "mu_app" in row]
+            points = [row for row in rows if row[each] == value and mu_app in row]
             colour = style.voltage(value, max(voltages, key=abs)) if each == "voltage" else None
-            x, mu = ([point[key] for point in points] for key in (over, "mu_app"))
+            x, mu = ([point[key] for point in points] for key in (over, mu_app))
             output.curve(ax, k, x, mu, label[each].format(value), colour)
-        ax.set(xlabel=axis[over], ylabel=r"apparent friction coefficient $\mu_{app}$ (–)")
-        ax.legend(title={"f_ext": "$f_{ext}$", "force": "$F_{ext}$", "voltage": "U"}[each])
+        ax.set(xlabel=axis[over], ylabel=rf"apparent friction coefficient $\mu_{{app}}$ of the {of} (–)")
+        ax.legend(title={"f_ext_of_section": "$f_{ext}$", "force": "$F_{ext}$", "voltage": "U"}[each])

@@ -91,7 +91,7 @@ class ModelOptions:
 _FILE = "the mesh is of a file"
 _PAST = "viscous layers carry the past of their own mesh, on which the whole path is followed"
 _HALF = Omission(
-    "the half at x < 0, but in tables and pictures (displacement.bp, stress.bp and sed.bp hold the other)",
+    "the half at x < 0, but in tables, pictures and fields",
     "no load moves the bone sideways, and the finger is its own mirror image",
 )
 

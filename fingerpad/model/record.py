@@ -13,11 +13,11 @@ from mpi4py import MPI
 from numpy.typing import NDArray
 
 from fingerpad.model.stimuli import SiteStimuli
-from fingerpad.results import states
-from fingerpad.results.drawing import Drawing, View
+from fingerpad.results import motion, states
+from fingerpad.results.drawing import Drawing, View, sorted_along
 from fingerpad.scene import Load
 from variational.output import Receptors
-from variational.snapshot import Snapshot, gather_mesh
+from variational.snapshot import Lines, Snapshot
 from variational.state import ContactState, Sites, Skin, Stimuli
 
 if TYPE_CHECKING:
@@ -41,6 +41,7 @@ class Viewer:
             sites[:, 0] = np.abs(sites[:, 0])
         self._sites = Receptors(finger.problem, sites) if finger.options.receptors else None
         self._stimuli: SiteStimuli | None = None
+        self._lines = Lines(finger.problem)
 
     def view(self, step: "Step") -> View:
         """Return all that is shown of the present state, that of the step; collective."""
@@ -64,13 +65,20 @@ class Viewer:
 
     def picture(self) -> tuple[Snapshot | None, Array | None]:
         """Return the present state of the whole finger, and where the Merkel sites are if wanted; collective."""
-        snapshot, ridges = gather_mesh(self._finger.problem), np.array(self._finger.profiles.ridges)
+        snapshot, ridges = self.body(), np.array(self._finger.profiles.ridges)
         merkel = self._sites.positions()[: len(ridges)] if self._sites else None
-        if not self._finger.options.both_halves:
-            snapshot = snapshot.whole() if snapshot else None
-            if merkel is not None:
-                merkel[ridges < 0, 0] *= -1
+        if not self._finger.options.both_halves and merkel is not None:
+            merkel[ridges < 0, 0] *= -1
         return snapshot, merkel
+
+    def body(self, fields: bool = True) -> Snapshot | None:
+        """Return the present state of the whole body, on rank 0; collective.
+
+        Args:
+            fields: whether its energy densities, stresses and strains are computed.
+        """
+        snapshot = self._lines.snapshot(self._finger.problem, fields)
+        return snapshot if snapshot is None or self._finger.options.both_halves else snapshot.whole()
 
     def sites(self) -> Sites | None:
         """Return the energy densities at the receptor sites in the present state, None without them; collective."""
@@ -106,6 +114,7 @@ class PathRecord:
     Attributes:
         states: in order, on every rank.
         skins: the skin by step, on rank 0.
+        moved: lines and skin by step, on rank 0, for animations.
         ends: the finger at the end of each load, by load, on rank 0.
     """
 
@@ -119,7 +128,14 @@ class PathRecord:
         self._comm, self._checks = comm, checks
         self.states: list[ContactState] = []
         self.skins: dict[int, Skin] = {}
+        self.moved: dict[int, motion.Moved] = {}
         self.ends: dict[str, View] = {}
+
+    def move(self, state: ContactState, skin: Skin, body: Snapshot) -> None:
+        """Keep lines and skin of an accepted state, on rank 0."""
+        self.skins[state.step] = skin
+        self.moved[state.step] = motion.moved(body, sorted_along(skin, state))
+        motion.thin(self.moved)
 
     def prune(self, loads: Sequence[str]) -> None:
         """Drop the skin of steps that nothing will show, whatever follows; rank 0 alone has one.

@@ -6,19 +6,19 @@ import time
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from mpi4py import MPI
 
 from fingerpad.model.options import Omission
 from fingerpad.model.record import PathRecord, Viewer
-from fingerpad.results import states
+from fingerpad.results import motion, states
 from fingerpad.results.answer import Cost
 from fingerpad.results.drawing import View
 from fingerpad.results.quantities import Output, valued
 from fingerpad.results.terminal import Console
 from fingerpad.results.writing import Writer, ridge_rows, site_rows
-from variational.solvers import checkpoint
 from variational.solvers.outcome import Counts, memory_mb
 from variational.state import ContactState
 
@@ -105,8 +105,7 @@ class Report:
         finger, checks = simulation.finger, simulation.checks
         self.record = PathRecord(finger.problem.mesh.comm, checks)
         self._viewer = Viewer(finger)
-        self._written = self._logged = 0
-        self._ends: list[tuple[int, Any]] = []  # step and unknowns at the end of each load, whole on rank 0
+        self._shown = self._logged = 0  # step of the last load's end, and checks
         self._loads = loads
         for omission in omitted:
             console.show(f"{omission}")
@@ -123,15 +122,15 @@ class Report:
         """
         with self._clock.phase("output"):
             assert step.state.record is not None
-            self._writer.take(self._simulation.finger.problem)
+            self._writer.take()
             record = replace(step.state.record, processor_seconds=self._clock.processor_seconds())
             state = replace(step.state, record=record, changes=tuple(step.attempt.changes))
             state = replace(state, sites=self._viewer.sites(), stimuli=self._viewer.stimuli(step))
             state = valued(state, self._outputs)
             self.record.states.append(state)
-            skin = self._viewer.skin(step)
-            if skin is not None:
-                self.record.skins[state.step] = skin
+            skin, body = self._viewer.skin(step), self._viewer.body(fields=False)
+            if skin is not None and body is not None:
+                self.record.move(state, skin, body)
             self._show(state, done)
             if self._simulation.finger.problem.mesh.comm.rank == 0:
                 self._log(step, state)
@@ -161,22 +160,16 @@ class Report:
             log.warning("step %d closure: %s", state.step, ", ".join(notes))
 
     def load_reached(self) -> None:
-        """Write the present state for ParaView and keep it for the pictures, if it was reported; collective."""
+        """Keep the present state for pictures and fields, if it was reported; collective."""
         with self._clock.phase("output"):
             done = self.record.states
             last = done[-1].step if done else 0
-            if self._written != last == self._simulation.finger.continuation.steps:
-                self._written = last
+            if self._shown != last == self._simulation.finger.continuation.steps:
+                self._shown = last
                 self._log_checks()
-                self._ends.append((last, checkpoint.unknowns(self._simulation.finger.continuation)))
-                self._end(done[-1])
-
-    def _end(self, state: ContactState) -> None:
-        """Write the present fields, those at the end of a load, and keep them for the pictures; collective."""
-        self._writer.fields(state.step, state.load)
-        snapshot, merkel = self._viewer.picture()
-        if snapshot is not None:
-            self.record.ends[state.load] = View(state, None, None, snapshot, merkel)
+                snapshot, merkel = self._viewer.picture()
+                if snapshot is not None:
+                    self.record.ends[done[-1].load] = View(done[-1], None, None, snapshot, merkel)
 
     def kept(self) -> dict[str, Any]:
         """Return what another process needs to go on with all tables and pictures, whole on rank 0."""
@@ -184,37 +177,33 @@ class Report:
         return {
             "states": self.record.states,
             "skins": self.record.skins,
-            "ends": self._ends,
+            "moved": self.record.moved,
+            "ends": self.record.ends,
+            "shown": self._shown,
             "logged": self._logged,
             "log": self._writer.log_text(),
         }
 
-    def resume(self, kept: Mapping[str, Any], places: Mapping[str, Any], done: float) -> None:
+    def resume(self, kept: Mapping[str, Any], done: float) -> None:
         """Go on from what another process kept; collective.
 
         Args:
             kept: what it kept, on every rank.
-            places: of the unknowns at the ends of loads, see :func:`variational.solvers.checkpoint.take`.
             done: part of the whole history that is done.
         """
-        finger = self._simulation.finger
         self._writer.earlier_log = kept["log"]
-        self._writer.take(finger.problem)
-        self.record.states, self._logged = kept["states"], kept["logged"]
-        self._ends, self._written = kept["ends"], kept["ends"][-1][0] if kept["ends"] else 0
-        if finger.problem.mesh.comm.rank == 0:
-            self.record.skins = kept["skins"]
-        by_step = {state.step: state for state in self.record.states}
-        now = finger.solver.x.array_r.copy()
-        mine = checkpoint.order(finger.continuation, dict(places))
-        for step, unknowns in self._ends:
-            finger.solver.x.array_w[:] = mine("unknowns", unknowns)
-            finger.solver.equations.to_fields(finger.solver.x)
-            self._end(by_step[step])
-        finger.solver.x.array_w[:] = now
-        finger.solver.equations.to_fields(finger.solver.x)
+        self._writer.take()
+        self.record.states, self._logged, self._shown = kept["states"], kept["logged"], kept["shown"]
+        if self._simulation.finger.problem.mesh.comm.rank == 0:
+            self.record.skins, self.record.ends, self.record.moved = kept["skins"], kept["ends"], kept["moved"]
         for state in self.record.states:
             self._show(state, done)
+
+    def write_motion(self, folder: Path) -> None:
+        """Write ``motion.npz``; collective."""
+        body = self._viewer.body(fields=False)
+        if body is not None and self.record.moved:
+            motion.write(folder, body, self.record.moved)
 
     def _log_checks(self) -> None:
         for step, check in list(self._simulation.checks.items())[self._logged :]:
@@ -226,7 +215,7 @@ class Report:
         """Write the tables of states on the mesh that the run ended with, by name."""
         if views:
             words = "; ".join(f"{states.WORDS[name]}: contact size {v.size:g} m" for name, v in views.items())
-            path = "steps.csv, history.png and *.bp are of the mesh of the path; %s"
+            path = "steps.csv, history.png and fields.pvd are of the mesh of the path; %s"
             self._writer.log.info(path, words)
         for state, view in views.items():
             self._tables("_final", {"of": state}, view.state, view.size)

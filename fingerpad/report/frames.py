@@ -55,12 +55,13 @@ def frames(result: Result) -> dict[str, Any]:
     for frame, skin in found:
         finger = _finger(folder / f"{frame.finger}.npz", view) if frame.finger in images else None
         if skin or finger:
-            shown.append({"label": frame.label, "about": _about(frame.state), "skin": skin, "finger": finger})
+            about = html.typeset(f"{frame.label}. {_about(frame.state)}")
+            shown.append({"label": frame.label, "about": about, "skin": skin, "finger": finger})
     return {"view": view, "frames": shown} if shown else {}
 
 
-def section(shown: dict[str, Any]) -> str:
-    """Return the section with slider, charts and a table of extremes; nothing without a state.
+def slider(shown: dict[str, Any]) -> str:
+    """Return the slider over the states with the finger near the contact and its skin; nothing without a state.
 
     Args:
         shown: of :func:`frames`.
@@ -70,30 +71,36 @@ def section(shown: dict[str, Any]) -> str:
     labels = [frame["label"] for frame in shown["frames"]]
     last = len(labels) - 1
     options = "".join(f'<option value="{k}">{html.text(label)}</option>' for k, label in enumerate(labels))
-    controls = f"""<div class="controls needs-js">
+    return f"""<section id="finger"><div class="controls needs-js">
 <label for="state">State</label><button type="button" id="back" aria-label="state before">◀</button>
 <input type="range" id="state" min="0" max="{last}" step="1" value="{last}">
 <button type="button" id="forth" aria-label="next state">▶</button>
 <select id="states" aria-label="state by name">{options}</select>
 </div><p class="about needs-js" id="about" aria-live="polite"></p>
-<div class="controls needs-js"><label for="ridge">Ridge</label>
+{html.chart("body", "Strain energy density in the deformed finger near the contact")}
+{html.chart("skin", "Contact pressure, attraction and shear traction along the skin")}
+<noscript><p class="note">The slider and charts need JavaScript; numbers and pictures do not.</p></noscript>
+</section>"""
+
+
+def section(shown: dict[str, Any]) -> str:
+    """Return the section of one ridge, with a table of extremes of each state; nothing without a state.
+
+    Args:
+        shown: of :func:`frames`.
+    """
+    if not shown:
+        return ""
+    controls = """<div class="controls needs-js"><label for="ridge">Ridge</label>
 <select id="ridge"></select><output id="under" aria-live="polite"></output></div>"""
-    charts = (
-        html.chart("body", "Strain energy density in the deformed finger near the contact"),
-        html.chart("skin", "Contact pressure, attraction and shear traction along the skin"),
-        html.chart("one", "Contact pressure, attraction and height above the screen along one ridge"),
-    )
     rows = [(frame["label"], peak, gap) for frame in shown["frames"] for peak, gap in [_extremes(frame["skin"])]]
-    heads = ("state", "highest contact pressure (kPa)", "air gap of the ridges in contact (µm)")
+    heads = ("state", "highest contact pressure (kPa)", "air gap d_eq of the ridges in contact (µm)")
     return html.section(
-        "finger",
-        "The deformed finger, state by state",
-        html.paragraph(
-            "Move the slider through the saved states. Point at a ridge, or choose it, to read its values.", "needs-js"
-        ),
+        "ridge-by-ridge",
+        "One ridge, in the state of the slider above",
+        html.paragraph("Choose a ridge here, or point at it above.", "needs-js"),
         controls,
-        *charts,
-        '<noscript><p class="note">The slider and charts need JavaScript; numbers and pictures do not.</p></noscript>',
+        html.chart("one", "Contact pressure, attraction and height above the screen along one ridge"),
         html.table(heads, rows),
     )
 
@@ -136,7 +143,7 @@ def _about(state: ContactState | None) -> str:
     if state is None:
         return ""
     slides = abs(state.f_t) > 1e-9 * abs(state.f_ext) and not math.isnan(state.mu_app)
-    slip = f", µ = {state.mu_app:.3f}" if slides else ""
+    slip = f", µ_app = {state.mu_app:.3f}" if slides else ""
     length = f"L_R = {_MM * state.contact_length:.3f} mm, {state.ridges_in_contact} ridges in contact"
     return f"{conditions_of(state)}{slip}, {length}"
 

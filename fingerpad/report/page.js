@@ -34,8 +34,8 @@
     const line = (name, y, yaxis, dash, marker, colour) => ({ x, y: cut(y), name, yaxis, text: at(name),
       mode: "lines+markers", line: { color: colour, dash }, marker: { symbol: marker, size: 6 },
       hovertemplate: "%{text}<br>x %{x:.4g} mm<br>%{y:.4g}<extra></extra>" });
-    const traces = [line("friction µ_app", "mu_app", "y", "solid", "circle", BLACK),
-      line("contact length L_R", "contact_length", "y2", "dash", "square", BLUE)];
+    const traces = [line("friction µ<sub>app</sub>", "mu_app", "y", "solid", "circle", BLACK),
+      line("contact length L<sub>R</sub>", "contact_length", "y2", "dash", "square", BLUE)];
     for (const [y, yaxis] of [["mu_app", "y"], ["contact_length", "y2"]]) {
       const values = cut(y), hit = jump.map((j, k) => (j ? k : -1)).filter((k) => k >= 0);
       if (hit.length) traces.push({ x: hit.map((k) => x[k]), y: hit.map((k) => values[k]), yaxis, name: "jump", mode: "markers",
@@ -50,7 +50,7 @@
     const shapes = x.filter((_, k) => jump[k]).map((at) => ({ type: "line", x0: at, x1: at, y0: 0, y1: 1, yref: "paper",
       line: { color: GREY, width: 1, dash: "dot" }, layer: "below" }));
     draw("friction", traces, layout(520, { shapes, margin: { l: 60, r: 12, t: 60, b: 44 },
-      yaxis: axis("µ_app", { domain: [0.54, 1] }), yaxis2: axis("L_R (mm)", { domain: [0, 0.46], title: { text: "L_R (mm)", standoff: 8 } }),
+      yaxis: axis("µ<sub>app</sub> (–)", { domain: [0.54, 1] }), yaxis2: axis("L<sub>R</sub> (mm)", { domain: [0, 0.46], title: { text: "L<sub>R</sub> (mm)", standoff: 8 } }),
       xaxis: axis("sideways displacement of the bone (mm)", { anchor: "y2" }) }));
   }
 
@@ -65,7 +65,7 @@
     if (cut.length) traces.push({ x: cut.map((k) => s.step[k]), y: cut.map(() => 0), mode: "markers", name: "cut step",
       text: cut.map((k) => `cut ${s.cutbacks[k]} times`), marker: { symbol: "triangle-up", size: 11, color: BLACK },
       hovertemplate: "step %{x}: %{text}<extra></extra>" });
-    draw("work", traces, layout(320, { barmode: "group", xaxis: axis("step"), yaxis: axis("number") }));
+    draw("work", traces, layout(320, { barmode: "group", xaxis: axis("step"), yaxis: axis("number (–)") }));
   }
 
   // -- the finger ---------------------------------------------------------------------------------------
@@ -96,13 +96,13 @@
   }
   function body() {
     const finger = frames[now].finger, traces = [], annotations = [], range = along();
-    const wide = (get("body").clientWidth || 700) - 68;
+    const wide = (get("body").clientWidth || 700) - 78;
     const high = Math.max(90, wide * (view[3] - view[2]) / (range[1] - range[0]));
     if (finger) {
       traces.push({ type: "heatmap", z: image(finger), customdata: finger.kpa, x0: finger.x[0], dx: finger.x[1],
         y0: finger.y[0], dy: finger.y[1], zmin: highest - 3, zmax: highest, colorscale: "Viridis",
         hovertemplate: "x %{x:.3f} mm, y %{y:.3f} mm<br>energy density %{customdata:.3g} kPa<extra></extra>",
-        colorbar: { orientation: "h", y: -62 / high, yanchor: "top", thickness: 12, len: 0.9, tickvals: ticks(),
+        colorbar: { orientation: "h", y: -22 / high, yanchor: "top", thickness: 10, len: 0.9, tickvals: ticks(),
           ticktext: ticks().map((k) => String(Number(Math.pow(10, k).toPrecision(1)))),
           title: { text: "strain energy density (kPa)", side: "bottom" } } });
       const x = [], y = [];
@@ -116,9 +116,9 @@
     if (mine) {
       annotations.push({ x: middle(mine), y: 0, text: `▲ ${mine.ridge}`, showarrow: false, yanchor: "top", font: { size: 13 } });
     }
-    draw("body", traces, layout(Math.round(high + 140), { showlegend: false, annotations, margin: { l: 56, r: 12, t: 12, b: 128 },
+    draw("body", traces, layout(Math.round(high + 90), { showlegend: false, annotations, margin: { l: 66, r: 12, t: 4, b: 86 },
       shapes: [{ type: "line", x0: view[0], x1: view[1], y0: 0, y1: 0, line: { width: 3, color: "#000" } }],
-      xaxis: axis("x (mm)", { range, fixedrange: narrow() }),
+      xaxis: axis("", { range, fixedrange: narrow() }),
       yaxis: axis("y (mm)", { range: [view[2], view[3]], fixedrange: narrow() }) }));
   }
   const middle = (r) => {
@@ -139,7 +139,7 @@
   const largest = Math.max(1e-9, ...frames.flatMap((f) => f.skin.flatMap((r) => [...r.p, ...r.p_el].filter((v) => v !== null))));
   const lowest = Math.min(0, ...frames.flatMap((f) => f.skin.flatMap((r) => r.t.filter((v) => v !== null))));
   const STRESS = [["p", "contact pressure", "solid", BLACK], ["p_el", "attraction", "dash", BLUE],
-    ["t", "shear traction on the skin", "dot", ORANGE]];
+    ["t", "shear traction", "dot", ORANGE]];
   function skin() {
     const x = joined("x");
     const traces = STRESS.map(([key, name, dash, color]) => ({ x, y: joined(key), name, mode: "lines",
@@ -150,7 +150,7 @@
       shapes.push({ type: "rect", x0: Math.min(...known), x1: Math.max(...known), y0: 0, y1: 1, yref: "paper",
         fillcolor: "#000", opacity: 0.08, line: { width: 1, dash: "dot", color: "#000" } });
     }
-    draw("skin", traces, layout(300, { shapes, margin: { l: 56, r: 12, t: 50, b: 44 },
+    draw("skin", traces, layout(narrow() ? 230 : 280, { shapes, margin: { l: 66, r: 12, t: narrow() ? 52 : 36, b: 44 },
       xaxis: axis("x on the screen (mm)", { range: along(), fixedrange: narrow() }),
       yaxis: axis("stress (kPa)", { range: [1.05 * lowest, 1.08 * largest], fixedrange: narrow() }) }));
   }
@@ -162,7 +162,7 @@
     traces.push({ x: mine.x, y: mine.y, yaxis: "y2", name: "height of the skin (µm)", mode: "lines",
       line: { color: GREY, width: 1.5, dash: "longdash" }, hovertemplate: "height %{y:.3g} µm<extra></extra>" });
     if (mine.gap !== null) traces.push({ x: mine.x.map((v) => v), y: mine.x.map((v) => (v === null ? null : mine.gap)), yaxis: "y2",
-      name: "equivalent air gap (µm)", mode: "lines", line: { color: GREEN, width: 3 }, hovertemplate: "air gap %{y:.3g} µm<extra></extra>" });
+      name: "equivalent air gap d<sub>eq</sub> (µm)", mode: "lines", line: { color: GREEN, width: 3 }, hovertemplate: "air gap %{y:.3g} µm<extra></extra>" });
     draw("one", traces, layout(narrow() ? 430 : 400, { margin: { l: 56, r: 12, t: narrow() ? 110 : 60, b: 44 },
       yaxis: axis("stress (kPa)", { domain: [0.45, 1] }), yaxis2: axis("gap (µm)", { domain: [0, 0.36], range: [-0.5, 8] }),
       xaxis: axis(`x along ridge ${mine.ridge} (mm)`, { anchor: "y2" }) }));
@@ -192,7 +192,7 @@
     get("state").value = String(now);
     get("state").setAttribute("aria-valuetext", frame.label);
     get("states").value = String(now);
-    get("about").textContent = `${now + 1} of ${frames.length}: ${frame.label}. ${frame.about}`;
+    get("about").innerHTML = `${now + 1} of ${frames.length}: ${frame.about}`;
     const numbers = frame.skin.map((r) => r.ridge);
     get("ridge").replaceChildren(...numbers.map((n) => new Option(`${n}`, `${n}`)));
     if (!numbers.includes(ridge)) ridge = numbers.length ? numbers.reduce((a, b) => (Math.abs(b) < Math.abs(a) ? b : a)) : null;

@@ -11,6 +11,7 @@ from io import BytesIO
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from fingerpad.results.quantities import SYMBOL
 from fingerpad.scene import Scene, SceneError, override
 from fingerpad.scene.reading import DEFAULT_MODEL, flat
 
@@ -26,16 +27,23 @@ PAPER = (
 GOOD, CARE, BAD = "holds", "care", "fails"
 MARKS = {GOOD: "✓ holds", CARE: "! care", BAD: "✗ fails"}
 """Verdicts as they are shown."""
+_UNITS = r"[kM]?Pa|k?N|N/m|k?J/m³?|[kM]?Hz|k?V|[mµ]?m²?|[mµ]?s|MB|%"
+_VALUE = re.compile(rf"(?<=\d) (?=(?:±|{_UNITS})(?!\w))|(?<=[±=>]) (?=[−-]?\d)|(?<=[\w>]) (?==)")
 
 
 def text(words: object) -> str:
-    """Return words as text of a page."""
+    """Return words as text of a page, letter by letter, as of code and of drawings."""
     return html.escape(str(words))
+
+
+def typeset(words: object) -> str:
+    """Return words as text of a page: symbols with their subscripts, as d_eq, and no line that breaks in a value."""
+    return _VALUE.sub("\u00a0", SYMBOL.sub(r"\1<sub>\2</sub>", text(words)))
 
 
 def paragraph(words: object, kind: str = "") -> str:
     """Return a paragraph, with the class ``kind``."""
-    return f"<p{_class(kind)}>{text(words)}</p>"
+    return f"<p{_class(kind)}>{typeset(words)}</p>"
 
 
 def banner(what: str, folder: Path | None, number: str, said: str, kind: str, words: str) -> str:
@@ -58,24 +66,34 @@ def banner(what: str, folder: Path | None, number: str, said: str, kind: str, wo
 
 def items(lines: Iterable[object]) -> str:
     """Return a list of lines; nothing without a line."""
-    found = "".join(f"<li>{text(line)}</li>" for line in lines)
+    found = "".join(f"<li>{typeset(line)}</li>" for line in lines)
     return f"<ul>{found}</ul>" if found else ""
 
 
 def table(heads: Sequence[object], rows: Iterable[Sequence[object]], kind: str = "") -> str:
-    """Return a table that scrolls sideways where it is wider than the page; the first cell of a row is its head."""
-    first_row = "".join(f'<th scope="col">{text(head)}</th>' for head in heads)
-    lines = [f"<tr>{first_row}</tr>"]
+    """Return a table that scrolls sideways where it is wider than its place; the first cell of a row is its head."""
+    first_row = "".join(f'<th scope="col">{typeset(head)}</th>' for head in heads)
+    lines, name = [f"<tr>{first_row}</tr>"], text if kind == "parameters" else typeset
     for first, *rest in rows:
-        cells = "".join(f"<td>{text(cell)}</td>" for cell in rest)
-        lines.append(f'<tr><th scope="row">{text(first)}</th>{cells}</tr>')
+        cells = "".join(f"<td>{typeset(cell)}</td>" for cell in rest)
+        lines.append(f'<tr><th scope="row">{name(first)}</th>{cells}</tr>')
     return f'<div class="wide" tabindex="0"><table{_class(kind)}>{"".join(lines)}</table></div>'
 
 
 def section(name: str, title: str, *parts: str) -> str:
     """Return a section with a place to link to; nothing without a part."""
     inside = "\n".join(filter(None, parts))
-    return f'<section id="{name}"><h2>{text(title)}</h2>\n{inside}\n</section>' if inside else ""
+    return f'<section id="{name}"><h2>{typeset(title)}</h2>\n{inside}\n</section>' if inside else ""
+
+
+def first(finding: str, shown: str) -> str:
+    """Return the first screen: the finding, and beside or below it what is shown; the finding alone without that."""
+    return f'<div class="first"><div class="finding">{finding}</div>{shown}</div>' if shown else finding
+
+
+def beside(sections: Iterable[str]) -> str:
+    """Return sections beside each other where a window is wide enough for two."""
+    return f'<div class="beside">{"".join(sections)}</div>'
 
 
 def folded(title: str, *parts: str) -> str:
@@ -104,7 +122,7 @@ def picture(file: Path, words: str) -> str:
     except (OSError, SyntaxError, ValueError, Image.DecompressionBombError):
         return paragraph(f"{file.name} is left out: it is no picture of a run, or not a whole one.", "note")
     data = base64.b64encode(found).decode()
-    caption = f"<figcaption>{text(words)}</figcaption>"
+    caption = f"<figcaption>{typeset(words)}</figcaption>"
     shown = f'<img {size} alt="{html.escape(words)}" src="data:image/png;base64,{data}">'
     return f"<figure>{shown}{caption}</figure>"
 

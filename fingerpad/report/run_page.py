@@ -10,19 +10,19 @@ from fingerpad.reduced.registry import MODELS
 from fingerpad.report import page as html
 from fingerpad.report import trust
 from fingerpad.report.felt import felt
-from fingerpad.report.frames import conditions_of, frames, section
+from fingerpad.report.frames import conditions_of, frames, section, slider
 from fingerpad.report.trust import conditions, head
 from fingerpad.results.arrays import arrays_of
 from fingerpad.results.closures import RECORD, in_words
 from fingerpad.results.over_time import HARMONICS, NOTE
 from fingerpad.results.quantities import PER_LENGTH, PLUS_MINUS, STEPS
 from fingerpad.results.result import Result
-from fingerpad.results.states import before_sliding, called
+from fingerpad.results.states import WORDS, before_sliding, called
 from variational.state import ContactState, Errors
 
 _MM = 1e3
 _LINKS = {
-    "asked": "Asked", "numbers": "Numbers", "newtons": "Newtons", "trust": "Trust", "finger": "Finger",
+    "asked": "Asked", "numbers": "Numbers", "newtons": "Newtons", "trust": "Trust", "ridge-by-ridge": "One ridge",
     "sliding": "Sliding", "time": "Time", "receptors": "Receptors", "felt": "Felt", "pictures": "Pictures",
     "model": "Model", "solver": "Solver", "parameters": "Parameters", "reproduce": "Reproduce",
 }  # fmt: skip
@@ -34,11 +34,12 @@ _RECEPTORS = (
     "at the Meissner sites, in the dermal papillae on either side."
 )
 _SAID = {
-    "footprint.png": "Gross contact (light), sum of the ridges' contact lengths (dark) and pressure, slice by slice",
-    "time.png": "Voltage, friction force and contact length over time",
-    "history.png": "Friction force, contact length and ridges in contact over sliding",
     "surface.png": "Pressure, shear traction, attraction and gap along the skin in the named states",
+    "history.png": "Friction force, contact length and ridges in contact over sliding",
+    "time.png": "Voltage, friction force and contact length over time",
+    "footprint.png": "Gross contact (light), sum of the ridges' contact lengths (dark) and pressure, slice by slice",
 }
+_MAX_FINGERS = 4  # pictures of the finger
 
 
 def page(result: Result) -> str:
@@ -48,15 +49,15 @@ def page(result: Result) -> str:
     answer, spikes = felt(result)
     first = (_numbers, _newtons) if not result.whole else (_newtons, _numbers)
     sections = [
-        _asked(result),
         *(part(result) for part in first),
+        _asked(result),
         _trust(result),
         section(shown),
         _sliding(result),
         _over_time(result),
+        _pictures(result),
         _receptors(result),
         answer,
-        _pictures(result.folder),
         _model(result),
         _solver(result),
         html.section("parameters", "Parameters", html.all_parameters(result.parameters)),
@@ -64,7 +65,7 @@ def page(result: Result) -> str:
     ]
     there = [name for part in sections for name in _LINKS if f'id="{name}"' in part]
     links = "".join(f'<a href="#{name}">{_LINKS[name]}</a>' for name in there)
-    body = "\n".join([head(result), f"<nav>{links}</nav>", *sections])
+    body = "\n".join([html.first(head(result), slider(shown)), f"<nav>{links}</nav>", html.beside(sections)])
     data = {"finger": shown, "steps": _columns(result), "errors": _errors(result)}
     return html.page(title, body, data | ({"felt": spikes} if spikes else {}))
 
@@ -152,7 +153,7 @@ def _trust(result: Result) -> str:
     found = trust.findings(result)
     lines = "".join(
         f'<li class="{each.verdict}"><b>{html.MARKS[each.verdict]}</b> <span><strong>{html.text(each.what)}.</strong> '
-        f"{html.text(each.words)}</span></li>"
+        f"{html.typeset(each.words)}</span></li>"
         for each in found
     )
     band = in_words(result.record.get(RECORD, {}))
@@ -229,17 +230,32 @@ def _receptors(result: Result) -> str:
     )  # fmt: skip
 
 
-def _pictures(folder: Path | None) -> str:
+def _pictures(result: Result) -> str:
+    """Return the finger at the end of each load, in their order, then the pictures of several states."""
+    folder = result.folder
     if folder is None:
         return ""
-    fingers = sorted(folder.glob("finger_*.png"))
-    files = [(folder / name, words) for name, words in _SAID.items()]
-    files += [(file, f"Deformed finger: {file.stem.removeprefix('finger_').replace('_', ' ')}") for file in fingers[:4]]
-    more = f"{len(fingers) - 4} more pictures of the finger are in the folder." if len(fingers) > 4 else ""
+    fingers = _fingers(result, folder)
+    files = [(file, f"Deformed finger: {words}") for file, words in fingers[:_MAX_FINGERS]]
+    files += [(folder / name, words) for name, words in _SAID.items()]
+    left = len(list(folder.glob("finger_*.png"))) - len(fingers[:_MAX_FINGERS])
+    more = f"{left} more pictures of the finger are in the folder." if left else ""
     drawn = [html.picture(file, words) for file, words in files]
     damaged = [file.name for file in sorted(folder.glob("*.npz")) if not arrays_of(file)]
     drawn += [html.paragraph(f"{name} is left out: it has no arrays of a run.", "note") for name in damaged]
     return html.section("pictures", "Pictures", *drawn, html.paragraph(more, "note") if more else "")
+
+
+def _fingers(result: Result, folder: Path) -> list[tuple[Path, str]]:
+    """Return the last picture of the finger in each load, in their order: that of the final mesh where there is one."""
+    states = {load.name: {load.name: f"end of {load.name}"} for load in result.loads}
+    for name, state in result.named.items():
+        states.setdefault(state.load, {})[WORDS[name]] = called(name, state.voltage)
+    found = []
+    for named in states.values():
+        files = [(folder / f"finger_{name.replace(' ', '_')}.png", words) for name, words in named.items()]
+        found += [each for each in files if each[0].exists()][-1:]
+    return found
 
 
 def _model(result: Result) -> str:

@@ -11,7 +11,10 @@ from fingerpad.results.states import STATES, LoadResult
 from variational.state import ContactState
 
 if TYPE_CHECKING:
+    import pyvista
+
     from fingerpad.results.drawing import Drawing
+    from fingerpad.results.fields import StateFields
     from fingerpad.scene import Scene
     from fingerpad.slices.finger import WholeFinger
 
@@ -125,3 +128,43 @@ class Answer:
             error = getattr(state.error, key, math.nan)
             shown.append("–" if key in FRICTION and name != "full_slip" else of.shown(getattr(state, key), error))
         return shown
+
+    def _drawn(self) -> "Drawing | None":
+        """Return what pictures are drawn from, of a result that was read from its folder; None off rank 0."""
+        from fingerpad.results import terminal
+
+        if self.drawing is None and self.steps and self.folder is not None and terminal.rank() == 0:
+            return _drawing(self, self.folder)
+        return self.drawing
+
+    @property
+    def fields(self) -> "StateFields":
+        """Displacement, stress, strain and energy density inside the finger, by load or named state; on rank 0.
+
+        A load's name stands for its end. Named states are those of the mesh that their numbers are of. Empty for
+        models without a mesh, and on other ranks.
+        """
+        from fingerpad.results.fields import StateFields
+
+        drawing = self._drawn()
+        return StateFields({} if drawing is None else drawing.fields(), self.model)
+
+    def to_pyvista(self) -> "pyvista.MultiBlock":
+        """Return :attr:`fields` as blocks of PyVista, each a grid of the unloaded finger in m.
+
+        Raises:
+            ImportError: PyVista is not installed.
+            ValueError: there are no fields.
+        """
+        return self.fields.to_pyvista()
+
+
+def _drawing(result: Answer, folder: Path) -> "Drawing":
+    """Return what the pictures of a result that was read are drawn from."""
+    from fingerpad.results.drawing import read  # Matplotlib
+    from fingerpad.scene.remarks import coefficient
+
+    meshes = (result.record.get("path_mesh"), result.record.get("accuracy", {}).get("mesh"))
+    path, final = (mesh["contact"] if mesh and all(meshes) else None for mesh in meshes)
+    mu_0 = None if "laws" in result.record.get("parameters", {}) else coefficient(result.scene)
+    return read(folder, result.steps, result.named, mu_0, path, final)

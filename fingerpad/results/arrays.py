@@ -44,6 +44,9 @@ def finger_of(file: Path) -> dict[str, Any]:
         whole &= triangles.dtype.kind in "iu" and bool(np.all((triangles >= 0) & (triangles < points)))
         whole &= all(found[name].dtype.kind in "iuf" for name in ("x", "u", "sed", "tag"))
         whole &= bool(all(np.isfinite(found[name]).all() for name in ("x", "u", "sed")))
+        for name, components in (("stress", 4), ("strain", 3)):  # files of earlier versions have none
+            values = found.get(name, np.empty((len(triangles), components)))
+            whole &= values.shape == (len(triangles), components) and values.dtype.kind == "f"
         if whole and "lines" not in found:
             found |= _straight(**{name: found[name] for name in ("x", "u", "triangles", "tag")})
         for name, columns, least, most in (("lines", 3, 0, len(found["x"])), ("beside", 2, -1, len(triangles))):

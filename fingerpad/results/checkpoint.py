@@ -3,7 +3,7 @@
 ``checkpoint/head.json`` in the folder of results says of which scene and by which program; ``0001.npz``, ... hold
 arrays and JSON, without pickle, each the whole of what a run goes on from. One is written beside, flushed to the disk
 and put in place, so that after a power cut it is there as a whole or not at all; the last two stay. The folder goes
-when the run reaches its end. adios4dolfinx keeps fields only, which are the smaller half of what a run goes on from.
+when the run reaches its end.
 """
 
 import hashlib
@@ -22,7 +22,7 @@ from fingerpad.results.files import read_object, remove, replace_json
 from fingerpad.scene import SceneError
 
 Arrays = dict[str, NDArray[Any]]
-_FORMAT = 1
+_FORMAT = 2
 _FACTS = "facts"
 _STAY = 2  # checkpoints, of which the earlier serves where the last is damaged
 

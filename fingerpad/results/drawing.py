@@ -14,7 +14,7 @@ import numpy as np
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from fingerpad.results import curves, finger_picture, style
+from fingerpad.results import curves, fields, finger_picture, style
 from fingerpad.results.arrays import ALONG, finger_of, put, skin_of
 from fingerpad.results.curves import SurfaceProfile
 from fingerpad.results.over_time import without_parts_of_jumps
@@ -78,6 +78,7 @@ class Drawing:
             if view.snapshot is not None:
                 file = folder / f"finger_{_file(WORDS[name])}"
                 finger = self._put_finger(file, _title(name, view.state), view, finger)
+        self._put_fields(folder, each_load)
         if self._shown():
             self._put_skin(folder / "surface", self._named_skin())
         if self._sliding():
@@ -169,6 +170,32 @@ class Drawing:
         """Return the steps of the states along whose skin is drawn."""
         states = [state for _, state, _ in self._shown().values()] + [end.state for end in self.ends.values()]
         return [state.step for state in states]
+
+    # -- fields --------------------------------------------------------------------------------------
+    def fields(self) -> dict[str, fields.Fields]:
+        """Return the fields inside the finger: at the end of each load by its name, and of named states by theirs."""
+        views = {**self.ends, **self.finer}
+        if self.starting_size is None:  # named states are those of the path
+            views |= {name: end for name, state in self.named.items() if (end := self._end_of(name, state)) is not None}
+        found = {name: fields.of_snapshot(view.snapshot) for name, view in views.items() if view.snapshot is not None}
+        return {name: each for name, each in found.items() if each is not None}
+
+    def _end_of(self, name: str, state: ContactState) -> View | None:
+        """Return the end of a load in a named state; in full slip, which further sliding leaves as it is, its last."""
+        same = [end for end in self.ends.values() if end.state.step == state.step]
+        if name == "full_slip":
+            same += [end for end in self.ends.values() if end.state.slip_began == state.slip_began > 0]
+        return same[-1] if same else None
+
+    def _put_fields(self, folder: Path, each_load: bool) -> None:
+        """Write the fields of each load's end, a collection of them, and the fields of named states on other meshes."""
+        files = {name: f"fields_{_file(name)}.vtu" for name in (*(self.ends if each_load else ()), *self.finer)}
+        found = {name: each for name, each in self.fields().items() if name in files}
+        for name, each in found.items():
+            fields.write(folder / files[name], each)
+        loads = [(end.state.step, load, files[load]) for load, end in self.ends.items() if load in found]
+        if loads:
+            fields.write_series(folder / "fields.pvd", loads)
 
     # -- history -------------------------------------------------------------------------------------
     def _sliding(self) -> Sequence[ContactState]:

@@ -99,7 +99,7 @@ def finger(
 
     Args:
         path: of the PNG file; None for the figure alone.
-        snapshot: state of the body, see :func:`variational.snapshot.gather_mesh`.
+        snapshot: state of the body, see :class:`variational.snapshot.Lines`.
         sites: current positions of Merkel sites (m), shape (n, 2), or None.
         title: what state it is, see :mod:`fingerpad.results.style`.
         ridges: current abscissa (m) of numbered ridges, number 0 at the centre.
@@ -175,7 +175,7 @@ def _layers(snapshot: "Snapshot") -> list[int]:
 def _draw_layers(ax: Axes, snapshot: "Snapshot", xy: Array) -> None:
     for tag in _layers(snapshot):
         around = loops(snapshot.lines, snapshot.beside, snapshot.tag, tag)
-        ax.add_artist(PathPatch(_curve(xy, np.concatenate(around)), fc=LAYER_COLOURS[tag], ec="black", lw=0.5))
+        ax.add_artist(PathPatch(curve(xy, np.concatenate(around)), fc=LAYER_COLOURS[tag], ec="black", lw=0.5))
     outside = loops(snapshot.lines, snapshot.beside, snapshot.tag, 0)
     if len(outside) == 2:
         bone = min((xy[loop[:, 0]] for loop in outside), key=lambda places: float(np.ptp(places[:, 0])))
@@ -184,7 +184,7 @@ def _draw_layers(ax: Axes, snapshot: "Snapshot", xy: Array) -> None:
     ax.axhline(0, color="black", lw=2.5, zorder=3)
 
 
-def _curve(xy: Array, lines: Numbers) -> Curve:
+def curve(xy: Array, lines: Numbers) -> Curve:
     """Return lines as one path of parabolas, which goes on where a line begins at the end of the one before.
 
     Args:
@@ -219,7 +219,7 @@ def _draw_density(ax: Axes, snapshot: "Snapshot", xy: Array, scale: Scales) -> N
     inside = ((places.max(axis=1) > low) & (places.min(axis=1) < high)).all(axis=1)
     outer = snapshot.beside[:, 1] < 0
     for mine, colour in ((inside & ~outer, "white"), (inside & outer, "black")):
-        ax.add_artist(PathPatch(_curve(xy, snapshot.lines[mine]), fill=False, ec=colour, lw=0.8))
+        ax.add_artist(PathPatch(curve(xy, snapshot.lines[mine]), fill=False, ec=colour, lw=0.8))
     ax.axhline(0, color="black", lw=2.5, zorder=3)
 
 

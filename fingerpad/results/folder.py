@@ -32,16 +32,17 @@ LEFT = (
         "receptors.csv",
         "*_final.csv",
         "coupling.csv",
-        "fields.csv",
         "summary.json",
         "summary.json*.part",
         "run.log",
         "result.nc",
         "result.nc*.part",
     ),
-    *("displacement.bp", "stress.bp", "sed.bp", "finger_*.npz", "finger_*.png", "surface*.npz", "surface*.png"),
+    *("displacement.bp", "stress.bp", "sed.bp", "fields.csv"),  # of earlier versions
+    *("finger_*.npz", "finger_*.png", "surface*.npz", "surface*.png"),
+    *("fields_*.vtu", "fields.pvd"),
     *("history.png", "time.png", "footprint.png", "report.html", "report.html*.part"),
-    *("spikes.csv", "spikes.nc", "raster.png"),
+    *("spikes.csv", "spikes.nc", "raster.png", "motion.npz", "animation.webp"),
 )
 T = TypeVar("T")
 _NO_LOCKS = (errno.ENOLCK, errno.ENOSYS, errno.ENOTSUP)  # some network file systems

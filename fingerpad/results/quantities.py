@@ -5,6 +5,7 @@ of :data:`OUTPUTS`; one of a user is the same, given to ``fingerpad.run(scene, o
 """
 
 import math
+import re
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, fields, replace
 from typing import Any
@@ -19,6 +20,8 @@ _PRINTED = {
     "": ("1", 1.0), "%": ("1", 100.0), "mm": ("m", 1e3), "µm": ("m", 1e6), "mm²": ("m^2", 1e6), "kPa": ("Pa", 1e-3)
 }  # fmt: skip
 """Units of tables that are not those of files, which are SI units, and the factor from SI."""
+SYMBOL = re.compile(r"(?<![\w.-])([µdfFhLp])_(app|eq|ext|el|max|[0cRT])(?![\w(=])")
+"""A symbol in words, which pages and pictures typeset: its letter and its subscript."""
 
 
 @dataclass(frozen=True)
@@ -120,12 +123,6 @@ def _listed(*rows: tuple[Any, ...]) -> dict[str, Output]:
     return {name: Output(name, unit, None, *more) for name, unit, *more in rows}
 
 
-FIELDS = _listed(
-    ("displacement", "m", "displacement, plane"),
-    ("stress", "Pa", "Cauchy stress, 3 x 3, row by row"),
-    ("sed", "J/m^3", "strain energy density per reference volume"),
-)
-"""Variables of the files for ParaView, each in the file of its name."""
 STEPS = _listed(
     ("step", "", "number of the accepted step"),
     ("load", "", "name of the load"),

@@ -37,7 +37,6 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from fingerpad.afferents.afferent import Afferent
-    from fingerpad.results.drawing import Drawing
     from fingerpad.results.spikes import Spikes
     from fingerpad.scene import Scene
 
@@ -73,9 +72,7 @@ class Result(Answer):
             from fingerpad.results.finger_picture import footprint  # Matplotlib
 
             return footprint(self.finger, None if path is None else Path(path)) if terminal.rank() == 0 else None
-        if (drawing := self.drawing) is None and self.steps and self.folder is not None and terminal.rank() == 0:
-            drawing = _drawing(self, self.folder)
-        if drawing is not None:
+        if (drawing := self._drawn()) is not None:
             return drawing.figure(kind, None if path is None else Path(path))
         if not self.steps:
             raise ValueError(f"the result of the model {self.model!r} has no steps to draw; those of model='full' have")
@@ -99,6 +96,16 @@ class Result(Answer):
         from fingerpad.results.felt import afferents  # SciPy's signals
 
         return afferents(self, laws)
+
+    def animate(self, path: "str | Path") -> Path:
+        """Write the run as a moving picture, WebP or GIF by the end of the file's name; return the file.
+
+        Raises:
+            SceneError: the run has no ``motion.npz``, or the name another ending.
+        """
+        from fingerpad.results.animation import animate  # Matplotlib
+
+        return animate(self, Path(path))
 
     def with_outputs(self, outputs: Iterable[Output]) -> "Result":
         """Return the result with further outputs, computed from its states; files are not written again.
@@ -241,16 +248,6 @@ def steps_of(folder: Path) -> tuple[ContactState, ...]:
     """
     with (folder / "steps.csv").open(encoding="utf-8", newline="") as file:
         return tuple(ContactState.from_row(row) for row in csv.DictReader(file) if None not in row.values())
-
-
-def _drawing(result: Result, folder: Path) -> "Drawing":
-    """Return what the pictures of a result that was read are drawn from."""
-    from fingerpad.results.drawing import read  # Matplotlib
-
-    meshes = (result.record.get("path_mesh"), result.record.get("accuracy", {}).get("mesh"))
-    path, final = (mesh["contact"] if mesh and all(meshes) else None for mesh in meshes)
-    mu_0 = None if "laws" in result.record.get("parameters", {}) else coefficient(result.scene)
-    return read(folder, result.steps, result.named, mu_0, path, final)
 
 
 def _state(name: str, kept: Mapping[str, Any]) -> ContactState:

@@ -17,10 +17,12 @@ from matplotlib.axis import Axis
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
+from matplotlib.text import Text
 from matplotlib.ticker import MaxNLocator
 from PIL import Image
 
 from fingerpad.results.files import replace
+from fingerpad.results.quantities import SYMBOL
 from variational.state import ContactState
 
 BLACK, ORANGE, SKY, GREEN, YELLOW = "#000000", "#E69F00", "#56B4E9", "#009E73", "#F0E442"
@@ -150,7 +152,14 @@ def count(axis: Axis) -> None:
 
 
 def save(drawn: Figure, path: Path | str | None) -> Figure:
-    """Write a figure where a path is given, as PNG unless its name ends otherwise; and return it."""
+    """Write a figure where a path is given, as PNG unless its name ends otherwise; and return it.
+
+    Symbols such as d_eq are typeset, in each text that has no formula of its own.
+    """
+    for words in drawn.findobj(Text):
+        assert isinstance(words, Text)
+        if "_" in words.get_text() and "$" not in words.get_text():
+            words.set_text(SYMBOL.sub(r"\1$_\\mathrm{\2}$", words.get_text()))
     if path is not None:
         file, data = Path(path), BytesIO()
         file = file if file.suffix else file.with_name(f"{file.name}.png")

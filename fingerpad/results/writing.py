@@ -1,4 +1,4 @@
-"""The files of a run as it goes: tables, fields for ParaView and the log; every accepted step is on disk at once."""
+"""The files of a run as it goes: tables and the log; every accepted step is on disk at once."""
 
 import logging
 import logging.handlers
@@ -11,9 +11,7 @@ from mpi4py import MPI
 from fingerpad.results import dataset
 from fingerpad.results.files import Table, replace_json
 from fingerpad.results.folder import Folder
-from fingerpad.results.quantities import FIELDS, STIMULI
-from variational.output import Fields
-from variational.problem import Problem
+from fingerpad.results.quantities import STIMULI
 from variational.state import ContactState
 
 if TYPE_CHECKING:
@@ -41,24 +39,20 @@ class Writer:
         self._place, self._comm, self._taken = place, comm, False
         self.folder = None if place is None else place.folder
         self._tables: dict[str, Table] = {}
-        self._fields: Fields | None = None
         self.earlier_log = ""
         self.log = logging.Logger("fingerpad", logging.INFO)  # of this run alone, apart from those of the caller
         self.log.handlers = [logging.handlers.MemoryHandler(1000, logging.CRITICAL, flushOnClose=False)]
 
-    def take(self, problem: Problem) -> None:
-        """Open the log and the fields where that has not been done, the files of an earlier run gone; collective."""
-        if self._place is None:
+    def take(self) -> None:
+        """Open the log where that has not been done, the files of an earlier run gone; collective."""
+        if self._place is None or self._taken:
             return
-        if not self._taken:
-            self._taken = True
-            self._place.take()
-            if self._comm.rank == 0:
-                file = _LogFile(self._place.folder / _LOG, mode="x", encoding="utf-8")
-                file.stream.write(self.earlier_log)
-                _send(self.log, file)
-        if self._fields is None:
-            self._fields = Fields(problem, self._place.folder)
+        self._taken = True
+        self._place.take()
+        if self._comm.rank == 0:
+            file = _LogFile(self._place.folder / _LOG, mode="x", encoding="utf-8")
+            file.stream.write(self.earlier_log)
+            _send(self.log, file)
 
     def log_text(self) -> str:
         """Return the log so far, on rank 0; empty where there is none."""
@@ -73,14 +67,6 @@ class Writer:
                 self._tables[name] = Table(self._place.folder / f"{name}.csv", row)
             self._tables[name].write(row)
 
-    def fields(self, step: int, load: str) -> None:
-        """Write the present fields under the number of their step, and the load's name and units beside; collective."""
-        if self._fields is not None:
-            self._fields.write(float(step))
-            for name, field in FIELDS.items():
-                about = {"unit": field.si, "meaning": field.meaning}
-                self.row("fields", {"file": f"{name}.bp", "variable": name, "time": step, "load": load} | about)
-
     def summary(self, found: Mapping[str, Any]) -> None:
         """Write ``summary.json``, on rank 0."""
         if self._place is not None and self._comm.rank == 0:
@@ -93,35 +79,21 @@ class Writer:
         return str(self._comm.bcast(dataset.save(result) if self._comm.rank == 0 else None))
 
     def restart(self) -> None:
-        """Delete tables and close fields, to be started anew; collective."""
+        """Delete tables, to be started anew."""
         written = list(self._tables)
-        self._close_fields()
         self._close_tables()
         if self._place is not None:
             for name in written:
                 (self._place.folder / f"{name}.csv").unlink()
-
-    def _close_fields(self) -> None:
-        if self._fields is not None:
-            self._fields.close()
-            self._fields = None
 
     def _close_tables(self) -> None:
         for table in self._tables.values():
             table.close()
         self._tables.clear()
 
-    def close(self, whole: bool = True) -> None:
-        """Close every file.
-
-        Args:
-            whole: all ranks do so; else fields stay as they are, since closing them waits for all ranks.
-        """
+    def close(self) -> None:
+        """Close every file."""
         self._close_tables()
-        if whole:
-            self._close_fields()
-        elif self._fields is not None:
-            self._fields.abandon()
         for handler in self.log.handlers:
             handler.close()
 

@@ -138,8 +138,7 @@ class Attempt:
             self.simulation.resume(kept["simulation"], [*kept["report"]["states"]])
         except OtherBody as error:
             raise CheckpointError(f"the checkpoint is of another mesh: {error}") from error
-        places = kept["simulation"]["paths"]["finger"]["places"]
-        self.report.resume(kept["report"], places, self._done)
+        self.report.resume(kept["report"], self._done)
         if self._recorder is not None:
             self._recorder.resume(kept["recorder"])
 
@@ -194,7 +193,7 @@ class Attempt:
             restarts: before this attempt.
         """
         refinement, finger, record = self._refinement, self.simulation.finger, self.report.record
-        self._writer.take(finger.problem)
+        self._writer.take()
         final = {} if refinement is None else refinement.base.views
         named = record.named(final, [load.name for load in scene.loads()])
         unknowns, notes, more = finger.unknowns, [*restarts.notes], dict[str, Any]()
@@ -213,6 +212,8 @@ class Attempt:
             drawing = record.drawing(mu_0, final, size, named)
             if drawing is not None and self._writer.folder is not None:
                 drawing.write(self._writer.folder, scene.output.each_load)
+            if self._writer.folder is not None and scene.output.each_load:
+                self.report.write_motion(self._writer.folder)
         totals = record.totals()
         left = max(self._model.numerics.tolerance, totals["floor"])
         error = force_error(unknowns, left, finger.solver.force_scale)

@@ -7,10 +7,12 @@ from typing import Any
 import fingerpad.startup  # noqa: F401
 from fingerpad.accuracy.states import State
 from fingerpad.results.checkpoint import Checkpoint, CheckpointError
+from fingerpad.results.drawing import View
 from fingerpad.results.provenance import provenance
 from fingerpad.results.quantities import Output
 from fingerpad.scene import Scene
 from fingerpad.startup import MPI
+from variational.snapshot import Snapshot
 from variational.solvers.outcome import Counts
 from variational.solvers.snapshot import SkinState, StateSnapshot
 from variational.solvers.target import Control, Progress
@@ -18,7 +20,7 @@ from variational.state import ContactState, Errors, RidgeStates, Sites, Skin, St
 
 _KEPT = (
     *(ContactState, RidgeStates, Sites, StepRecord, Errors, Skin, Control, Counts, Progress),
-    *(State, StateSnapshot, SkinState),
+    *(State, StateSnapshot, SkinState, View, Snapshot),
 )
 """Classes of what a checkpoint holds."""
 

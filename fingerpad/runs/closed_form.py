@@ -44,6 +44,20 @@ class ClosedForm:
             scene = scene.replace(f_ext=centre)
         return self.model.solve(scene, RunContext())
 
+    def result(self, scene: Scene) -> Result:
+        """Return the result of a scene without its bands over assumptions, of the whole finger under ``force``.
+
+        Raises:
+            SceneError: the scene has no result.
+        """
+        try:
+            self.model.check(scene)
+            if scene.force is None:
+                return self.section(scene)
+            return traces.whole(scene, self.model, lambda each, _: self.section(each))
+        except LawError as error:
+            raise SceneError(str(error)) from error
+
     def newtons(self, scene: Scene) -> float:
         """Return the force (N) on the whole finger whose centre bears ``f_ext`` without voltage."""
         self.model.check(scene)

@@ -105,9 +105,8 @@ def _run(scene: Scene, session: Session, kept: dict[str, Any] | None) -> Result:
                 checkpoint.delete()
             return result
     except BaseException as error:
-        # On more ranks than this, or not: what waits for the others would never return.
         full = no_room(error)
-        writer.close(whole=comm.size == 1 and full is None)
+        writer.close()
         if full is None:
             raise
         raise full from error

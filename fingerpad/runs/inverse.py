@@ -227,8 +227,10 @@ class _Problem:
         """Return what is known of the error of a root; a caution of its section tells where nothing is."""
         if self._target.whole:
             return errors.remarks([root.scene.force or 0.0])
-        share, runs = self._share(root.section), f"{cylinder_errors.KNOWN_RUNS} full runs at {cylinder_errors.where()}"
-        return [] if share is None else [f"The closed form is within {100 * share:.1f} % of {runs}."]
+        share, region = self._share(root.section), cylinder_errors.find(root.section.scene)
+        if share is None or region is None:
+            return []
+        return [f"The closed form is within {100 * share:.1f} % of {cylinder_errors.runs(region)}."]
 
     def _refused(self, search: Roots) -> str:
         """Return where there is no answer, nearest to those that there are, and why; empty where there is one."""

@@ -76,9 +76,9 @@ class Electric(Table):
     """Relative permittivity of the stratum corneum at 3 kHz. Range: vacuum to ten times the skin's at the lowest
     frequencies."""
     d_i: Annotated[Finite, within(1e-9, 1e-2, "m")] = 1e-6
-    """Thickness of the screen's insulating layer (m). Range: a few atoms to a pane of glass."""
+    """Thickness of the screen's coating, its insulating layer (m). Range: a few atoms to a pane of glass."""
     eps_i: Permittivity = 3.9
-    """Relative permittivity of the screen's insulating layer. Range: vacuum to ferroelectrics."""
+    """Relative permittivity of the screen's coating. Range: vacuum to ferroelectrics."""
     tissue: _Tissue = "lossless"
     """Stratum corneum over the frequency: ``"lossless"`` with eps_sc, as in the paper, ``"dry"`` or ``"moist"`` by
     published constants of skin (:mod:`variational.attraction.dielectric`), or a table. *Assumption*: they are of the

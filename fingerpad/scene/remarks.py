@@ -34,6 +34,7 @@ LEAKAGE = (
 )
 """Note on every result with a constant voltage."""
 _MEAN = 0.01  # of the peak: mean of a waveform that is none
+_OF_SCENE = {"h_0": "m"}  # units of what laws take from the rest of a scene
 _LONGEST = 100e-6  # m, lambda_0 of the paper (Table 3), and the default
 
 
@@ -50,7 +51,7 @@ def skin_modulus(scene: "Scene") -> float:
 
 # -- in words ------------------------------------------------------------------------------------------
 def used(scene: "Scene") -> dict[str, str]:
-    """Return every law of a scene in words, with its numbers in SI units.
+    """Return every law of a scene in words: its numbers in SI units, which are named where the law names them.
 
     Keys are the layers, ``contact``, ``friction``, ``attraction`` and ``closure``, and ``mesh`` where one was given.
     """
@@ -60,15 +61,16 @@ def used(scene: "Scene") -> dict[str, str]:
     found["friction"] = _words(friction) if scene.friction else "none"
     charged = any(load.voltage for load in scene.loads())
     circuit = scene.electric.circuit(scene.geometry.sc_thickness)
-    found["attraction"] = _call("electrostatic", {"h_0": scene.h_0}) if charged else "none"
+    found["attraction"] = _call("electrostatic", {"h_0": scene.h_0}, _OF_SCENE) if charged else "none"
     found |= {} if circuit.lossless else {"circuit": circuit_in_words(circuit)}
     found["closure"] = _words(scene.roughness) if charged else "none"
     return found | ({} if scene.geometry.file is None else {"mesh": scene.geometry.file})
 
 
-def _call(name: str, numbers: Mapping[str, Any]) -> str:
-    """Return a law as it would be made in Python: its name, and its numbers in brackets."""
-    return f"{name}({', '.join(f'{key}={_shown(value)}' for key, value in numbers.items())})"
+def _call(name: str, numbers: Mapping[str, Any], units: Mapping[str, str] | None = None) -> str:
+    """Return a law by its name, with its numbers in brackets, each with its unit where that is known."""
+    given = ((key, f"{_shown(value)} {(units or {}).get(key, '')}".rstrip()) for key, value in numbers.items())
+    return f"{name}({', '.join(f'{key}={value}' for key, value in given)})"
 
 
 def _words(law: Any) -> str:
@@ -76,7 +78,8 @@ def _words(law: Any) -> str:
         return _call(str(law.table.get("law")), {k: v for k, v in law.table.items() if k not in ("law", "sha256")})
     if isinstance(law, Viscoelastic):
         return f"{_words(law.elastic)}, {_words(law.viscosity)}"
-    return _call(type(law).__name__, {f.name: getattr(law, f.name) for f in fields(law)})
+    units = _OF_SCENE | {f.name: f.metadata["range"][2] for f in fields(law) if "range" in f.metadata}
+    return _call(type(law).__name__, {f.name: getattr(law, f.name) for f in fields(law)}, units)
 
 
 def _shown(value: Any) -> str:

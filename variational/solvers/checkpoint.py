@@ -126,11 +126,6 @@ def order(path: "Continuation", places: dict[str, Array]) -> Callable[[str, Arra
     return lambda kind, values: np.asarray(values[found[kind]])
 
 
-def unknowns(path: "Continuation") -> Array:
-    """Return the unknowns of the whole body, on rank 0; collective."""
-    return _together(path)(path.solver.x.array_r.copy())
-
-
 def _together(path: "Continuation") -> Callable[[Array], Array]:
     comm = path.solver.layout.comm
 

@@ -1,0 +1,218 @@
+"""An animation of a run: the finger on the screen, its ridges with pressure and attraction, and the forces.
+
+Every state of ``motion.npz`` is a frame. Frames between two states are linear in displacements and stresses, which is
+no solution of the model; over a jump there are none.
+"""
+
+import math
+from collections.abc import Sequence
+from io import BytesIO
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch, PathPatch, Rectangle
+from numpy.typing import NDArray
+from PIL import Image
+
+from fingerpad.results import motion, style
+from fingerpad.results.files import replace
+from fingerpad.results.finger_picture import LAYER_COLOURS, curve
+from fingerpad.results.states import by_load
+from fingerpad.scene.messages import SceneError, clip
+from fingerpad.scene.remarks import coefficient
+from variational.outline import loops
+from variational.state import ContactState
+
+if TYPE_CHECKING:
+    from fingerpad.results.result import Result
+
+Array = NDArray[np.float64]
+ENDINGS = (".webp", ".gif")
+_FRAMES, _LOAD = 160, 16  # of an animation, about at most; of each load, at least
+_DPI, _HEIGHT = 90, 6.0  # of a frame; in
+_MS, _LAST = 90, 2000  # of a frame, and of the last one
+_QUALITY = 55  # of WebP, of 100
+_COLOURS = 64  # of GIF
+_MM, _KPA = 1e3, 1e-3
+_WHOLE, _FORCES = (0.75, 3.35, 3.75, 5.5), (4.6, 8.75, 3.85, 5.25)  # in: left, right, lower and upper end
+_NEAR, _STRESS = (0.75, 8.75, 2.0, 3.2), (0.75, 8.75, 0.5, 1.7)
+_LOW, _HIGH = -0.18, 1.55  # mm, of the view near the contact
+_SLIPS = 1e-3  # relative: a traction this near the limit of friction counts as on it
+
+
+class _Frame(NamedTuple):
+    """One picture: a state, and how far it is on the way to the next one."""
+
+    state: int
+    part: float
+
+
+class _Scene(NamedTuple):
+    """What all frames have in common."""
+
+    states: Sequence[ContactState]
+    motion: motion.Motion
+    mu_0: float | None
+    half: float
+    """Of the width of the view near the contact (mm)."""
+    highest: float
+    """Stress (kPa)."""
+
+
+def animate(result: "Result", path: Path) -> Path:
+    """Write the animation of a run that has a folder; return the file.
+
+    Args:
+        result: of a full run.
+        path: of the file, whose name ends with ``.webp`` or ``.gif``.
+
+    Raises:
+        SceneError: the run has no motion, or the name another ending; one sentence.
+    """
+    if path.suffix not in ENDINGS:
+        raise SceneError(f"{clip(str(path), 80)} must end with {' or '.join(ENDINGS)}, the formats of animations")
+    if result.folder is None:
+        raise SceneError("a run without a folder has no motion.npz to animate; give fingerpad.run an out")
+    found = motion.read(result.folder)
+    by_step = {state.step: state for state in result.steps}
+    if missing := [int(step) for step in found.step if step not in by_step]:
+        raise SceneError(f"step {missing[0]} of {motion.FILE} is not in the run; make the run again")
+    states = [by_step[int(step)] for step in found.step]
+    places = _MM * np.where(found.skin[:, 1] > 0, found.skin[:, 0], np.nan)
+    half = 1.0 + (float(np.nanmax(np.abs(places))) if np.isfinite(places).any() else 4.0)
+    highest = _KPA * max(float(np.nanmax(found.skin[:, [1, 3]])), 1.0)
+    scene = _Scene(states, found, coefficient(result.scene), half, highest)
+    frames = _frames(states)
+    _save(path, [_drawn(scene, frame) for frame in frames])
+    return path
+
+
+def _frames(states: Sequence[ContactState]) -> list[_Frame]:
+    """Return the frames of states: some of each load at least, none within a jump, and the last state at the end."""
+    found = []
+    for _, mine in by_load(states):
+        parts = max(math.ceil(_LOAD / len(mine)), min(3, _FRAMES // len(states)), 1)
+        for state in mine:
+            k = states.index(state)
+            jumps = k + 1 < len(states) and (after := states[k + 1].record) is not None and after.jump
+            found += [_Frame(k, 0.0 if jumps or k + 1 == len(states) else j / parts) for j in range(parts)]
+    return found[: len(found) - parts + 1]
+
+
+def _drawn(scene: _Scene, frame: _Frame) -> Image.Image:
+    """Return the picture of a frame."""
+    xy, skin = scene.motion.between(frame.state, frame.part)
+    with style.look():
+        figure = Figure(figsize=(style.WIDTH, _HEIGHT))
+        style.head(figure, _words(scene.states[frame.state]))
+        whole, forces, near, stress = (style.panel(figure, *box) for box in (_WHOLE, _FORCES, _NEAR, _STRESS))
+        _draw_finger(whole, scene, _MM * xy, None)
+        _draw_finger(near, scene, _MM * xy, scene.half)
+        whole.add_artist(Rectangle((-scene.half, _LOW), 2 * scene.half, _HIGH - _LOW, fill=False, ls="--"))
+        _draw_change(near, scene, frame.state)
+        _draw_stress(stress, scene, skin)
+        _draw_forces(forces, scene.states, frame)
+        style.save(figure, None)
+        figure.set_dpi(_DPI)
+        canvas = FigureCanvasAgg(figure)
+        canvas.draw()
+        return Image.fromarray(np.asarray(canvas.buffer_rgba())[:, :, :3].copy())
+
+
+def _words(state: ContactState) -> str:
+    place = f"bone at x = {_MM * state.bone_x + 0.0:.2f} mm"
+    force = f"f_ext = {state.f_ext:.1f} N/m, U = {state.voltage:.0f} V, {place}"
+    slip = "full slip" if state.slip_began else f"{100 * state.slipping:.0f} % of the contact slips"
+    return f"{style.plain(state.load)}: {force}; {slip}"
+
+
+def _draw_finger(ax: Axes, scene: _Scene, xy: Array, half: float | None) -> None:
+    """Draw the layers (mm): the whole cross-section, or the part near the contact."""
+    found = scene.motion
+    tags, sides = np.unique(found.layers, return_inverse=True)
+    for tag in (int(tag) for tag in tags if int(tag) in LAYER_COLOURS):
+        around = np.concatenate(loops(found.lines, sides.reshape(-1, 2), tags, tag))
+        ax.add_artist(PathPatch(curve(xy, around), fc=LAYER_COLOURS[tag], ec="black", lw=0.4))
+    ax.axhspan(-3, 0, color="0.35", lw=0, zorder=3)
+    every = _MM * (found.x + found.u)
+    (left, _), (right, top) = every.min(axis=(0, 1)), every.max(axis=(0, 1))
+    wide = (left - 0.5, right + 0.5) if half is None else (-half, half)
+    ax.set(xlim=wide, ylim=(-0.9, top + 0.5) if half is None else (_LOW, _HIGH), ylabel="y (mm)")
+    if half is None:
+        ax.set(aspect="equal", xlabel="x (mm)")
+    else:
+        ax.tick_params(labelbottom=False)
+
+
+def _draw_change(ax: Axes, scene: _Scene, k: int) -> None:
+    """Name the ridges that came into contact or left it in the step to a state, above their place."""
+    state, before = scene.states[k], scene.states[max(k - 1, 0)]
+    if state.ridges is None or before.ridges is None:
+        return
+    now, then = (each.number[each.length > 0] for each in (state.ridges, before.ridges))
+    gone, come = np.setdiff1d(then, now), np.setdiff1d(now, then)
+    words = [f"ridges off: {', '.join(map(str, gone))}"] if gone.size else []
+    words += [f"ridges on: {', '.join(map(str, come))}"] if come.size else []
+    ax.text(0.5, 0.9, "     ".join(words), transform=ax.transAxes, ha="center", va="top", weight="bold", zorder=5)
+
+
+def _draw_stress(ax: Axes, scene: _Scene, skin: Array) -> None:
+    """Draw pressure, where it slips and where it sticks, and attraction."""
+    x, p, t, p_el = _MM * skin[0], _KPA * skin[1], _KPA * skin[2], _KPA * skin[3]
+    slips = np.abs(t) >= (1 - _SLIPS) * (scene.mu_0 or math.inf) * p
+    for where, colour in ((~slips, style.BLACK), (slips, style.VERMILION)):
+        ax.fill_between(x, p, where=where & (p > 0), color=colour, lw=0.8)
+    ax.plot(x, -p_el, color=style.ATTRACTION, lw=1.2)
+    ax.axhline(0, color="0.35", lw=0.8)
+    ax.set(xlim=(-scene.half, scene.half), ylim=(-0.42 * scene.highest, 1.05 * scene.highest))
+    ax.set(xlabel="x on the screen (mm)", ylabel="stress (kPa)")
+    named: list[Any] = [Patch(color=style.BLACK, label="contact pressure, sticks")]
+    named += [Patch(color=style.VERMILION, label="slips")] if scene.mu_0 else []
+    named += [Line2D([], [], color=style.ATTRACTION, label="attraction, downward")]
+    ax.legend(handles=named, loc="lower left", bbox_to_anchor=(0, 1), ncols=3, fontsize=8, borderaxespad=0.1)
+
+
+def _draw_forces(ax: Axes, states: Sequence[ContactState], frame: _Frame) -> None:
+    """Draw the forces over the states, up to a frame in full colour."""
+    at, k = np.arange(len(states)), frame.state + frame.part
+    rows = (
+        ("external force f_ext", "f_ext", style.GREY, "--"),
+        ("attraction f_el", "f_electrostatic", style.BLUE, "-"),
+        ("friction f_T", "f_t", style.VERMILION, "-."),
+    )
+    top = 0.0
+    for label, name, colour, dash in rows:
+        values = np.array([getattr(state, name) for state in states], dtype=float)
+        done = np.append(at[at <= k], k)
+        ax.plot(at, values, color=colour, lw=0.8, alpha=0.35, ls=dash)
+        ax.plot(done, np.interp(done, at, values), color=colour, lw=2, ls=dash, label=label)
+        ax.plot(k, np.interp(k, at, values), "o", color=colour, ms=5)
+        top = max(top, float(np.nanmax(values)))
+    begins = 0
+    for load, mine in by_load(states):
+        ax.axvline(begins, color="0.8", lw=0.8, zorder=0)
+        ax.text(begins + 0.5 * (len(mine) - 1), 1.18 * top, style.plain(load), ha="center", va="top", fontsize=9)
+        begins += len(mine)
+    ax.set(xlim=(0, max(len(states) - 1, 1)), ylim=(min(0.0, -0.02 * top), 1.2 * top or 1.0))
+    ax.set(xlabel="step of the run", ylabel="force (N/m)")
+    ax.legend(loc="lower left", bbox_to_anchor=(0, 1), ncols=3, fontsize=8, borderaxespad=0.1)
+
+
+def _save(path: Path, pictures: Sequence[Image.Image]) -> None:
+    """Write pictures as one file that runs again and again."""
+    data = BytesIO()
+    times = [_MS] * (len(pictures) - 1) + [_LAST]
+    if path.suffix == ".gif":
+        few = pictures[-1].quantize(_COLOURS)
+        pictures = [each.quantize(palette=few, dither=Image.Dither.NONE) for each in pictures]
+        kind: dict[str, Any] = {"format": "GIF", "optimize": True}
+    else:
+        kind = {"format": "WEBP", "quality": _QUALITY, "method": 4}
+    first, *rest = pictures
+    first.save(data, save_all=True, append_images=rest, duration=times, loop=0, **kind)
+    replace(path, data.getvalue())

@@ -1,0 +1,176 @@
+"""Fields inside the finger: as arrays, in VTK's files, in PyVista."""
+
+import zlib
+from base64 import b64decode
+from pathlib import Path
+from xml.etree import ElementTree
+
+import numpy as np
+import pytest
+from mpi4py import MPI
+
+import fingerpad as fp
+from fingerpad.results.fields import UNITS, Fields
+from fingerpad.scene import from_data
+from geometry import tags
+from tests.runs import no_pictures
+from tests.small_finger import NINE
+
+pytestmark = pytest.mark.slow
+PRESS, SLIDE = {"name": "press", "f_ext": 1.0}, {"name": "go on", "bone_height": -60e-6}
+SCENE = NINE | {
+    "history": [PRESS, SLIDE],
+    "numerics": {"element": "P1"},
+    "output": {"receptors": False, "errors": False},
+}
+
+
+@pytest.fixture(scope="module")
+def ran(tmp_path_factory) -> fp.Result:
+    """A press alone, of which one half is computed; on linear elements the strain is one number a cell."""
+    with no_pictures():
+        return fp.run(from_data(SCENE), out=tmp_path_factory.mktemp("run") / "out")
+
+
+def arrays(file: Path) -> dict[str, np.ndarray]:
+    """Return the arrays of a .vtu file by name, read by its specification."""
+    types = {"Float64": "<f8", "Float32": "<f4", "Int64": "<i8", "Int32": "<i4", "UInt8": "u1"}
+    found = {}
+    for each in ElementTree.parse(file).iter("DataArray"):
+        text = (each.text or "").strip()
+        blocks, size, last, packed = np.frombuffer(b64decode(text[:44]), dtype="<u8")
+        raw = zlib.decompress(b64decode(text[44:]))
+        assert (blocks, size, last) == (1, len(raw), 0) and len(b64decode(text[44:])) == packed
+        values = np.frombuffer(raw, dtype=types[each.attrib["type"]])
+        found[each.attrib["Name"]] = values.reshape(-1, int(each.attrib["NumberOfComponents"]))
+    return found
+
+
+def ends(result: fp.Result) -> list[int]:
+    """Return the last step of each load."""
+    return [max(state.step for state in result.steps if state.load == load) for load in ("press", "go on")]
+
+
+def straight(fields: Fields) -> np.ndarray:
+    """Return which cells have neighbours of their own layer on all sides."""
+    edges = np.sort(fields.triangles[:, [[0, 1], [1, 2], [2, 0]]], axis=2).reshape(-1, 2)
+    _, edge = np.unique(edges, axis=0, return_inverse=True)
+    layer = np.repeat(fields.layer, 3)
+    least, most = np.full(edge.max() + 1, 99), np.zeros(edge.max() + 1)
+    np.minimum.at(least, edge, layer)
+    np.maximum.at(most, edge, layer)
+    inner = (np.bincount(edge) == 2) & (least == most)
+    return inner[edge].reshape(-1, 3).all(axis=1)
+
+
+def test_strain_is_that_of_the_displacement(ran):
+    """On both halves, of which one is the other's image, by the corners of cells without a curved edge.
+
+    Curved are edges on the boundary and between layers. Tolerance: roundoff, but beside curved edges gmsh bends some
+    of the inner ones a little.
+    """
+    fields = ran.fields["press"]
+    reference, moved = (x[fields.triangles] for x in (fields.points, fields.points + fields.displacement))
+    sides, now = (np.moveaxis(x[:, 1:] - x[:, :1], 1, 2) for x in (reference, moved))
+    F = now @ np.linalg.inv(sides)
+    expected = (np.moveaxis(F, 1, 2) @ F - np.eye(2)) / 2
+    assert fields.strain.shape == fields.stress.shape == (len(fields.triangles), 3, 3)
+    inside = straight(fields)
+    assert 0.3 < inside.mean() < 1
+    error = np.abs(fields.strain[:, :2, :2] - expected)[inside].max(axis=(1, 2))
+    assert error.max() < 1e-3 * np.abs(expected).max() and (error < 1e-10).mean() > 0.8
+    assert np.abs(expected[:, 0, 1]).max() > 1e-3 and not fields.strain[:, 2].any()
+    assert {*np.unique(fields.layer)} <= {*tags.LAYERS.values()}
+
+
+def test_skin_over_the_contact_is_compressed(ran):
+    """On average within 0.3 mm, normal to the screen, by no more than the highest pressure; stress is symmetric."""
+    fields = ran.fields["press"]
+    x, y = fields.points[fields.triangles].mean(axis=1).T
+    mean = fields.stress[np.hypot(x, y) < 0.3e-3, 1, 1].mean()
+    assert -ran.steps[-1].p_max < mean < 0
+    np.testing.assert_array_equal(fields.stress, np.moveaxis(fields.stress, 1, 2))
+
+
+def test_fields_of_a_read_result_are_those_of_the_run(ran):
+    again = fp.Result.load(ran.folder).fields
+    assert list(again) == list(ran.fields)
+    for name, fields in ran.fields.items():
+        for key, values in vars(fields).items():
+            np.testing.assert_array_equal(getattr(again[name], key), values)
+
+
+def test_files_hold_the_fields(ran):
+    """Each load's end is a file, and the collection has them by step."""
+    rows = list(ElementTree.parse(ran.folder / "fields.pvd").iter("DataSet"))
+    assert [row.attrib["file"] for row in rows] == ["fields_press.vtu", "fields_go_on.vtu"]
+    assert [int(row.attrib["timestep"]) for row in rows] == ends(ran)
+    for load, row in zip(("press", "go on"), rows, strict=True):
+        found, fields = arrays(ran.folder / row.attrib["file"]), ran.fields[load]
+        np.testing.assert_array_equal(found["points"][:, :2], fields.points)
+        np.testing.assert_array_equal(found["connectivity"].reshape(-1, 3), fields.triangles)
+        np.testing.assert_array_equal(found["displacement"][:, :2], fields.displacement)
+        np.testing.assert_array_equal(found["stress"].reshape(-1, 3, 3), fields.stress.astype(np.float32))
+
+
+def test_pyvista_opens_the_files(ran):
+    """Its reader of collections gives each load's arrays with their units, and the result itself gives the arrays.
+
+    Tolerance: values of cells have 32 bits in files.
+    """
+    pyvista = pytest.importorskip("pyvista")
+    core = pytest.importorskip("vtkmodules.vtkCommonCore")
+    reader = pyvista.PVDReader(str(ran.folder / "fields.pvd"))
+    assert list(reader.time_values) == ends(ran)
+    blocks = ran.to_pyvista()
+    for time, load in zip(reader.time_values, ("press", "go on"), strict=True):
+        reader.set_active_time_value(time)
+        for grid in (reader.read()[0], blocks[load]):
+            fields = ran.fields[load]
+            assert set(grid.celltypes) == {pyvista.CellType.TRIANGLE}
+            np.testing.assert_array_equal(grid.points[:, :2], fields.points)
+            for name in ("stress", "strain", "sed"):
+                values = getattr(fields, name)
+                np.testing.assert_allclose(grid[name].reshape(values.shape), values, rtol=1e-7, atol=1e-30)
+            np.testing.assert_array_equal(grid["layer"], fields.layer)
+            lowest = grid.warp_by_vector("displacement").points[:, 1].min()
+            assert lowest == pytest.approx((fields.points + fields.displacement)[:, 1].min(), abs=1e-12)
+        on_cells, key = reader.read()[0].GetCellData(), core.vtkDataArray.UNITS_LABEL()
+        units = {name: on_cells.GetArray(name).GetInformation().Get(key) for name in ("stress", "sed", "layer")}
+        assert units == {name: UNITS[name] or None for name in units}
+
+
+@pytest.mark.mpi
+@pytest.mark.skipif(MPI.COMM_WORLD.size == 1, reason="one rank has no other to agree with")
+def test_ranks_write_what_one_does(tmp_path):
+    """The same cells in the same order, and numbers to 1e-8 of the largest, the solver's tolerance."""
+    comm = MPI.COMM_WORLD
+    place = Path(comm.bcast(str(tmp_path)))
+    with no_pictures():
+        many, one = (
+            fp.run(from_data(SCENE), out=place / name / str(rank), comm=each)
+            for name, rank, each in (("all", 0, comm), ("one", comm.rank, MPI.COMM_SELF))
+        )
+    assert bool(many.fields) == (comm.rank == 0)
+    for load in many.fields:
+        for key, expected in vars(one.fields[load]).items():
+            np.testing.assert_allclose(getattr(many.fields[load], key), expected, atol=1e-8 * np.abs(expected).max())
+    if comm.rank == 0:
+        files = [arrays(place / name / "0" / "fields_press.vtu") for name in ("all", "one")]
+        assert files[0].keys() == files[1].keys()
+        np.testing.assert_allclose(*(found["stress"] for found in files), rtol=1e-5, atol=1e-3)
+
+
+def test_what_is_missing_is_one_sentence(ran, monkeypatch):
+    """A model without a mesh has no fields; without PyVista the remedy is named."""
+    found = fp.run(model="cylinders")
+    assert found.fields == {}
+    for wanted in (found.to_pyvista, lambda: found.fields["full_slip"]):
+        with pytest.raises(ValueError, match="the result of the model 'cylinders' has no fields here; full runs have"):
+            wanted()
+    with pytest.raises(ValueError, match="has no fields of 'stress'; it has those of 'press', 'go on', 'uncharged'"):
+        ran.fields["stress"]
+    monkeypatch.setitem(__import__("sys").modules, "pyvista", None)
+    nothing = Fields(*(np.zeros((0, 2)),) * 7)
+    with pytest.raises(ImportError, match="to_pyvista needs pyvista, which is not installed; pip install pyvista, or"):
+        nothing.to_pyvista()
