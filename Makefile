@@ -8,10 +8,13 @@
 # make pages  every generated page and picture of docs/ from the numbers kept there; seconds, no run
 # make stale  the pages older than the code that they rest on; needs git
 # make docs   the documentation site, in build/docs/index.html; a minute
+# make notebook  a demo as a notebook of Jupyter, in results: make notebook DEMO=own_material
 # make verify every number with a known answer, some minutes; docs/verification.md
 # make paper  the statements of the paper beside this model's numbers; docs/paper.md, a quarter of an hour or more
+# make paper FIGURE=6  a figure of the paper; fingerpad paper lists them with their times
 # make measured  measured fingers beside this model's numbers; docs/measured.md, two minutes
 # make drive  friction over frequency and waveform of the voltage; docs/drive.md, a minute
+# make fingers    friction of fingers by name side by side; docs/fingers.md
 # make viscosity  how skin relaxes, energy of random histories, friction after a step of voltage; docs/viscosity.md
 # make feel   what people and nerves were measured to do beside spikes; docs/feel.md, ten minutes
 # make performance  counts, ratios and seconds, part by part, on an idle machine; docs/performance.md, half an hour; prints the targets
@@ -23,7 +26,7 @@
 
 run := environment/run
 
-.PHONY: help demo lint test check test-pip test-order fuzz docs pages stale verify paper measured drive viscosity feel calibration chart performance
+.PHONY: help demo lint test check test-pip test-order fuzz docs notebook pages stale verify paper measured drive fingers viscosity feel calibration chart performance
 
 help:
 	@sed -n 's/^# make/make/p' Makefile
@@ -63,6 +66,9 @@ pages:
 	$(run) python3 -m benchmarks.pages
 	$(run) python3 -m fingerpad calculator --out docs/calculator.html
 
+notebook:
+	$(run) python3 -m benchmarks.notebook $(or $(DEMO),first_run)
+
 stale:
 	python3 -m benchmarks.pages --stale
 
@@ -72,13 +78,16 @@ verify:
 	$(run) mpirun -n 2 python3 -m pytest -q --color=no -p no:cacheprovider -m long tests
 
 paper:
-	$(run) python3 -m benchmarks.paper
+	$(run) python3 -m $(if $(FIGURE),fingerpad paper $(FIGURE) --out results/traces,benchmarks.paper)
 
 measured:
 	$(run) python3 -m benchmarks.measured
 
 drive:
 	$(run) python3 -m benchmarks.drive
+
+fingers:
+	$(run) python3 -m benchmarks.fingers
 
 viscosity:
 	$(run) python3 -m benchmarks.viscosity

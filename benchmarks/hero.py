@@ -1,4 +1,7 @@
-"""The pictures of the README: finger, one ridge with gap and attraction, friction over voltage; and the moving run.
+"""The pictures of the README: finger, one ridge with gap and attraction, friction force; and the moving run.
+
+Finger and ridge are those of a default run, at whose middle 75 N/m press. Friction forces are of the whole finger, sums
+of slices over the traces of docs/models.json, under the force of that run and under two others.
 
 environment/run python3 -m benchmarks.hero FOLDER    keep the numbers of a default run's folder, then draw both
 environment/run python3 -m benchmarks.pages hero     draw from docs/hero.json, without a run
@@ -6,6 +9,7 @@ environment/run python3 -m benchmarks.pages hero     draw from docs/hero.json, w
 
 import json
 import sys
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -15,16 +19,19 @@ from matplotlib.figure import Figure
 from matplotlib.patches import ConnectionPatch, Polygon
 from numpy.typing import NDArray
 
+from benchmarks import newtons
 from benchmarks.harness import DOCS, keep, kept, made, picture
 from fingerpad.results import style
 from fingerpad.results.arrays import finger_of
 from fingerpad.results.finger_picture import LAYER_COLOURS
 from fingerpad.results.result import Result
+from fingerpad.scene.parameters import Slices
+from fingerpad.slices.total import at_force
 from geometry import tags
 from variational.outline import loops
 
 Array = NDArray[np.float64]
-FORCES = (25, 75, 150)  # N/m, of the curves of friction
+FORCES = (0.2, 0.75)  # N, of the curves of friction beside that of the run
 RIDGE = 8  # the enlarged one
 _MM, _UM, _KPA = 1e3, 1e6, 1e-3
 _FINE = 0.02  # mm, between the points of a drawn outline
@@ -43,14 +50,22 @@ def main(folder: str) -> None:
         ridge = {
             name: a[f"full_slip_{name}"][a["full_slip_ridge"] == RIDGE] for name in ("x", "y", "p", "p_el", "d_eq")
         }
-    full = {name: scene["full"].get("summary") for name, scene in kept("models").numbers["scenes"].items()}
-    friction = {str(f): [[u, full[f"{f} N/m, {u} V"]["full_slip_mu_app"]] for u in range(0, 201, 50)] for f in FORCES}
+    scenes, force = kept("models").numbers["scenes"], round(summary["finger"]["f_ext"], 4)
+    friction = {f"{each:g}": _forces(scenes, each) for each in (FORCES[0], force, FORCES[1])}
     along = {name: _rows([float(f"{v:.6g}") for v in values]) for name, values in ridge.items()}
-    default = {name: summary[name] for name in ("full_slip_mu_app", "full_slip_mu_app_error")}
+    default = {name: summary[name] for name in ("full_slip_mu_app", "full_slip_mu_app_error", "headline")}
+    default |= {"force": f"{force:g}"}
     numbers = {"default": default, "finger": outlines, "ridge": along, "friction": friction}
     keep("hero", numbers, made([summary]))
     draw(DOCS)
     Result.load(folder).animate(DOCS / "animation.webp")
+
+
+def _forces(scenes: Mapping[str, Any], force: float) -> list[list[float]]:
+    """Return voltages (V) and friction forces at full slip (N) under an external force (N) on the whole finger."""
+    traces = {voltage: newtons.kept(scenes, "full", voltage) for voltage in newtons.VOLTAGES}
+    finger, count = newtons.finger(), Slices().count
+    return [[voltage, at_force(finger, each, force, count).totals["f_t"]] for voltage, each in traces.items()]
 
 
 def _rows(values: list[Any]) -> list[list[Any]]:
@@ -76,9 +91,9 @@ def draw(docs: Path) -> Path:
 
     def paint(figure: Figure) -> None:
         whole, near, friction = figure.subplots(1, 3, width_ratios=[1.55, 1, 1.05])
-        _draw_finger(whole, numbers["finger"])
+        _draw_finger(whole, numbers["finger"], float(numbers["default"]["force"]))
         _draw_ridge(near, ridge, centre)
-        _draw_friction(friction, numbers["friction"])
+        _draw_friction(friction, numbers["friction"], numbers["default"]["force"])
         whole.plot(_MM * centre, 0.1, "o", ms=13, mfc="none", mec="black", mew=1.5, zorder=5)
         look: dict[str, Any] = {"axesA": whole, "axesB": near, "color": "0.4", "ls": "--"}
         for corner in (0, 1):
@@ -88,7 +103,7 @@ def draw(docs: Path) -> Path:
     return docs / "hero.png"
 
 
-def _draw_finger(ax: Axes, outlines: list[dict[str, Any]]) -> None:
+def _draw_finger(ax: Axes, outlines: list[dict[str, Any]], force: float) -> None:
     ax.set_title("A fingertip slides on a touchscreen", weight="bold")
     for outline in outlines:
         ax.add_patch(Polygon(np.concatenate(outline["points"]), fc=LAYER_COLOURS[outline["layer"]], ec="black", lw=0.4))
@@ -98,7 +113,7 @@ def _draw_finger(ax: Axes, outlines: list[dict[str, Any]]) -> None:
     for start, end, colour in (((12, 2.8), (16.6, 2.8), style.VERMILION), ((1.5, 17.3), (1.5, 13.4), style.BLACK)):
         ax.annotate("", end, start, arrowprops={"arrowstyle": "-|>", "lw": 3.5, "color": colour})
     ax.text(14.2, 3.6, "sliding", ha="center", color=style.VERMILION)
-    ax.text(2.4, 15.6, "75 N/m", va="center")
+    ax.text(2.4, 15.6, f"{force:.2g} N", va="center")
     ax.set(xlim=(-9.5, 17), ylim=(-1.6, 17.5), aspect="equal", xlabel="x (mm)", ylabel="height (mm)")
 
 
@@ -119,19 +134,19 @@ def _draw_ridge(ax: Axes, ridge: dict[str, Array], centre: float) -> None:
     ax.set(xlim=(-100, 100), ylim=(-2.5, 11.5), xlabel="x (µm)", ylabel="height (µm)")
 
 
-def _draw_friction(ax: Axes, friction: dict[str, list[list[float]]]) -> None:
+def _draw_friction(ax: Axes, friction: dict[str, list[list[float]]], own: str) -> None:
     ax.set_title("Friction doubles", weight="bold")
     for force, points in friction.items():
-        u, mu = np.array(points).T
-        shown = force == "75"
-        ax.plot(u, mu, color="black" if shown else "0.65", lw=2 if shown else 1.2, zorder=2)
+        u, f_t = np.array(points).T
+        shown = force == own
+        ax.plot(u, f_t, color="black" if shown else "0.65", lw=2 if shown else 1.2, zorder=2)
         if shown:
-            ax.text(215, mu[-1], f"{mu[-1]:.2f} at\n{force} N/m", va="center", weight="bold", fontsize=9)
-            ax.scatter(u, mu, c=[style.voltage(each) for each in u], s=42, zorder=3)
-            ax.text(0, mu[0] - 0.07, f"{mu[0]:.2f}", weight="bold", fontsize=9)
+            ax.text(215, f_t[-1], f"{f_t[-1]:.2f} N at\n{float(force):.2g} N", va="center", weight="bold", fontsize=9)
+            ax.scatter(u, f_t, c=[style.voltage(each) for each in u], s=42, zorder=3)
+            ax.text(0, f_t[0] - 0.035, f"{f_t[0]:.2f} N", weight="bold", fontsize=9)
         else:
-            ax.text(215, mu[-1], f"{force} N/m", va="center", color="0.4", fontsize=9)
-    ax.set(xlim=(-10, 320), ylim=(0, 0.8), xlabel="voltage (V)", ylabel="friction coefficient $f_T / f_{ext}$ (–)")
+            ax.text(215, f_t[-1], f"at {force} N", va="center", color="0.4", fontsize=9)
+    ax.set(xlim=(-10, 345), ylim=(0, 0.47), xlabel="voltage (V)", ylabel="friction force of the whole finger (N)")
     ax.set_xticks([0, 100, 200])
 
 

@@ -37,6 +37,7 @@ PAGES = {
     "drive": "benchmarks.drive",
     "errors": "benchmarks.errors",
     "feel": "benchmarks.feel.__main__",
+    "fingers": "benchmarks.fingers",
     "hero": "benchmarks.hero",
     "measured": "benchmarks.measured.__main__",
     "microscale": "benchmarks.microscale.__main__",
@@ -58,7 +59,7 @@ _WITHOUT_NUMBERS = (  # these start, read, refuse, order runs, write and print
     *("fingerpad/model/expected.py", "fingerpad/scene/contradictions.py", "fingerpad/scene/messages.py"),
     "fingerpad/model/report.py",
 )
-_REDUCED = "fingerpad/reduced"  # no full run uses it: part of the programs that import it
+_APART = ("fingerpad/reduced", "fingerpad/paper")  # no full run uses them: parts of the programs that import them
 _SHARED = ("runs", "limits", "measure", "explicit")  # modules of benchmarks/ that make numbers of several pages
 _SEARCHED = 100  # commits before the one that brought numbers into git, among which theirs is looked for
 _SHOWN = 3  # changed files of a page that are printed
@@ -154,10 +155,11 @@ def stale(name: str, docs: Path) -> tuple[str, list[str]]:
         found = [next((commit for commit in before if source(commit) == state), brought) for state in states]
     now = files("HEAD", own := program(name))
     pairs = _same(docs, now.values())
-    compared = [since(commit, (*_WITHOUT_NUMBERS, _REDUCED), pairs) for commit in found]
+    compared = [since(commit, (*_WITHOUT_NUMBERS, *_APART), pairs) for commit in found]
     differ, within = set[str]().union(*(paths for paths, _ in compared)), max(part for _, part in compared)
-    if any(_REDUCED.replace("/", ".").encode() in text for text in now.values()):
-        differ |= {path for path in since(brought, _WITHOUT_NUMBERS, pairs)[0] if path.startswith(_REDUCED)}
+    used = tuple(part for part in _APART if any(part.replace("/", ".").encode() in text for text in now.values()))
+    if used:
+        differ |= {path for path in since(brought, _WITHOUT_NUMBERS, pairs)[0] if path.startswith(used)}
     differ |= changed(files(brought, own), now)
     words = f"version {made['version']} of {made['date']}, commit {', '.join(found)}"
     return words + f"; the packages compute the same within {within:g} ({SAME})" * (within > 0), sorted(differ)

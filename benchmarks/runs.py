@@ -1,97 +1,21 @@
-"""A finished run as arrays, and the scenes that several studies run."""
+"""The scenes that several studies run, and finished runs of them."""
 
-from collections.abc import Mapping
-from functools import cached_property
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-import pandas as pd
-from numpy.typing import NDArray
+from fingerpad.paper.run import Array as Array
+from fingerpad.paper.run import Run as Run
+from fingerpad.paper.scenes import FORCES as FORCES
+from fingerpad.paper.scenes import VOLTAGES as VOLTAGES
+from fingerpad.paper.scenes import plain as plain
+from fingerpad.scene import Scene
 
-from fingerpad.model.options import by_rule
-from fingerpad.runs.batch import key, result
-from fingerpad.scene import Scene, from_data
-
-Array = NDArray[np.float64]
-VOLTAGES = (0.0, 50.0, 100.0, 150.0, 200.0)
-FORCES = (5.0, 10.0, 25.0, 50.0, 75.0, 100.0, 120.0, 150.0)  # N/m
 SITES = 20e-6  # m, size at the Merkel sites: coarser than the default of 5 um; energy densities come out 12 % low
 
 
 def trace(f_ext: float, voltage: float, size: float, **more: Any) -> Scene:
     """Return the default finger pressed (N/m), charged (V) and slid, with a contact size (m) and more of its tables."""
     return plain({"f_ext": f_ext, "voltage": voltage, "mesh": {"contact": size, "receptor": SITES}} | more)
-
-
-def plain(data: Mapping[str, Any]) -> Scene:
-    """Return a scene, with a number of ridges that can touch."""
-    return by_rule(from_data(data))
-
-
-class Run:
-    """A run of ``scene`` in a sweep's folder that reached its end; numbers in SI."""
-
-    def __init__(self, scene: Scene, out: Path) -> None:
-        """Open a run; FileNotFoundError if it has not been run or did not reach its end."""
-        summary = result(scene, out)
-        if summary is None or "failure" in summary:
-            raise FileNotFoundError(f"run {key(scene)} is not there or did not reach its end")
-        self.scene, self.folder, self.summary = scene, out / key(scene), summary
-
-    def _table(self, name: str) -> dict[str, NDArray[Any]]:
-        columns = pd.read_csv(self.folder / f"{name}.csv", float_precision="round_trip")
-        return {str(column): values.to_numpy() for column, values in columns.items()}
-
-    @cached_property
-    def steps(self) -> dict[str, NDArray[Any]]:
-        """Columns of the accepted steps, shape (steps,); ``load`` is the name of the load that each belongs to."""
-        return self._table("steps")
-
-    @cached_property
-    def ridges(self) -> dict[str, NDArray[Any]]:
-        """Columns of the ridges in contact, one row a step and ridge."""
-        return self._table("ridges")
-
-    @cached_property
-    def receptors(self) -> dict[str, Array]:
-        """Strain energy density at the receptors (J/m^3), columns of shape (steps, ridges); ``ridge`` has (ridges,)."""
-        columns = self._table("receptors")
-        count = len(np.unique(columns["ridge"]))
-        return {k: v.reshape(-1, count) if k != "ridge" else v[:count] for k, v in columns.items()}
-
-    def row(self, state: str) -> int:
-        """Return the row in :attr:`steps` of ``uncharged``, ``charged`` or ``full_slip``, as in ``summary.json``."""
-        return int(np.flatnonzero(self.steps["step"] == self.summary[f"{state}_step"])[0])
-
-    pressed = property(lambda self: self.row("uncharged"), doc="Row of uncharged normal contact.")
-    charged = property(lambda self: self.row("charged"), doc="Row of charged normal contact.")
-    full_slip = property(lambda self: self.row("full_slip"), doc="Row of full slip.")
-
-    def on_ridges(self, row: int, name: str) -> tuple[Array, Array]:
-        """Return numbers and a value of the ridges in contact in a row of :attr:`steps`."""
-        mine = self.ridges["step"] == self.steps["step"][row]
-        return self.ridges["ridge"][mine], self.ridges[name][mine]
-
-    def final(self, state: str, table: str) -> dict[str, NDArray[Any]]:
-        """Return a named state's rows of ``ridges`` or ``receptors``, on the final mesh where there are two meshes."""
-        if (self.folder / f"{table}_final.csv").exists():
-            columns = self._table(f"{table}_final")
-            mine = columns["of"] == state
-        else:
-            columns = self._table(table)
-            mine = columns["step"] == self.summary[f"{state}_step"]
-        if not mine.any():
-            raise FileNotFoundError(f"run {self.folder.name} has no {table} of {state}")
-        return {name: values[mine] for name, values in columns.items()}
-
-    def arrays(self, name: str) -> dict[str, NDArray[Any]]:
-        """Return the arrays of ``surface`` or ``finger_…``; FileNotFoundError if the run did not keep them."""
-        path = self.folder / f"{name}.npz"
-        if not path.exists():
-            raise FileNotFoundError(f"run {self.folder.name} has no {path.name}: delete its folder and run it again")
-        with np.load(path) as file:
-            return dict(file)
 
 
 def finished(scene: Scene, out: Path) -> Run | None:

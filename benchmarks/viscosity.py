@@ -20,6 +20,7 @@ from fingerpad.results import style
 from fingerpad.scene import Scene
 from fingerpad.scene.materials import LAYERS
 from fingerpad.scene.viscosity import PRESETS
+from fingerpad.scene.waveform import SAMPLES
 
 SOFT = [name for name in LAYERS if not name.startswith("nail")]
 TIMES = (4e-3, 70e-3, 1.4)  # s, of the force of a pressed fingerpad (Pawluk and Howe 1999)
@@ -27,7 +28,7 @@ DEPTH, HOLD = -0.7e-3, 10.0  # m, s
 COARSE = {"contact": 60e-6, "receptor": 100e-6, "interface": 200e-6, "growth": 1.0}  # m, but for the growth
 SMALL_CONTACT = 20e-6  # m
 STEP = 1e-3  # s, of the scene over time
-MEASURED = 10  # steps
+MEASURED = 20  # steps
 FORCE, VOLTAGE = 20.0, 150.0  # N/m, V
 HISTORIES, STEPS = 200, 8  # of each length, and targets in each
 LENGTHS = (1e-3, 0.2)  # s
@@ -107,8 +108,8 @@ def _energy() -> list[dict[str, float]]:
 
 
 def _left_over(body: Any, seconds: float) -> dict[str, float]:
-    """Return what is left over in the steps of random histories, over what is stored, and the least viscous work."""
-    from fingerpad.model.state import least_work
+    """Return what is left over in the steps of random histories, over what is stored, and the least dissipation."""
+    from fingerpad.model.state import least_dissipation
     from variational.energy import Balance, EnergyBook
     from variational.solvers.continuation import Target
 
@@ -124,14 +125,18 @@ def _left_over(body: Any, seconds: float) -> dict[str, float]:
             _say(f"{seed} of {HISTORIES} histories of {seconds:g} s")
         path.go_to(place)
         book, found = EnergyBook(body.problem, *now()), []
-        path.on_accept = lambda target, part, attempt, book=book, found=found: found.append(book.step(*now()))
+
+        def accepted(target: Any, part: float, attempt: Any, book: Any = book, found: Any = found) -> None:
+            found.append(book.step(*now()))
+            least.append(least_dissipation(path))
+
+        path.on_accept = accepted
         sines, w = np.random.default_rng(seed).uniform(-1, 1, (3, 3)), 2 * np.pi * np.arange(1, 4)
         for k in range(STEPS):
             f, U, x = np.sin(w * (k + 1) * seconds / STEPS) @ sines.T
             at = {"f_ext": 4.0 * (1 + 0.1 * f), "voltage": 60 * (1 + 0.3 * U), "bone_x": 20e-6 * x}
             path.run(Target("random", **at, duration=seconds / STEPS))
         left += [abs(each.released) / each.stored for each in found]
-        least.append(least_work(path))
     path.go_to(place)
     return {"steps": len(left), "median": float(np.median(left)), "most": max(left), "least": min(least)}
 
@@ -160,9 +165,12 @@ def _ridge() -> Any:
 
 
 def _cost() -> dict[str, float]:
-    """Return processor seconds of a step, elastic and viscous in turn, and the number of factorisations."""
+    """Return processor seconds of a step, elastic and viscous in turn, and the number of factorisations.
+
+    The samples of the sine are one step apart, in both.
+    """
     found: dict[str, dict[str, float]] = {}
-    wave = {"waveform": "sine", "amplitude": VOLTAGE, "frequency": 20.0}
+    wave = {"waveform": "sine", "amplitude": VOLTAGE, "frequency": 1 / (SAMPLES * STEP)}
     slide = {"name": "slide", "bone_x_by": 20e-3 * STEP * MEASURED, "duration": STEP * MEASURED, "voltage": wave}
     history = [{"name": "press", "f_ext": FORCE}, slide]
     for name, preset in (("elastic", None), ("viscous", "fingerpad")):
@@ -172,7 +180,7 @@ def _cost() -> dict[str, float]:
 
 
 def _timed(scene: Scene) -> dict[str, float]:
-    """Return processor seconds a step and a factorisation of the last load, without its first step."""
+    """Return processor seconds, factorisations and iterations a step of the last load, without its first step."""
     from fingerpad.model.options import FingerModel, by_rule, plan
     from fingerpad.model.simulation import Simulation
     from fingerpad.startup import MPI

@@ -3,7 +3,8 @@
 #
 # A finger is pressed on a screen with 75 N per metre of its length, the voltage of the screen is switched on, and the
 # finger slides. The attraction adds to the contact pressure, and friction follows the contact pressure: so the apparent
-# friction µ_app = f_T / f_ext is above the friction coefficient of 0.25.
+# friction µ_app, friction force over external force, is above the friction coefficient of 0.25. The headline has that of
+# the whole finger; that of the middle section is in plane strain, per metre of finger.
 #
 # The lines are those of the README and of docs/laws.md. The tests run them on a small finger.
 
@@ -16,10 +17,9 @@ curve = fp.sweep(scene, model="cylinders", voltage=[0, 100, 200])  # a closed fo
 print(curve)
 
 result = fp.run(scene, out="results/mine")                         # finite elements: a minute or two
+print(result.headline)                                             # of the whole finger; set its force by force="0.5 N"
 slip = result.full_slip                                            # also .uncharged, .charged, .steps
-print(f"section at the centre: µ_app = {slip.mu_app:.4f} ± {slip.error.mu_app:.4f}, {slip.f_ext:.0f} N/m")
-whole = result.finger                                              # a sum of slices along the finger
-print(f"whole finger: µ_app = {whole.states['full_slip'].mu_app:.4f}, {whole.f_ext:.2f} N")
+print(f"middle section: µ_app = {slip.mu_app:.4f} ± {slip.error.mu_app:.4f}, {slip.f_ext:.0f} N/m")
 result.plot("surface", "surface.png")                              # pressure, attraction and gap along the skin
 
 # fmt: on

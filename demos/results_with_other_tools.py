@@ -36,9 +36,10 @@ LOW, HIGH = 0.25e-3, 1.25e-3  # m: above the field of the screen, and below the 
 
 
 # %%
-def main(out: str = "results/demos/results_with_other_tools", contact: str = "40e-6") -> None:
+def main(out: str = "results/demos/results_with_other_tools", contact: str = "20e-6") -> None:
     """Run with facets of ``contact`` (m) where ridges touch; the run and a figure go to the folder ``out``."""
-    scene = fp.Scene.load(SCENE).replace(mesh={"contact": float(contact)}, output={"errors": False})
+    mesh = {"contact": float(contact), "interface": 60e-6, "coarsest": 150e-6, "growth": 0.3}
+    scene = fp.Scene.load(SCENE).replace(mesh=mesh, output={"errors": False})
     folder = Path(out) / "run"
     fp.run(scene, out=folder)
     if MPI.COMM_WORLD.rank > 0:  # what follows reads files

@@ -22,7 +22,8 @@ SCENES = Path(__file__).parent / "scenes"
 # %% [markdown]
 # A history is a list of loads; values that a load omits stay unchanged. The finger is pressed, slides until all points
 # slip, and slides on while the voltage follows the sine for one period. A load with a speed, a duration or a waveform
-# takes time. `scenes/sine_while_sliding.toml` has the default finger under the voltage of the paper's Fig. 9B.
+# takes time. `scenes/sine_while_sliding.toml` has the default finger under the voltage of the paper's Fig. 9B: of it
+# energy densities at the Merkel sites are drawn, and below them the spikes of slowly adapting fibres.
 
 
 # %%
@@ -48,6 +49,8 @@ def main(out: str = "results/demos/sine_voltage_while_sliding", scale: str = "1"
         print(f"share at the frequency of the voltage {spectrum[0]:.1e}, at twice it {spectrum[1]:.3f} N/m")
         Path(out).mkdir(parents=True, exist_ok=True)
         result.plot("time", Path(out) / "sine.png")
+        if scene.output.receptors:  # energy densities at Merkel sites, and below them spikes of the fibres there
+            result.afferents("SA1").plot(Path(out) / "spikes.png")
     assert all(state.all_slip for state in states)
     assert np.allclose(f_t, MU_0 * (f_ext + f_el), rtol=1e-6)
     # Friction is a function of the voltage's amount alone: its frequency is twice the voltage's.

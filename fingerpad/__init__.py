@@ -1,4 +1,4 @@
-"""fingerpad: how a fingertip sticks, slides and feels on a touchscreen under electroadhesion.
+"""fingerpad: how a fingertip sticks and slides on a touchscreen under electroadhesion, and spikes of its nerve fibres.
 
     import fingerpad as fp
 

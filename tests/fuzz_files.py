@@ -61,7 +61,9 @@ def whole() -> tuple[tuple[str, bytes], ...]:
     voltages = "time (s),voltage (V)\n" + "".join(f"{k / 10},{20 * k % 150}\n" for k in range(8))
     table = "# source: Surname 2020\n# people: 5\nforce (N/m), voltage (V), friction (1), spread (1)\n"
     table += "".join(f"{10 * k}, 100, 0.{k}, 0.0{k}\n" for k in range(1, 8))
-    tables = [(".volts", voltages.encode()), (".measured", table.encode())]
+    lab = "Proband;force [N/m];voltage [V];friction [%];spread [%];Temperatur (°C)\n"
+    lab += "".join(f"{'AB'[k % 2]};{10 * k};{50 * (k % 3)};{-k}0,5;{k};22,5\n" for k in range(1, 8))
+    tables = [(".volts", voltages.encode()), (".measured", table.encode()), (".measured", lab.encode("latin-1"))]
     return (*plain, *_instruments(heights), *_meshes() * 2, *tables * 4)
 
 

@@ -52,6 +52,17 @@ def test_ridges_share_the_load_by_their_places():
     assert left == pytest.approx(right, rel=1e-3) and left < 0.99 * middle
 
 
+@pytest.mark.mpi
+def test_fields_are_those_of_the_last_state():
+    """The same on every rank: displacement as the body has it, and stress that is as deep as the contact pressure."""
+    body = slid()
+    found = body.fields
+    np.testing.assert_allclose(found.points, body.coordinates, rtol=0, atol=1e-15)
+    np.testing.assert_allclose(found.displacement, body.displacement, rtol=0, atol=1e-15)
+    assert found.stress.shape == (len(found.triangles), 3, 3)
+    assert -1.5 * body.state.p_max < found.stress[:, 1, 1].min() < -0.3 * body.state.p_max
+
+
 @pytest.mark.parametrize(
     ("given", "words"),
     [

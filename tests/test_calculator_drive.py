@@ -8,7 +8,7 @@ import fingerpad as fp
 from fingerpad.calculator.page import page
 from fingerpad.scene import Scene
 from tests.browser import asked
-from tests.test_calculator import FIELDS, by_script, in_si
+from tests.test_calculator import FIELDS, SET, by_script, in_si
 
 
 @pytest.mark.parametrize("force", [None, 0.5], ids=["section", "whole finger"])
@@ -40,20 +40,17 @@ def test_drive_is_that_of_python(force, tmp_path):
 
 def test_page_takes_a_drive(tmp_path):
     """It draws voltage, attraction and friction, and refuses a frequency beside its field."""
-    program = """
-    const find = (id) => document.getElementById("drive_" + id), said = find("said");
-    drivePage.begin(() => {});
-    const of = { newtons: false }, answers = [];
-    for (const input of document.querySelectorAll("#fields input[type=number]")) {
-      const field = data.fields.find(({ key }) => key === input.id);
-      if (field) of[field.key] = Number(input.defaultValue) / field.per;
-    }
-    for (const frequency of ["100", "-5", "x"]) {
-      find("frequency").value = frequency;
-      drivePage.update(of, false, (here) => closedForm.solve(here));
-      answers.push([said.textContent, find("friction").querySelectorAll("svg").length]);
-    }
-    return answers;"""
-    good, low, text = asked(page(), program, tmp_path)
-    assert "amplitude 200 V, peak to peak 400 V, rms 141.4 V" in good[0] and good[1] == 1
-    assert low == ["frequency is -5; it must be from 0.001 to 1e+6 Hz.", 0] and text[0].startswith("frequency is x")
+    program = f"""{SET}
+    const find = (id) => document.getElementById(id), answers = [];
+    set({{ f_ext: 75 }});
+    for (const frequency of ["-5", "x"]) {{
+      set({{ frequency }});
+      answers.push(find("frequency_refused").textContent);
+    }}
+    const boxes = ["drive_u", "drive_sigma", "drive_friction"].map(find);
+    const lines = boxes.map((box) => box.querySelectorAll("polyline").length);
+    return [find("drive_said").textContent, lines, answers];"""
+    said, lines, refused = asked(page(), program, tmp_path)
+    assert "amplitude 200 V, peak to peak 400 V, rms 141.4 V" in said and lines == [1, 1, 1]
+    allowed = "it must be from 0.001 to 1e+6 Hz."
+    assert refused == [f"frequency is -5 Hz; {allowed}", f"frequency is x, which is no number; {allowed}"]

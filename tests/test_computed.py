@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 import fingerpad as fp
-from fingerpad.measurements.compare import beside, computed, refuse_mixed
+from fingerpad.measurements.compare import beside
+from fingerpad.measurements.computed import computed, refuse_mixed
 from fingerpad.measurements.table import read
 from fingerpad.results.result import Result
 from fingerpad.runs.solve import run

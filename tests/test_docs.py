@@ -17,6 +17,7 @@ import pytest
 import fingerpad
 from fingerpad import cli
 from fingerpad.cli.params import page
+from fingerpad.results.quantities import FINGER
 from fingerpad.scene import Scene
 from fingerpad.scene.keys import every
 from tests.pages import ROOT, alike, blocks, printed, sentences, words
@@ -45,27 +46,33 @@ def test_door_is_the_demo():
 
 
 def test_closed_form_prints_the_readme(tmp_path, monkeypatch):
-    """To the last digit printed: one of roundoff may be rounded the other way."""
+    """The sweep, to the last digit printed: one of roundoff may be rounded the other way."""
     monkeypatch.chdir(tmp_path)
     block, output = blocks(README)[0]
     first = block.partition("result =")[0]
-    assert alike(output.partition("section at the centre")[0], printed(first, {}), 0.0)
+    assert alike(output.partition("At 0.53 N")[0], printed(first, {}), 0.0)
 
 
 def test_full_run_of_the_readme_is_the_kept_one():
-    """The default scene's friction and its error are those of the run in docs/hero.json, to the digits printed."""
+    """The default scene's headline, and friction of its middle section, are those of the run in docs/hero.json."""
     kept = json.loads((ROOT / "docs" / "hero.json").read_text(encoding="utf-8"))["numbers"]["default"]
     found = re.search(r"µ_app = ([0-9.]+) ± ([0-9.]+)", README)
     assert found is not None
     assert float(found[1]) == pytest.approx(kept["full_slip_mu_app"], abs=6e-5)
     assert float(found[2]) == pytest.approx(kept["full_slip_mu_app_error"], abs=6e-5)
+    headline = kept["headline"]
+    assert headline["sentence"] in README
+    number = FINGER["mu_app"].shown(headline["value"], headline["error"])
+    assert f"µ_app of the {headline['of']} = {number}, {headline['state']}." in README
 
 
 def test_claims_of_the_readme_are_those_of_its_pages():
     """The effect is that of the output below it; the count of verified numbers is that of docs/verification.md."""
-    found = re.search(r"µ_app = ([0-9.]+) ± ", README)
+    found = re.search(r"whole finger = ([0-9.]+) ± ", README)
+    forces = re.search(r"friction force (from [0-9.]+ to [0-9.]+ N)", README)
     count = re.search(r"(\d+ of \d+) numbers", README)
     assert found is not None and f"from 0.25 to {float(found[1]):.2f}" in README
+    assert forces is not None and README.index(f"fingertip {forces[1]}") < README.index("## ")
     assert count is not None and count[1] in (ROOT / "docs" / "verification.md").read_text(encoding="utf-8")
 
 

@@ -8,7 +8,9 @@ import pytest
 
 from benchmarks.feel import __main__ as feel
 from benchmarks.feel import rules, scenes, subfield
+from benchmarks.harness import kept
 from benchmarks.measured.rules import HIT, MISS
+from fingerpad.results import felt
 from fingerpad.results.result import Result
 
 STEP = {
@@ -106,6 +108,14 @@ def test_thresholds_of_the_classes():
     found = {law: feel.thresholds(law) for law in rules.RMS}
     assert all(found[law]["rms"] <= bar for law, bar in rules.RMS.items())
     assert found["SA1"]["ours"][2] == pytest.approx(24.38, rel=1e-3)
+
+
+def test_error_of_sites():
+    """The note on stimuli has the known error of the path's mesh of the default scene, to two digits."""
+    numbers = kept("errors").numbers
+    assert felt.SITE_ERROR == round(feel.site_error(numbers), 2)
+    mesh, ours = numbers["again"]["path"]["mesh"], scenes.onset().mesh
+    assert all(mesh[key] == getattr(ours, key) for key in ("contact", "receptor", "growth"))
 
 
 def test_width_at_half_height():

@@ -132,6 +132,19 @@ def test_command(run, tmp_path, capsys):
     assert np.array_equal(kept["first"].values, spikes.first, equal_nan=True)
 
 
+def test_densities_above_the_spikes(run):
+    """A curve a Merkel site below the ridges that can touch, in kPa over the same time as the spikes."""
+    spikes = run.afferents(["SA1", "RA1"])
+    top, *below = spikes.plot().axes
+    ridges = sorted({unit.ridge for unit in spikes.units})
+    curves = [line for line in top.lines if line.get_label().startswith("_child") and len(line.get_xdata()) > 2]
+    assert len(curves) == len(ridges) and spikes.densities.ridges == tuple(ridges)
+    sites = run.steps[-1].sites
+    last = [curve.get_ydata()[-1] for curve in curves]
+    assert last == pytest.approx(1e-3 * sites.merkel[np.isin(sites.number, ridges)])
+    assert {ax.get_xlim() for ax in below} == {top.get_xlim()} and len(below) == 2
+
+
 def made(run: Result, times: list[float], stress: list[float], loads: list[str] | None = None) -> Result:
     """Return a run of two ridges whose compressive stress (Pa) is the same at every site, at times (s)."""
     number, one = np.array([-1, 0]), np.ones(2)

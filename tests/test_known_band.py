@@ -22,9 +22,9 @@ def parts(result):
 
 
 def test_parts(result):
-    """All that apply to a section, the largest first; each has the result inside, and the band has each part."""
-    found, mu = parts(result), result.full_slip.mu_app
-    assert set(found) == {"closure", "tips", "roughness", "coating"}
+    """All that apply to a finger, the largest first; each has the result inside, and the band has each part."""
+    found, mu = parts(result), result.headline.value
+    assert set(found) == {"closure", "tips", "roughness", "coating", "slices"}
     spans = [np.log(high / low) for low, high in found.values()]
     assert spans == sorted(spans, reverse=True)
     for low, high in found.values():
@@ -32,14 +32,14 @@ def test_parts(result):
 
 
 def test_sum_is_of_squares(result):
-    mu, above = result.full_slip.mu_app, [np.log(high) for _, high in parts(result).values()]
+    mu, above = result.headline.value, [np.log(high) for _, high in parts(result).values()]
     whole = np.sqrt(sum((each - np.log(mu)) ** 2 for each in above))
     assert result.known["high"] == pytest.approx(mu * np.exp(whole), rel=1e-12)
 
 
 def test_roughness_is_that_of_runs_with_it(result):
-    """Runs of the same model with h_rms 20 % smaller and larger, to roundoff; a coating likewise."""
-    law = result.scene.roughness
+    """The ratio of its section in runs with h_rms 20 % smaller and larger, to roundoff; a coating likewise."""
+    law, finger_over_section = result.scene.roughness, result.headline.value / result.full_slip.mu_app
     for name, changes in {
         "roughness": [{"roughness": replace(law, h_rms=factor * law.h_rms)} for factor in (1.2, 0.8)],
         "coating": [
@@ -48,26 +48,42 @@ def test_roughness_is_that_of_runs_with_it(result):
         ],
     }.items():
         runs = [fp.run(result.scene.replace(**each), model="cylinders").full_slip.mu_app for each in changes]
-        assert parts(result)[name] == pytest.approx(runs, rel=1e-9)
+        assert parts(result)[name] == pytest.approx([finger_over_section * mu for mu in runs], rel=1e-9)
 
 
 def test_blunter_tips_raise_friction(result):
     low, high = parts(result)["tips"]
-    assert low < result.full_slip.mu_app < high
+    assert low < result.headline.value < high
 
 
-def test_whole_finger_has_its_own_band():
-    """Its µ_app is the whole finger's, and slices are a part."""
-    found = fp.run(fp.Scene(force="0.5 N", voltage=100.0), model="cylinders")
+@pytest.mark.parametrize("load", [{"force": "0.5 N"}, {"f_ext": 70.0}])
+def test_band_is_of_the_headline(load):
+    """The whole finger's, with or without a force in newtons; slices are a part where their error is known."""
+    found = fp.run(fp.Scene(voltage=100.0, **load), model="cylinders")
     assert found.known["whole"] and "slices" in parts(found)
-    assert found.known["mu_app"] == found.finger.states["full_slip"].mu_app
+    assert found.known["mu_app"] == found.headline.value == found.finger.states["full_slip"].mu_app
     assert "µ_app of the whole finger by closure" in known_in_words(found.known)
+
+
+def test_slices_of_unknown_error_are_named():
+    """Under 0.1 N no finger in three dimensions was compared."""
+    found = fp.run(fp.Scene(voltage=100.0, f_ext=10.0), model="cylinders")
+    assert "slices" not in parts(found)
+    assert known_in_words(found.known).endswith("; not in it: slices, whose error is not known at this force")
+
+
+def test_section_alone_has_its_band():
+    """A finger that is too short for a sum has the band of its middle section."""
+    found = fp.run(fp.Scene(voltage=100.0, slices={"length": 5e-3}), model="cylinders")
+    assert found.finger is None and not found.known["whole"]
+    assert found.known["mu_app"] == found.headline.value == found.full_slip.mu_app
+    assert "µ_app of the middle section by closure" in found.headline.known
 
 
 def test_law_of_ones_own(result):
     """It has no roughness and no insulator to change, and no other closures."""
     found = known(replace(result, scene=result.scene.replace(roughness=Held())), {})
-    assert [part["name"] for part in found["parts"]] == ["tips"]
+    assert [part["name"] for part in found["parts"]] == ["tips", "slices"]
 
 
 def test_closure_without_an_equilibrium_is_named(result):
@@ -85,9 +101,10 @@ def test_none_without_voltage_or_friction():
 
 def test_text_files_and_picture_have_it(result):
     ends = f"{result.known['low']:.2f} to {result.known['high']:.2f}"
-    assert f"Known to about {ends}, by the cheaper model of charged cylinders: µ_app by closure" in str(result)
+    by = "by the cheaper model of charged cylinders: µ_app of the whole finger by closure"
+    assert f"Known to about {ends}, {by}" in str(result)
     again = fp.Result.from_dict(result.to_dict())
     assert again.known == result.known and KNOWN in again.record
     picture = bars(result)
-    assert all(f">{name}<" in picture for name in ("known", "closure", "tips", "roughness", "coating"))
-    assert ">solved<" not in picture  # cylinders have no error of a mesh
+    assert all(f">{name}<" in picture for name in ("solved to", "known to", "closure", "tips", "roughness"))
+    assert ">µ_app of the whole finger (–)<" in picture

@@ -9,7 +9,7 @@ import pytest
 
 import fingerpad as fp
 from fingerpad.cli import main
-from fingerpad.measurements.compare import computed
+from fingerpad.measurements.computed import computed
 from fingerpad.measurements.table import Measured, read
 from fingerpad.runs.sweep import sweep
 from fingerpad.scene import Scene, SceneError
@@ -130,7 +130,13 @@ HEADS = "force (N/m), friction (1)\n"
         ("force (N), contact length (mm)\n1, 2\n", "has contact length, and a whole finger, which has a column in new"),
         (HEADS + "1, 2\n3,\n", "line 4, column 2: the friction is missing; leave the row out"),
         (HEADS + ", 2\n", "line 3, column 1: the force is missing"),
-        (HEADS + "1, -0.2\n", "the friction is '-0.2'; it must be a finite number greater than 0"),
+        (HEADS + "1, 0\n", "the friction is '0'; it must be a finite number other than 0"),
+        ("force (N/m), contact length (mm)\n1, -2\n", "the contact length is '-2'; it must be a finite number greater"),
+        ("force (N/m); friction (1)\n1; 1.000,5\n", "the friction is '1.000,5'; it must be a finite number"),
+        ("force (N/m); friction (1)\n1; 2; 3\n", "line 3 has 3 cells below 2 columns; each must have one below"),
+        ("voltage (V), attraction (N/m)\n5, 0\n", "line 3, column 2: the attraction is 0; it must be so at 0 V alone"),
+        ('friction (1)\n"0.2\n', "is no table in CSV: line 3: unexpected end of data"),
+        ("participant, friction (1)\n, 2\n", "line 3, column 1: the participant is missing; give a name in each row"),
         (HEADS + "1, 1_0\n", "line 3, column 2: the friction is '1_0'; it must be a finite number"),
         (HEADS + "1, 0,2\n", "line 3 has 3 cells below 2 columns; decimals have points"),
         ("voltage (V), friction (1)\ninf, 0.2\n", "the voltage is 'inf'; it must be a finite number"),
@@ -180,11 +186,11 @@ def test_computed_values_are_those_of_the_sweep(folder):
 # -- the command ---------------------------------------------------------------------------------------------
 def test_misfit_is_printed_and_drawn(folder, table, tmp_path, capsys):
     """Measured as twice the computed values: the ratio is a half everywhere and the shape is exact."""
-    volts = [0.0, 100.0, 200.0]
+    volts = [50.0, 100.0, 200.0]
     found = at(computed(folder, asked()), [75.0] * 3, volts)
     lines = [f"75, {u:g}, {2 * v:.17g}, {3 * v:g}" for u, v in zip(volts, found, strict=True)]
     file = table(
-        "\n".join(["# doi: 10.1/x", "force (N/m), voltage (V), friction (1), spread (1)", *lines, "500, 0, 1, 1"])
+        "\n".join(["# doi: 10.1/x", "force (N/m), voltage (V), friction (1), spread (1)", *lines, "500, 100, 1, 1"])
     )
     assert main(["compare-data", str(file), "--sweep", str(folder), "--out", str(tmp_path / "out.png")]) == 0
     out = capsys.readouterr().out
@@ -192,7 +198,8 @@ def test_misfit_is_printed_and_drawn(folder, table, tmp_path, capsys):
     assert "Misfit: computed over measured 0.5 (geometric mean of 3), at most a factor of 2.\n" in out
     assert "scaled by one factor (2): at most a factor of 1.\n" in out
     assert "±" not in out and "Within the spread: 3 of 3." in out and "no value is computed there: 1 of 4 rows." in out
-    assert re.search(r"^ *75\.000 +0\.0 +0\.5000 +0\.7500 +0\.2500 +-0\.2500 +-50\.0$", out, re.MULTILINE)
+    cells = [f"{k * found[0]:.4f}" for k in (2, 3, 1, -1)]
+    assert re.search(rf"^ *75\.000 +50\.0 +{' +'.join(cells)} +-50\.0$", out, re.MULTILINE)
     assert (tmp_path / "out.png").stat().st_size > 10_000
 
 
@@ -232,7 +239,7 @@ def test_errors_of_a_sweep_count_with_the_spread(folder, table, tmp_path, capsys
     shutil.copytree(folder, place)
     (place / "table.csv").write_text(rows)
     # 0.375 ± 0.035 at 86.6 V
-    lines = "25, 0, 0.33, 0.011\n25, 86.602540378, 0.33, 0.011\n25, 100, 0.33, 0.02\n25, 200, 0.51, 0.02\n"
+    lines = "25, 50, 0.27, 0.04\n25, 86.602540378, 0.33, 0.011\n25, 100, 0.33, 0.02\n25, 200, 0.51, 0.02\n"
     file = table("force (N/m), voltage (V), friction (1), spread (1)\n" + lines)
     assert main(["compare-data", str(file), "--sweep", str(place)]) == 0
     out = capsys.readouterr().out
@@ -268,4 +275,4 @@ def test_rows_whose_value_is_zero_are_told_apart(folder, table, capsys):
     assert "in the 2 rows of" in said and said.rstrip().endswith("and 1 of them are not within the results")
     assert main(["compare-data", str(table(text + "25, 100, 3\n500, 100, 3\n")), "--sweep", str(folder)]) == 0
     out = capsys.readouterr().out
-    assert "since no value is computed there: 1 of 3 rows." in out and "computed value is 0 there: 1 of 3 rows." in out
+    assert "since no value is computed there: 1 of 3 rows." in out and "measured value is 0 there: 1 of 3 rows." in out

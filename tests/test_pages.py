@@ -141,7 +141,9 @@ def test_hero_is_drawn_from_kept_numbers(tmp_path):
 
 
 def test_friction_doubles():
-    """As the picture's title says: from the friction coefficient at 0 V to more than twice as much at 200 V, 75 N/m."""
-    voltages, mu = zip(*kept("hero").numbers["friction"]["75"], strict=True)
+    """As the picture's title says: from 0.25 times the force at 0 V to more than twice as much at 200 V."""
+    numbers = kept("hero").numbers
+    force = numbers["default"]["force"]
+    voltages, f_t = zip(*numbers["friction"][force], strict=True)
     assert voltages == (0, 50, 100, 150, 200)
-    assert abs(mu[0] - 0.25) < 1e-6 and mu[-1] > 2 * mu[0]
+    assert abs(f_t[0] - 0.25 * float(force)) < 1e-6 and f_t[-1] > 2 * f_t[0]

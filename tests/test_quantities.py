@@ -103,7 +103,8 @@ def test_entry_of_the_package_is_everywhere(tmp_path, monkeypatch):
 
 def test_recipe_of_the_page_runs_as_written(capsys):
     page = (Path(__file__).parents[1] / "docs" / "results.md").read_text(encoding="utf-8")
-    exec(page.split("```python\n")[1].split("```")[0], {})
+    block = next(part for part in page.split("```python\n") if "fp.Output(" in part.partition("```")[0])
+    exec(block.partition("```")[0], {})
     printed = capsys.readouterr().out.splitlines()
     shown = next(line for line in printed if line.strip().startswith("p_mean (kPa)")).split()[-1]
     assert float(printed[-1]) == pytest.approx(1e3 * float(shown), rel=1e-3)

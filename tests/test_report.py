@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from matplotlib.collections import LineCollection
 from PIL import Image
 
 from fingerpad.cli import main
@@ -25,6 +26,7 @@ from fingerpad.runs.solve import solved
 from fingerpad.scene import Scene
 from tests.browser import SIZES, asked
 from tests.small_finger import small
+from variational.attraction.dielectric import VACUUM_PERMITTIVITY
 
 pytestmark = pytest.mark.slow
 FEW = "contacts of few facets"
@@ -187,6 +189,31 @@ def test_animation_that_cannot_be_made_is_refused(copy, capsys, name, words):
     assert main(["animate", str(copy), "--out", str(copy / name)]) == 2
     said = capsys.readouterr().err
     assert words in said and said.count("\n") == 1
+
+
+# -- pictures ----------------------------------------------------------------------------------------------
+def test_field_lines_are_as_dense_as_the_field_is_strong(folder, tmp_path):
+    """They end on the screen; between the same number of lines lies the same flux of E = sqrt(2 p_el / eps_0).
+
+    Tolerance: flux is summed over 2000 places.
+    """
+    result = Result.load(folder)
+    drawn = result.plot("field", tmp_path / "field.png")
+    (lines,) = [each for each in drawn.axes[0].collections if isinstance(each, LineCollection)]
+    (top, foot), strength = np.moveaxis(np.array(lines.get_segments()), 1, 0), np.asarray(lines.get_array())
+    assert (foot[:, 1] == 0).all() and (top[:, 1] > 0).all() and (top[:, 0] == foot[:, 0]).all()
+    flux = np.diff(foot[:, 0]) * (strength[1:] + strength[:-1]) / 2
+    assert np.median(np.abs(flux / np.median(flux) - 1)) < 0.02
+    p_el = skin_of(folder / "surface.npz", "full_slip")["p_el"]
+    assert strength.max() <= 1e-6 * math.sqrt(2 * np.nanmax(p_el) / VACUUM_PERMITTIVITY) * (1 + 1e-6)
+
+
+def test_finger_in_three_dimensions_is_drawn_from_its_slices(folder, tmp_path):
+    result = Result.load(folder)
+    if result.finger is None:
+        pytest.skip("the small finger has no sum of slices")
+    result.plot("solid", tmp_path / "solid.png")
+    assert (tmp_path / "solid.png").stat().st_size > 10_000
 
 
 # -- trust -------------------------------------------------------------------------------------------------

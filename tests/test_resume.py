@@ -107,6 +107,9 @@ def test_goes_on_to_the_last_bit(history, tmp_path, killed_at):
     assert found.values() == reference.values()
     assert found.cost.newton_iterations == reference.cost.newton_iterations
     assert found.cost.factorisations == reference.cost.factorisations
+    for load, fields in reference.fields.items():
+        for name, values in vars(fields).items():
+            np.testing.assert_array_equal(getattr(found.fields[load], name), values)
     assert not (cut / "checkpoint").exists()
 
 

@@ -2,13 +2,14 @@
 
 import json
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pint
 import pytest
 from numpy.testing import assert_allclose
 
-from fingerpad.results.finger_picture import footprint
+from fingerpad.results.finger_picture import footprint, ridges_along
 from fingerpad.scene import Scene, SceneError
 from fingerpad.scene.parameters import Slices
 from fingerpad.slices.errors import MESH
@@ -187,6 +188,17 @@ def test_finger_under_another_force_is_read_from_its_traces():
         finger.under(1e-4)
 
 
+@pytest.mark.parametrize("known", [True, False])
+def test_ridges_of_a_slice_have_its_contact_length(known):
+    """Parts add up to one: of ridges within the gross width or else the nearest, with the centre known or not."""
+    number, length = np.array([-2, -1, 0, 1, 2]), np.array([0.0, 1.0, 3.0, 1.0, 0.5])
+    state = SimpleNamespace(ridges=SimpleNamespace(number=number, length=length)) if known else None
+    gross = np.array([0.0, 0.4, 1.1, 1.6])
+    x, parts = ridges_along(state, 0.5, gross)
+    assert parts.sum(axis=0)[1:] == pytest.approx(1.0) and len(x) == (4 if known else 3)
+    assert (parts[:, 2:][np.abs(x)[:, None] > gross[2:] / 2] == 0).all()
+
+
 def test_footprint_has_a_panel_for_each_state(tmp_path):
     """And one along the finger; its areas are those of the sums."""
     finger = whole()
@@ -197,7 +209,7 @@ def test_footprint_has_a_panel_for_each_state(tmp_path):
     state, along = drawn.axes
     assert along.get_ylabel() == state.get_ylabel() and along.get_ylim() == state.get_ylim()
     bands = [text.get_text() for text in drawn.legends[0].get_texts()]
-    assert [words.partition(" ")[0] for words in bands] == ["light:", "dark:"] and "ridges lie apart" in bands[1]
+    assert [words.partition(" ")[0] for words in bands] == ["light:", "dark:"] and "ridges" in bands[1]
 
 
 # -- refusals ------------------------------------------------------------------------------------------

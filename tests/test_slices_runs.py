@@ -229,7 +229,7 @@ def test_report_and_text_of_a_force_begin_with_the_whole_finger(tmp_path):
     assert page.index('id="newtons"') < page.index('id="numbers"') and "under its own part of the force" in page
     text = str(result)
     assert text.startswith("Whole finger, as a sum of slices")
-    assert text.index("Section at the centre of the finger (model 'cylinders')") > 0
+    assert text.index("Middle section of the finger (model 'cylinders')") > 0
     read = fp.Result.load(tmp_path).finger
     assert read.under(1.0).to_dict() == result.finger.under(1.0).to_dict()
     less = fp.run(fp.Scene(force=1.0), model="cylinders").finger.values("full_slip")

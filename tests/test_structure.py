@@ -60,10 +60,12 @@ def test_each_module_is_imported_by_a_quick_test():
             for name in (
                 "report.run_page",
                 "report.sweep_page",
+                "results.animation",
                 "results.drawing",
                 "results.drive_picture",
                 "results.felt",
                 "results.spike_picture",
+                "results.whole_picture",
                 "runs.batch",
             )
         ),

@@ -73,8 +73,9 @@ def test_table_text_and_dataset_are_of_the_whole_finger(found):
 def test_report_has_newtons_and_says_how_to_repeat_it(found, tmp_path):
     page = write(found.folder).read_text(encoding="utf-8")
     mu = found.array("mu_app")
-    assert f"µ<sub>app</sub> from {mu.min():.3f} to {mu.max():.3f}</h1>" in page
-    assert "whole finger at full slip, over" in page and "friction force F_T (N)" in page
+    ends = f"from {mu.min():.3f} to {mu.max():.3f}."
+    assert f"<h1>At full slip the friction coefficient of the whole finger goes {ends}</h1>" in page
+    assert "friction force F_T (N)" in page
     assert "f_T (N/m)" not in page and "at full slip over the sweep" in page
     code = html.unescape(re.search(r"<pre><code>(.*?)</code>", page, re.DOTALL)[1])
     words = shlex.split(code)
@@ -88,7 +89,7 @@ def test_frictionless_finger_has_its_areas(tmp_path):
     found = fp.sweep(fp.Scene(friction=0.0), tmp_path, model="cylinders", force=[0.2, 0.5])
     assert str(found).startswith("Whole finger, at charged normal contact")
     assert "µ_app" not in str(found) and "ridge contact area (mm²)" in str(found)
-    assert "ridge contact area from" in write(tmp_path).read_text(encoding="utf-8")
+    assert "the ridge contact area of the whole finger goes from" in write(tmp_path).read_text(encoding="utf-8")
 
 
 def test_smaller_forces_of_one_run(found):
@@ -108,7 +109,7 @@ def test_force_that_no_trace_reaches_fails_alone(tmp_path):
 def test_charts_have_the_units_of_their_titles(found):
     """A chart's numbers are in mm² and N, as the table below."""
     charts = _curves(read(found.folder))
-    assert charts["charts"]["sweep_contact_area"] == "ridge contact area (mm²)"
+    assert charts["charts"]["sweep_contact_area"] == "ridge contact area of the whole finger (mm²)"
     drawn = charts["curves"][1]["sweep_contact_area"]
     assert drawn == pytest.approx(1e6 * found.array("contact_area")[1])
 
@@ -229,7 +230,7 @@ def test_places_along_a_dimension_are_those_of_labels():
 
 
 def test_newtons_of_a_whole_finger(tmp_path):
-    """A sweep whose points have one shows its friction in the last column, and has it in table and dataset."""
+    """A sweep whose points have one shows it first, the section second, and has it in table and dataset."""
     result = replace(fp.run(fp.Scene(force="0.5 N"), model="cylinders"), scene=fp.Scene())
     assert isinstance(result.finger, WholeFinger)
     done = Sweep({"friction": (0.25,)}, (result,), tmp_path)
@@ -237,8 +238,10 @@ def test_newtons_of_a_whole_finger(tmp_path):
     row = done.rows()[0]
     assert row["full_slip_finger_f_t"] == totals["f_t"] and row["charged_finger_f_ext"] == pytest.approx(0.5)
     assert "charged_finger_f_t" not in row
-    heads, line = str(done).splitlines()[1:3]
-    assert heads.endswith("F_T (N)") and line.endswith(result.finger.shown("full_slip", "f_t"))
+    title, heads, line = str(done).splitlines()[:3]
+    assert title == "Whole finger, and middle section per metre of finger, at full slip"
+    assert heads.index("F_T (N)") < heads.index("µ_app of section") < heads.index("f_T of section (N/m)")
+    assert re.search(rf" {re.escape(result.finger.shown('full_slip', 'mu_app'))} ", line)
     data = done.to_xarray()
     assert float(data["finger_f_t"].sel(state="full_slip")[0]) == totals["f_t"]
 

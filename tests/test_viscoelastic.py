@@ -49,17 +49,18 @@ class Strained:
         ((group, self.law),) = problem.laws.items()
         F = kinematics.deformation_gradient(ufl.grad(problem.w))
         self._sigma = fem.Expression(kinematics.cauchy(self.law, F, 0.0), np.array([[0.2, 0.5]]))
-        self.fields = problem.relaxations[group].fields
+        self.layers = problem.relaxations[group]
+        self.fields = list(self.layers.fields.values())
 
     def to(self, F: np.ndarray, lapse: float) -> np.ndarray:
         """Take a step to a homogeneous F; return the Cauchy stress (Pa) without the volumetric part, (3, 3)."""
         problem = self.problem
         problem.w.interpolate(lambda x: (F - np.eye(2)) @ x[:2])
-        problem.lapse.value = lapse
+        problem.elapse(lapse)
         history = problem.history
         on_the_way = self.stress()
-        history.accept({**history.accepted, **{each.name: each.updated() for each in self.fields}})
-        problem.lapse.value = 0.0
+        history.accept({**history.accepted, **self.layers.left()})
+        problem.elapse(0.0)
         np.testing.assert_allclose(self.stress(), on_the_way, atol=1e-12 * np.abs(on_the_way).max())
         return on_the_way
 

@@ -68,6 +68,8 @@ class Balance:
     """Spent by friction, >= 0."""
     viscous: float
     """Work done on the branches of viscous layers, which store and dissipate it; 0 without such layers."""
+    viscous_dissipation: float
+    """Dissipated by these branches, >= 0."""
     released_error: float
     """Bound of the error of :attr:`released` in a step that jumps; far above it on a smooth path."""
 
@@ -85,7 +87,7 @@ class _State:
     square: float  # U^2
     d_eq: Array
     surface: SurfaceState
-    viscous: float  # work so far
+    viscous: tuple[float, float]  # work so far, dissipation of the last step
 
 
 class EnergyBook:
@@ -106,10 +108,8 @@ class EnergyBook:
 
     def _state(self, surface: SurfaceState, bone: Array, reaction: Array, d_eq: Array) -> _State:
         problem, integrate = self._problem, self._problem.surface.per_ridge
-        bulk, spent = (
-            0.0 if form is None else problem.mesh.comm.allreduce(float(fem.assemble_scalar(form)), op=MPI.SUM)
-            for form in (problem.energy, problem.viscous_work)
-        )
+        bulk = problem.mesh.comm.allreduce(float(fem.assemble_scalar(problem.energy)), op=MPI.SUM)
+        work, lost = (0.0, 0.0) if problem.spent is None else problem.spent()
         springs = float(integrate(problem.interface.formulation.stored(surface)).sum())
         square = float(problem.voltage.value) ** 2
         return _State(
@@ -119,7 +119,7 @@ class EnergyBook:
             square,
             np.array(d_eq),
             surface,
-            self._copies * spent,
+            (self._copies * work, self._copies * lost),
         )
 
     def _potential(self, surface: SurfaceState, d_eq: Array) -> Array:
@@ -163,7 +163,8 @@ class EnergyBook:
             voltage=float(charges.sum()) / 2,
             air_gap=float(gaps.sum()) / 2,
             dissipation=slid,
-            viscous=b.viscous - a.viscous,
+            viscous=b.viscous[0] - a.viscous[0],
+            viscous_dissipation=b.viscous[1],
             released_error=unsure,
         )
 

@@ -9,7 +9,7 @@ Of values there are two sets: those last *accepted*, and those *imposed* on the 
 between solves (:mod:`~variational.contact.augmented`).
 """
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
@@ -64,6 +64,10 @@ class BodyField:
         found.x.scatter_forward()
         return np.asarray(found.x.array.copy())
 
+    def left(self) -> Values:
+        """Return what a step to the present state leaves of this field, and of those with which it has one rule."""
+        return {self.name: self.updated()}
+
     @property
     def cells(self) -> NDArray[np.int32]:
         """Nodes of this rank's own cells, shape (cells, nodes)."""
@@ -99,6 +103,7 @@ class History:
         fields: by name.
         accepted: values that the last accepted step left.
         imposed: values that forms and rules read.
+        on_impose: called after these were written, to write what else follows from them.
     """
 
     def __init__(self, surface: "Surface") -> None:
@@ -111,6 +116,7 @@ class History:
         self.fields: dict[str, SkinField | BodyField] = {}
         self.accepted: Values = {}
         self.imposed: Values = {}
+        self.on_impose: list[Callable[[], None]] = []
 
     def add(self, field: SkinField | BodyField, start: Array | None = None) -> None:
         """Add a field.
@@ -146,7 +152,11 @@ class History:
         Args:
             skin: that of the fields of the skin, see :attr:`variational.contact.formulation.SurfaceState.history`.
         """
-        return {**skin, **{field.name: field.updated() for field in self.body}}
+        found = dict(skin)
+        for field in self.body:
+            if field.name not in found:
+                found |= field.left()
+        return found
 
     def accept(self, values: Values) -> None:
         """Accept what a step left; fields that are not among the values stay as they are; collective."""
@@ -161,6 +171,8 @@ class History:
                 field.function.x.array[:] = values[name]
             elif field.function is not None:
                 self._surface.set_history(field.function, values[name])
+        for follow in self.on_impose:
+            follow()
 
     def translated(self, distance: float) -> Values:
         """Return the accepted values of a body that is moved sideways, with its history, by a distance (m)."""

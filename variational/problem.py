@@ -36,7 +36,7 @@ from variational.contact.friction import Friction, law_of
 from variational.element import ELEMENTS, Centroid, LayerwisePressure
 from variational.history import History, SkinField
 from variational.layers import grouped
-from variational.relaxation import relaxations, viscous_work
+from variational.relaxation import Spent, relaxations
 
 if TYPE_CHECKING:
     from variational.materials.material import Material
@@ -89,7 +89,7 @@ class Problem:
         voltage, eta: constants (V; Pa/m, the shift of the Jacobian).
         dt: constant, the duration of the present step (s); 0 where loads change at once.
         lapse: constant, the time (s) since the history that forms read was accepted: dt on the way to a state, and 0
-            once it is accepted.
+            once it is accepted; set by :meth:`elapse`.
         guess: constant, what points on the friction cone are first taken for:
             :data:`~variational.contact.formulation.STICKS` or SLIPS.
         ease: constant, part of the tangential stiffness of the contact that acts: 1 but on the way to an equilibrium.
@@ -108,7 +108,7 @@ class Problem:
         weak: residual and Jacobian in w and its test function, UFL.
         residual, jacobian: the same, compiled.
         energy: compiled, of strain and attraction (J/m), without what branches of viscous layers store.
-        viscous_work: compiled work (J/m) of viscous stresses so far; None without such layers.
+        spent: work on the branches of viscous layers, and what they dissipate; None without such layers.
         skin_mass: compiled mass of the touching skin per unit density.
         pressure_residual: the equation of the pressure; with one only.
         pressure_jacobian: compiled blocks of the Jacobian in (v, dp), (q, du), (q, dp); with a pressure only.
@@ -250,9 +250,17 @@ class Problem:
             start = np.full_like(unloaded, interface.friction.memory)  # type: ignore[union-attr]
             self.history.add(SkinField("memory", self.contact.memory, memory), start)
             self.history.impose(self.history.accepted)
-        for field in (field for each in self.relaxations.values() for field in each.fields):
-            self.history.add(field)
-        self.viscous_work = viscous_work(self.relaxations, dx)
+        for relaxation in self.relaxations.values():
+            for field in relaxation.fields.values():
+                self.history.add(field)
+            self.history.on_impose.append(relaxation.prepare)
+        self.spent = Spent(self.relaxations, dx) if self.relaxations else None
+
+    def elapse(self, seconds: float) -> None:
+        """Set the time (s) since the history was accepted, and write what laws have of it; collective."""
+        self.lapse.value = seconds
+        for relaxation in self.relaxations.values():
+            relaxation.prepare()
 
     def _pressure(self, solids: Mapping[int, "Material"]) -> LayerwisePressure | None:
         """Return the pressure of the layers whose law has a volumetric part, None if there is none."""

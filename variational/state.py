@@ -130,8 +130,10 @@ class StepRecord:
     """Of all ranks since the run began."""
     viscous: float = math.nan
     """Work done on the branches of viscous layers (J/m), which store and dissipate it; NaN without such layers."""
+    viscous_dissipation: float = math.nan
+    """Dissipated by these branches (J/m)."""
     viscous_least: float = math.nan
-    """Least such work so far at a point of these layers over the largest one; below 0 a point gave more than it got."""
+    """Least dissipation of a branch at a point in the step over the largest amount; below 0 a branch made energy."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -259,7 +261,7 @@ RESULTS = (
     "p_max",
 )
 _FIELDS = fields(ContactState)[: [f.name for f in fields(ContactState)].index("record")]
-_VISCOUS = ("viscous", "viscous_least")  # columns of a record where layers are viscous
+_VISCOUS = ("viscous", "viscous_dissipation", "viscous_least")  # columns of a record where layers are viscous
 _LAST = tuple(f for f in fields(ContactState) if f.name in ("mesh_contact", "time"))  # columns where they are known
 
 

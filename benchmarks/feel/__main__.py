@@ -207,7 +207,18 @@ def draw(docs: Path) -> Path:
     picture(docs / "feel.png", (9, 3.8), lambda figure: _paint(figure, numbers))
     judged = rules.judge(numbers)
     count = {verdict: sum(row.verdict == verdict for row in judged) for verdict in (rules.HIT, rules.MISS, rules.OPEN)}
-    return page(docs, "feel", "make feel", {**globals(), "judged": judged, "count": count})
+    more = {"judged": judged, "count": count, "site_error": site_error(kept("errors").numbers)}
+    return page(docs, "feel", "make feel", {**globals(), **more})
+
+
+def site_error(errors: Any) -> float:
+    """Return the largest known error of energy densities at Merkel sites, over their value, on the default's path mesh.
+
+    Args:
+        errors: numbers of docs/errors.json.
+    """
+    found, limits = errors["again"]["path"]["values"], errors["reference"]
+    return float(max(abs(found[key] / limits[key]["value"] - 1) for key in limits if "_sed_" in key))
 
 
 def _paint(figure: Figure, numbers: Any) -> None:

@@ -22,6 +22,7 @@ RMS = {"SA1": 0.2, "RA1": 0.2, "PC": 0.3}
 _OZDAMAR = "Özdamar et al. 2020, arXiv 2103.16489 (abstract)"
 _ISLEYEN = "İşleyen et al. 2020, 10.1109/TOH.2019.2959993 (abstract)"
 _ELASTIC = "computed elastic: without viscosity, which the source blames, and without growth of friction over time"
+_SLIPS = f"{_ELASTIC}; where all points slip, friction without voltage is µ_0 f_ext before the rise and after the fall"
 
 
 class Statement(NamedTuple):
@@ -109,7 +110,7 @@ def _listed(ratios: Mapping[str, float], spec: str = ".3f") -> str:
 
 def _friction(numbers: Mapping[str, Any]) -> Verdict:
     ratios = _ratios(numbers, "f_t")
-    return f"rise over fall {_listed(ratios)}", _by(min(ratios.values()) > CHANGED), _ELASTIC
+    return f"rise over fall {_listed(ratios)}", _by(min(ratios.values()) > CHANGED), _SLIPS
 
 
 def _contact(numbers: Mapping[str, Any]) -> Verdict:
@@ -122,7 +123,7 @@ def _low_load(numbers: Mapping[str, Any]) -> Verdict:
     ratios = _ratios(numbers, "f_t")
     low = ratios[f"{min(scenes.LOADS):g}"]
     words = f"excess {_listed({load: ratio - 1 for load, ratio in ratios.items()}, 'z.1%')}"
-    return words, _by(low > CHANGED and low == max(ratios.values())), _ELASTIC
+    return words, _by(low > CHANGED and low == max(ratios.values())), _SLIPS
 
 
 def _real(numbers: Mapping[str, Any]) -> Verdict:

@@ -4,7 +4,8 @@ environment/run python3 -m benchmarks.paper [--jobs 2] [--draw]
 
 The limit of µ_app is that of docs/errors.json (make chart). Runs are kept in results/traces by a hash of their
 parameters and shared with the other studies: started again, only what is missing or changed is run. Writes
-docs/paper.json, and from it docs/paper.md and its picture; the page begins with what is missing.
+docs/paper.json and docs/paper_figures.json, and from them docs/paper.md and its pictures. The page names what is
+missing.
 """
 
 import argparse
@@ -18,10 +19,13 @@ import numpy as np
 
 from benchmarks import newtons
 from benchmarks.errors import known
-from benchmarks.harness import keep, kept, made, main, page, picture, run
-from benchmarks.paper import energy, fields, friction, scenes, states
+from benchmarks.harness import keep, kept, made, main, page, run, table
+from benchmarks.paper import energy, fields, friction, states
 from benchmarks.paper.statement import BUILT, HOLDS, IN_PART, NOT, Statement
 from benchmarks.runs import FORCES, VOLTAGES, Run
+from fingerpad.paper import scenes
+from fingerpad.paper.figures import FIGURES, PaperFigure
+from fingerpad.paper.figures import draw as drawn
 from fingerpad.slices import errors
 
 _LIMIT = 3600.0  # s of processor time for one run; the sine takes longest
@@ -44,7 +48,7 @@ def collect(out: Path) -> dict[str, Any]:
 
     def of_claim() -> list[Statement]:
         high = at(scenes.MAP, 200.0)
-        return [fields.claim(high, Run(scenes.rougher(high), out))]
+        return [fields.claim(high, Run(scenes.rougher(friction.mu_app(high)), out))]
 
     parts: dict[str, Callable[[], list[Statement]]] = {
         "Fig. 2": lambda: fields.section(at(*scenes.SECTION), Run(scenes.stiffer(), out)),
@@ -69,10 +73,24 @@ def compute(args: argparse.Namespace) -> None:
     summaries = run(named | {"sine": scenes.sine(), "stiffer": scenes.stiffer()}, args, _LIMIT)
     try:
         high = Run(scenes.grid()[scenes.MAP, 200.0], args.out)
-        summaries |= run({"friction": scenes.rougher(high)}, args, _LIMIT)
+        summaries |= run({"friction": scenes.rougher(friction.mu_app(high))}, args, _LIMIT)
     except FileNotFoundError as lost:
         print(f"the run without voltage but with more friction cannot be made: {lost}")
-    keep("paper", collect(args.out), made(summaries.values()), args.docs)
+    by = made(summaries.values())
+    keep("paper", collect(args.out), by, args.docs)
+    keep("paper_figures", pictured(args.out, args.jobs), by, args.docs)
+
+
+def pictured(out: Path, jobs: int) -> dict[str, Any]:
+    """Return the numbers of the figures whose runs are there, but of those that paper.json has all numbers of."""
+    found = {}
+    for name, figure in FIGURES.items():
+        if not figure.of_loads:
+            try:
+                found[name] = figure.numbers(out, jobs)
+            except FileNotFoundError as missing:
+                print(f"missing: Fig. {name}, {missing}")
+    return found
 
 
 # -- page ----------------------------------------------------------------------------------------------------
@@ -94,8 +112,65 @@ def off(grid: friction.Grid) -> dict[str, float]:
     return {name: float(100 * (grid[name][at] / known()[name].value - 1)) for name in names}
 
 
+_CAPTIONS = {
+    "2": "Pressure is highest at the central ridges, and air gaps are smallest there. The elastic stress is in tension "
+    "at edges of ridges. Under slip the shear follows the pressure.",
+    "4": "The air gap has a limit, where the mean separation is zero.",
+    "5": "A ridge sticks without a force where its curve is below zero.",
+    "6": "The attraction raises friction most at small forces. Newtons are N/m times the paper’s 20 mm.",
+    "7": "With voltage each ridge has a longer contact, and all together have, at every force.",
+    "8A": "A voltage lengthens the contact. Sliding shortens it, in steps where ridges leave and come.",
+    "8B": "Sliding mostly shortens the contact, more at higher mean shear stress, and scatters where ridges come.",
+    "9A": "In normal contact the voltage changes the outer layer alone. In sliding the energy density moves to the "
+    "leading side, more so with voltage.",
+    "9B": "Friction and all sites rise or fall once in half a period of the voltage.",
+}
+_EXPERIMENT = """
+The paper's figure also has markers of Ayyildiz et al. 2018. Their numbers could not be read: they are in no text that
+was found, and no public table of them was. So no marker is drawn here.
+"""
+
+
+def _of_figure(name: str, statements: Sequence[Statement]) -> list[Statement]:
+    """Return the statements about a figure; those about the whole of one in two parts are with the second part."""
+    own = [(s, s.figure.partition(",")[0]) for s in statements]
+    return [s for s, of in own if of == name or (of.rstrip("ABC") == name and of not in FIGURES) or f"{of}B" == name]
+
+
+def _rows(statements: Sequence[Statement]) -> str:
+    because = [f": {s.why}" if s.verdict != HOLDS and s.why else "" for s in statements]
+    rows = [(s.paper, s.ours, f"**{s.verdict}**{why}") for s, why in zip(statements, because, strict=True)]
+    return table(("the paper", "this model", "verdict"), rows)
+
+
+def _section(name: str, figure: PaperFigure, statements: Sequence[Statement], docs: Path) -> str:
+    """Return a figure's part of the page: its command, its picture if it was drawn, and the statements about it."""
+    parts = [f"### Fig. {name}: {figure.shows}", f"`fingerpad paper {name}`: {figure.cost or 'a closed form'}."]
+    if (docs / f"paper_{name}.png").exists():
+        parts.append(f"![{_CAPTIONS[name]}](paper_{name}.png)")
+    else:
+        parts.append("Not drawn yet: its runs are missing here.")
+    parts += [_EXPERIMENT.strip()] if name == "6" else []
+    mine = _of_figure(name, statements)
+    return "\n\n".join([*parts, *([_rows(mine)] if mine else [])])
+
+
+def figures(statements: Sequence[Statement], loads: dict[str, Any], docs: Path) -> str:
+    """Draw the figures whose numbers are kept, and return their parts of the page, and that of section 5."""
+    there = kept("paper_figures", docs).numbers if (docs / "paper_figures.json").exists() else {}
+    sections = []
+    for name, figure in FIGURES.items():
+        numbers = loads if figure.of_loads else there.get(name)
+        if numbers:
+            drawn(figure, numbers, docs / f"paper_{name}.png")
+        sections.append(_section(name, figure, statements, docs))
+    if others := [s for s in statements if s.figure.startswith("section")]:
+        sections.append(f"### Section 5\n\n{_rows(others)}")
+    return "\n\n".join(sections)
+
+
 def draw(docs: Path) -> Path:
-    """Draw the page and its picture from docs/paper.json, and Fig. 6 in newtons from docs/newtons.json."""
+    """Draw the page and its pictures from docs/paper.json, paper_figures.json and, in newtons, newtons.json."""
     numbers, sums = kept("paper", docs).numbers, (docs / "newtons.json").exists()
     statements = [Statement(**s) for s in numbers["statements"]]
     names: dict[str, Any] = {
@@ -104,7 +179,7 @@ def draw(docs: Path) -> Path:
         "runs": len(FORCES) * len(VOLTAGES),
         "slices": errors.percent(errors.known_at(newtons.COMPARED)["f_t"]),
         "limit": next((s.numbers["mu_app"] for s in statements if "mu_app" in s.numbers), None),
-        "because": lambda s: f": {s.why}" if s.verdict != HOLDS and s.why else "",
+        "figures": figures(statements, numbers.get("grid", {}), docs),
         "missing": numbers.get("missing"),
         "sites": _sites(statements),
         "grid": {key: np.array(values) for key, values in numbers.get("grid", {}).items()},
@@ -114,12 +189,12 @@ def draw(docs: Path) -> Path:
     }
     if names["grid"]:
         names["off"] = off(names["grid"])
-        picture(docs / "paper_friction.png", (10, 4), lambda figure: friction.paint(figure, names["grid"]))
     if sums:
         found = kept("newtons", docs).numbers
         newtons.picture(found, docs)
         names |= newtons.compared(found)
-    further = ["newtons"] * sums + ["paper_states"] * (names["states"] is not None)
+    further = ["paper_figures"] * (docs / "paper_figures.json").exists()
+    further += ["newtons"] * sums + ["paper_states"] * (names["states"] is not None)
     return page(docs, "paper", "make paper", globals() | names, *further)
 
 

@@ -5,6 +5,7 @@ from numpy.typing import NDArray
 
 from benchmarks.paper.statement import HALF, Statement, statement
 from benchmarks.runs import Array, Run
+from fingerpad.paper.sine import by_kind, steady
 from fingerpad.scene import Scene
 from fingerpad.scene.remarks import coefficient
 from variational.roughness.bam import BearingArea
@@ -108,15 +109,9 @@ def microscale() -> list[Statement]:
 
 
 # -- Fig. 9B -------------------------------------------------------------------------------------------------
-def _ends(run: Run, k: int) -> bool:
-    """Whether a step is the last of a load that slides to full slip."""
-    last = k + 1 == len(run.steps["load"]) or run.steps["load"][k + 1] != run.steps["load"][k]
-    return last and run.steps["load"][k].split()[0] in ("slide", "sine")
-
-
 def sine(run: Run) -> list[Statement]:
     """Return the statements on the response to a sine."""
-    rows = [k for k in range(len(run.steps["load"])) if _ends(run, k)]
+    rows = steady(run)
     sed, sites = run.receptors["merkel_sed"][rows], run.receptors["ridge"]
     mu_app, top = run.steps["mu_app"][rows], int(np.argmax(run.steps["voltage"][rows]))
     turned = int((np.diff(np.sign(np.diff(mu_app))) != 0).sum())
@@ -149,9 +144,7 @@ def _sites(sites: Array, ratio: Array, before: Which, after: Which, highest: int
         "hardly change": same.any(),
     }
     failing = ", ".join(kind for kind, there in kinds.items() if not there)
-    still = np.flatnonzero(stay)[np.argmin(np.abs(ratio[stay] - 1))]
-    ours = {"highest": np.array([highest]), "enters": np.flatnonzero(new), "leaves": np.flatnonzero(lost)}
-    ours |= {"changes least": np.array([still])}
+    ours = by_kind(ratio, before, after, highest)
     mapped = {f"{kind} {sites[k]:g}": ratio[k] for kind, found in ours.items() for k in found}
     return statement("sites", counts | mapped, not failing, sum(kinds.values()) > 1, peak=peak, failing=failing)
 

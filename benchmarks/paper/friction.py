@@ -1,24 +1,20 @@
 """Figs. 2 and 6 to 8: friction, contact length and air gaps over force and voltage."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 
 import numpy as np
-from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from benchmarks.limits import Limit
-from benchmarks.paper.scenes import MAP, SECTION, TRANSITION
 from benchmarks.paper.statement import HALF, Statement, statement
 from benchmarks.runs import Run
-from fingerpad.results import style
+from fingerpad.paper.loads import COLUMNS, STATES, reduction
+from fingerpad.paper.scenes import MAP, SECTION, TRANSITION
 
 Array = NDArray[np.float64]
 Grid = Mapping[str, Array]
 """``f_ext`` (N/m), shape (forces,); ``voltage`` (V), shape (voltages,); ``gaps_range`` (m), the least and the largest
 air gap of all runs with a voltage, shape (2,); the others have shape (forces, voltages)."""
-COLUMNS = ("f_t", "contact_length", "ridges_in_contact")
-STATES = ("charged", "full_slip")
 _HIGH, _LOW = 200.0, 50.0  # V
 _GAPS = (1.7e-6, 3e-6)  # m, the paper's range
 
@@ -41,6 +37,11 @@ def gather(runs: Mapping[tuple[float, float], Run]) -> dict[str, Array]:
     found["gaps_within"] = np.array([[float(within(d_eq).sum()) for d_eq in row] for row in gaps])
     found["moved"] = np.array([[_moved(runs[f, u]) for u in voltages] for f in forces])
     return found | {"gaps_range": np.array([every.min(), every.max()])}
+
+
+def mu_app(run: Run) -> float:
+    """Return the apparent friction coefficient at full slip."""
+    return float(run.steps["mu_app"][run.full_slip])
 
 
 def _ridges(run: Run) -> list[set[float]]:
@@ -76,45 +77,6 @@ def paths(runs: Mapping[tuple[float, float], Run]) -> dict[str, float]:
             found[f"left_{voltage:g}"] = float(sum(ridge < 0 for ridge in before - after))
             found[f"new_{voltage:g}"] = float(sum(ridge > 0 for ridge in after - before))
     return found
-
-
-@dataclass(frozen=True)
-class Reduction:
-    """Share of contact length lost by sliding over the mean shear stress f_T / L_R, with a fit through the origin."""
-
-    stress: Array  # Pa, shape (forces, voltages)
-    lost: Array  # likewise
-    slope: float  # 1/Pa
-    r_squared: float
-
-
-def reduction(grid: Grid) -> Reduction:
-    """Fit the reduction of contact length over the mean shear stress."""
-    stress = grid["full_slip_f_t"] / grid["full_slip_contact_length"]
-    lost = 1 - grid["full_slip_contact_length"] / grid["charged_contact_length"]
-    x, y = stress.ravel(), lost.ravel()
-    slope = float(x @ y / (x @ x))
-    left = float(((y - slope * x) ** 2).sum() / ((y - y.mean()) ** 2).sum())
-    return Reduction(stress, lost, slope, 1 - left)
-
-
-def paint(figure: Figure, grid: Grid) -> None:
-    """Draw apparent friction over force, and the reduction of contact length over the mean shear stress."""
-    left, right = figure.subplots(1, 2)
-    found = reduction(grid)
-    for k, voltage in enumerate(grid["voltage"]):
-        look = {"color": style.voltage(voltage), "marker": "o", "ms": 4}
-        left.plot(grid["f_ext"], grid["full_slip_f_t"][:, k] / grid["f_ext"], label=f"{voltage:g} V", **look)
-        right.plot(found.stress[:, k] / 1e3, 100 * found.lost[:, k], ls="none", **look)
-    x = np.array([0, found.stress.max()])
-    fit = f"fit through the origin, R² = {found.r_squared:.2f}"
-    right.plot(x / 1e3, 100 * found.slope * x, color=style.GREY, lw=2, zorder=0, label=fit)
-    left.set(xlabel="external force $f_{ext}$ (N/m)", ylabel="apparent friction coefficient µ_app (–)", ylim=(0, None))
-    left.set_title("A  Friction at full slip")
-    right.set(xlabel="mean shear stress $f_T / L_R$ (kPa)", ylabel="contact length lost by sliding (%)")
-    right.set_title("B  Loss of contact, all forces")
-    left.legend()
-    right.legend()
 
 
 # -- statements ----------------------------------------------------------------------------------------

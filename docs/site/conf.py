@@ -53,14 +53,18 @@ html_theme = "furo"
 html_title = f"fingerpad {version}"
 html_static_path = ["_static"]
 html_css_files = ["site.css"]
-html_extra_path = ["_extra"]
+html_extra_path = ["_extra", "../calculator.html"]
 html_math_renderer = "mathml"
 html_search_scorer = str(HERE / "scorer.js")
 html_copy_source = False
 html_show_sphinx = False
 
 # Pages of a code host, which the site has elsewhere or in another form.
-ELSEWHERE = {"](../demos/scenes)": "](site/scenes.md)", "](../README.md)": "](README.md)"}
+ELSEWHERE = {
+    "](../demos/scenes)": "](site/scenes.md)",
+    "](../README.md)": "](README.md)",
+    "](calculator.html)": "](site/calculator.md)",
+}
 PLACE = re.compile(r"`((?:geometry|variational|fingerpad)[a-z_.]*):(\w+)`")
 
 
@@ -69,6 +73,7 @@ WORDS = {
     "docs/command": {"": ["Windows", "WSL", "macOS", "Docker", "conda", "install"], "## Targets": ["target"]},
     "docs/drive": {"": ["alternating voltage", "frequency", "waveform"]},
     "docs/feel": {"": ["nerve", "perception", "spike"]},
+    "docs/fingers": {"": ["child", "elderly", "moisture", "sweat", "callus"]},
     "docs/newtons": {"": ["newton", "contact area"]},
     "docs/scene": {"## `[electric]`": ["coating", "insulator", "dielectric", "permittivity"]},
     "docs/viscosity": {"": ["viscous", "relaxation", "creep"]},

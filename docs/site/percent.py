@@ -5,23 +5,14 @@ from typing import Any
 
 from myst_parser.parsers.sphinx_ import MystParser
 
+from benchmarks.notebook import cells
+
 OUTPUT = "output"  # folder beside the demos
 
 
 def markdown(script: str) -> str:
     """Return a script in percent format as Markdown."""
-    cells: list[tuple[bool, list[str]]] = [(False, [])]
-    for line in script.splitlines():
-        if line.startswith("# %%"):
-            cells.append(("[markdown]" in line, []))
-        elif not line.startswith("# fmt:"):
-            cells[-1][1].append(line)
-    parts = []
-    for prose, lines in cells:
-        if prose:
-            parts.append("\n".join(line.removeprefix("#").removeprefix(" ") for line in lines).strip())
-        elif text := "\n".join(lines).strip("\n"):
-            parts.append(f"```python\n{text}\n```")
+    parts = (text if prose else f"```python\n{text}\n```" for prose, text in cells(script))
     return "\n\n".join(parts) + "\n"
 
 

@@ -1,286 +1,301 @@
-/* The page: fields of a scene's keys, refused where a scene would refuse them, and the answer of the closed form. */
+/* The page: it reads the state from the address, answers by the closed form, and draws and writes what is answered. */
 (function () {
   const { show } = numerics;
+  const { create } = form;
   const find = (id) => document.getElementById(id);
-  const POINTS = 41, POINTS_OF_FINGERS = 13; // of a curve
-  const fields = data.fields, by_key = Object.fromEntries(fields.map((field) => [field.key, field]));
-  const defaults = values_of((field) => field.value);
-  const FOOTPRINT = ["length", "ridges"];
-
-  function create(name, attributes, ...content) {
-    const found = document.createElement(name);
-    Object.assign(found, attributes);
-    found.append(...content);
-    return found;
-  }
-
-  // -- fields --------------------------------------------------------------------------------------------
-  function add_fields() {
-    const groups = new Map();
-    const add = (group, ...content) => {
-      if (!groups.has(group)) {
-        const folded = group === "More of the model";
-        const box = create("fieldset", {}, folded ? create("summary", {}, group) : create("legend", {}, group));
-        groups.set(group, box);
-        if (folded) {
-          const details = create("details", { id: "more" }, box.firstChild);
-          box.append(details);
-          groups.set(group, details);
-        }
-        find("fields").append(box);
-      }
-      groups.get(group).append(...content);
-    };
-    for (const field of fields) {
-      if (field.key === "length") add(field.group, choice("finger", "default", "the default finger, its contact from full runs", true),
-        choice("finger", "given", "a contact as measured, at this force and voltage", false));
-      if (field.key === "f_ext") add(field.group, choice("load", "metre", "force per metre of finger, at its centre", true),
-        choice("load", "whole", "force on the whole finger, in newtons", false));
-      add(field.group, field_box(field));
-    }
-    const reset = create("button", { type: "button", id: "defaults" }, "Back to the defaults");
-    reset.onclick = () => { find("fields").reset(); for (const id of ["finger_default", "load_metre"]) find(id).checked = true; fields.forEach(slide); update(); };
-    find("fields").append(reset);
-  }
-
-  function choice(group, name, words, checked) {
-    const input = create("input", { type: "radio", name: group, id: `${group}_${name}`, defaultChecked: checked });
-    return create("label", { className: "choice" }, input, " " + words);
-  }
-
-  function field_box(field) {
-    const words = create("label", { htmlFor: field.key }, field.words);
-    const slider = create("input", { type: "range", min: 0, max: 1000, step: 1, id: field.key + "_slider" });
-    slider.setAttribute("aria-label", field.words + ", slider");
-    const number = create("input", { type: "number", step: "any", id: field.key, defaultValue: field.value });
-    number.setAttribute("aria-describedby", field.key + "_refused");
-    const refused = create("p", { id: field.key + "_refused" });
-    refused.setAttribute("role", "alert");
-    slider.oninput = () => { number.value = from_slider(field, slider.value / 1000); later(); };
-    number.oninput = () => { slide(field); later(); };
-    number.onchange = () => { slide(field); update(); };
-    return create("div", { className: "field" }, words, slider, number, create("span", {}, field.unit), refused);
-  }
-
-  // Sliders over a factor of ten or more go by equal ratios.
-  const by_ratio = (field) => field.slider[0] > 0 && field.slider[1] / field.slider[0] >= 10;
-  function from_slider(field, part) {
-    const [low, high] = field.slider;
-    const value = by_ratio(field) ? low * (high / low) ** part : low + (high - low) * part;
-    return field.whole ? Math.round(value) : Number(value.toPrecision(3));
-  }
-  function slide(field) {
-    const [low, high] = field.slider, value = Math.min(Math.max(Number(find(field.key).value), low), high);
-    const part = by_ratio(field) ? Math.log(value / low) / Math.log(high / low) : (value - low) / (high - low);
-    find(field.key + "_slider").value = 1000 * part;
-  }
-
-  /** Return why a value in a field's unit is refused, empty where it is not; the bounds are a scene's. */
-  function refused(field, text) {
-    const name = field.key.split(".").pop(), unit = field.unit && " " + field.unit, value = Number(text);
-    const allowed = `it must be ${field.zero ? "0 or " : ""}from ${show(field.low)} to ${show(field.high)}${unit}`;
-    if (text.trim() === "" || !Number.isFinite(value)) return `${name} is no number; ${allowed}.`;
-    if (field.whole && !Number.isInteger(value)) return `${name} is ${show(value, 12)}; it must be a whole number.`;
-    const inside = (value >= field.low && value <= field.high) || (field.zero && value === 0);
-    return inside ? "" : `${name} is ${show(value, 12)}${unit}; ${allowed}.`;
-  }
-
-  /** Return SI values by key. */
-  function values_of(value) {
-    return Object.fromEntries(fields.map((field) => [field.key, field.per < 1
-      ? value(field) * Math.round(1 / field.per) : value(field) / field.per]));
-  }
-
-  /** Return the values in the fields, null where one is refused, which is said beside it. */
-  function read() {
-    const given = find("finger_given").checked, newtons = find("load_whole").checked && !given;
-    find("load_whole").disabled = given; // one contact is no finger
-    let whole = true;
-    const say = (key, text) => {
-      find(key + "_refused").textContent = text;
-      find(key).setAttribute("aria-invalid", text !== "");
-      if (text && by_key[key].group === "More of the model") find("more").open = true;
-      if (text) whole = false;
-    };
-    for (const field of fields) {
-      const unread = (FOOTPRINT.includes(field.key) && !given) || field.key === (newtons ? "f_ext" : "force");
-      for (const id of [field.key, field.key + "_slider"]) find(id).disabled = unread;
-      say(field.key, unread ? "" : refused(field, find(field.key).value));
-    }
-    if (!whole) return null;
-    const values = values_of((field) => Number(find(field.key).value)), said = closedForm.refuse(values);
-    if (said) say("roughness.p_floor", `p_floor is ${show(values["roughness.p_floor"], 12)} Pa; ${said}.`);
-    return whole ? { values: { ...values, newtons }, given } : null;
-  }
-
-  // -- answers -------------------------------------------------------------------------------------------
-  const footprint = (values, given) => (given ? closedForm.given(values.length, values.ridges) : undefined);
-
-  function answer(values, given) {
-    try {
-      return values.newtons ? closedForm.whole(values) : closedForm.solve(values, footprint(values, given));
-    } catch (error) {
-      if (error instanceof closedForm.NoEquilibriumError) return error.message;
-      throw error;
-    }
-  }
-
-  const inside = (values) => within(values.f_ext, data.known.forces) && within(values.voltage, data.known.voltages);
-  const within = (value, [low, high]) => value >= low && value <= high;
-  const changed = (values) => [...new Set(fields.map((field) => field.key)
-    .filter((key) => !FOOTPRINT.includes(key) && !["f_ext", "force", "voltage"].includes(key) && values[key] !== defaults[key])
-    .map((key) => key.split(".")[0]))];
-  /** Return whether the error of an answer is known: at the loads of the full runs, with all else as they have it. */
-  const known_at = (values, given) => !given && !values.newtons && inside(values) && changed(values).length === 0;
-
-  function curve(values, given, key, highest, lowest) {
-    const most = (values.newtons ? POINTS_OF_FINGERS : POINTS) - 1;
-    const even = Array.from({ length: most + 1 }, (_, k) => lowest + ((highest - lowest) * k) / most);
-    const ends = { voltage: data.known.voltages, f_ext: data.known.forces }[key] || []; // where the line ceases to be solid
-    const places = new Set([...even, ...ends.filter((x) => x > lowest && x < highest)]);
-    return [...places].sort((a, b) => a - b).map((x) => {
-      const here = { ...values, [key]: x }, found = answer(here, given);
-      return { x, y: typeof found === "string" ? null : found.mu_app, known: known_at(here, given) };
-    });
-  }
-
-  const ROWS = [
+  const POINTS = 33; // of a curve
+  const fields = data.fields;
+  const WORDS = { mu_app: ["µ_app", ""], f_t: ["friction force", "N"] };
+  const ROWS = [ // key, words, unit, unit over SI, digits, quantity of whose error it has
     ["mu_app", "friction coefficient µ_app", "", 1, 3, "mu_app"],
-    ["f_t", "friction force", "N/m", 1, 2, "mu_app"],
+    ["f_t", "friction force", "N/m", 1, 2, "f_t"],
     ["f_electrostatic", "attraction", "N/m", 1, 2, "f_electrostatic"],
     ["contact_length", "contact length", "mm", 1e3, 3, "contact_length"],
     ["ridges_in_contact", "ridges in contact", "", 1, 0],
     ["p_c", "mean contact pressure", "kPa", 1e-3, 2],
     ["d_eq", "equivalent air gap", "µm", 1e6, 3],
   ];
-
   const ROWS_OF_FINGERS = [
-    ["mu_app", "friction coefficient µ_app of the whole finger", "", 1, 3],
-    ["f_t", "friction force", "N", 1, 3],
-    ["f_electrostatic", "attraction", "N", 1, 3],
-    ["contact_area", "contact area of the ridges", "mm²", 1e6, 2],
-    ["gross_area", "gross area of contact", "mm²", 1e6, 1],
+    ["mu_app", "friction coefficient µ_app of the whole finger", "", 1, 3, "mu_app"],
+    ["f_t", "friction force", "N", 1, 3, "f_t"],
+    ["f_electrostatic", "attraction", "N", 1, 3, "f_electrostatic"],
+    ["contact_area", "contact area of the ridges", "mm²", 1e6, 2, "contact_area"],
+    ["gross_area", "gross area of contact", "mm²", 1e6, 1, "gross_area"],
     ["indentation", "indentation", "mm", 1e3, 3],
   ];
+  let { texts, kept, said } = state.from_fragment(location.hash);
 
-  function show_point(found, values, given) {
-    const sure = known_at(values, given), body = find("point").tBodies[0];
+  // -- answers -------------------------------------------------------------------------------------------
+  /** Return the answer at values, why there is none as a text; brief: of full slip alone, for curves and maps. */
+  function answer(values, given, brief) {
+    try {
+      if (values.newtons) return closedForm.whole(values, brief);
+      return closedForm.solve(values, given ? closedForm.given(values.length, values.ridges) : undefined);
+    } catch (error) {
+      if (error instanceof closedForm.NoEquilibriumError) return error.message;
+      throw error;
+    }
+  }
+
+  const error_of = (values, given, found) => (given ? null : modelErrors.of(values, found));
+  const goal_of = (goal, values, quantity) => goal && (goal.times
+    ? goal.value * values.friction * (quantity === "f_t" ? (values.newtons ? values.force : values.f_ext) : 1) : goal.value);
+  const unit_of = (quantity, values) => (quantity === "mu_app" ? "" : values.newtons ? " N" : " N/m");
+
+  // -- the point -----------------------------------------------------------------------------------------
+  function cell(found, row, error, before) {
+    const [key, , unit, per, digits, quantity] = row, value = found[key] * per;
+    const band = error && quantity && error[quantity] ? ` ± ${(value * error[quantity]).toFixed(digits)}` : "";
+    const td = create("td", before ? {} : { id: "value_" + key }, `${value.toFixed(digits)}${band} ${unit}`.trim());
+    if (!before) td.dataset.value = found[key];
+    return td;
+  }
+
+  function show_point(found, { values, given }, other) {
+    const rows = values.newtons ? ROWS_OF_FINGERS : ROWS, error = error_of(values, given, found), body = find("point").tBodies[0];
     const head = values.newtons ? "Whole finger, as a sum of slices" : "Section at the centre of the finger";
-    find("point").caption.textContent = head + (sure ? "" : ": error not known");
-    body.replaceChildren(...(values.newtons ? ROWS_OF_FINGERS : ROWS).map(([key, words, unit, per, digits, error]) => {
-      const value = found[key] * per, band = error && sure ? ` ± ${(value * data.known.error[error]).toFixed(digits)}` : "";
-      const cell = create("td", { id: "value_" + key }, `${value.toFixed(digits)}${band} ${unit}`.trim());
-      cell.dataset.value = String(found[key]);
-      return create("tr", {}, create("th", { scope: "row" }, words), cell);
-    }));
+    find("point").caption.textContent = head + (error ? "" : ": error not known");
+    const beside = other && typeof other.found !== "string" && other.values.newtons === values.newtons;
+    const line = (row) => {
+      const cells = [create("th", { scope: "row" }, row[1]), cell(found, row, error)];
+      if (!beside) return cells;
+      const ratio = found[row[0]] / other.found[row[0]];
+      return [...cells, cell(other.found, row, error_of(other.values, other.given, other.found), true),
+        create("td", {}, Number.isFinite(ratio) ? `${ratio >= 1 ? "+" : "−"}${Math.abs(100 * (ratio - 1)).toFixed(1)} %` : "–")];
+    };
+    body.replaceChildren(...(beside ? [create("tr", {}, ...["", "this screen", "kept screen", "this over kept"].map((text) => create("th", { scope: "col" }, text)))] : []),
+      ...rows.map((row) => create("tr", {}, ...line(row))));
   }
 
-  function remarks(found, values, given) {
-    const percent = (value) => `${(100 * value).toFixed(1)} %`, { error, runs, forces, voltages } = data.known;
-    const where = `${forces.map(Number).join(" to ")} N/m and ${voltages.map(Number).join(" to ")} V`, said = [];
+  const span = ({ key, low, high }) => {
+    const field = state.by_key[key], unit = field && field.unit ? ` ${field.unit}` : "", name = field ? key.split(".").pop() : "attraction over force";
+    const ends = [low, high].map((v) => show(field ? v * field.per : v));
+    return `${name} ${ends[0] === ends[1] ? ends[0] : ends.join(" to ")}${unit}`;
+  };
+
+  function remarks(found, { values, given }) {
+    const parts = [], percent = (v) => `${(100 * v).toFixed(1)} %`;
+    const error = error_of(values, given, found);
     if (values.newtons) {
-      const section = found.section.mu_app.toFixed(3);
-      said.push(`Section at the centre of the finger, second: ${show(found.centre, 3)} N/m, where µ_app is ${section}.`);
-      found = found.section;
-      values = { ...values, f_ext: found.f_ext };
+      const section = { ...values, newtons: false, f_ext: found.section.f_ext }, known = error_of(section, given, found.section);
+      const band = known ? ` ± ${(found.section.mu_app * known.mu_app).toFixed(3)}` : "";
+      parts.push(`Section at the centre of the finger, second: ${show(found.centre, 3)} N/m, where µ_app is ${found.section.mu_app.toFixed(3)}${band}.`);
     }
-    if (given) said.push("The contact is as given along both curves; the error of this answer is not known.");
+    if (given) parts.push("The contact is as given along both curves; the error of this answer is not known.");
+    else if (error) parts.push(`Known error, beside full runs: µ_app and friction within ${percent(error.mu_app)}, attraction within ${percent(error.f_electrostatic)}.`);
     else {
-      said.push(`Known error of ${values.newtons ? "the section" : "these numbers"}: µ_app and friction within ${percent(error.mu_app)}, attraction within ` +
-        `${percent(error.f_electrostatic)}, contact length within ${percent(error.contact_length)} of ${runs} full runs at ${where}.`);
-      if (!inside(values)) said.push("This point is outside of that; its error is not known.");
-      const keys = changed(values);
-      if (keys.length) said.push(`Those runs have the default ${keys.join(", ")}; here the error is not known.`);
+      const beyond = modelErrors.outside(values, found).filter(({ low }) => !Number.isNaN(low)).map(span).join(", ");
+      parts.push(`The error is not known here${beyond && `; it is for ${beyond}`}.`);
     }
-    const state = found.closure.state(found.p_c, values.voltage);
-    if (state) said.push(`The mean pressure of ${show(found.p_c, 4)} Pa is ${state}.`);
-    if (found.others.length) said.push(`Further equilibria at a mean pressure of ` +
-      `${found.others.map((p) => show(p, 4)).join(", ")} Pa, of ridges not on the screen yet.`);
-    find("notes").textContent = said.join(" ");
-    find("notes").dataset.state = state;
+    const point = found.section || found, at = closedForm.closure_of(values).state(point.p_c, values.voltage);
+    if (at) parts.push(`The mean pressure of ${show(point.p_c, 4)} Pa is ${at}.`);
+    if (point.others.length) parts.push("Further equilibria at a mean pressure of " +
+      `${point.others.map((p) => show(p, 4)).join(", ")} Pa, of ridges not on the screen yet.`);
+    find("notes").textContent = parts.join(" ");
+    find("notes").dataset.state = at;
   }
 
-  function draw(values, given, found) {
-    const by = values.newtons ? "force" : "f_ext", unit = by_key[by].unit, force = values[by];
-    const ends = values.newtons ? by_key.force.slider : data.known.forces;
-    const most_u = Math.max(data.known.voltages[1], values.voltage), most_f = Math.max(ends[1], force);
-    const least_f = Math.min(ends[0], force), mu = `µ_app of the ${values.newtons ? "whole finger" : "section"}`;
-    const axes = [
-      ["over_voltage", "voltage", most_u, 0, "voltage U (V)", `force of ${show(force)} ${unit}`],
-      ["over_force", by, most_f, least_f, values.newtons ? "force on the finger F_ext (N)" : "normal force f_ext (N/m)", `voltage of ${show(values.voltage)} V`],
-    ];
-    const same = !given && changed(values).length === 0, rows = [];
-    for (const [id, key, highest, lowest, x, at] of axes) {
-      const points = curve(values, given, key, highest, lowest);
-      const other = same ? [] : curve({ ...defaults, [by]: force, newtons: values.newtons, voltage: values.voltage }, false, key, highest, lowest);
-      const mark = found && { x: values[key], y: found.mu_app };
-      const title = `${mu} over ${x} at a ${at}`;
-      plot.draw(find(id), { x, y: mu, points, other: other.filter((p) => p.y !== null), mark, error: data.known.error.mu_app, title });
+  // -- curves --------------------------------------------------------------------------------------------
+  function axis_of(key, values) {
+    const field = state.by_key[key], value = values[key] * field.per, log = form.by_ratio(field);
+    const low = field.slider[0], words = `${field.words}${field.unit && ` (${field.unit})`}`;
+    return { key, low: log ? Math.min(low, value) : Math.min(low, value, 0), high: Math.max(field.slider[1], value), log, words, field };
+  }
+
+  function points_of(axis, asked, quantity, at) {
+    const places = Array.from({ length: POINTS }, (_, k) => axis.log ? axis.low * (axis.high / axis.low) ** (k / (POINTS - 1)) : axis.low + ((axis.high - axis.low) * k) / (POINTS - 1));
+    const ends = data.known.regions.flatMap(({ ranges }) => ranges[axis.key] || []).map((v) => v * axis.field.per); // where a line ceases to be solid
+    const every = [...new Set([...places, ...ends.filter((x) => x > axis.low && x < axis.high)])].sort((a, b) => a - b);
+    return every.map((x) => at(x));
+  }
+
+  function draw_curves(asked, found, other) {
+    const { values, given, goal } = asked, quantity = texts.quantity, load = values.newtons ? "force" : "f_ext";
+    const name = `${WORDS[quantity][0]} of the ${values.newtons ? "whole finger" : "section"}`, rows = [];
+    const others = other || (changed(values, given) ? { values: { ...data_defaults(values), [load]: values[load], voltage: values.voltage }, given: false } : null);
+    for (const [id, key] of [["voltage", "voltage"], ["force", load]]) {
+      const axis = axis_of(key, values), unit = axis.field.unit;
+      const at = (from) => (x) => {
+        const here = { ...from.values, newtons: values.newtons, [key]: state.in_si(axis.field, x) }, result = answer(here, from.given, true), none = typeof result === "string";
+        const error = none ? null : error_of(here, from.given, result);
+        return { x, y: none ? null : result[quantity], error: error && error[quantity] !== undefined ? error[quantity] : null, goal: goal_of(goal, here, quantity) };
+      };
+      const points = points_of(axis, asked, quantity, at(asked));
+      const beside = others ? points_of(axis, asked, quantity, at(others)).filter((p) => p.y !== null) : [];
+      const fixed = key === "voltage" ? `a force of ${show(values[load])} ${state.by_key[load].unit}` : `a voltage of ${show(values.voltage)} V`;
+      const crossings = goal ? crossed(points, (x) => at(asked)(x)) : [];
+      const words = `${name}${unit_of(quantity, values) && ` (${unit_of(quantity, values).trim()})`}`;
+      plot.draw(find("over_" + id), {
+        axis, words, points, other: beside, title: `${name} over ${axis.words} at ${fixed}`,
+        goal: goal ? points.map((p) => ({ x: p.x, y: p.goal })) : [], mark: found && { x: values[key] * axis.field.per, y: found[quantity] },
+        read: (x) => { const { y } = at(asked)(x); return y === null ? null : [y, `${show(x, 3)} ${unit}: ${show(y, 3)}${unit_of(quantity, values)}`]; },
+        pick: (x) => set({ [key]: String(Number(x.toPrecision(3))) }),
+      });
       const missing = points.filter((p) => p.y === null).length;
-      find("caption_" + (key === "voltage" ? "voltage" : "force")).textContent = `Over ${x} at a ${at}. ` +
-        (points.some((p) => p.known) ? "Shaded: known error; dashed: error not known." : "The curve is dashed, since its error is not known.") +
-        (same ? "" : " Dotted: the default friction, coating, roughness and finger.") +
+      find("caption_" + id).textContent = `Over ${axis.words} at ${fixed}. ` +
+        (points.some((p) => p.error !== null) ? "Shaded: known error; dashed: error not known." : "The curve is dashed, since its error is not known.") +
+        (others ? (other ? " Dotted: the kept screen." : " Dotted: the default friction, coating, roughness and finger.") : "") +
+        (goal ? (crossings.length ? ` The target is reached at ${crossings.map((x) => `${show(x, 4)} ${unit}`).join(" and ")}.` : " The target is not reached.") : "") +
         (missing ? ` ${missing} of ${points.length} points have no equilibrium and are left out.` : "");
-      rows.push(...points.map((p) => [key === "voltage" ? force : p.x, key === "voltage" ? p.x : values.voltage, p.y]));
+      rows.push(...points.map((p) => [key === "voltage" ? values[load] : p.x, key === "voltage" ? p.x : values.voltage, p.y]));
     }
-    const head = [values.newtons ? "F_ext (N)" : "f_ext (N/m)", "U (V)", "µ_app"].map((text) => create("th", { scope: "col" }, text));
-    find("curves").replaceChildren(create("table", {}, create("thead", {}, create("tr", {}, ...head)), create("tbody", {},
-      ...rows.map((row) => create("tr", {}, ...row.map((v, k) =>
-        create("td", {}, v === null ? "none" : k < 2 ? show(v, 5) : v.toFixed(4))))))));
+    const head = [`${load} (${state.by_key[load].unit})`, "voltage (V)", name];
+    find("curves").replaceChildren(table(head, rows.map((row) => row.map((v, k) => (v === null ? "none" : k < 2 ? show(v, 5) : v.toFixed(4))))));
   }
 
-  function command(values, given) {
-    const set = fields.filter(({ key }) => key === "force" ? values.newtons
-      : !FOOTPRINT.includes(key) && values[key] !== defaults[key] && !(values.newtons && key === "f_ext"));
-    if (!given)
-      return ["fingerpad estimate", ...set.map((field) => `--set ${field.key}=${values[field.key]}`)].join(" ");
-    const tables = {};
-    for (const { key } of set) {
-      const [table, name] = key.includes(".") ? key.split(".") : ["", key];
-      (tables[table] = tables[table] || []).push([name, values[key]]);
-    }
-    const words = Object.entries(tables).flatMap(([table, entries]) => table
-      ? [`${table}={${entries.map(([name, value]) => `"${name}": ${value}`).join(", ")}}`]
-      : entries.map(([name, value]) => `${name}=${value}`));
-    return "import fingerpad as fp\nfrom fingerpad.reduced import cylinders\n" +
-      `print(cylinders.solve(fp.Scene(${words.join(", ")}), cylinders.given(${values.length}, ${values.ridges})))`;
+  const table = (head, rows) => create("table", {}, create("thead", {}, create("tr", {}, ...head.map((text) => create("th", { scope: "col" }, text)))),
+    create("tbody", {}, ...rows.map((row) => create("tr", {}, ...row.map((text) => create("td", {}, text))))));
+
+  function crossed(points, at) {
+    const found = [], off = (x) => { const p = at(x); return p.y - p.goal; };
+    points.slice(1).forEach((p, k) => {
+      const q = points[k];
+      if (p.y !== null && q.y !== null && (p.y < p.goal) !== (q.y < q.goal)) found.push(numerics.root(off, q.x, p.x));
+    });
+    return found;
   }
 
+  const data_defaults = (values) => ({ ...state.read(state.start()).values, newtons: values.newtons });
+  const LOADS = ["f_ext", "force", "voltage", "length", "ridges"];
+  const changed = (values, given) => given || fields.some(({ key }) => !LOADS.includes(key) && values[key] !== data_defaults(values)[key]);
+
+  // -- the map -------------------------------------------------------------------------------------------
+  let map = { key: "" };
+  function draw_map(asked) {
+    const { values, given, goal } = asked, quantity = texts.quantity, axes = [texts.x, texts.y].map((key) => axis_of(key, values));
+    const [x_axis, y_axis] = axes, name = `${WORDS[quantity][0]}${unit_of(quantity, values) && ` (${unit_of(quantity, values).trim()})`}`;
+    const idle = axes.find(({ key }) => state.unread(texts, key));
+    find("map_refused").textContent = idle ? `${idle.key.split(".").pop()} has no part in this answer; choose another axis.` : "";
+    if (idle) return find("map").replaceChildren();
+    const here = (x, y) => ({ ...values, [x_axis.key]: state.in_si(x_axis.field, x), [y_axis.key]: state.in_si(y_axis.field, y) });
+    const at = (x, y) => {
+      const point = here(x, y), found = closedForm.refuse(point) || answer(point, given, true), none = typeof found === "string", error = none ? null : error_of(point, given, found);
+      return { value: none ? null : found[quantity], known: Boolean(error && error[quantity] !== undefined), goal: goal_of(goal, point, quantity) };
+    };
+    const rest = Object.entries(values).filter(([key]) => key !== x_axis.key && key !== y_axis.key);
+    const key = JSON.stringify([rest, quantity, goal, given, axes.map(({ key, low, high }) => [key, low, high])]);
+    if (map.key !== key) map = { key, made: heat.compute(x_axis, y_axis, at) };
+    if (!map.made.cells.flat().some(({ value }) => value !== null)) {
+      find("map_refused").textContent = "No place of this map has an answer; change another field.";
+      return find("map").replaceChildren();
+    }
+    const units = axes.map(({ field }) => field.unit && ` ${field.unit}`);
+    const reached = heat.draw(find("map"), map.made, {
+      x_axis, y_axis, words: name, title: `${name} over ${x_axis.words} and ${y_axis.words}`, has_goal: Boolean(goal),
+      mark: [values[x_axis.key] * x_axis.field.per, values[y_axis.key] * y_axis.field.per],
+      read: (x, y) => { const { value } = at(x, y); return `${show(x, 3)}${units[0]}, ${show(y, 3)}${units[1]}: ${value === null ? "no answer" : show(value, 3) + unit_of(quantity, values)}`; },
+      pick: (x, y) => set({ [x_axis.key]: picked(x_axis, x), [y_axis.key]: picked(y_axis, y) }),
+    });
+    find("caption_map").textContent = "Ring: the values of the fields; a click moves it, and so do arrow keys. Hatched: error not known. Grey: no answer." +
+      (goal ? (reached ? " Line: the target." : " The target is not reached on this map.") : "");
+  }
+
+  const picked = ({ field }, v) => String(field.whole ? Math.round(v) : Number(v.toPrecision(3)));
+
+  // -- all of it -----------------------------------------------------------------------------------------
   function update() {
-    const asked = read(), answers = find("answers");
-    answers.classList.toggle("stale", asked === null);
-    find("refusal").textContent = asked === null ? "A field is refused; the numbers below are those before." : "";
-    if (asked === null) {
+    const asked = state.read(texts), refused = asked.refused || {}, answers = find("answers"), missing = Object.keys(refused);
+    form.show(texts, refused);
+    answers.classList.toggle("stale", missing.length > 0);
+    find("refusal").textContent = missing.length ? "A field is refused; the numbers below are those before." : "";
+    if (missing.length) {
       find("always").textContent = "A field is refused.";
       return;
     }
-    const { values, given } = asked, found = answer(values, given), text = typeof found === "string";
-    find("refusal").textContent = text ? `No answer at this point: ${found}.` : "";
-    if (text) find("point").tBodies[0].replaceChildren();
-    else show_point(found, values, given);
-    if (text) find("notes").textContent = "";
-    else remarks(found, values, given);
-    const sure = known_at(values, given) ? "" : ", error not known";
-    const of = values.newtons ? "Whole finger: " : "";
-    find("always").textContent = text ? "No answer at this point." : `${of}µ_app ${find("value_mu_app").textContent}${sure}`;
-    find("command").textContent = command(values, given);
-    draw(values, given, text ? null : found);
-    drivePage.update(values, given, (here) => answer(here, given));
+    const other = kept && state.read(kept), beside = other && !other.refused ? { ...other, found: answer({ ...other.values, newtons: other.values.newtons }, other.given) } : null;
+    const { values, given } = asked, found = answer(values, given), none = typeof found === "string";
+    find("refusal").textContent = none ? `No answer at this point: ${found}.` : "";
+    if (none) for (const id of ["point", "notes"]) (find(id).tBodies ? find(id).tBodies[0] : find(id)).replaceChildren();
+    else {
+      show_point(found, asked, beside);
+      remarks(found, asked);
+    }
+    const sure = !none && error_of(values, given, found) ? "" : ", error not known", of = values.newtons ? "Whole finger: " : "Section: ";
+    find("always").textContent = none ? "No answer at this point." : `${of}µ_app ${find("value_mu_app").textContent}${sure}`;
+    find("command").textContent = commands.of(values, given, texts);
+    draw_curves(asked, none ? null : found, beside);
+    clearTimeout(waiting_rest);
+    if (drawn) waiting_rest = setTimeout(() => rest(asked), 120);
+    else rest(asked);
+    find("drop").hidden = !kept;
+    find("keep").textContent = kept ? "Keep this screen instead" : "Keep this screen to compare";
+    const fragment = state.to_fragment(texts, kept);
+    if (fragment !== location.hash.replace(/^#/, ""))
+      try {
+        history.replaceState(null, "", "#" + fragment);
+      } catch (error) { /* a page without an address of its own */ }
   }
 
-  let waiting = 0;
+  /** Draw what takes longer than a frame. */
+  function rest(asked) {
+    draw_map(asked);
+    drivePage.update(asked.values, asked.given, texts, (here) => answer(here, asked.given));
+    drawn = true;
+  }
+
+  let waiting = 0, waiting_rest = 0, drawn = false;
   function later() { // once a frame at most
     cancelAnimationFrame(waiting);
     waiting = requestAnimationFrame(update);
   }
+  function set(changes) {
+    Object.assign(texts, changes);
+    update();
+  }
 
-  document.documentElement.className = "js";
-  add_fields();
-  find("fields").onsubmit = (event) => event.preventDefault();
-  for (const id of ["finger_default", "finger_given", "load_metre", "load_whole"]) find(id).onchange = update;
-  for (const id of ["fields", "answers", "always"]) find(id).hidden = false;
-  fields.forEach(slide);
-  drivePage.begin(later);
-  update();
-  addEventListener("resize", later);
+  function begin() {
+    document.documentElement.className = "js";
+    form.options("quantity", { mu_app: "friction coefficient µ_app", f_t: "friction force" });
+    for (const id of ["x", "y"]) form.options(id, Object.fromEntries(fields.filter(({ whole }) => !whole).map(({ key, words }) => [key, words])));
+    drivePage.options();
+    form.make(texts, (soon) => (soon ? later() : update()));
+    find("fields").onsubmit = (event) => event.preventDefault();
+    const tell = (text) => { find("done").textContent = text; };
+    const reset = () => { Object.assign(texts, state.start()); kept = null; find("address_said").textContent = ""; update(); };
+    const buttons = {
+      defaults: reset,
+      keep: () => { kept = { ...texts }; update(); },
+      drop: () => { kept = null; update(); },
+      share: () => files.copy(location.href, tell, "the address with all values"),
+      copy_table: () => files.copy(files.tsv(files.rows(find("point"))), tell, "the table"),
+      save_table: () => files.save("curves.csv", files.csv(files.rows(find("curves").querySelector("table"))), "text/csv"),
+      save_map: () => files.save("map.csv", files.csv(map_rows()), "text/csv"),
+      picture_voltage: () => files.save_png(find("over_voltage").querySelector("svg"), "over_voltage.png"),
+      picture_force: () => files.save_png(find("over_force").querySelector("svg"), "over_force.png"),
+      picture_map: () => files.save_png(find("map").querySelector("svg"), "map.png"),
+      theme: () => {
+        const dark = getComputedStyle(document.documentElement).colorScheme === "dark";
+        document.documentElement.dataset.theme = dark ? "light" : "dark";
+        update();
+      },
+    };
+    for (const [id, action] of Object.entries(buttons)) find(id).onclick = action;
+    find("map").onkeydown = (event) => {
+      const step = { ArrowLeft: ["x", -1], ArrowRight: ["x", 1], ArrowDown: ["y", -1], ArrowUp: ["y", 1] }[event.key], asked = state.read(texts);
+      if (!step || asked.refused) return;
+      event.preventDefault();
+      const { field } = axis_of(texts[step[0]], asked.values), part = form.place(field, Number(texts[field.key]) || field.slider[0]) + step[1] / (heat.COUNT - 1);
+      set({ [field.key]: String(form.at_place(field, Math.min(Math.max(part, 0), 1))) });
+    };
+    for (const id of ["fields", "answers", "always", "tools"]) find(id).hidden = false;
+    find("address_said").textContent = said.join(" ");
+    addEventListener("resize", later);
+    addEventListener("hashchange", () => {
+      if (location.hash.replace(/^#/, "") === state.to_fragment(texts, kept)) return;
+      const read = state.from_fragment(location.hash);
+      Object.assign(texts, read.texts);
+      kept = read.kept;
+      find("address_said").textContent = read.said.join(" ");
+      update();
+    });
+    update();
+  }
+
+  function map_rows() {
+    const { made } = map, axes = [texts.x, texts.y].map((key) => state.by_key[key]);
+    const head = [...axes.map(({ key, unit }) => (unit ? `${key} (${unit})` : key)), texts.quantity, "error_known"];
+    return [head, ...made.ys.flatMap((y, j) => made.xs.map((x, k) => [x, y, made.cells[j][k].value === null ? "" : made.cells[j][k].value, Number(made.cells[j][k].known)]))];
+  }
+
+  begin();
 })();

@@ -14,10 +14,14 @@ from typing import Any
 
 from numpy.polynomial.legendre import leggauss
 
+from fingerpad.calculator import presets
 from fingerpad.installed import version
 from fingerpad.reduced import cylinder_errors, cylinders
+from fingerpad.reduced.closure_band import with_band
 from fingerpad.reduced.model import STATES
+from fingerpad.results.closures import KNOWN, known_in_words
 from fingerpad.results.quantities import PER_LENGTH, Output
+from fingerpad.results.result import Result
 from fingerpad.results.states import WORDS
 from fingerpad.scene import Scene
 from fingerpad.scene.keys import every
@@ -28,9 +32,12 @@ from geometry.units import Range
 from variational.attraction.circuit import LEAKS
 from variational.attraction.dielectric import TISSUES, VACUUM_PERMITTIVITY
 
-SCRIPTS = ("numerics.js", "closed_form.js", "whole.js", "errors.js", "drive.js", "plot.js", "drive_page.js", "page.js")
+SCRIPTS = (
+    "numerics.js", "closed_form.js", "whole.js", "errors.js", "drive.js", "state.js", "commands.js", "plot.js",
+    "heat.js", "files.js", "form.js", "drive_page.js", "page.js",
+)  # fmt: skip
 """In order; those before ``plot.js`` need no page."""
-_TABLE = (20.0, 50.0, 75.0, 100.0, 150.0), (0.0, 50.0, 100.0, 150.0, 200.0)  # N/m, V
+_TABLE = (0.1, 0.3, 0.5, 1.0, 2.0), (0.0, 50.0, 100.0, 150.0, 200.0)  # N, V
 
 
 @dataclass(frozen=True)
@@ -56,14 +63,14 @@ class Field:
     """Units in one SI unit: 1e6 for µm."""
 
 
-_FORCE = 0.5  # N, of the field that a scene has no default of
+_FORCE, _VOLTAGE = 0.5, 200.0  # N, of the field that a scene has no default of; V
 _SHOWN = (
-    Field("voltage", "voltage U", "V", (0.0, 250.0), "Load"),
+    Field("voltage", "voltage U", "V", (0.0, 400.0), "Load"),
+    Field("force", "normal force F_ext on the whole finger", "N", (0.05, 3.0), "Load"),
     Field("f_ext", "normal force f_ext, per metre of finger", "N/m", (5.0, 150.0), "Load"),
-    Field("force", "normal force F_ext on the whole finger", "N", (0.05, 1.0), "Load"),
-    Field("friction", "friction coefficient µ_0 without voltage", "", (0.05, 1.0), "Load"),
-    Field("electric.d_i", "thickness d_i", "µm", (0.1, 10.0), "Coating of the screen"),
-    Field("electric.eps_i", "relative permittivity ε_i", "", (1.0, 30.0), "Coating of the screen"),
+    Field("friction", "friction coefficient µ_0 without voltage", "", (0.1, 1.0), "Load"),
+    Field("electric.d_i", "thickness d_i of the coating", "µm", (0.1, 100.0), "Coating of the screen"),
+    Field("electric.eps_i", "relative permittivity ε_i", "", (2.0, 30.0), "Coating of the screen"),
     Field("roughness.h_rms", "root mean square height h_rms", "µm", (1.0, 10.0), "Roughness of the skin"),
     Field("roughness.wavelength", "largest wavelength λ_0", "µm", (20.0, 500.0), "Roughness of the skin"),
     Field("roughness.young", "elastic modulus of the surface E", "MPa", (0.1, 10.0), "Roughness of the skin"),
@@ -124,6 +131,7 @@ def data() -> dict[str, Any]:
         "traces": traces.CONSTANTS,
         "words": {state: WORDS[state] for state in STATES},
         "circuits": circuits(),
+        "presets": [*presets.data({field.key: field.per for field in shown})],
         "known": {"error": first.errors["full_slip"], "runs": first.runs}
         | {"forces": first.ranges["f_ext"], "voltages": first.ranges["voltage"]}
         | {"regions": cylinder_errors.data(field.key for field in shown)},
@@ -145,9 +153,9 @@ def circuits() -> dict[str, Any]:
 def page() -> str:
     """Return the page."""
     values = {
-        "error": f"{100 * cylinder_errors.REGIONS[0].errors['full_slip']['mu_app']:.1f} %",
-        "runs": str(cylinder_errors.REGIONS[0].runs),
-        "where": cylinder_errors.where(cylinder_errors.REGIONS[0]),
+        "finding": _finding(),
+        "error": html.escape(" ".join(map(_error, cylinder_errors.REGIONS)) + " Elsewhere its error is not known."),
+        "known": _band(),
         "leakage": html.escape(LEAKAGE),
         "table": _table(),
         "defaults": _defaults(),
@@ -166,18 +174,53 @@ def part(name: str) -> str:
     return (files("fingerpad.calculator") / name).read_text(encoding="utf-8").rstrip()
 
 
+def _whole(force: float, voltage: float) -> Result:
+    """Return the default finger under a force (N) and a voltage (V)."""
+    scene = Scene(force=force, voltage=voltage)
+    return traces.whole(scene, cylinders.Cylinders(), lambda each, _: cylinders.solve(each))
+
+
+def _mu_app(force: float, voltage: float) -> float:
+    finger = _whole(force, voltage).finger
+    assert finger is not None
+    return finger.states["full_slip"].mu_app
+
+
+def _finding() -> str:
+    """Return the first sentence of the page."""
+    low, high = (_mu_app(_FORCE, voltage) for voltage in (0.0, _VOLTAGE))
+    return (
+        f"At {_FORCE:g} N, {_VOLTAGE:g} V raise the friction coefficient of the default finger from {low:.2f} to "
+        f"{high:.2f}: a voltage attracts the skin to the screen."
+    )
+
+
+def _error(region: cylinder_errors.Region) -> str:
+    """Return what is known of the error in a region."""
+    of = "the whole finger" if "force" in region.ranges else "the section"
+    errors = region.errors.get("finger" if "force" in region.ranges else "full_slip", region.errors["full_slip"])
+    words, name = ("µ_app", "mu_app") if "mu_app" in errors else ("Attraction", "f_electrostatic")
+    return f"{words} of {of} is within {100 * errors[name]:.1f} % of {cylinder_errors.runs(region)}."
+
+
+def _band() -> str:
+    """Return how far µ_app is known, by all assumptions, at the values of the first sentence."""
+    words = known_in_words(with_band(_whole(_FORCE, _VOLTAGE)).record.get(KNOWN, {}))
+    return html.escape(f"At {_FORCE:g} N and {_VOLTAGE:g} V the default finger is {words}." if words else "")
+
+
 def _table() -> str:
     """Return µ_app of the default finger over force and voltage."""
     forces, voltages = _TABLE
     head = "".join(f'<th scope="col">{voltage:g} V</th>' for voltage in voltages)
     rows = []
-    for f_ext in forces:
-        found = (cylinders.solve(Scene(f_ext=f_ext, voltage=voltage)).full_slip for voltage in voltages)
-        cells = "".join(f"<td>{state.mu_app:.3f}</td>" for state in found if state is not None)
-        rows.append(f'<tr><th scope="row">{f_ext:g} N/m</th>{cells}</tr>')
-    caption = "<caption>µ_app at full slip, by force per metre of finger and voltage</caption>"
+    for force in forces:
+        cells = "".join(f"<td>{_mu_app(force, voltage):.3f}</td>" for voltage in voltages)
+        rows.append(f'<tr><th scope="row">{force:g} N</th>{cells}</tr>')
+    caption = "<caption>µ_app of the whole finger at full slip, by force and voltage</caption>"
     body = "\n".join(rows)
-    return f'<table id="default">{caption}\n<thead><tr><td></td>{head}</tr></thead>\n<tbody>\n{body}\n</tbody></table>'
+    top = f"<thead><tr><td></td>{head}</tr></thead>"
+    return f'<table id="default">{caption}\n{top}\n<tbody>\n{body}\n</tbody></table>'
 
 
 def _defaults() -> str:

@@ -1,20 +1,55 @@
-/* One curve with its band of known error, as inline SVG. Dashed where the error is not known; a curve to compare with is
- * dotted. Curves differ by their strokes and have their names beside them, so that no colour is needed. */
+/* Curves and their axes as inline SVG. A curve is solid with a band where its error is known, and dashed elsewhere; one to
+ * compare with is dotted. Curves differ by their strokes, so that no colour is needed. Colours are those of the page. */
 const plot = (function () {
-  const MARGIN = { left: 52, right: 14, top: 12, bottom: 44 };
+  const MARGIN = { left: 58, right: 16, top: 14, bottom: 46 };
+  const colour = (name) => getComputedStyle(document.documentElement).getPropertyValue("--" + name).trim();
 
-  function element(name, attributes, text) {
+  function element(name, attributes, ...content) {
     const found = document.createElementNS("http://www.w3.org/2000/svg", name);
     for (const [key, value] of Object.entries(attributes)) found.setAttribute(key, value);
-    if (text !== undefined) found.textContent = text;
+    found.append(...content);
     return found;
   }
 
-  /** Return round numbers from 0 or below to a highest value, at most so many. */
-  function ticks(highest, most) {
-    const rough = highest / most, power = 10 ** Math.floor(Math.log10(rough));
-    const step = [1, 2, 5, 10].map((k) => k * power).find((k) => k >= rough * (1 - 1e-9));
-    return Array.from({ length: Math.floor(highest / step + 1e-9) + 1 }, (_, k) => k * step);
+  /** Return round numbers within an axis, at most so many; of a logarithmic one 1, 2 and 5 times powers of ten. */
+  function ticks({ low, high, log }, most) {
+    if (log) {
+      const found = [];
+      for (let power = Math.floor(Math.log10(low)); power <= Math.log10(high); power++)
+        found.push(...[1, 2, 5].map((k) => Number((k * 10 ** power).toPrecision(1))));
+      const inside = found.filter((v) => v >= low * (1 - 1e-9) && v <= high * (1 + 1e-9));
+      return inside.length > most ? inside.filter((v) => String(v).replace(/[.0]/g, "") === "1") : inside;
+    }
+    const rough = (high - low) / most, power = 10 ** Math.floor(Math.log10(rough));
+    const step = [1, 2, 5, 10].map((k) => k * power).find((k) => k >= rough * (1 - 1e-9)), first = Math.ceil(low / step - 1e-9);
+    return Array.from({ length: Math.floor(high / step + 1e-9) - first + 1 }, (_, k) => Number(((first + k) * step).toPrecision(12)));
+  }
+
+  /** Return the map of an axis {low, high, log} onto pixels, and back. */
+  function scale(axis, from, to) {
+    const f = axis.log ? Math.log : (v) => v, g = axis.log ? Math.exp : (v) => v, a = f(axis.low), b = f(axis.high);
+    return { at: (v) => from + ((f(v) - a) / (b - a)) * (to - from), back: (px) => g(a + ((px - from) / (to - from)) * (b - a)) };
+  }
+
+  /** Return an empty drawing in a box with two axes: its svg, places of the frame, and both scales. */
+  function frame(box, x_axis, y_axis, title, right_margin, highest) {
+    const width = Math.max(box.clientWidth, 260), height = Math.min(highest || 360, Math.max(240, Math.round(0.62 * width)));
+    const left = MARGIN.left, right = width - (right_margin || MARGIN.right), top = MARGIN.top, bottom = height - MARGIN.bottom;
+    const svg = element("svg", { width, height, viewBox: `0 0 ${width} ${height}`, role: "img", "aria-label": title, fill: colour("ink") });
+    const x = scale(x_axis, left, right), y = scale(y_axis, bottom, top);
+    for (const v of ticks(x_axis, width < 420 ? 5 : 9)) {
+      svg.append(element("line", { x1: x.at(v), x2: x.at(v), y1: bottom, y2: bottom + 5, stroke: colour("ink") }));
+      svg.append(element("text", { x: x.at(v), y: bottom + 19, "text-anchor": x.at(v) > right - 8 ? "end" : "middle" }, numerics.show(v)));
+    }
+    for (const v of ticks(y_axis, 6)) {
+      svg.append(element("line", { x1: left, x2: right, y1: y.at(v), y2: y.at(v), stroke: colour("grid") }));
+      svg.append(element("text", { x: left - 6, y: y.at(v) + 4, "text-anchor": "end" }, numerics.show(v)));
+    }
+    svg.append(element("line", { x1: left, x2: right, y1: bottom, y2: bottom, stroke: colour("ink") }));
+    svg.append(element("text", { x: (left + right) / 2, y: height - 8, "text-anchor": "middle" }, x_axis.words));
+    svg.append(element("text", { transform: `translate(13 ${(top + bottom) / 2}) rotate(-90)`, "text-anchor": "middle" }, y_axis.words));
+    box.replaceChildren(svg);
+    return { svg, x, y, left, right, top, bottom, width, height };
   }
 
   /** Return runs of neighbours that a test holds of, for a line that ends where it does not. */
@@ -29,50 +64,63 @@ const plot = (function () {
     return found;
   }
 
-  /* box: an HTML element; x, y: names of the axes; points: {x, y, known}, in order, y null where there is no answer;
-   * other: points of the dotted curve; mark: {x, y}; error: relative half width of the band; title: for readers of it. */
-  function draw(box, { x, y, points, other, mark, error, title }) {
-    const width = Math.max(box.clientWidth, 260), height = Math.min(340, Math.max(230, 0.62 * width));
+  const path = (of, list) => list.map(([a, b]) => `${of.x.at(a).toFixed(2)},${of.y.at(b).toFixed(2)}`).join(" ");
+
+  /* axis: {low, high, log, words} along x; points: {x, y, error}, in order, y null without an answer, error null where it is
+   * not known; other: points of the dotted curve; goal: points of the target's line; mark: {x, y}; title: for readers;
+   * read(x): [y, text] under the pointer; pick(x): what a click does. */
+  function draw(box, { axis, words, points, other, goal, mark, title, read, pick }) {
     const answered = points.filter((p) => p.y !== null), all = [...answered, ...other, ...(mark ? [mark] : [])];
-    const most_x = Math.max(...points.map((p) => p.x)), most_y = Math.max(1e-9, ...all.map((p) => p.y)) * 1.1;
-    const left = MARGIN.left, right = width - MARGIN.right, bottom = height - MARGIN.bottom;
-    const at_x = (v) => left + (v / most_x) * (right - left);
-    const at_y = (v) => bottom - (v / most_y) * (bottom - MARGIN.top);
-    const svg = element("svg", { width, height, viewBox: `0 0 ${width} ${height}`, role: "img", "aria-label": title });
-    const line = (list, attributes) =>
-      list.length > 1 &&
-      svg.append(element("polyline", {
-        points: list.map((p) => `${at_x(p.x).toFixed(2)},${at_y(p.y).toFixed(2)}`).join(" "), fill: "none", ...attributes,
-      }));
-    for (const v of ticks(most_x, width < 420 ? 4 : 8)) {
-      svg.append(element("line", { x1: at_x(v), x2: at_x(v), y1: bottom, y2: bottom + 5, stroke: "#111" }));
-      const anchor = at_x(v) > right - 8 ? "end" : "middle";
-      svg.append(element("text", { x: at_x(v), y: bottom + 19, "text-anchor": anchor }, numerics.show(v)));
+    const most = Math.max(1e-9, ...all.map((p) => p.y)) * 1.1, shown_goal = goal.filter((p) => p.y <= most);
+    const of = frame(box, axis, { low: 0, high: most, log: false, words }, title), { svg } = of;
+    const line = (list, attributes) => list.length > 1 && svg.append(element("polyline",
+      { points: path(of, list.map((p) => [p.x, p.y])), fill: "none", ...attributes }));
+    for (const list of runs(points, (p) => p.y !== null && p.error !== null)) {
+      const edge = [...list.map((p) => [p.x, p.y * (1 + p.error)]), ...list.slice().reverse().map((p) => [p.x, p.y * (1 - p.error)])];
+      svg.append(element("polygon", { points: path(of, edge), fill: colour("band"), "fill-opacity": 0.45, class: "band" }));
     }
-    for (const v of ticks(most_y, 6)) {
-      svg.append(element("line", { x1: left, x2: right, y1: at_y(v), y2: at_y(v), stroke: v ? "#ddd" : "#111" }));
-      svg.append(element("text", { x: left - 6, y: at_y(v) + 4, "text-anchor": "end" }, numerics.show(v)));
-    }
-    svg.append(element("text", { x: (left + right) / 2, y: height - 8, "text-anchor": "middle" }, x));
-    const up = { x: 0, y: 0, transform: `translate(14 ${(MARGIN.top + bottom) / 2}) rotate(-90)`, "text-anchor": "middle" };
-    svg.append(element("text", up, y));
-    for (const list of runs(points, (p) => p.y !== null && p.known)) {
-      const edge = [...list.map((p) => [p.x, p.y * (1 + error)]), ...list.reverse().map((p) => [p.x, p.y * (1 - error)])];
-      const path = edge.map(([a, b]) => `${at_x(a).toFixed(2)},${at_y(b).toFixed(2)}`).join(" ");
-      svg.append(element("polygon", { points: path, fill: "#56b4e9", "fill-opacity": 0.45, class: "band" }));
-    }
-    line(other, { stroke: "#555", "stroke-width": 1.5, "stroke-dasharray": "1 4", "stroke-linecap": "round" });
+    line(other, { stroke: colour("other"), "stroke-width": 2, "stroke-dasharray": "1 5", "stroke-linecap": "round", class: "other" });
+    line(shown_goal, { stroke: colour("goal"), "stroke-width": 1.8, "stroke-dasharray": "10 3 2 3", class: "goal" });
     for (const list of runs(points, (p) => p.y !== null))
-      line(list, { stroke: "#0072b2", "stroke-width": 1.6, "stroke-dasharray": "7 4" });
-    for (const list of runs(points, (p) => p.y !== null && p.known)) line(list, { stroke: "#0072b2", "stroke-width": 2.4 });
-    if (mark) {
-      svg.append(element("circle", { cx: at_x(mark.x), cy: at_y(mark.y), r: 5.5, fill: "#111", class: "mark" }));
-      const end = at_x(mark.x) > (left + right) / 2, y_text = Math.max(at_y(mark.y) - 10, MARGIN.top + 12);
-      const place = { x: at_x(mark.x) + (end ? -9 : 9), y: y_text, "text-anchor": end ? "end" : "start" };
-      svg.append(element("text", { ...place, "font-weight": 600 }, mark.y.toFixed(3)));
-    }
-    box.replaceChildren(svg);
+      line(list, { stroke: colour("line"), "stroke-width": 1.6, "stroke-dasharray": "7 4" });
+    for (const list of runs(points, (p) => p.y !== null && p.error !== null)) line(list, { stroke: colour("line"), "stroke-width": 2.6, class: "solid" });
+    if (mark) label(of, mark.x, mark.y, numerics.show(mark.y, 3), { r: 5.5, fill: colour("ink"), class: "mark" });
+    hover(of, (px) => {
+      const x = of.x.back(px), found = read(x);
+      return found && { x, y: found[0], text: found[1] };
+    }, pick);
   }
 
-  return { draw };
+  function label(of, x, y, text, attributes) {
+    const end = of.x.at(x) > (of.left + of.right) / 2, high = Math.max(of.y.at(y) - 10, of.top + 12);
+    of.svg.append(element("circle", { cx: of.x.at(x), cy: of.y.at(y), ...attributes }),
+      element("text", { x: of.x.at(x) + (end ? -9 : 9), y: high, "text-anchor": end ? "end" : "start", "font-weight": 600 }, text));
+  }
+
+  /** Show what is under the pointer, of a function of pixels, and let a click choose it. */
+  function hover(of, under, pick) {
+    const { svg } = of, shown = element("g", { "pointer-events": "none", class: "hover" });
+    svg.append(shown);
+    const place = (event) => {
+      const rect = svg.getBoundingClientRect(), k = of.width / rect.width;
+      const px = (event.clientX - rect.left) * k, py = (event.clientY - rect.top) * k;
+      return px < of.left - 2 || px > of.right + 2 || py < of.top - 2 || py > of.bottom + 2 ? null
+        : under(Math.min(Math.max(px, of.left), of.right), Math.min(Math.max(py, of.top), of.bottom));
+    };
+    svg.onpointermove = (event) => {
+      const found = place(event);
+      shown.replaceChildren();
+      if (!found) return;
+      const x = of.x.at(found.x), y = of.y.at(found.y), width = 7.2 * found.text.length + 10, left = Math.min(Math.max(x - width / 2, 0), of.width - width);
+      shown.append(element("line", { x1: x, x2: x, y1: of.top, y2: of.bottom, stroke: colour("ink"), "stroke-dasharray": "2 3" }),
+        element("circle", { cx: x, cy: y, r: 4, fill: "none", stroke: colour("ink"), "stroke-width": 2 }),
+        element("rect", { x: left, y: 0, width, height: 20, fill: colour("paper"), stroke: colour("ink"), rx: 3 }),
+        element("text", { x: left + width / 2, y: 14, "text-anchor": "middle" }, found.text));
+    };
+    svg.onpointerleave = () => shown.replaceChildren();
+    svg.onclick = (event) => { const found = place(event); if (found) pick(found.x, found.y); };
+    svg.style.cursor = "crosshair";
+  }
+
+  return { draw, frame, element, colour, hover, ticks };
 })();

@@ -12,7 +12,7 @@ from fingerpad.reduced.slide import too_short
 from fingerpad.results.files import check_folder
 from fingerpad.results.terminal import about
 from fingerpad.scene import Load, Scene, SceneError
-from fingerpad.scene.remarks import leakage, remarks, used
+from fingerpad.scene.remarks import finger_in_words, leakage, remarks, used
 from geometry.profiles import GeometryError
 
 _EXAMPLES = """
@@ -99,7 +99,7 @@ def _aims(load: Load) -> Iterator[str]:
 
 
 def _model(scene: Scene, needed: ModelOptions) -> Iterator[str]:
-    yield from (*remarks(scene), *leakage(scene), *too_short(scene))
+    yield from (*finger_in_words(scene), *remarks(scene), *leakage(scene), *too_short(scene))
     if caution := scene.contact.law.caution:
         yield caution
     if scene.geometry.file is None:

@@ -29,7 +29,8 @@ if TYPE_CHECKING:
     import pandas as pd
     from matplotlib.axes import Axes
 
-    from fingerpad.measurements.compare import Computed
+    from fingerpad.measurements.computed import Computed
+    from fingerpad.measurements.fit import Fit
 
 _MODELS = """
     fingerpad compare --set voltage=100
@@ -42,10 +43,22 @@ _DATA = """
 """
 _UNITS = {"m": "mm", "m^2": "mm²", "1": ""}  # of the screen, where they are not those of files
 _ABOUT = ("table", "state", "quantity", "unit", "force_unit")  # of a row in a file, which has rows of every table
-_VALUES = ("force", "voltage", "measured", "spread", "computed", "error", "difference", "relative_difference")
+_VALUES = (
+    *("participant", "force", "voltage", "measured", "spread", "mu_0"),
+    *("computed", "error", "difference", "relative_difference"),
+)
 _COLUMNS = tuple(Output(key, "") for key in (*_ABOUT, *_VALUES))
+_FITTED = {
+    "rows": "rows",
+    "mu_0": "µ_0",
+    "spread": "spread",
+    "charged": "charged",
+    "ratio": "computed/measured",
+    "factor": "factor",
+}
 _NAMED = 4  # curves in the legend of a picture
 _DRAWN = 201  # places of a curve
+_NEAR = 0.02  # relative distance of conditions in a picture, below which they are repeats of one
 
 
 # -- models --------------------------------------------------------------------------------------------
@@ -150,9 +163,10 @@ def compare_data(argv: Sequence[str]) -> int:
     output.add_files(parser, _COLUMNS, "picture of measured and computed values", "--out")
     args = parser.read(argv)
     from fingerpad.measurements import compare, table  # pandas
+    from fingerpad.measurements.computed import computed
 
     measured = [table.read(file, _mapping(args.column), args.state) for file in args.tables]
-    known = [compare.computed(args.results, each) for each in measured]
+    known = [computed(args.results, each) for each in measured]
     compared = [compare.beside(*pair) for pair in zip(measured, known, strict=True)]
     echo("\n\n".join("\n".join(_lines(each)) for each in compared))
     rows = [row for each in compared for row in _rows(each)]
@@ -182,10 +196,12 @@ def _rows(compared: "pd.DataFrame") -> list[dict[str, str | float | None]]:
 
 def _lines(compared: "pd.DataFrame") -> Iterator[str]:
     """Yield table and misfit as text."""
-    about, found, errors = compared.attrs, compared.attrs["misfit"], compared.error.notna().any()
+    about, errors = compared.attrs, compared.error.notna().any()
+    fits: list[Fit] = about["fits"]
     unit = _UNITS.get(about["unit"], about["unit"])
     named = ("measured", "spread", "computed", *(["error"] if errors else []), "difference")
     columns = [
+        *([Output("participant", "")] if "participant" in compared else []),
         Output("force", about["force_unit"]),
         Output("voltage", "V", digits=1),
         *(Output(key, unit, words="±" if key == "error" else key, digits=4) for key in named),
@@ -199,6 +215,40 @@ def _lines(compared: "pd.DataFrame") -> Iterator[str]:
         yield f"Columns not read: {clip(', '.join(about['ignored']), 200)}."
     if errors:
         yield "±: estimated discretisation error of the computed value, of the mesh alone."
+    if about["turned"]:
+        rows = f"{about['turned']} of {len(compared)} rows have a friction below 0"
+        yield f"{rows}, of the other direction; its magnitude is compared."
+    yield from _fits(fits, about["mu_0"])
+    yield from _misfit(about["misfit"], errors)
+    used = compared[compared.voltage > 0] if fits else compared
+    beside, none = len(used), int(used.computed.isna().sum())
+    if none:
+        yield f"Not compared, since no value is computed there: {none} of {beside} rows{' under voltage' * bool(fits)}."
+    if zero := beside - none - about["misfit"].get("rows", 0):
+        yield f"Not compared, since the computed or the measured value is 0 there: {zero} of {beside} rows."
+
+
+def _fits(fits: "Sequence[Fit]", known: float) -> Iterator[str]:
+    """Yield the friction coefficients of rows at 0 V."""
+    if not fits:
+        return
+    every = fits[-1]
+    rows = "one row" if every.rows == 1 else f"{every.rows} rows"
+    spread = "" if math.isnan(every.spread) else f", with a standard deviation of {every.spread:.3g}"
+    yield f"µ_0 is fitted to {rows} at 0 V: {every.mu_0:.4g}{spread}. The results have {known:g}."
+    if len(fits) > 1:
+        yield "Computed values above are of each participant's own µ_0. Charged: rows under voltage, of the ratios."
+        digits = {"mu_0": 4, "spread": 4, "ratio": 3, "factor": 3}
+        numbers = (Output(key, "", words=words, digits=digits.get(key, 0)) for key, words in _FITTED.items())
+        mine = [each.misfit | vars(each) | {"charged": each.misfit.get("rows", 0)} for each in fits]
+        yield output.text([Output("who", ""), *numbers], mine)
+    yield "Computed friction is scaled to it, with the attraction of the results. Rows at 0 V are not in the misfit."
+
+
+def _misfit(found: dict[str, float], errors: bool) -> Iterator[str]:
+    """Yield how far computed values are from measured ones."""
+    if not found:
+        return
     count, mean = found["rows"], found["ratio"]
     rows = f"(geometric mean of {count})"
     yield f"Misfit: computed over measured {mean:.3g} {rows}, at most a factor of {found['factor']:.3g}."
@@ -209,11 +259,6 @@ def _lines(compared: "pd.DataFrame") -> Iterator[str]:
         which = "" if spreads == count else " rows that have a spread"
         plus = " plus the error of the computed value" if errors else ""
         yield f"Within the spread{plus}: {found['within']} of {spreads}{which}."
-    total, none = len(compared), int(compared.computed.isna().sum())
-    if none:
-        yield f"Not compared, since no value is computed there: {none} of {total} rows."
-    if zero := total - count - none:
-        yield f"Not compared, since the computed value is 0 there: {zero} of {total} rows."
 
 
 def _draw(file: Path, compared: Sequence["pd.DataFrame"], known: Sequence["Computed"]) -> None:
@@ -224,31 +269,46 @@ def _draw(file: Path, compared: Sequence["pd.DataFrame"], known: Sequence["Compu
 
 
 def _panel(ax: "Axes", rows: "pd.DataFrame", known: "Computed") -> None:
-    from fingerpad.measurements.compare import CLOSE
+    from fingerpad.measurements.computed import CLOSE
     from fingerpad.results import style
 
     about, points = rows.attrs, known.points
     unit = _UNITS.get(about["unit"], about["unit"])
     scale = Output("", unit).scale
+    factor = scale * (about["fits"][-1].mu_0 / about["mu_0"] if about["fits"] else 1.0)
+    rows = rows.assign(force=_levels(rows.force), voltage=_levels(rows.voltage))
     over_voltage = rows.voltage.nunique() > rows.force.nunique()
     x, other, name = ("voltage", "force", about["force_unit"]) if over_voltage else ("force", "voltage", "V")
     axis = np.union1d(points[x], np.linspace(points[x].min(), points[x].max(), _DRAWN))
+    repeated = rows.groupby([other, x]).size().max() > 1
     for k, (held, mine) in enumerate(rows.groupby(other)):
-        colour, label = style.CATEGORIES[k % len(style.CATEGORIES)], f"{held:g} {name}"
+        colour, label = style.CATEGORIES[k % len(style.CATEGORIES)], f"{held:.3g} {name}"
         level = np.full(len(axis), held)
-        curve, error = (scale * values for values in known.at(*((level, axis) if over_voltage else (axis, level))))
+        curve, error = (factor * values for values in known.at(*((level, axis) if over_voltage else (axis, level))))
         output.curve(ax, k, axis, curve, f"computed, {label}" if k < _NAMED else "_")
         ax.fill_between(axis, curve - error, curve + error, color=colour, alpha=0.2, lw=0)
         at = points[np.isclose(points[other], held, rtol=CLOSE if over_voltage else 1e-6, atol=0.0)]
-        ax.errorbar(at[x], scale * at.value, scale * at.error, fmt=".", ms=9, capsize=2, color=colour)
-        spread = None if rows.spread.isna().all() else scale * mine.spread
-        look: dict[str, Any] = {"fmt": style.MARKERS[k % len(style.MARKERS)], "color": colour, "mfc": "white"}
-        look["label"] = f"measured, {label}" if k < _NAMED else "_"
-        ax.errorbar(mine[x], scale * mine.measured, spread, ms=7, capsize=3, **look)
+        ax.errorbar(at[x], factor * at.value, factor * at.error, fmt=".", ms=9, capsize=2, color=colour)
+        marker = style.MARKERS[k % len(style.MARKERS)]
+        if repeated:
+            ax.plot(mine[x], scale * mine.measured, marker, ms=3, color=colour, alpha=0.5)
+        repeats = mine.groupby(x).agg({"measured": ["mean", "std"], "spread": "mean"})
+        spread = repeats["measured", "std"].fillna(repeats["spread", "mean"])
+        look: dict[str, Any] = {"fmt": marker, "color": colour, "mfc": "white"}
+        look["label"] = f"measured, {label}{', mean of repeats' * bool(repeated)}" if k < _NAMED else "_"
+        bars = None if spread.isna().all() else scale * spread
+        ax.errorbar(repeats.index, scale * repeats["measured", "mean"], bars, ms=7, capsize=3, **look)
     force = "force (N)" if about["force_unit"] == "N" else "force per length (N/m)"
     ax.set(xlabel="voltage (V)" if over_voltage else force)
     ax.set(ylabel=f"{about['quantity']} ({unit or '–'})", title=style.plain(clip(about["source"], 40)))
     ax.set_ylim(bottom=0)
     if math.isclose(*ax.get_xlim(), rel_tol=0.05):  # a single force, but for roundoff
         ax.set_xlim(0, 2 * rows[x].mean())
-    ax.legend()
+    ax.legend(title=f"µ_0 = {about['fits'][-1].mu_0:.3g}, fitted at 0 V" if about["fits"] else None)
+
+
+def _levels(values: "pd.Series[float]") -> "pd.Series[float]":
+    """Return for each value the mean of those near it: neighbours within :data:`_NEAR` are repeats of one condition."""
+    order = values.sort_values()
+    apart = order.diff() > _NEAR * order
+    return order.groupby(apart.cumsum()).transform("mean").reindex(values.index)

@@ -28,9 +28,13 @@ _MAX_MARKERS = 15  # points up to which each has a marker
 def text(columns: Sequence[Output], rows: Sequence[Mapping[str, Any]]) -> str:
     """Return an aligned table with units below the names."""
     cells = [[c.symbol for c in columns], [f"({c.unit})" if c.unit else "" for c in columns]]
-    cells += [[c.shown(row.get(c.name)) for c in columns] for row in rows]
+    cells += [[_cell(c, row.get(c.name)) for c in columns] for row in rows]
     widths = [max(map(len, column)) for column in zip(*cells, strict=True)]
     return "\n".join("  ".join(map(str.rjust, row, widths)).rstrip() for row in cells)
+
+
+def _cell(column: Output, value: str | float | None) -> str:
+    return value if isinstance(value, str) else column.shown(value)
 
 
 def write(file: Path, columns: Sequence[Output], rows: Sequence[Mapping[str, Any]]) -> None:

@@ -15,7 +15,8 @@ from fingerpad.runs import batch  # noqa: F401  # before Ctrl-C raises
 from fingerpad.runs.sweep import FILES, STATES, sweep
 from fingerpad.scene import from_data, override
 from fingerpad.scene.messages import SceneError, clip, show
-from fingerpad.scene.reading import DEFAULT_MODEL, flat, put_all, read_study
+from fingerpad.scene.reading import DEFAULT_MODEL, flat, read_study
+from fingerpad.scene.scene import overridden
 
 _EXAMPLES = """
     fingerpad sweep --over voltage=0:200:5 --over f_ext=25,75 --jobs 2 --out results/sweep
@@ -88,8 +89,7 @@ def study(file: Path | None, given: Sequence[str], over: Sequence[str]) -> tuple
     set_ = changes(given)
     if both := next((key for key in set_ if key in axes), None):
         raise SceneError(f"--set {both} is given and {both} is varied; give one of the two")
-    put_all(data, set_)
-    return data, axes
+    return overridden(data, set_), axes
 
 
 def _words(text: str) -> list[Any]:

@@ -1,42 +1,20 @@
 """Measurements beside a quantity of finished runs or of a sweep, row by row, and their misfit; no dolfinx."""
 
 import math
-import os
-import re
-from collections.abc import Iterator, Mapping, Sequence
-from contextlib import suppress
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 
 from fingerpad.measurements import table as tables
-from fingerpad.measurements.table import Measured
-from fingerpad.report.sweep_page import Table
-from fingerpad.report.write import read as content
-from fingerpad.results.result import Result
-from fingerpad.results.states import WORDS, before_sliding
-from fingerpad.runs.sweep_results import Sweep
-from fingerpad.scene import as_kept
-from fingerpad.scene.messages import SceneError, clip, ends, show
-from fingerpad.scene.reading import flat
-from fingerpad.slices.finger import WholeFinger
+from fingerpad.measurements.computed import CLOSE, Array, Computed, Source, computed
+from fingerpad.measurements.fit import fitted, misfit
+from fingerpad.measurements.table import PERSON, Measured
+from fingerpad.scene.messages import SceneError
 
-Array = NDArray[np.float64]
-Source = Result | Sweep | Table | str | Path
-"""What values are taken from: a result, a sweep, or the folder of one."""
-CLOSE = 0.01
-"""Relative distance of a force beyond the known ones up to which their end stands for it."""
-_CONDITION_TOLERANCE = 1e-6  # relative difference of conditions that count as the same
-_VALUE_TOLERANCE = 1e-4  # relative, of values at the same conditions: beyond any tolerance of the solvers
-_NAMED = 4  # voltages in a message
-_FREE = re.compile(  # keys in which runs may differ:
-    r"(history\[\d+\]\.)?(f_ext|force|voltage)"  # the conditions of a measurement,
-    r"|history\[\d+\]\.(bone_height|name)"  # the force by another control, and a word for it,
-    r"|output\.(errors|each_load|receptors)|numerics\.memory"  # and what changes no value
-)
+COLUMNS = ("force", "voltage", "measured", "spread", "mu_0", "computed", "error", "difference", "relative_difference")
+"""Columns of a comparison, beside the participant."""
 
 
 def compare(
@@ -57,8 +35,11 @@ def compare(
     Returns:
         A row for each row of the table, in SI units, NaN where a value is not known: ``force``, ``voltage``,
         ``measured``, ``spread``, ``computed``, ``error`` (estimated discretisation error of the computed value),
-        ``difference`` (computed less measured) and ``relative_difference`` (of the measured value). Its ``attrs`` hold
-        the quantity, the units, the source, the state, the heads of ignored columns and the :func:`misfit`.
+        ``difference`` (computed less measured) and ``relative_difference`` (of the measured value), and ``participant``
+        where the table has it. Computed friction is that of the coefficient of the rows at 0 V, where there are such
+        (:mod:`fingerpad.measurements.fit`), in a column ``mu_0``. Its ``attrs`` hold the quantity, the units, the
+        source, the state, the heads of ignored columns, how many rows have a friction below 0 (``turned``), the
+        coefficient of the results (``mu_0``), the ``fits`` and the ``misfit``.
 
     Raises:
         SceneError: the table or the results cannot be compared, in one sentence.
@@ -67,7 +48,7 @@ def compare(
     return beside(measured, computed(result, measured))
 
 
-def beside(table: Measured, known: "Computed") -> pd.DataFrame:
+def beside(table: Measured, known: Computed) -> pd.DataFrame:
     """Return the rows of :func:`compare`.
 
     Raises:
@@ -78,18 +59,19 @@ def beside(table: Measured, known: "Computed") -> pd.DataFrame:
         if name not in rows:
             rows[name] = _single(table.name, name, unit, known.points[name].unique())
     rows["computed"], rows["error"] = known.at(rows.force.to_numpy(), rows.voltage.to_numpy())
-    rows["difference"] = rows.computed - rows.measured
-    rows["relative_difference"] = rows.difference / rows.measured
     none = int(rows.computed.isna().sum())
     if none == len(rows):
         raise SceneError(f"no row of {table.name} is within the results, which have {known.reach(table.force_unit)}")
     if not (rows.computed > 0).any():
         beyond = f", and {none} of them are not within the results" if none else ""
         raise SceneError(f"no {table.quantity} above 0 is computed in the {len(rows)} rows of {table.name}{beyond}")
-    rows = rows[["force", "voltage", "measured", "spread", "computed", "error", "difference", "relative_difference"]]
-    about = {"source": table.name} | table.about | {"table": table.name, "ignored": table.ignored}
+    rows, found = fitted(rows, table.quantity, known.mu_0)
+    about: dict[str, Any] = {"source": table.name, **table.about, "table": table.name, "ignored": table.ignored}
     about |= {"state": table.state, "quantity": table.quantity, "unit": table.unit, "force_unit": table.force_unit}
-    rows.attrs = about | {"misfit": misfit(rows)}
+    about |= {"turned": table.turned, "mu_0": known.mu_0, "fits": found}
+    used = rows[rows.voltage > 0] if found else rows
+    rows = rows[[name for name in (PERSON, *COLUMNS) if name in rows]]
+    rows.attrs = about | {"misfit": misfit(used)}
     return rows
 
 
@@ -98,251 +80,3 @@ def _single(table: str, name: str, unit: str, values: Array) -> float:
     if len(values) > 1 and (name == "voltage" or not math.isclose(values.min(), values.max(), rel_tol=CLOSE)):
         raise SceneError(f"{table} has no {name}, and the results have {len(values)}; add a column '{name} ({unit})'")
     return float(values.mean())
-
-
-def misfit(rows: pd.DataFrame) -> dict[str, float]:
-    """Return how far computed values are from measured ones, as ratios.
-
-    Args:
-        rows: of :func:`compare`.
-
-    Returns:
-        ``ratio``: geometric mean of computed over measured; ``factor``: the largest factor between the two;
-        ``shape_factor``: the same once the computed values are scaled by one factor; ``rows``: how many these are of,
-        the others having no computed value or 0; ``spreads``: how many of these have a spread; ``within``: how many of
-        those differ by no more than the spread plus the error.
-    """
-    used = rows[rows.computed > 0]
-    log = np.log(used.computed / used.measured)
-    with_spread = used[used.spread.notna()]
-    near = with_spread.difference.abs() <= with_spread.spread + with_spread.error.fillna(0.0)
-    ratios = {"ratio": log.mean(), "factor": log.abs().max(), "shape_factor": (log - log.mean()).abs().max()}
-    counts = {"rows": len(used), "spreads": len(with_spread), "within": int(near.sum())}
-    return {name: float(np.exp(value)) for name, value in ratios.items()} | counts
-
-
-# -- computed ------------------------------------------------------------------------------------------
-class Computed:
-    """A quantity at points of force and voltage, and between them; SI units.
-
-    Between two forces it is taken as a power law, and as linear where it is 0 at one of them. Between two voltages it
-    is taken as linear in U², as which attraction rises. Up to 1 % beyond the forces of a voltage the value at the last
-    one is taken: the newtons of one f_ext differ a little between voltages.
-    """
-
-    def __init__(self, points: pd.DataFrame) -> None:
-        """Take points with the columns force, voltage, value (NaN where a run has no result) and error."""
-        self.points = points.sort_values(["voltage", "force"], ignore_index=True)
-        self._curves = [
-            (float(voltage), curve.force.to_numpy(), curve[["value", "error"]].to_numpy(dtype=float))
-            for voltage, curve in self.points.groupby("voltage")
-        ]
-
-    def at(self, force: Array, voltage: Array) -> tuple[Array, Array]:
-        """Return values and discretisation errors at pairs of force and voltage; NaN where they are not known.
-
-        The errors are interpolated as the values are, and do not contain the error of the interpolation.
-        """
-        squares, found = np.array([u**2 for u, _, _ in self._curves]), np.empty((len(force), 2))
-        for k, (f, u) in enumerate(zip(force, voltage, strict=True)):
-            over = np.array([_over_force(f, forces, values) for _, forces, values in self._curves])
-            found[k] = _between(u**2, squares, over)
-        return found[:, 0], found[:, 1]
-
-    def reach(self, force_unit: str) -> str:
-        """Return in words which forces there are at which voltage."""
-        each = [f"{_span(forces)} {force_unit} at {voltage:g} V" for voltage, forces, _ in self._curves]
-        more = f" and others at {len(each) - _NAMED} more voltages" if len(each) > _NAMED else ""
-        return ", ".join(each[:_NAMED]) + more
-
-
-def _span(forces: Array) -> str:
-    single = math.isclose(forces[0], forces[-1], rel_tol=_CONDITION_TOLERANCE)
-    return f"{forces[0]:g}" if single else f"{forces[0]:g} to {forces[-1]:g}"
-
-
-def _over_force(force: float, known: Array, values: Array) -> Array:
-    """Return the values, shape (columns,), at a force from those at known forces, shape (forces, columns)."""
-    end = float(np.clip(force, known[0], known[-1]))
-    x = end if math.isclose(force, end, rel_tol=CLOSE) else force
-    linear = _between(x, known, values)
-    if not known[0] < x < known[-1] or np.isclose(known, x, rtol=_CONDITION_TOLERANCE, atol=0.0).any():
-        return linear
-    k = int(np.searchsorted(known, x))
-    low, high = values[k - 1], values[k]
-    with np.errstate(divide="ignore", invalid="ignore"):
-        power = low * (high / low) ** (math.log(x / known[k - 1]) / math.log(known[k] / known[k - 1]))
-    return np.where((low > 0) & (high > 0), power, linear)
-
-
-def _between(x: float, known: Array, values: Array) -> Array:
-    """Return the values at one of the known places up to roundoff, or linear between two of them; NaN beyond."""
-    near = np.flatnonzero(np.isclose(known, x, rtol=_CONDITION_TOLERANCE, atol=0.0))
-    if near.size:
-        return np.asarray(values[near[0]])
-    inside = known[0] < x < known[-1]
-    return np.array([np.interp(x, known, column) if inside else math.nan for column in values.T])
-
-
-def computed(source: Source | Sequence[Source], table: Measured) -> Computed:
-    """Return the quantity of a table in runs or in a sweep.
-
-    Raises:
-        SceneError: it is not there, the runs differ in more than force and voltage, or two of them have other values at
-            the same force and voltage.
-    """
-    found = list[Result | Table]()
-    for each in [source] if isinstance(source, Result | Sweep | Table | str | Path) else source:
-        found += each if isinstance(each, Sweep) else [content(Path(each)) if isinstance(each, str | Path) else each]
-    runs = [each for each in found if isinstance(each, Result)]
-    if sweep := next((each for each in found if isinstance(each, Table)), None):
-        if len(found) > 1:
-            raise SceneError(f"{_place(sweep)} is given with others; give one sweep, or runs")
-        points = _of_sweep(sweep, table)
-    else:
-        refuse_mixed(runs)
-        points = _of_runs(runs, table)
-    if points.empty:
-        raise SceneError(f"the run has no state {WORDS[table.state]}, of which {table.name} is; compare another run")
-    if points.value.isna().all():
-        quantity = "friction coefficient" if table.key == "mu_app" else table.quantity
-        raise SceneError(f"the result has no {quantity} of {WORDS[table.state]}, which {table.name} has")
-    return Computed(points)
-
-
-def _of_runs(runs: Sequence[Result], table: Measured) -> pd.DataFrame:
-    """Return the values of all runs; of one run the last state at a force and a voltage."""
-    points = list[dict[str, float]]()
-    of = list[Result]()
-    for run in runs:
-        for point in (_whole if table.whole else _section)(run, table):
-            k = next((k for k, known in enumerate(points) if _same(known, point)), len(points))
-            if k == len(points):
-                points.append(point)
-                of.append(run)
-            known = [each["error"] for each in (points[k], point) if not math.isnan(each["error"])]
-            allowed = _VALUE_TOLERANCE * abs(points[k]["value"]) + sum(known)
-            if of[k] is not run and abs(points[k]["value"] - point["value"]) > allowed:
-                raise SceneError(
-                    f"{table.quantity} is {points[k]['value']:.6g} in {folder(of[k])} and {point['value']:.6g} in "
-                    f"{folder(run)}, both at {point['force']:.6g} {table.force_unit} and {point['voltage']:g} V; "
-                    "give one of them"
-                )
-            points[k], of[k] = point, run
-    if table.whole:  # the run to the least force above has the trace with most points there
-        for run in sorted(runs, key=lambda run: run.finger.f_ext if run.finger else 0.0):
-            points += [point for point in _traced(run, table) if not any(_same(known, point) for known in points)]
-    return pd.DataFrame(points, columns=["force", "voltage", "value", "error"])
-
-
-def _same(one: dict[str, float], other: dict[str, float]) -> bool:
-    """Return whether two points have the same force and voltage up to roundoff."""
-    return all(math.isclose(one[key], other[key], rel_tol=_CONDITION_TOLERANCE) for key in ("force", "voltage"))
-
-
-def _section(run: Result, table: Measured) -> Iterator[dict[str, float]]:
-    """Yield the values of the cross-section: of the whole press in the uncharged state, else of the named state.
-
-    The named state stands in place of its step: it has errors, and may be of a finer mesh.
-    """
-    key, sign = ("bone_height", -1) if table.key == "depth" else (table.key, 1)
-    named, states = run.named.get(table.state), []
-    if table.state == "uncharged":
-        states = [s for s in before_sliding(run.steps) if s.voltage == 0 and s.ridges_in_contact and s.f_ext > 0]
-        states = [named if named is not None and named.step == s.step else s for s in states]
-    for state in states or [s for s in (named,) if s is not None]:
-        value, error = float(getattr(state, key)), float(getattr(state.error, key, math.nan))
-        yield {"force": state.f_ext, "voltage": abs(state.voltage), "value": sign * value, "error": error}
-
-
-def _whole(run: Result, table: Measured) -> Iterator[dict[str, float]]:
-    """Yield the values of the whole finger."""
-    if run.finger is None:
-        raise SceneError(
-            f"the run has no newtons, which {table.name} has; run its scene, of press, charge and slide, with --force"
-        )
-    if table.state in run.finger.states:
-        yield _of_finger(run, run.finger, table)
-
-
-def _traced(run: Result, table: Measured) -> Iterator[dict[str, float]]:
-    """Yield the values under the forces of a table (N) that the traces of a run reach."""
-    if run.finger is None or table.state not in run.finger.states or not run.finger.traces:
-        return
-    for force in table.rows.force.unique() if "force" in table.rows else ():
-        with suppress(SceneError):
-            yield _of_finger(run, run.finger.under(float(force)), table)
-
-
-def _of_finger(run: Result, finger: WholeFinger, table: Measured) -> dict[str, float]:
-    voltage = 0.0 if table.state == "uncharged" else abs(run.named[table.state].voltage)
-    value, error = finger.values(table.state)[table.key], finger.error.get(table.state, {}).get(table.key, math.nan)
-    return {"force": finger.f_ext, "voltage": voltage, "value": value, "error": error}
-
-
-def _of_sweep(sweep: Table, table: Measured) -> pd.DataFrame:
-    """Return the values in the table of a sweep."""
-    keys, fixed = {"force": "force" if table.whole else "f_ext", "voltage": "voltage"}, sweep.parameters
-    if not set(sweep.axes) <= set(keys.values()) <= {*sweep.axes, *fixed}:
-        raise SceneError(
-            f"{_place(sweep)} is over {', '.join(sweep.axes)}, and {table.name} has forces in {table.force_unit}; "
-            f"give one over {keys['force']} and voltage alone, or runs"
-        )
-    rows = pd.DataFrame(sweep.rows)
-    column = f"{table.state}_{'finger_' if table.whole else ''}{table.key}"
-    if column not in rows:
-        raise SceneError(
-            f"the table of the sweep has no {table.quantity} of {WORDS[table.state]}, which {table.name} has; "
-            "give one of its runs"
-        )
-    try:
-        taken = {name: rows[key] if key in rows else fixed[key] for name, key in keys.items()}
-        taken |= {"value": rows[column], "error": rows.get(f"{column}_error", math.nan)}
-        points = pd.DataFrame(taken).astype(float)
-    except (ValueError, TypeError) as error:
-        raise SceneError(f"the table of {_place(sweep)} cannot be read: {error}") from None
-    points["voltage"] = 0.0 if table.state == "uncharged" else points.voltage.abs()
-    # Another run may have the value, at another voltage or sign of it.
-    return points.sort_values("value", key=pd.isna, kind="stable").drop_duplicates(["force", "voltage"])
-
-
-def _place(sweep: Table) -> str:
-    return f"the sweep in {clip(str(sweep.folder), 80)}"
-
-
-def refuse_mixed(runs: Sequence[Result]) -> None:
-    """Refuse runs that differ in more than force and voltage: their values are no function of the two.
-
-    Raises:
-        SceneError: the first key that differs, its two values and the two folders.
-    """
-    every = [_conditions(run) for run in runs]
-    for run, other in zip(runs[1:], every[1:], strict=True):
-        for key in dict.fromkeys([*every[0], *other]):
-            values = every[0].get(key), other.get(key)
-            if values[0] != values[1] and not _FREE.fullmatch(key):
-                one, two = (_shown(value) for value in values)
-                raise SceneError(
-                    f"{key} is {one} in {folder(runs[0])} and {two} in {folder(run)}; "
-                    "give runs that differ in force and voltage alone"
-                )
-
-
-def folder(run: Result) -> str:
-    """Return the folder of a run for a message."""
-    return "a run" if run.folder is None else ends(min(str(run.folder), os.path.relpath(run.folder), key=len), 50)
-
-
-def _conditions(run: Result) -> dict[str, Any]:
-    """Return the model of a run and every key of its scene, with the size of lists and tables."""
-    kept = as_kept(run.record.get("parameters") or run.scene.parameters()).model_dump(mode="json")
-    lists = {key: f"a list of {len(value)}" for key, value in kept.items() if isinstance(value, list)}
-    tables = {key: f"a table of {len(value)}" for key, value in kept.items() if isinstance(value, Mapping)}
-    return {"model": run.model} | lists | flat(kept) | tables
-
-
-def _shown(value: Any) -> str:
-    """Return a value for a message; lists and tables by their size."""
-    if value is None:
-        return "not given"
-    return str(value) if str(value).startswith(("a list of", "a table of")) else clip(show(value), 40)

@@ -4,15 +4,18 @@
     # doi: 10.1000/example
     # people: 5
     # state: full slip
-    force (N/m); voltage (V); friction (1); spread (1); room temperature
-    50; 100; 0.31; 0.04; 23
+    participant; force [N/m]; voltage [V]; friction [%]; spread [%]; room temperature
+    A; 50; 100; 31,5; 4; 23
+
+Semicolons and tabs allow decimal commas. Friction may be in percent; a spread in percent is a part of the measured
+value, if that is in another unit. The sign of a friction is its direction, and that of a voltage changes no force:
+neither is compared. ``participant`` is a person's name or number.
 
 A table with a column in newtons, or of an area, is of a whole finger; without one it is of a cross-section, in N/m.
-``force`` and ``voltage`` are conditions, each optional; the sign of a voltage changes no force and is left out. One
+``force`` and ``voltage`` are conditions, each optional. One
 more column is the quantity, and ``spread`` is its standard deviation, which a row may lack. Others are ignored.
 """
 
-import io
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -23,8 +26,8 @@ import numpy as np
 import pandas as pd
 
 from fingerpad.scene.messages import SceneError, clip
-from fingerpad.scene.reading import text_of
 from geometry.units import to_si
+from variational import files
 
 CONDITIONS = {"force": ("N", "N/m"), "voltage": ("V",)}
 """Columns that are conditions, and their SI units."""
@@ -48,7 +51,10 @@ WHOLE = {
 """Quantities of a whole finger."""
 STATES = {"uncharged": "uncharged", "charged": "charged", "full slip": "full_slip"}
 """What the state of a table can be, and its name in results."""
-_NAMES = (*CONDITIONS, *(SECTION | WHOLE), "spread")
+PERSON = "participant"
+"""Column of who was measured."""
+_NAMES = (*CONDITIONS, *(SECTION | WHOLE), "spread", PERSON)
+_PERCENT = ("%", "percent")
 _COMMENT = re.compile(r"#\s*(source|doi|url|people|state)\s*:(.*)", re.IGNORECASE)
 _HEAD = re.compile(r"\s*(.*?)\s*[(\[]\s*([^()\[\]]*?)\s*[)\]]\s*")
 _MAX_COLUMNS = 1000
@@ -69,9 +75,12 @@ class Measured:
     whole: bool
     """Whether it is of a whole finger, in N and m², and not of a cross-section."""
     rows: pd.DataFrame
-    """Columns ``measured``, ``spread`` (NaN where a row has none), and the conditions that the table has."""
+    """Columns ``measured``, ``spread`` (NaN where a row has none), the conditions that the table has, and
+    ``participant``."""
     ignored: tuple[str, ...] = ()
     """Heads of columns that are not read."""
+    turned: int = 0
+    """Rows with a friction below 0, of the other direction: their magnitude is in ``rows``."""
 
     @property
     def key(self) -> str:
@@ -144,38 +153,51 @@ def read(
         kind = "a whole finger, which has a column in newtons or of an area," if whole else "a cross-section"
         raise SceneError(f"{name} has {quantity}, and {kind} has {', '.join(known)}")
     units = dict.fromkeys((quantity, "spread"), known[quantity][1]) | {"force": "N" if whole else "N/m", "voltage": "V"}
-    rows = {key: _numbers(name, where, column, units[key]) for key, column in used.items()}
     ignored = [column for column in found if column.name not in used and (column.name or not column.mapped)]
+    person = used.pop(PERSON, None)
+    rows = {key: _numbers(name, where, column, units[key]) for key, column in used.items()}
+    turned = int((rows[quantity] < 0).sum())
+    rows[quantity] = rows[quantity].abs()
+    if "spread" in used and used["spread"].unit in _PERCENT and quantities[0].unit not in _PERCENT:
+        rows["spread"] *= rows[quantity]
+    _refuse_zero(name, where, quantities[0], rows)
+    people = {} if person is None else {PERSON: _people(name, where, person)}
     for condition in CONDITIONS:
         if condition not in used:
             _refuse_overlooked(name, condition, ignored)
-    measured = pd.DataFrame({"spread": np.nan} | rows, index=frame.index).rename(columns={quantity: "measured"})
-    return Measured(name, about, STATES[given], quantity, whole, measured, tuple(column.head for column in ignored))
+    measured = pd.DataFrame({"spread": np.nan} | rows | people, index=frame.index)
+    measured, left = measured.rename(columns={quantity: "measured"}), tuple(column.head for column in ignored)
+    return Measured(name, about, STATES[given], quantity, whole, measured, left, turned)
 
 
 def _file(file: Path) -> tuple[str, str, pd.DataFrame]:
     """Return the name of a file, what its rows are called, and its cells by head and line."""
     name = clip(str(file), 80)
-    lines = text_of(file, name).splitlines()
-    rows = [n for n, line in enumerate(lines, start=1) if line.strip() and not line.lstrip().startswith("#")]
-    if len(rows) < 2:
-        raise SceneError(f"{name} has no rows of numbers below a header such as 'force (N/m), friction (1)'")
-    head = lines[rows[0] - 1]
+    try:
+        text = files.text(files.read(file, files.MOST_OF_TEXT))
+    except OSError as error:
+        raise SceneError(f"{name} cannot be read: {error.strerror or error}") from None
+    if text is None:
+        raise SceneError(f"{name} is no text; it must be a table in CSV")
+    comments = [match for line in text.splitlines() if (match := _COMMENT.fullmatch(line.strip()))]
+    text = "\n".join("" if line.lstrip().startswith("#") else line for line in text.splitlines())
+    head = next((line for line in text.splitlines() if line.strip()), "")
     mark = next((mark for mark in "\t;," if mark in head), ",")
     if head.count(mark) >= _MAX_COLUMNS:
-        raise SceneError(f"{name}, line {rows[0]} has {head.count(mark) + 1} columns; at most {_MAX_COLUMNS} are read")
-    text = io.StringIO("\n".join(lines[n - 1] for n in rows))
+        raise SceneError(f"{name} has {head.count(mark) + 1} columns; at most {_MAX_COLUMNS} are read")
     try:
-        frame = pd.read_csv(text, sep=mark, header=None, dtype=str, keep_default_na=False, skipinitialspace=True)
+        rows = files.parted(text, mark)
     except ValueError as error:
-        if more := re.search(r"Expected (\d+) fields in line (\d+), saw (\d+)", str(error)):
-            line, why = rows[int(more[2]) - 1], "decimals have points, not commas"
-            raise SceneError(f"{name}, line {line} has {more[3]} cells below {more[1]} columns; {why}") from None
         raise SceneError(f"{name} is no table in CSV: {clip(str(error), 80)}") from None
-    if len(frame) != len(rows):
-        raise SceneError(f"{name} is no table in CSV: a cell in quotation marks does not end in its line")
-    frame = frame.set_axis(frame.iloc[0], axis=1).set_axis(rows).iloc[1:]
-    comments = [match for line in lines if (match := _COMMENT.fullmatch(line.strip()))]
+    if len(rows) < 2:
+        raise SceneError(f"{name} has no rows of numbers below a header such as 'force (N/m), friction (1)'")
+    (_, heads), *rows = rows
+    for line, cells in rows:
+        if len(cells) > len(heads) and any(cells[len(heads) :]):
+            why = "decimals have points, not commas" if mark == "," else "each must have one below each head"
+            raise SceneError(f"{name}, line {line} has {len(cells)} cells below {len(heads)} columns; {why}")
+    width = len(heads)
+    frame = pd.DataFrame([(cells + [""] * width)[:width] for _, cells in rows], [n for n, _ in rows], heads, dtype=str)
     frame.attrs = {match[1].lower(): match[2].strip() for match in comments}
     return name, "line", frame
 
@@ -192,8 +214,10 @@ def _named(name: str, frame: pd.DataFrame, columns: Mapping[str, str | None]) ->
             allowed = ", ".join(_NAMES)
             raise SceneError(f"the column {clip(repr(head))} is {clip(repr(of))}; it must be one of {allowed}")
         cells = frame.iloc[:, number - 1].map(lambda cell: "" if pd.isna(cell) else str(cell).strip())
-        of = of if of in _NAMES else ""
-        found.append(_Column(head, of, unit or _parts(head)[1], head in given, f"column {number}", cells))
+        of, unit = of if of in _NAMES else "", unit or _parts(head)[1]
+        if unit in ("", "1", *_PERCENT) and any(cells) and all(not cell or cell.endswith("%") for cell in cells):
+            cells, unit = cells.str.rstrip("% "), "%"
+        found.append(_Column(head, of, unit, head in given, f"column {number}", cells))
         if of and [column.name for column in found].count(of) > 1:
             raise SceneError(f"{name}: two columns have the name {of}; give one, and leave out the other")
     return found
@@ -235,9 +259,10 @@ def _numbers(name: str, row: str, column: _Column, wanted: str) -> "pd.Series[fl
     """Return the values of a column in SI units."""
     factor = _factor(f"{name}, {column.where}", column, wanted)
     values, missing = column.cells.map(_number), column.cells == ""
-    least = {"voltage": "", "spread": ", 0 or more"}.get(column.name, " greater than 0")
+    least = {"voltage": "", "spread": ", 0 or more", "attraction": ", 0 or more"}.get(column.name, " greater than 0")
+    least = " other than 0" if column.name.startswith("friction") else least
     values = values.abs() if column.name == "voltage" else values
-    wrong = ~np.isfinite(values) | (values < 0) | ((values == 0) & ("greater" in least))
+    wrong = ~np.isfinite(values) | ((values < 0) & (least != " other than 0")) | ((values == 0) & ("than" in least))
     wrong &= ~missing | (column.name != "spread")
     if wrong.any():
         at = int(wrong.to_numpy().argmax())
@@ -265,8 +290,10 @@ def _factor(where: str, column: _Column, wanted: str) -> float:
             f"{where}: {clip(repr(column.head))} has no unit; write '{name} ({wanted})' in the head or by columns, and "
             "(1) for a number without"
         )
+    if unit in _PERCENT and (wanted == "1" or name == "spread"):
+        return 0.01
     if wanted == "1" and unit != "1":
-        raise SceneError(f"{where}: the unit of {name} is {clip(repr(unit))}; it must be 1")
+        raise SceneError(f"{where}: the unit of {name} is {clip(repr(unit))}; it must be 1 or %")
     try:
         return 1.0 if wanted == "1" else to_si(f"1 {unit}", wanted)
     except ValueError as error:
@@ -274,3 +301,20 @@ def _factor(where: str, column: _Column, wanted: str) -> float:
         of_whole = {"N/m": "N/m, or in N for a whole finger", "N": "N, as another column is of a whole finger"}
         allowed = of_whole.get(wanted, wanted)
         raise SceneError(f"{where}: the unit of {name} is {clip(repr(unit))}; {why}; it must be in {allowed}") from None
+
+
+def _refuse_zero(name: str, row: str, column: _Column, rows: Mapping[str, "pd.Series[float]"]) -> None:
+    """Refuse an attraction of 0 under a voltage; without one it is 0."""
+    charged = rows["voltage"] != 0 if "voltage" in rows else True
+    wrong = (rows[column.name] == 0) & charged
+    if wrong.any():
+        line = column.cells.index[int(wrong.to_numpy().argmax())]
+        raise SceneError(f"{name}, {row} {line}, {column.where}: the {column.name} is 0; it must be so at 0 V alone")
+
+
+def _people(name: str, row: str, column: _Column) -> "pd.Series[str]":
+    """Return who was measured in each row."""
+    if (missing := column.cells == "").any():
+        line = column.cells.index[int(missing.to_numpy().argmax())]
+        raise SceneError(f"{name}, {row} {line}, {column.where}: the participant is missing; give a name in each row")
+    return column.cells.map(lambda cell: clip(cell, 40))

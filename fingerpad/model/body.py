@@ -25,6 +25,7 @@ from numpy.typing import NDArray
 import fingerpad.startup  # noqa: F401
 from fingerpad.model import cautions
 from fingerpad.model.state import contact_state, force_error, refuse_strained, steady, step_record
+from fingerpad.results.fields import Fields, of_snapshot
 from fingerpad.results.states import full_slip
 from fingerpad.scene.materials import refuse_thickness
 from fingerpad.startup import MPI
@@ -41,7 +42,7 @@ from variational.energy import EnergyBook
 from variational.materials.material import Material
 from variational.problem import Interface
 from variational.roughness.closure import Closure, check
-from variational.snapshot import Nodes
+from variational.snapshot import Lines, Nodes
 from variational.solvers.continuation import Attempt, StepFailed, Target
 from variational.state import ContactState, Skin, StepRecord
 
@@ -238,6 +239,13 @@ class Body:
         """The skin that can touch, in the last accepted state; arrays of shape (facets, points), from left to right."""
         assert self.state.skin is not None
         return self.state.skin
+
+    @property
+    def fields(self) -> Fields:
+        """Displacement, stress, strain and energy density inside the body, in the last accepted state; collective."""
+        shown = Lines(self.problem).snapshot(self.problem)
+        found: Fields = self.problem.mesh.comm.bcast(None if shown is None else of_snapshot(shown))
+        return found
 
     @property
     def cautions(self) -> list[str]:

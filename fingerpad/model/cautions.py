@@ -17,7 +17,7 @@ from variational.state import ContactState
 Array = NDArray[np.float64]
 _SHARE = 0.1  # of the contact force, from which ridges outside of the closure's range are mentioned
 _BALANCED = 0.1  # of the pressure in contact, from which its attraction is overestimated by some 8 %
-_GIVEN = 1e-6  # of the largest viscous work of a point: what another one may give back
+_MADE = 1e-6  # of the largest dissipation of a branch at a point: roundoff of the others'
 _DEEP = 0.1  # of the air gap: largest penetration that is of no matter
 
 
@@ -32,7 +32,7 @@ def on_states(
         formulation: of the contact, which has the remedy against deep skin; None of states without a mesh.
     """
     states = list(states)
-    viscous = _given_back(states)
+    viscous = _made_energy(states)
     touching = [state for state in states if state.contact_length > 0]
     if closure is None or not touching:
         return viscous
@@ -102,14 +102,14 @@ def _deep(touching: Sequence[ContactState], closure: Closure, formulation: Formu
     ]
 
 
-def _given_back(states: Sequence[ContactState]) -> list[str]:
-    """Return the caution on viscous layers of which a point gave back more energy than it got."""
+def _made_energy(states: Sequence[ContactState]) -> list[str]:
+    """Return the caution on branches of viscous layers that made energy at a point."""
     least = [state.record.viscous_least for state in states if state.record is not None]
-    found = [each for each in least if each < -_GIVEN]
+    found = [each for each in least if each < -_MADE]
     if not found:
         return []
     return [
-        f"in {len(found)} of {len(least)} steps viscous layers had points that gave back more energy than they got, "
-        f"{-min(found):.1g} of the largest at most: quasi-linear viscoelasticity allows that at large strain, and no "
-        "material does"
+        f"in {len(found)} of {len(least)} steps branches of viscous layers made energy at points and dissipated none, "
+        f"up to {-min(found):.1g} of the largest dissipation: quasi-linear viscoelasticity allows that at large "
+        "strain, and no material does"
     ]

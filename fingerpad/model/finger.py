@@ -276,7 +276,8 @@ class HalfFinger:
         d_eq, whole.gain = map(both_sides, (half.d_eq, half.gain))
         whole.set_air_gaps(d_eq)
         w = self._flip * self._together(half.solver.problem.w.x.array.reshape(-1, 2)[self._own])[self._nodes]
-        solver.problem.dt.value = solver.problem.lapse.value = half.solver.problem.dt.value
+        solver.problem.dt.value = half.solver.problem.dt.value
+        solver.problem.elapse(float(solver.problem.dt.value))
         solver.take(w, half.solver.bone, self._together(half.solver.pressure)[self._pressures])
         self._finger.continuation.accept()
         return self._on_accept(target, part, attempt)

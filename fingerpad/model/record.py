@@ -18,7 +18,7 @@ from fingerpad.results.drawing import Drawing, View, sorted_along
 from fingerpad.scene import Load
 from variational.output import Receptors
 from variational.snapshot import Lines, Snapshot
-from variational.state import ContactState, Sites, Skin, Stimuli
+from variational.state import ContactState, Sites, Skin, StepRecord, Stimuli
 
 if TYPE_CHECKING:
     from fingerpad.model.checks import Checked
@@ -212,4 +212,13 @@ class PathRecord:
             "energy_released_error": sum(r.released_error for r in jumps),
             "dissipation": sum(r.dissipation for r in records),
             "floor": max((r.floor for r in records), default=0.0),
+            **_of_viscous([r for r in records if not math.isnan(r.viscous)]),
         }
+
+
+def _of_viscous(records: Sequence[StepRecord]) -> dict[str, float]:
+    """Return what viscous layers dissipate in all, and its least value; nothing without such layers."""
+    if not records:
+        return {}
+    lost = sum(r.viscous_dissipation for r in records)
+    return {"viscous_dissipation": lost, "viscous_least": min(r.viscous_least for r in records)}

@@ -28,7 +28,7 @@ def targets(load: "Load", x: float, step_scale: float) -> list[Target]:
         until = load.until_full_slip
         return [Target(load.name, load.f_ext, load.bone_height, load.level, place, until, duration=seconds)]
     samples = load.wave.samples(seconds, step_scale)
-    found = [Target(load.name, voltage=samples[0][1])]
+    found, jumped = [Target(load.name, voltage=samples[0][1])], 0.0
     for sample, after in pairwise(samples):
         (before, _), (time, voltage) = sample, after
         aim = place
@@ -38,7 +38,8 @@ def targets(load: "Load", x: float, step_scale: float) -> list[Target]:
         continues = time > before and not begins  # what jumps, or begins with a long slide, is cut into steps
         inside = partial(_voltage, load.wave, sample, after) if time > before else None
         piece = Target(load.name, voltage=voltage, bone_x=aim, voltage_at=inside, continues=continues)
-        found.append(replace(piece, duration=time - before))
+        jumped = before if time == before else jumped
+        found.append(replace(piece, duration=time - before, since=before - jumped))
     return found
 
 

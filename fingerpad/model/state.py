@@ -86,14 +86,26 @@ def step_record(path: Continuation, energy: Balance, imbalance: float, attempt: 
         coupling_iterations=attempt.coupling_iterations,
         cutbacks=len(attempt.cutbacks),
         jump=attempt.jump,
-        **({} if path.problem.viscous_work is None else {"viscous": energy.viscous, "viscous_least": least_work(path)}),
+        **_of_branches(path, energy),
     )
 
 
-def least_work(path: Continuation) -> float:
-    """Return the least viscous work so far at a point over the largest one; collective."""
-    least, most = zip(*(each.extreme_work() for each in path.problem.relaxations.values()), strict=True)
-    return min(least) / max(most) if max(most) > 0 else 0.0
+def _of_branches(path: Continuation, energy: Balance) -> dict[str, float]:
+    """Return what a record has of viscous layers, nothing without such layers; collective."""
+    if path.problem.spent is None:
+        return {}
+    return {
+        "viscous": energy.viscous,
+        "viscous_dissipation": energy.viscous_dissipation,
+        "viscous_least": least_dissipation(path),
+    }
+
+
+def least_dissipation(path: Continuation) -> float:
+    """Return the least dissipation of a branch at a point in the last step over the largest amount; collective."""
+    least, most = zip(*(each.extremes() for each in path.problem.relaxations.values()), strict=True)
+    largest = max(*most, -min(least))
+    return min(least) / largest if largest > 0 else 0.0
 
 
 def force_error(unknowns: int, tolerance: float, force_scale: float) -> float:

@@ -14,6 +14,9 @@ without voltage where it has one, else the default finger's.
 - coating: the effective thickness h_0 of coating and skin 20 % smaller and larger;
 - slices: the sum of slices beside a finger in three dimensions, by its known error; of a whole finger alone.
 
+The band is that of the result's headline: of the whole finger wherever slices are summed over it. Ratios of the middle
+section are taken for it.
+
 The changes are conventions, those of docs/assumptions.md. The parts are taken as independent: the band is the root of
 the sum of their squares, in the logarithm of µ_app and to either side. A closure without an equilibrium is not in it.
 """
@@ -136,8 +139,8 @@ def known(result: "Result", closures: dict[str, float | None]) -> dict[str, Any]
     slip = result.full_slip
     if slip is None or not slip.voltage or not slip.mu_app > 0 or result.scene.history is not None:
         return {}
-    whole = result.whole and result.finger is not None and "full_slip" in result.finger.states
-    mu = result.finger.states["full_slip"].mu_app if whole and result.finger is not None else slip.mu_app
+    finger = result.finger if result.finger is not None and "full_slip" in result.finger.states else None
+    mu = slip.mu_app if finger is None else finger.states["full_slip"].mu_app
     try:
         parts = [*_parts(result, closures)]
     except SceneError:
@@ -148,9 +151,10 @@ def known(result: "Result", closures: dict[str, float | None]) -> dict[str, Any]
     ends.sort(key=lambda each: -np.log(each[2] / each[1]))
     below, above = (float(np.sqrt(sum(np.log(each[k]) ** 2 for each in ends))) for k in (1, 2))
     return {
-        "mu_app": mu, "low": mu * float(np.exp(-below)), "high": mu * float(np.exp(above)), "whole": whole,
+        "mu_app": mu, "low": mu * float(np.exp(-below)), "high": mu * float(np.exp(above)), "whole": finger is not None,
         "parts": [{"name": name, "low": mu * low, "high": mu * high} for name, low, high in ends],
         "left_out": [words for words, value in closures.items() if value is None],
+        "not_known": ["slices"] if finger is not None and "f_t" not in known_at(finger.f_ext) else [],
     }  # fmt: skip
 
 
@@ -172,7 +176,7 @@ def _parts(result: "Result", closures: dict[str, float | None]) -> Iterator[Part
     if isinstance(own, BearingArea | TabulatedClosure):
         yield "roughness", ratios((scene, replace(own, h_rms=factor * own.h_rms), 1.0) for factor in _CHANGE)
         yield "coating", ratios((*_coated(scene, own, factor), 1.0) for factor in _CHANGE)
-    if result.whole and result.finger is not None and "f_t" in (ends := known_at(result.finger.f_ext)):
+    if result.finger is not None and "f_t" in (ends := known_at(result.finger.f_ext)):
         yield "slices", [1 / (1 + end) for end in ends["f_t"]]
 
 

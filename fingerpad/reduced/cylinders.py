@@ -6,7 +6,8 @@ contact; Coulomb's is :math:`f_T = \mu_0 (f_{ext} + f_{el})`. The number of ridg
 contact and the length of their contact depend on the finger. They come from a :class:`Footprint` of normal contact and
 full slip:
 
-- :func:`fitted`: of the default finger *without* voltage, interpolated between full runs. The modulus E* of the
+- :func:`fitted`: of the default finger *without* voltage, or of one similar to it
+  (:mod:`fingerpad.reduced.similarity`), interpolated between full runs. The modulus E* of the
   cylinders is then the one with which Hertz's law gives that length, which includes finite strain, layers and
   shear. The length under voltage follows from Maugis's equations.
 - :func:`given`: the length *at* the scene's voltage, from a user or a run. E* is the stratum corneum's,
@@ -16,12 +17,10 @@ The model leaves out that ridges in the middle bear more than those at the edge,
 voltage. ``docs/models.md`` has its errors.
 """
 
-import json
 import time
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Sequence
+from dataclasses import replace
 from functools import cache
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -31,15 +30,15 @@ from fingerpad.model import breakdown
 from fingerpad.model.adhesion import sticking
 from fingerpad.model.cautions import on_states
 from fingerpad.reduced import cylinder_errors
+from fingerpad.reduced.footprint import Footprint
+from fingerpad.reduced.footprint import from_run as from_run
+from fingerpad.reduced.footprint import given as given
 from fingerpad.reduced.model import STATES, Model, reduced_state, refuse_others
+from fingerpad.reduced.similarity import Similar, similar
 from fingerpad.results.answer import Cost
-from fingerpad.results.files import read_object
-from fingerpad.results.folder import difference
 from fingerpad.results.result import Result
 from fingerpad.results.states import WORDS
 from fingerpad.scene import Scene, SceneError
-from fingerpad.scene.messages import show
-from fingerpad.scene.reading import DEFAULT_MODEL
 from fingerpad.scene.remarks import leakage, remarks, skin_modulus, used
 from geometry.parameters import Fingertip
 from geometry.profiles import Profiles
@@ -62,21 +61,7 @@ INDENTATIONS = {  # m, how far the bone is lowered
     "charged": (0.1457e-3, 0.2244e-3, 0.3895e-3, 0.5848e-3, 0.7383e-3, 0.8670e-3, 0.9568e-3, 1.0751e-3),
     "full_slip": (0.1452e-3, 0.2239e-3, 0.3893e-3, 0.5842e-3, 0.7345e-3, 0.8569e-3, 0.9417e-3, 1.0510e-3),
 }
-_SHAPING = ("geometry", "materials", "contact")  # tables of a scene of which these lengths are a matter
 _ELSE = "use the model 'full', or the command compare with --contact-length and --ridges, or with the --run of a folder"
-
-
-@dataclass(frozen=True)
-class Footprint:
-    """How long the contact is, and on how many ridges, by state: ``charged`` and ``full_slip``."""
-
-    length: dict[str, float]
-    """Contact length (m)."""
-    ridges: dict[str, int]
-    charged: bool
-    """Whether the lengths are those at the scene's voltage, or those without."""
-    source: str
-    """Where they come from, for a reader."""
 
 
 def fitted(scene: Scene) -> Footprint:
@@ -85,25 +70,29 @@ def fitted(scene: Scene) -> Footprint:
     Raises:
         SceneError: the scene's finger is another one.
     """
-    default = _default()
-    _refuse_other(scene, default)
+    default, scaled = _default(), _scaled(scene)
     source = "uncharged contact length interpolated between full runs of the default finger"
-    if not FORCES[0] <= scene.f_ext <= FORCES[-1]:
+    f_ext = scene.f_ext / scaled.force
+    if not FORCES[0] <= f_ext <= FORCES[-1]:
         source = f"uncharged contact length extrapolated from full runs at {FORCES[0]:g} to {FORCES[-1]:g} N/m"
+    source += f", {scaled.words}" if scaled.words else ""
     if scene.friction != default.friction:
         source += f"; that of full slip with a friction coefficient of {default.friction:g}"
-    length = {state: float(_lengths(scene.f_ext, state)) for state in STATES}
-    return Footprint(length, {state: int(_ridges(scene.f_ext, state)) for state in STATES}, False, source)
+    length = {state: scaled.length * float(_lengths(f_ext, state)) for state in STATES}
+    return Footprint(length, {state: int(_ridges(f_ext, state)) for state in STATES}, False, source)
 
 
 _default = cache(Scene)
 
 
-def _refuse_other(scene: Scene, default: Scene) -> None:
-    """Refuse a finger other than the default one."""
-    for name in _SHAPING:
-        if getattr(scene, name) != getattr(default, name):
-            raise SceneError(f"{name} is not that of the default finger, whose contact length is known; {_ELSE}")
+def _scaled(scene: Scene) -> Similar:
+    """Return how the finger is scaled; refuse one that is not similar to the default finger."""
+    found = similar(scene)
+    if isinstance(found, str):
+        raise SceneError(
+            f"{found} is not that of the default finger or of one similar to it, whose contact length is known; {_ELSE}"
+        )
+    return found
 
 
 def _lengths(f_ext: ArrayLike, state: str) -> Array:
@@ -123,71 +112,16 @@ def _interpolate(f_ext: ArrayLike, values: tuple[float, ...] | tuple[int, ...]) 
     return np.exp(y[k] + (y[k + 1] - y[k]) * (at - x[k]) / (x[k + 1] - x[k]))
 
 
-def indentation(f_ext: float, state: str) -> float:
-    """Return how far the default finger's bone is lowered (m), without voltage; the model itself has no bone.
+def indentation(f_ext: float, state: str, scaled: Similar | None = None) -> float:
+    """Return how far a finger's bone is lowered (m), without voltage; the model itself has no bone.
 
     Args:
         f_ext: external force (N/m).
         state: ``charged`` or ``full_slip``. A voltage of 200 V moves the bone at full slip by up to 6 %.
+        scaled: a finger similar to the default one, which it is by default.
     """
-    return float(_interpolate(f_ext, INDENTATIONS[state]))
-
-
-def given(length: float, ridges: int) -> Footprint:
-    """Return a contact length (m) at the scene's voltage, the same in both states.
-
-    Raises:
-        SceneError: a length or a number of ridges that is not positive.
-    """
-    if not 0 < length < np.inf or ridges < 1:
-        raise SceneError(
-            f"contact length is {length:g} m on {show(ridges)} ridges; it must be greater than 0, on at least 1"
-        )
-    return Footprint(dict.fromkeys(STATES, length), dict.fromkeys(STATES, ridges), True, "contact length as given")
-
-
-def from_run(scene: Scene, folder: Path) -> Footprint:
-    """Return the contact of a full run of the scene, perhaps with another mesh, friction or roughness.
-
-    Raises:
-        SceneError: there is no run, it did not reach full slip, or it is one of another finger, force or voltage.
-    """
-    try:
-        return _of_summary(scene, folder, read_object(folder / "summary.json"))
-    except SceneError:
-        raise
-    except (FileNotFoundError, NotADirectoryError):
-        raise SceneError(f"{folder} is not a folder of a finished run") from None
-    except (OSError, ValueError, KeyError, TypeError, AttributeError) as error:  # JSON of other things
-        raise SceneError(f"run {folder} cannot be read: {error}") from None
-
-
-def _of_summary(scene: Scene, folder: Path, summary: Mapping[str, Any]) -> Footprint:
-    if "parameters" not in summary:  # a point of a sweep that was refused
-        raise SceneError(f"run {folder} has no results: {summary.get('failure', 'summary.json is of another kind')}")
-    if (model := summary.get("model", DEFAULT_MODEL)) != DEFAULT_MODEL:
-        raise SceneError(f"run {folder} is one of the model {show(model)}; give a full run")
-    for name, own, unit in (("f_ext", scene.f_ext, "N/m"), ("voltage", scene.volts, "V")):
-        if not np.isclose(abs(summary[name]), abs(own), rtol=1e-6, atol=1e-9):
-            raise SceneError(
-                f"run {folder} is one at {name} {summary[name]:g} {unit}, and the scene's is {own:g}; "
-                "give a run of this scene"
-            )
-    other = difference(_finger(summary["parameters"]), _finger(scene.parameters()))
-    if other:
-        raise SceneError(f"run {folder} is one of another finger ({other}); give a run of this scene's finger")
-    length = {state: summary.get(f"{state}_contact_length") for state in STATES}
-    ridges = {state: summary.get(f"{state}_ridges_in_contact") for state in STATES}
-    if None in (*length.values(), *ridges.values()):
-        raise SceneError(f"run {folder} did not reach full slip, so that its contact length there is not known")
-    return Footprint(length, ridges, True, f"contact length of the run in {folder}")  # type: ignore[arg-type]
-
-
-def _finger(parameters: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the parameters of a scene that make its finger, as a file holds them."""
-    own = {name: law for name, law in parameters.get("laws", {}).items() if name in ("mesh", "materials")}
-    shape = {name: parameters[name] for name in ("geometry", "materials")}
-    return dict(json.loads(json.dumps(shape | {"laws": own})))
+    scaled = scaled or Similar()
+    return scaled.length * float(_interpolate(f_ext / scaled.force, INDENTATIONS[state]))
 
 
 class Cylinders(Model):
@@ -197,8 +131,9 @@ class Cylinders(Model):
     traces = "traces of charged cylinders, indentations without voltage"
 
     def __init__(self, footprint: Footprint | None = None) -> None:
-        """Take the footprint."""
+        """Take the footprint, which is known at one force alone where it is given."""
         self._footprint = footprint
+        self.sums = footprint is None
 
     def solve(self, scene: Scene, context: "RunContext") -> Result:
         """Return the answer of :func:`solve`."""
@@ -208,8 +143,8 @@ class Cylinders(Model):
         self, scene: Scene, f_ext: Sequence[float], state: str, solve: Callable[[Scene], Result]
     ) -> list[ContactState]:
         """Return the states computed together, with the indentations of the default finger without voltage."""
-        states = over_forces(scene, f_ext, state)
-        return [replace(each, bone_height=-indentation(each.f_ext, state)) for each in states]
+        states, scaled = over_forces(scene, f_ext, state), _scaled(scene)
+        return [replace(each, bone_height=-indentation(each.f_ext, state, scaled)) for each in states]
 
 
 def solve(scene: Scene, footprint: Footprint | None = None) -> Result:
@@ -269,8 +204,9 @@ def over_forces(
         length = np.array([each.contact_length for each in press])
         ridges = np.array([each.ridges_in_contact for each in press])
     else:
-        _refuse_other(scene, _default())
-        length, ridges = _lengths(f_ext, state), _ridges(f_ext, state)
+        scaled = _scaled(scene)
+        of_default = np.array(f_ext) / scaled.force
+        length, ridges = scaled.length * _lengths(of_default, state), _ridges(of_default, state)
     return [found for found, _ in _solved(scene, f_ext, tips**0.5 * length, ridges, state, tips=tips)]
 
 

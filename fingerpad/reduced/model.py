@@ -37,6 +37,8 @@ class Model(ABC):
 
     traces: ClassVar[str] = "traces over the force"
     """What a force in newtons is summed over, in words."""
+    sums: bool = False
+    """Whether the result of a section has the whole finger too: states over many forces cost hardly more than one."""
 
     def check(self, scene: "Scene") -> None:
         """Refuse a scene before the work, in one sentence; by default one with a history or a mesh of its own.

@@ -143,7 +143,7 @@ def _about(state: ContactState | None) -> str:
     if state is None:
         return ""
     slides = abs(state.f_t) > 1e-9 * abs(state.f_ext) and not math.isnan(state.mu_app)
-    slip = f", µ_app = {state.mu_app:.3f}" if slides else ""
+    slip = f", µ_app = {state.mu_app:.3f} of the middle section" if slides else ""
     length = f"L_R = {_MM * state.contact_length:.3f} mm, {state.ridges_in_contact} ridges in contact"
     return f"{conditions_of(state)}{slip}, {length}"
 

@@ -46,22 +46,37 @@ def paragraph(words: object, kind: str = "") -> str:
     return f"<p{_class(kind)}>{typeset(words)}</p>"
 
 
-def banner(what: str, folder: Path | None, number: str, said: str, kind: str, words: str) -> str:
-    """Return the head of a page.
+def banner(
+    what: str, folder: Path | None, sentence: str, number: str, said: str, kind: str, words: str, claims: str = ""
+) -> str:
+    """Return the head of a page, whose first line is the finding.
 
     Args:
         what: the page is.
         folder: of the results.
-        number: the finding, HTML.
+        sentence: the finding.
+        number: of it, HTML; empty without one.
         said: of what the number is.
         kind: the verdict.
         words: of the verdict, HTML.
+        claims: how far the number is solved and known, HTML.
     """
     where = "" if folder is None else f" · {text(folder.resolve().name)}"
+    shown = f'<p class="number">{number} <span class="said">{typeset(said)}</span></p>' if number else ""
+    shown = shown or (paragraph(said, "said") if said else "")
     return (
-        f'<header><p class="kind">fingerpad · {what}{where}</p><h1>{number}</h1><p class="said">{text(said)}</p>'
-        f'<p class="verdict {kind}"><b>{MARKS[kind]}</b> {words}</p></header>'
+        f'<header><h1>{typeset(sentence)}</h1>{shown}{claims}<p class="verdict {kind}"><b>{MARKS[kind]}</b> {words}</p>'
+        f'<p class="kind">fingerpad · {what}{where}</p></header>'
     )
+
+
+def claims(sentences: Iterable[str], figure: str) -> str:
+    """Return sentences on how far a number is solved and known, in bold up to a bracket or a comma, and a figure."""
+    lines = list[str]()
+    for each in sentences:
+        first = re.split(r"(?=,| \()", each, maxsplit=1)[0]
+        lines.append(f"<p><b>{typeset(first[0].upper() + first[1:])}</b>{typeset(each[len(first) :])}.</p>")
+    return f'<div class="claims"><div>{"".join(lines)}</div>{figure}</div>' if lines else ""
 
 
 def items(lines: Iterable[object]) -> str:

@@ -11,7 +11,7 @@ from fingerpad.report import page as html
 from fingerpad.report import trust
 from fingerpad.report.felt import felt
 from fingerpad.report.frames import conditions_of, frames, section, slider
-from fingerpad.report.trust import conditions, head
+from fingerpad.report.trust import head
 from fingerpad.results.arrays import arrays_of
 from fingerpad.results.closures import RECORD, in_words
 from fingerpad.results.over_time import HARMONICS, NOTE
@@ -22,11 +22,11 @@ from variational.state import ContactState, Errors
 
 _MM = 1e3
 _LINKS = {
-    "asked": "Asked", "numbers": "Numbers", "newtons": "Newtons", "trust": "Trust", "ridge-by-ridge": "One ridge",
+    "asked": "Asked", "newtons": "Newtons", "numbers": "Numbers", "trust": "Trust", "ridge-by-ridge": "One ridge",
     "sliding": "Sliding", "time": "Time", "receptors": "Receptors", "felt": "Felt", "pictures": "Pictures",
     "model": "Model", "solver": "Solver", "parameters": "Parameters", "reproduce": "Reproduce",
 }  # fmt: skip
-_SECTION = "Section at the centre of the finger"
+_SECTION = "Middle section of the finger"
 _SLIDING = ("bone_x", "f_t", "mu_app", "contact_length", "ridges_in_contact")
 _CHARTED = ("bone_x", "mu_app", "contact_length")
 _RECEPTORS = (
@@ -37,7 +37,9 @@ _SAID = {
     "surface.png": "Pressure, shear traction, attraction and gap along the skin in the named states",
     "history.png": "Friction force, contact length and ridges in contact over sliding",
     "time.png": "Voltage, friction force and contact length over time",
-    "footprint.png": "Gross contact (light), sum of the ridges' contact lengths (dark) and pressure, slice by slice",
+    "field.png": "Electric field between one ridge and the screen: upright, as between plates, the law's approximation",
+    "footprint.png": "Gross contact (light), ridges (dark) and pressure, slice by slice",
+    "solid.png": "The finger in three dimensions from its unloaded slices, from below; ridges by mean pressure",
 }
 _MAX_FINGERS = 4  # pictures of the finger
 
@@ -45,11 +47,11 @@ _MAX_FINGERS = 4  # pictures of the finger
 def page(result: Result) -> str:
     """Return the page of a run."""
     shown = frames(result)
-    title = f"fingerpad: {conditions(result)}"
+    title = f"fingerpad: {result.headline.sentence}"
     answer, spikes = felt(result)
-    first = (_numbers, _newtons) if not result.whole else (_newtons, _numbers)
     sections = [
-        *(part(result) for part in first),
+        _newtons(result),
+        _numbers(result),
         _asked(result),
         _trust(result),
         section(shown),
@@ -90,7 +92,8 @@ def _asked(result: Result) -> str:
         rows.append((load.name, ", ".join(words), _cell(reached)))
     intro = "A fingertip on a charged screen, loaded in this order:"
     if result.whole:
-        intro = f"{conditions(result)}. Loads at its centre, where f_ext is an estimate before the run:"
+        intro = f"A force of {result.scene.force:.4g} N on the whole finger. Loads at its centre"
+        intro += ", where f_ext is an estimate before the run:"
     return html.section(
         "asked",
         "What was asked",

@@ -13,10 +13,22 @@ from typing import Any
 from fingerpad.report import page as html
 from fingerpad.report.page import BAD, CARE, GOOD
 from fingerpad.results.files import read_object
+from fingerpad.results.headline import SECTION, WHOLE
 from fingerpad.results.quantities import PER_LENGTH, Output
 from fingerpad.results.quantities import read as read_outputs
 from fingerpad.results.states import WORDS
-from fingerpad.runs.sweep_columns import LOAD, head_of, in_time, loads, printed, shown, tables
+from fingerpad.runs.sweep_columns import (
+    FORCE,
+    LOAD,
+    head_of,
+    in_time,
+    loads,
+    of_finger,
+    printed,
+    said_of,
+    shown,
+    tables,
+)
 from fingerpad.scene import SceneError
 from fingerpad.scene.messages import clip
 from fingerpad.scene.reading import DEFAULT_MODEL
@@ -61,7 +73,9 @@ class Table:
         """Return the forces on the whole finger (N)."""
         if "force" in self.axes:
             return [float(row["force"]) for row in self.rows]
-        return [float(self.parameters["force"])] if self.whole else []
+        if self.whole:
+            return [float(self.parameters["force"])]
+        return [force for row in self.rows if (force := row.get(FORCE)) is not None]
 
     @property
     def heads(self) -> dict[str, str]:
@@ -131,19 +145,21 @@ def page(table: Table) -> str:
 def _head(table: Table) -> str:
     state, columns = table.shown
     slid = [row for row in table.rows if table.reached(row)]
-    number = f"No point reached {state}"
+    sentence, said = f"No point reached {state}.", f"Over {_varied(table)}."
     for column, quantity in _drawn(columns).values():  # the coefficient of friction first
-        values = [value for row in slid if (value := row.get(column)) is not None]
+        values = [quantity.scale * value for row in slid if (value := row.get(column)) is not None]
         if values:
-            low, high = (f"{value * quantity.scale:.3f}" for value in (min(values), max(values)))
-            number = f"{_symbol(quantity)} from {low} to {high} {quantity.unit}".rstrip()
+            words = quantity.words if quantity.symbol == quantity.words else quantity.words.rpartition(" ")[0]
+            what = "friction coefficient" if column.endswith("_mu_app") else words
+            of = WHOLE if of_finger(column) else SECTION
+            ends = f"from {min(values):.3f} to {max(values):.3f} {quantity.unit}".rstrip()
+            sentence = f"At {state} the {what} of the {of} goes {ends}."
             break
-    said = f"{'whole finger at' if table.whole else 'at'} {state}, over {_varied(table)}"
     if (wave := _wave(table)) is not None:  # which a sweep of a waveform is about
         name, least, most = wave
-        said = f"in the load {name}, over {_varied(table)}"
-        said += f"; {number.replace('<sub>app</sub>', '_app')} at full slip" if slid else ""
-        number = f"µ<sub>app</sub> from {least:z.3f} to {most:z.3f}"
+        said += f" {sentence}" if slid else ""
+        sentence = f"In the load {name} the friction coefficient of the {SECTION} goes "
+        sentence += f"from {least:z.3f} to {most:z.3f}."
     failed = [row for row in table.rows if row["failure"]]
     missing = len(table.rows) - len(slid) - sum(1 for row in failed if not table.reached(row))
     kind, words = GOOD, "Every point was computed."
@@ -155,7 +171,7 @@ def _head(table: Table) -> str:
         limits = [*table.cautions[:_MAX_CAUTIONS], *([f"and {more} more"] if more > 0 else [])]
         limit = f"Limits of validity are reached: {'; '.join(limits)}." if limits else ""
         kind, words = CARE, " ".join(filter(None, (slips, limit)))
-    return html.banner("report of a sweep", table.folder, number, said, kind, html.text(words))
+    return html.banner("report of a sweep", table.folder, sentence, "", said, kind, html.text(words))
 
 
 def _wave(table: Table) -> tuple[str, float, float] | None:
@@ -171,14 +187,9 @@ def _wave(table: Table) -> tuple[str, float, float] | None:
 
 
 def _drawn(columns: Mapping[str, Output]) -> dict[str, tuple[str, Output]]:
-    """Return the columns with a chart by the names of their quantities."""
-    return {key: each for key in _CHARTS for each in columns.items() if each[0].endswith(f"_{key}")}
-
-
-def _symbol(quantity: Output) -> str:
-    """Return the symbol of a quantity for the headline, its index below the line; its words where it has none."""
-    name, _, index = quantity.symbol.partition("_")
-    return html.text(name) + (f"<sub>{html.text(index)}</sub>" if index else "")
+    """Return the columns with a chart by the names of their quantities; of the whole finger before the section's."""
+    found = {key: [each for each in columns.items() if each[0].endswith(f"_{key}")] for key in _CHARTS}
+    return {key: each[0] for key, each in found.items() if each}
 
 
 def _varied(table: Table) -> str:
@@ -201,12 +212,18 @@ def _over_time(table: Table) -> str:
 
 def _charts(table: Table) -> dict[str, tuple[str, str]]:
     """Return the column and the title of each chart by the name of its place on the page."""
-    found = {f"sweep_{key}": (column, each.title) for key, (column, each) in _drawn(table.shown[1]).items()}
+    found = {f"sweep_{key}": (column, _titled(column, each)) for key, (column, each) in _drawn(table.shown[1]).items()}
     for k, name in enumerate(loads(table.rows[0])):
         words = in_time(name, table.rows[0])
         columns = {key: f"{LOAD}_{name}_{key}" for key in _IN_TIME}
         found |= {f"sweep_load_{k}_{key}": (each, words[each]) for key, each in columns.items() if each in words}
     return found
+
+
+def _titled(column: str, quantity: Output) -> str:
+    """Return the title of a chart's axis, with what the quantity is of."""
+    unit = f" ({quantity.unit})" if quantity.unit else ""
+    return f"{quantity.symbol.removesuffix(' of section')} of the {WHOLE if of_finger(column) else SECTION}{unit}"
 
 
 def _study(table: Table) -> str:
@@ -217,7 +234,8 @@ def _study(table: Table) -> str:
         '<noscript><p class="note">The charts need JavaScript; the table below has the same numbers.</p></noscript>'
     )
     charts = (html.chart(place, f"{words} at {state} over the sweep") for place, words in drawn)
-    return html.section("study", f"Friction and contact at {state}", without, *charts, html.paragraph(note, "note"))
+    title = f"Friction and contact of the {said_of(columns)} at {state}"
+    return html.section("study", title, without, *charts, html.paragraph(note, "note"))
 
 
 def _points(table: Table) -> str:
@@ -228,7 +246,7 @@ def _points(table: Table) -> str:
         said = "failed" if row["failure"] else "" if table.reached(row) else f"no {state}"
         rows.append([*(printed(row[key]) for key in table.axes), *cells, said])
     heads = [*table.heads.values(), *(quantity.title for quantity in columns.values()), ""]
-    notes = remarks(dict.fromkeys(table.forces())) or [PER_LENGTH]
+    notes = [*remarks(dict.fromkeys(table.forces())), *([] if table.whole else [PER_LENGTH])]
     return html.section(
         "points",
         "Every point",

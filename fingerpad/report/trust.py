@@ -9,9 +9,8 @@ from fingerpad.reduced.registry import follows_path
 from fingerpad.report import page as html
 from fingerpad.report.known import bars
 from fingerpad.report.page import BAD, CARE, GOOD
-from fingerpad.results.closures import KNOWN, known_in_words
-from fingerpad.results.quantities import cell
-from fingerpad.results.states import LoadResult, called
+from fingerpad.results.headline import missing_slip
+from fingerpad.results.states import called
 from fingerpad.scene.remarks import coefficient
 from variational.state import ContactState
 
@@ -47,21 +46,18 @@ def findings(result: "Result") -> list[Finding]:
     return found
 
 
-def verdict(found: list[Finding], error: str = "", band: str = "") -> tuple[str, str]:
-    """Return the worst verdict and a sentence for the head of a page, and a second one where friction has a band.
+def verdict(found: list[Finding]) -> tuple[str, str]:
+    """Return the worst verdict and a sentence for the head of a page.
 
     Args:
         found: what was looked at.
-        error: estimated discretisation error of the number in the head, with its unit; empty where it has none.
-        band: how far friction is known, in words; empty where that is not known.
     """
-    more = f" {band[0].upper()}{band[1:]}." if band else ""
     bad, care = ([each for each in found if each.verdict == kind] for kind in (BAD, CARE))
     for kind, worst, first in ((BAD, bad, "Do not use these numbers as they are"), (CARE, care, "Use with care")):
         if worst:
-            return kind, f"{first}: {' and '.join(each.what for each in worst)}. {worst[0].words}{more}"
-    solved = f"solved to ± {error}, the error of the mesh alone" if error else "solved"
-    return GOOD, f"All that was examined holds: {solved}; what the finger and the model assume is not in it.{more}"
+            return kind, f"{first}: {' and '.join(each.what for each in worst)}. {worst[0].words}"
+    holds = "All that was examined holds: the equations are solved."
+    return GOOD, f"{holds} What the finger and the model assume is not in it."
 
 
 def _cautions(result: "Result") -> Iterator[Finding]:
@@ -80,9 +76,7 @@ def _full_slip(result: "Result") -> Iterator[Finding]:
     if result.full_slip is not None and follows_path(result.model):
         words = "Every point in contact slips one way, and the forces stayed the same over a further 0.2 mm."
         yield Finding("full slip", GOOD, words)
-    elif result.full_slip is None and any(load.until_full_slip or load.moves for load in result.scene.loads()):
-        reached = any(load.full_slip_reached for load in result.loads)
-        how = "not held over a further 0.2 mm" if reached else "not reached"
+    elif how := missing_slip(result):
         words = f"Full slip was {how}, so there is no friction of full slip."
         yield Finding("full slip was not reached", BAD if result.failure else CARE, words)
     for load in result.loads:
@@ -208,63 +202,20 @@ def jumped(state: ContactState) -> bool:
 
 
 # -- headline --------------------------------------------------------------------------------------------
-def conditions(result: "Result") -> str:
-    """Return force and voltage of a run in words."""
-    if result.whole and result.finger is not None:
-        return f"{result.finger.f_ext:.4g} N on the whole finger, {result.scene.volts:.4g} V"
-    last = result.full_slip or result.charged or result.last
-    if last is None:
-        return "a run without a result"
-    return f"{last.f_ext:.4g} N/m, {last.voltage:.4g} V"
-
-
 def head(result: "Result") -> str:
-    """Return the finding: the largest number of the page, and whether to rely on it."""
-    slip, charged = result.full_slip, result.charged
-    whole = result.finger if result.whole else None
-    if whole is not None and "full_slip" in whole.states:
-        number = f"µ<sub>app</sub> = {html.text(whole.shown('full_slip', 'mu_app'))}"
-        force = f"friction force {whole.shown('full_slip', 'f_t')} N"
-        said = f"apparent friction coefficient of the whole finger at full slip, {force}; {conditions(result)}"
-    elif whole is not None:
-        name = list(whole.states)[-1]
-        number = f"{html.text(whole.shown(name, 'contact_area'))} mm²"
-        said = f"ridge contact area of the whole finger in {whole.heads()[-1]}; {conditions(result)}"
-    elif (timed := _timed(result)) is not None:
-        ends = timed.extremes["mu_app"]
-        number = f"µ<sub>app</sub> from {cell('mu_app', ends.min)} to {cell('mu_app', ends.max)}"
-        number += ", without full slip" if timed.full_slip_part == 0 else ""
-        said = f"apparent friction coefficient in the load {timed.name}, over time"
-        said += f": {timed.sticking}" if timed.sticking else ""
-        if slip is not None:
-            said += f"; {cell('mu_app', slip.mu_app, slip.error.mu_app)} at full slip, {conditions(result)}"
-    elif slip is not None and math.isnan(slip.mu_app):
-        number = f"f<sub>T</sub> = {html.text(cell('f_t', slip.f_t, slip.error.f_t))} N/m"
-        said = f"friction force at full slip, where no force presses the finger; {conditions(result)}"
-    elif slip is not None:
-        value = cell("mu_app", slip.mu_app, slip.error.mu_app)
-        number = f"µ<sub>app</sub> = {html.text(value)}"
-        friction = coefficient(result.scene)
-        factor = f", {abs(slip.mu_app) / friction:.2f} times the {friction:.3g} without attraction" if friction else ""
-        of = "of the section at the centre of the finger " if result.finger is not None else ""
-        said = f"apparent friction coefficient {of}at full slip{factor}; {conditions(result)}"
-    elif charged is not None:
-        value = cell("contact_length", charged.contact_length, charged.error.contact_length)
-        number = f"L<sub>R</sub> = {html.text(value)} mm"
-        said = f"contact length in {called('charged', charged.voltage)}; {conditions(result)}"
-    else:
-        number, said = "No contact state was kept", conditions(result)
-    error, band = number.partition(" ± ")[2], result.record.get(KNOWN, {})
-    kind, words = verdict(findings(result), error, known_in_words(band))
-    more = ' <a href="#trust">What is not in it</a>' if kind == GOOD else ""
-    return html.banner("report of a run", result.folder, number, said, kind, html.text(words) + more) + bars(result)
+    """Return the finding: its sentence, the number, how far it is solved and known, and whether to rely on it."""
+    found = result.headline
+    kind, words = verdict(findings(result))
+    number = html.typeset(f"{found.symbol} {found.number}") if found.number else ""
+    said = f"of the {found.of}, {found.at}{_factor(result)}" if number else ""
+    more = f'{html.typeset(words)} <a href="#trust">What was examined</a>'
+    claims = html.claims(filter(None, (found.solved, found.known)), bars(result))
+    return html.banner("report of a run", result.folder, found.sentence, number, said, kind, more, claims)
 
 
-def _timed(result: "Result") -> LoadResult | None:
-    """Return the last load with a waveform, where a force presses the finger all the time and it rubs."""
-    least = result.record.get("force_error") or 0.0
-    waves = {load.name for load in result.scene.loads() if load.wave is not None}
-    timed = [load for load in result.loads if load.name in waves and load.over_time is not None]
-    timed = [load for load in timed if load.rubs(least)]
-    whole = [load for load in timed if not math.isnan(load.over_time.mean["mu_app"])]  # type: ignore[union-attr]
-    return whole[-1] if whole else None
+def _factor(result: "Result") -> str:
+    """Return in words how many times the friction without attraction that of the headline is."""
+    found, friction = result.headline, coefficient(result.scene)
+    if not friction or found.quantity.name != "mu_app" or math.isnan(found.value):
+        return ""
+    return f": {abs(found.value) / friction:.2f} times the {friction:.3g} without attraction"

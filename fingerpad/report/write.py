@@ -59,13 +59,20 @@ def attempt(folder: Path) -> Path | None:
         return None
 
 
-def draw_footprint(result: Result) -> None:
-    """Write ``footprint.png`` at the end of a run with a whole finger; a line on the console where it fails; serial."""
-    if result.finger is not None and result.folder is not None:
+def draw_whole(result: Result) -> None:
+    """Write the pictures of a whole finger at the end of a run; a line on the console where that fails; serial.
+
+    These are ``footprint.png`` and, of a full run under a force in newtons, ``solid.png``.
+    """
+    if result.finger is None or result.folder is None:
+        return
+    for kind in ("footprint", "solid") if result.whole and result.steps else ("footprint",):
         try:
-            result.plot("footprint", result.folder / "footprint.png")
-        except OSError as error:
-            print(f"fingerpad: footprint.png was not written: {error.strerror or error}", file=sys.stderr)
+            result.plot(kind, result.folder / f"{kind}.png")
+        except (OSError, ValueError) as error:
+            print(
+                f"fingerpad: {kind}.png was not written: {getattr(error, 'strerror', None) or error}", file=sys.stderr
+            )
 
 
 def read(folder: Path) -> "Result | Table":

@@ -29,7 +29,7 @@ from variational.outline import loops
 from variational.state import ContactState
 
 if TYPE_CHECKING:
-    from fingerpad.results.result import Result
+    from fingerpad.results.answer import Answer
 
 Array = NDArray[np.float64]
 ENDINGS = (".webp", ".gif")
@@ -64,7 +64,7 @@ class _Scene(NamedTuple):
     """Stress (kPa)."""
 
 
-def animate(result: "Result", path: Path) -> Path:
+def animate(result: "Answer", path: Path) -> Path:
     """Write the animation of a run that has a folder; return the file.
 
     Args:

@@ -20,8 +20,8 @@ def in_words(kept: Mapping[str, Any]) -> str:
     none = [words for words, value in kept["mu_app"].items() if value is None]
     low, high = (pick(found, key=lambda words: found[words]) for pick in (min, max))
     text = (
-        f"models of roughness: µ_app {found[low]:.2f} ({low}) to {found[high]:.2f} ({high}) at full slip, by the ratio "
-        "of charged cylinders; which one holds for a finger is open (docs/microscale.md)"
+        f"models of roughness: µ_app of the middle section {found[low]:.2f} ({low}) to {found[high]:.2f} ({high}) at "
+        "full slip, by the ratio of charged cylinders; which one holds for a finger is open (docs/microscale.md)"
     )
     return text + (f"; no equilibrium by {', '.join(none)}" if none else "")
 
@@ -31,7 +31,8 @@ def known_in_words(kept: Mapping[str, Any]) -> str:
     if not kept:
         return ""
     parts = ", ".join(f"{part['name']} {part['low']:.2f} to {part['high']:.2f}" for part in kept["parts"])
-    of = " of the whole finger" if kept["whole"] else ""
-    ends, none = f"{kept['low']:.2f} to {kept['high']:.2f}", kept.get("left_out")
-    words = f"known to about {ends}, by the cheaper model of charged cylinders: µ_app{of} by {parts}"
-    return words + (f"; not in it: {', '.join(none)}, without an equilibrium" if none else "")
+    of, ends = "whole finger" if kept["whole"] else "middle section", f"{kept['low']:.2f} to {kept['high']:.2f}"
+    words = f"known to about {ends}, by the cheaper model of charged cylinders: µ_app of the {of} by {parts}"
+    missing = {"left_out": "without an equilibrium", "not_known": "whose error is not known at this force"}
+    lacks = [f"{', '.join(kept[key])}, {why}" for key, why in missing.items() if kept.get(key)]
+    return words + (f"; not in it: {'; '.join(lacks)}" if lacks else "")

@@ -14,7 +14,7 @@ import numpy as np
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from fingerpad.results import curves, fields, finger_picture, style
+from fingerpad.results import curves, field_picture, fields, finger_picture, style
 from fingerpad.results.arrays import ALONG, finger_of, put, skin_of
 from fingerpad.results.curves import SurfaceProfile
 from fingerpad.results.over_time import without_parts_of_jumps
@@ -81,6 +81,8 @@ class Drawing:
         self._put_fields(folder, each_load)
         if self._shown():
             self._put_skin(folder / "surface", self._named_skin())
+        if self._charged() is not None:
+            self.figure("field", folder / "field.png")
         if self._sliding():
             self.figure("history", folder / "history.png")
         if self._timed():
@@ -92,7 +94,7 @@ class Drawing:
         Args:
             kind: ``"surface"``, the skin in normal contact, partial and full slip; ``"finger"``, the deformed finger at
                 full slip or else at the end; ``"history"``, friction and contact length over sliding; ``"time"``, the
-                same with the voltage over time.
+                same with the voltage over time; ``"field"``, the electric field of a ridge.
             path: of the PNG file.
 
         Raises:
@@ -105,6 +107,11 @@ class Drawing:
             if not skins:
                 raise ValueError("the run has no state with skin on the screen to draw")
             return self._skin(path, skins)
+        if kind == "field":
+            if (name := self._charged()) is None:
+                raise ValueError("the run has no charged state with skin on the screen to draw")
+            skin = self._named_skin()[name]
+            return field_picture.field(path, skin, f"{skin.title}: electric field of a ridge")
         if kind == "time":
             states = self._timed()
             if not states:
@@ -114,6 +121,17 @@ class Drawing:
         if not states:
             raise ValueError("the run has no history of sliding; the bone never moved sideways with skin on the screen")
         return curves.history(path, states, self._title(style.conditions(states, self.mu_0)), self.mu_0, self.named)
+
+    def _charged(self) -> str | None:
+        """Return the last charged state in contact along whose skin is drawn."""
+        shown = self._shown().items()
+        charged = [name for name, (_, state, _) in shown if state.voltage and state.ridges_in_contact]
+        return charged[-1] if charged else None
+
+    def body(self) -> "Snapshot | None":
+        """Return the last finger that is drawn."""
+        views = [*self.finer.values(), *self.ends.values()]
+        return views[-1].snapshot if views else None
 
     def _title(self, words: str, view: View | None = None) -> str:
         """Return words with a line for the mesh below, where there are two."""

@@ -23,6 +23,7 @@ from fingerpad.results import style
 from fingerpad.results.raster import cells_at, pieces
 from geometry import tags
 from variational.outline import loops
+from variational.state import ContactState
 
 if TYPE_CHECKING:
     from fingerpad.slices.finger import WholeFinger
@@ -52,6 +53,8 @@ _HEIGHT = 6.75  # in, of the picture of a state; the places of its parts follow
 _ABOVE, _NEAR, _COLOURS = (0.85, 6.75, 3.65, 6.2), (0.85, 8.85, 1.25, 2.8), (1.5, 7.5, 0.52, 0.66)
 _STRAIGHT = 0.25  # pixels: the bend of a line that is drawn straight
 _LIGHT = 0.25  # opacity of the gross contact
+_ALONG = 400  # places along the finger at which ridges are drawn
+_ROUNDOFF = 1e-12  # m
 _FOOTPRINT, _APART, _WIDER = (0.95, 8.8, 1.2, 3.8), 0.35, 1.4  # in: all panels; between them; last one over a state's
 _DECADES = 1e3  # span of the colours of the energy density
 
@@ -116,7 +119,7 @@ def finger(
         _draw_layers(above, snapshot, xy)
         frame: dict[str, Any] = {"fill": False, "ec": "black", "lw": 1.5, "ls": "--", "zorder": 4}
         above.add_artist(Rectangle((left, bottom), right - left, top - bottom, **frame))
-        _draw_density(near, snapshot, xy, scale)
+        density(near, snapshot, scale, fitted(_NEAR, scale.near))
         near.set_title("Near the contact; white: between layers" + ("; numbers: ridges" if ridges else ""))
         if sites is not None:
             x, y = _MM * np.asarray(sites).T
@@ -131,7 +134,7 @@ def _empty(snapshot: "Snapshot", scale: Scales, sites: bool, title: str) -> Figu
     """Return a figure with what all states have: the axes of both views, names of layers, colours of densities."""
     figure = style.sheet(_HEIGHT, title)
     for box, view in ((_ABOVE, scale.whole), (_NEAR, scale.near)):
-        ax = style.panel(figure, *_fitted(box, view))
+        ax = style.panel(figure, *fitted(box, view))
         ax.set(xlim=view[:2], ylim=view[2:], xlabel="x (mm)", ylabel="height y (mm)")
         ax.set_aspect("equal", adjustable="datalim")  # the panel stays where it is when a reader looks closer
         ax.xaxis.set_major_locator(MaxNLocator(10, steps=[1, 2, 5, 10]))
@@ -144,7 +147,7 @@ def _empty(snapshot: "Snapshot", scale: Scales, sites: bool, title: str) -> Figu
     handles += [Line2D([], [], color="black", lw=2.5, label="screen")]
     handles += [Line2D([], [], **_SITES)] if sites else []
     above.legend(handles=handles, loc="center left", bbox_to_anchor=(1.03, 0.5))
-    colours = ScalarMappable(_norm(scale), style.MAGNITUDE)
+    colours = ScalarMappable(norm(scale), style.MAGNITUDE)
     bar = figure.colorbar(
         colours, cax=style.panel(figure, *_COLOURS), orientation="horizontal", extend="both",
         ticks=style.decades(_KPA * scale.highest / _DECADES, _KPA * scale.highest), format="%g",
@@ -154,7 +157,7 @@ def _empty(snapshot: "Snapshot", scale: Scales, sites: bool, title: str) -> Figu
     return figure
 
 
-def _fitted(box: Box, view: Box) -> Box:
+def fitted(box: Box, view: Box) -> Box:
     """Return the largest part of a box (in), in its middle, in which a view has one scale along both axes."""
     wide, high = view[1] - view[0], view[3] - view[2]
     unit = min((box[1] - box[0]) / wide, (box[3] - box[2]) / high)
@@ -162,7 +165,7 @@ def _fitted(box: Box, view: Box) -> Box:
     return x - unit * wide / 2, x + unit * wide / 2, y - unit * high / 2, y + unit * high / 2
 
 
-def _norm(scale: Scales) -> LogNorm:
+def norm(scale: Scales) -> LogNorm:
     """Return what makes colours of densities (kPa)."""
     return LogNorm(_KPA * scale.highest / _DECADES, _KPA * scale.highest)
 
@@ -200,17 +203,25 @@ def curve(xy: Array, lines: Numbers) -> Curve:
     return Curve(points[kept.ravel()], codes[kept.ravel()])
 
 
-def _draw_density(ax: Axes, snapshot: "Snapshot", xy: Array, scale: Scales) -> None:
+def density(ax: Axes, snapshot: "Snapshot", scale: Scales, box: Box) -> None:
+    """Draw the energy density near the contact into axes, with the lines between layers and the screen.
+
+    Args:
+        ax: whose units are millimetres.
+        snapshot: state of the body.
+        scale: of which the view near the contact and the colours are taken.
+        box: place of the axes in their figure (in), which gives the number of pixels.
+    """
+    xy = _MM * (snapshot.x + snapshot.u)
     left, right, bottom, top = scale.near
-    box = _fitted(_NEAR, scale.near)
     columns, rows = round(style.DPI * (box[1] - box[0])), round(style.DPI * (box[3] - box[2]))
     pixel = (right - left) / columns
     x, y = left + pixel * (np.arange(columns) + 0.5), bottom + (top - bottom) / rows * (np.arange(rows) + 0.5)
     corners, cells = pieces(xy, snapshot.triangles, snapshot.lines, snapshot.beside, _STRAIGHT * pixel)
     seen = _visible(corners, scale.near)
-    norm = _norm(scale)
-    shown = np.clip(_KPA * snapshot.sed[cells[seen]], norm.vmin, norm.vmax)
-    colours = matplotlib.colormaps[style.MAGNITUDE](norm(shown), bytes=True)
+    span = norm(scale)
+    shown = np.clip(_KPA * snapshot.sed[cells[seen]], span.vmin, span.vmax)
+    colours = matplotlib.colormaps[style.MAGNITUDE](span(shown), bytes=True)
     nothing = np.zeros((1, 4), dtype=np.uint8)  # the last one, which -1 is of
     image = np.concatenate([colours, nothing])[cells_at(corners[seen], x, y)]
     ax.imshow(image, extent=scale.near, origin="lower", interpolation="nearest")
@@ -223,15 +234,24 @@ def _draw_density(ax: Axes, snapshot: "Snapshot", xy: Array, scale: Scales) -> N
     ax.axhline(0, color="black", lw=2.5, zorder=3)
 
 
-def footprint(whole: "WholeFinger", path: Path | None = None) -> Figure:
-    """Draw the outline of each state in contact and the mean contact pressure along the finger.
+def footprint(
+    whole: "WholeFinger",
+    path: Path | None = None,
+    named: Mapping[str, ContactState] | None = None,
+    spacing: float = 5e-4,
+) -> Figure:
+    """Draw the ridges and the outline of each state in contact, and the mean contact pressure along the finger.
 
-    A state's title has its colour. The gross width of a slice is drawn about its middle, where sliding shifts it. The
-    darker band is the sum of the contact lengths of all ridges of a slice, which lie apart in the finger.
+    A state's title has its colour. The gross width of a slice is drawn about its middle, where sliding shifts it.
+    Slices give the sum of the contact lengths of their ridges. Its parts are those of the section at the centre of
+    the finger, at equal places within the gross width: an *assumption* of this picture.
 
     Args:
         whole: the finger.
         path: of the PNG file; None for the figure alone.
+        named: states of the section at its centre by name, whose ridges are drawn; without them, ridges bear like a
+            cylinder's contact, by the root of one minus the square of their place.
+        spacing: of ridges (m) where no state has them.
     """
     with style.look():
         figure = style.sheet(4.9, f"Whole finger under {whole.f_ext:.3g} N, as a sum of slices")
@@ -240,27 +260,60 @@ def footprint(whole: "WholeFinger", path: Path | None = None) -> Figure:
         middle, half, end = 0.0, 0.55 * _MM * widest, 1.1 * _MM * longest
         axes = [style.panel(figure, *box) for box in _footprint_boxes(len(whole.states), half, end)]
         for axis, head, (name, total) in zip(axes, whole.heads(), whole.states.items(), strict=False):
-            z, colour = _MM * total.z, style.STATE[name]
-            gross, touching = (_MM * total.columns[key] / 2 for key in ("gross_width", "contact_length"))
-            axis.fill_betweenx(z, -gross, gross, color=colour, alpha=_LIGHT, lw=0)
-            axis.fill_betweenx(z, -touching, touching, color=colour, lw=0)
+            z, colour = np.linspace(total.z.min(initial=0), total.z.max(initial=0), _ALONG), style.STATE[name]
+            gross, touching = (np.interp(z, total.z, total.columns[key]) for key in ("gross_width", "contact_length"))
+            axis.fill_betweenx(_MM * z, -_MM * gross / 2, _MM * gross / 2, color=colour, alpha=_LIGHT, lw=0)
+            x, parts = ridges_along((named or {}).get(name), spacing, gross)
+            lengths: Array = parts * touching
+            for k, place in enumerate(x):
+                left, right = _MM * (place - lengths[k] / 2), _MM * (place + lengths[k] / 2)
+                axis.fill_betweenx(_MM * z, left, right, where=lengths[k] > 0, color=colour, lw=0)
             area, ridges = (1e6 * total.totals[key] for key in ("gross_area", "contact_area"))
             words = head.replace(" normal", "\nnormal")
             axis.set_title(f"{words}\n{area:.1f} mm² gross,\nridges {ridges:.2f} mm²", color=colour)
             axis.set(xlim=(-half, half), ylim=(-end, end), xlabel="x (mm)")
-            axes[-1].plot(total.pressure / 1e3, z, color=colour)
-            middle = max(middle, float(total.pressure[len(z) // 2]) / 1e3 if len(z) else 0.0)
+            axes[-1].plot(total.pressure / 1e3, _MM * total.z, color=colour)
+            middle = max(middle, float(total.pressure[len(total.z) // 2]) / 1e3 if len(total.z) else 0.0)
         for axis in (axes[0], axes[-1]):
             axis.set_ylabel("z along the finger (mm)")
         axes[-1].set(xlabel="mean contact\npressure (kPa)", title="Along the finger")
         axes[-1].set(xlim=(0, 1.3 * middle or None), ylim=(-end, end))
         bands = {
             "light: gross contact, from the first touching ridge to the last": _LIGHT,
-            "dark: sum of the contact lengths of all ridges of a slice; the ridges lie apart": 1.0,
+            "dark: ridges; a slice has the sum of their lengths, the centre gives its parts": 1.0,
         }
         handles = [Patch(fc=style.GREY, alpha=alpha, lw=0, label=words) for words, alpha in bands.items()]
         figure.legend(handles=handles, loc="lower center")
         return style.save(figure, path)
+
+
+def ridges_along(state: ContactState | None, spacing: float, gross: Array) -> tuple[Array, Array]:
+    """Return places of ridges (m) about the middle of the contact, and their parts of the contact length of slices.
+
+    Args:
+        state: at the centre of the finger, if it is known.
+        spacing: of ridges (m).
+        gross: width of the contact of each slice (m), shape (slices,).
+
+    Returns:
+        Shapes (ridges,) and (ridges, slices); a part is 0 where the ridge does not touch.
+    """
+    count = int(gross.max(initial=0) / 2 / spacing)
+    x, length = spacing * np.arange(-count, count + 1.0), np.array([])
+    ridges = None if state is None else state.ridges
+    if ridges is not None and (ridges.length > 0).any():
+        touches = ridges.length > 0
+        x, length = np.asarray(spacing * ridges.number[touches], dtype=np.float64), ridges.length[touches]
+        x -= (x.min() + x.max()) / 2
+    place = x[:, None] / np.maximum(gross / 2, _ROUNDOFF)
+    outer = max(float(np.abs(x).max(initial=0)), _ROUNDOFF)
+    if length.size:
+        parts = np.interp(place * outer, x, length)
+    else:
+        parts = np.sqrt(np.maximum(1 - place**2, 0))
+    nearest = np.abs(place).min(axis=0, initial=np.inf)  # touches where no ridge lies within a narrow contact
+    parts = np.where(np.abs(place) <= np.maximum(1, nearest), parts, 0.0)
+    return x, parts / np.maximum(parts.sum(axis=0), _ROUNDOFF)
 
 
 def _footprint_boxes(states: int, half: float, end: float) -> list[Box]:
@@ -270,6 +323,6 @@ def _footprint_boxes(states: int, half: float, end: float) -> list[Box]:
     boxes = []
     for k in range(states + 1):
         begin = left + k * (each + _APART) + (_APART if k == states else 0)
-        fitted = _fitted((begin, begin + each, bottom, top), (-half, half, -end, end))
-        boxes.append(fitted if k < states else (begin, right, *fitted[2:]))
+        place = fitted((begin, begin + each, bottom, top), (-half, half, -end, end))
+        boxes.append(place if k < states else (begin, right, *place[2:]))
     return boxes

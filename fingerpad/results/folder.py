@@ -41,7 +41,7 @@ LEFT = (
     *("displacement.bp", "stress.bp", "sed.bp", "fields.csv"),  # of earlier versions
     *("finger_*.npz", "finger_*.png", "surface*.npz", "surface*.png"),
     *("fields_*.vtu", "fields.pvd"),
-    *("history.png", "time.png", "footprint.png", "report.html", "report.html*.part"),
+    *("history.png", "time.png", "field.png", "footprint.png", "solid.png", "report.html", "report.html*.part"),
     *("spikes.csv", "spikes.nc", "raster.png", "motion.npz", "animation.webp"),
 )
 T = TypeVar("T")

@@ -162,7 +162,8 @@ STEPS = _listed(
     ("jump", "", "whether skin or an air gap moved without the loads"),
     ("processor_seconds", "s", "processor time of all ranks since the start of the run"),
     ("viscous", "J/m", "work done in the step on the branches of viscous layers, which store and dissipate it"),
-    ("viscous_least", "", "least work on branches at a point so far over the largest; below 0 more came out than in"),
+    ("viscous_dissipation", "J/m", "energy dissipated in the step by the branches of viscous layers"),
+    ("viscous_least", "", "least dissipation of a branch at a point in the step over the largest; not below 0"),
     ("mesh_contact", "m", "contact size of the mesh"),
     ("time", "s", "time since the start of the first load over time"),
 )  # fmt: skip

@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING, Any
 
 from fingerpad.results import dataset, terminal
 from fingerpad.results.answer import Answer, Cost
-from fingerpad.results.closures import KNOWN, RECORD, in_words, known_in_words
+from fingerpad.results.closures import RECORD, in_words
 from fingerpad.results.files import read_object
+from fingerpad.results.headline import Headline, headline, missing_slip
 from fingerpad.results.quantities import (
     CHANGES,
     PER_LENGTH,
@@ -40,9 +41,9 @@ if TYPE_CHECKING:
     from fingerpad.results.spikes import Spikes
     from fingerpad.scene import Scene
 
-KINDS = ("surface", "finger", "history", "footprint", "time")
+KINDS = ("surface", "finger", "history", "footprint", "time", "field", "solid")
 """Pictures of a result."""
-_SECTION = "Section at the centre of the finger"
+_SECTION = "Middle section of the finger"
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -52,10 +53,11 @@ class Result(Answer):
     def plot(self, kind: str = "surface", path: str | Path | None = None) -> "Figure | None":
         """Draw the skin, the deformed finger, the history of sliding, or the footprint of the whole finger.
 
-        Loads over time have a fourth picture: ``"time"``.
+        Loads over time have another picture, ``"time"``, charged states the electric field of a ridge, ``"field"``, and
+        full runs the whole finger in three dimensions, ``"solid"``.
 
         Args:
-            kind: ``"surface"``, ``"finger"``, ``"history"``, ``"footprint"`` or ``"time"``.
+            kind: ``"surface"``, ``"finger"``, ``"history"``, ``"footprint"``, ``"time"``, ``"field"`` or ``"solid"``.
             path: PNG file to write; None for the figure alone.
 
         Returns:
@@ -66,17 +68,26 @@ class Result(Answer):
         """
         if kind not in KINDS:
             raise ValueError(f"kind is {kind!r}; it must be one of {', '.join(KINDS)}")
-        if kind == "footprint":
+        if kind in ("footprint", "solid"):
             if self.finger is None:
                 raise ValueError("the result has no whole finger to draw: a history has none, else a note says why")
-            from fingerpad.results.finger_picture import footprint  # Matplotlib
+            from fingerpad.results.whole_picture import draw  # Matplotlib
 
-            return footprint(self.finger, None if path is None else Path(path)) if terminal.rank() == 0 else None
+            place = None if path is None else Path(path)
+            return draw(self, self._drawn(), kind, place) if terminal.rank() == 0 else None
         if (drawing := self._drawn()) is not None:
             return drawing.figure(kind, None if path is None else Path(path))
         if not self.steps:
             raise ValueError(f"the result of the model {self.model!r} has no steps to draw; those of model='full' have")
         return None  # on the other ranks
+
+    @property
+    def headline(self) -> Headline:
+        """The finding: a sentence, one number with the error of its solution, and what it is of.
+
+        It is of the whole finger wherever ``finger`` is known, else of the middle section, which a history has alone.
+        """
+        return headline(self)
 
     def to_xarray(self) -> "xarray.Dataset":
         """Return steps, loads, ridges, sites and named states as one dataset with units, as ``result.nc`` has it."""
@@ -145,6 +156,7 @@ class Result(Answer):
             for name, state in self.named.items()
         }
         found: dict[str, Any] = {
+            "headline": self.headline.to_dict(),
             "model": self.model,
             "f_ext": 0.0 if last is None else last.f_ext,
             "voltage": 0.0 if last is None else last.voltage,
@@ -269,11 +281,8 @@ def _state(name: str, kept: Mapping[str, Any]) -> ContactState:
 
 # -- text ------------------------------------------------------------------------------------------------
 def _text(result: Result) -> str:
-    """Return the text *Result* at the end of a run: the named states side by side, with units and errors.
-
-    The whole finger follows; it comes first where the scene has a force on it.
-    """
-    whole, shown = result.whole and result.finger is not None, result.named
+    """Return the text *Result* at the end of a run: headline, whole finger, and named states with units and errors."""
+    shown = result.named
     lines = ["Result" if result.finger is None else _SECTION]
     lines[0] += f" (model '{result.model}')" if result.model != DEFAULT_MODEL else ""
     if shown:
@@ -288,16 +297,14 @@ def _text(result: Result) -> str:
     lines += [f"  {_in_time(load, least)}" for load in result.loads if load.over_time is not None]
     lines += [f"  {note}" for note in _remarks(result)]
     finger = [f"{result.finger}"] if result.finger is not None else []
-    return "\n".join([*finger, *lines] if whole else [*lines, *finger])
+    return "\n".join([f"{result.headline}", *finger, *lines])
 
 
 def _remarks(result: Result) -> list[str]:
     """Return the lines after the table: failure, missing full slip, meaning of ± and N/m, effect of the penalty."""
     found = [f"Not finished: {result.failure}"] if result.failure else []
-    asked = any(load.until_full_slip or load.moves for load in result.scene.loads())
-    if asked and result.full_slip is None and not result.failure:
-        reached = any(load.full_slip_reached for load in result.loads)
-        found.append(f"Full slip was {'not held over a further 0.2 mm' if reached else 'not reached'}.")
+    if (how := missing_slip(result)) and not result.failure:
+        found.append(f"Full slip was {how}.")
     if any(state.error.known() for state in result.named.values()):
         found.append(PLUS_MINUS)
     sizes = {name: state.mesh_contact for name, state in result.named.items() if not math.isnan(state.mesh_contact)}
@@ -307,8 +314,8 @@ def _remarks(result: Result) -> list[str]:
     share = math.nan if result.full_slip is None else result.full_slip.penalty.contact_length
     if not math.isnan(share):
         found.append(f"Penalty: a rigid screen would change the contact length at full slip by {1e3 * share:+.2g} mm.")
-    bands = known_in_words(result.record.get(KNOWN, {})), in_words(result.record.get(RECORD, {}))
-    found += [f"{band[0].upper()}{band[1:]}." for band in bands if band]
+    band = in_words(result.record.get(RECORD, {}))
+    found += [f"{band[0].upper()}{band[1:]}."] if band else []
     cautions = [f"! {caution}" for caution in result.cautions]
     return [*found, *([PER_LENGTH] if result.named else []), *result.notes, *cautions]
 

@@ -1,4 +1,4 @@
-"""Raster of spikes: a panel a class, a row a unit, ridges in their order, and the loads above."""
+"""Raster of spikes: a panel a class, a row a unit, ridges in their order; energy densities and the loads above."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -14,6 +14,7 @@ from fingerpad.results import style
 COLOURS = (style.BLUE, style.VERMILION, style.BLACK, style.GREEN, style.PURPLE)
 _HIGH, _ROW, _LEAST = 1.3, 0.09, 0.6  # in: of all but the panels; of a unit; of a panel at the least
 _TICKS = 0.35  # in, of a panel, between the numbers of two ridges
+_CURVES, _MARKED = 1.8, 4  # in, panel of energy densities; curves that are told apart
 _NAMED = 0.06  # of the length of the run, from which a load has its name
 Load = tuple[str, float, float]
 """Name, begin and end (ms)."""
@@ -32,22 +33,40 @@ class Panel(NamedTuple):
     """Of a spike, in ridges."""
 
 
-def raster(panels: Sequence[Panel], loads: Sequence[Load], end: float, path: Path | None) -> Figure:
+class Curves(NamedTuple):
+    """Strain energy densities at Merkel sites over time."""
+
+    ridges: Sequence[int]
+    time: NDArray[Any]
+    """ms, shape (states,)."""
+    values: NDArray[Any]
+    """kPa, shape (ridges, states)."""
+
+
+def raster(
+    panels: Sequence[Panel], curves: Curves | None, loads: Sequence[Load], end: float, path: Path | None
+) -> Figure:
     """Draw the spikes of a run; write the picture where a path is given.
 
     Args:
         panels: of the classes.
+        curves: drawn above them; None for none.
         loads: of the run.
         end: of the run (ms).
         path: PNG file.
     """
     few = max(len(panel.places) for panel in panels) / 2  # of ridges with two sites
     heights = [_LEAST if each.population else _LEAST + _ROW * max(len(each.places), few) for each in panels]
+    first = 0 if curves is None else 1
+    heights = [_CURVES] * first + heights
     with style.look():
         figure = style.figure(_HIGH + sum(heights))
         drawn = figure.subplots(len(heights), 1, sharex=True, squeeze=False, height_ratios=heights)[:, 0]
-        for k, (ax, panel) in enumerate(zip(drawn, panels, strict=True)):
-            paint(ax, panel, COLOURS[k % len(COLOURS)], max(int(heights[k] / _TICKS), 1))
+        if curves is not None:
+            _paint_curves(drawn[0], curves)
+        for k, (ax, panel) in enumerate(zip(drawn[first:], panels, strict=True)):
+            paint(ax, panel, COLOURS[k % len(COLOURS)], max(int(heights[first + k] / _TICKS), 1))
+        for ax in drawn:
             for _, begin, _ in loads:
                 ax.axvline(begin, color=style.GREY, lw=0.8, ls=":")
         for name, begin, last in loads:
@@ -58,6 +77,19 @@ def raster(panels: Sequence[Panel], loads: Sequence[Load], end: float, path: Pat
         drawn[-1].set_xlim(0, end)
         figure.suptitle("Spikes of afferents below the ridges that can touch; thresholds are relative")
         return style.save(figure, path)
+
+
+def _paint_curves(ax: Axes, curves: Curves) -> None:
+    """Draw all densities, those that change most in colours with the numbers of their ridges."""
+    marked = np.sort(np.argsort(-np.ptp(curves.values, axis=1))[:_MARKED])
+    for values in curves.values:
+        ax.plot(curves.time, values, color=style.GREY, lw=0.7, alpha=0.6)
+    for colour, k in zip(style.CATEGORIES, marked, strict=False):
+        ax.plot(curves.time, curves.values[k], color=colour, label=f"ridge {curves.ridges[int(k)]}")
+    ax.set_ylabel("SED at Merkel\nsites (kPa)")
+    ax.set_ylim(bottom=0)
+    ax.spines[["top", "right"]].set_visible(False)
+    ax.legend(loc="center left", bbox_to_anchor=(1.0, 0.5))
 
 
 def paint(ax: Axes, panel: Panel, colour: str, ticks: int) -> None:

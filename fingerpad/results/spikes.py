@@ -59,6 +59,17 @@ class Span(NamedTuple):
     end: float
 
 
+class Densities(NamedTuple):
+    """Strain energy densities at Merkel sites over a run."""
+
+    ridges: tuple[int, ...]
+    """Their numbers."""
+    time: Array
+    """Of the states (s), shape (states,)."""
+    values: Array
+    """J/m^3 of reference volume, shape (ridges, states)."""
+
+
 @dataclass(frozen=True, eq=False, repr=False)
 class Spikes:
     """Spikes of all units over a run, from time 0 to its end."""
@@ -71,6 +82,8 @@ class Spikes:
     loads: tuple[Span, ...]
     notes: tuple[str, ...] = ()
     """Of which mesh they are, and which classes are left out."""
+    densities: Densities | None = None
+    """Drawn above the spikes."""
 
     def of(self, law: str) -> list[Array]:
         """Return the trains of a class, in the order of its units."""
@@ -142,8 +155,8 @@ class Spikes:
         files.replace(Path(path), netcdf.encoded(self._variables(), (), self._attributes()))
 
     def plot(self, path: str | Path | None = None) -> "Figure":
-        """Draw a raster: each spike over time, unit by unit; write it as PNG where a path is given."""
-        from fingerpad.results.spike_picture import Panel, raster  # Matplotlib
+        """Draw energy densities at Merkel sites over time, and each spike unit by unit below; write a PNG if asked."""
+        from fingerpad.results.spike_picture import Curves, Panel, raster  # Matplotlib
 
         panels = []
         for law in self.laws:
@@ -152,7 +165,9 @@ class Spikes:
             population, half = units[0].ridge is None, bool(units[0].side)
             panels.append(Panel(law, places, [1e3 * train for train in self.of(law)], population, 0.4 if half else 0.8))
         loads = [(span.name, 1e3 * span.begin, 1e3 * span.end) for span in self.loads]
-        return raster(panels, loads, 1e3 * self.seconds, None if path is None else Path(path))
+        found = self.densities
+        curves = None if found is None else Curves(found.ridges, 1e3 * found.time, 1e-3 * found.values)
+        return raster(panels, curves, loads, 1e3 * self.seconds, None if path is None else Path(path))
 
     @property
     def remarks(self) -> tuple[str, ...]:

@@ -28,7 +28,7 @@ class RunContext:
     bar: bool = True
     """Whether a progress bar is shown where a person watches."""
     report: bool = True
-    """Whether ``report.html`` is written beside the results."""
+    """Whether ``report.html`` is written beside the results. A model without a path has bands of its friction then."""
     resume: bool = False
     """Whether the run goes on from the checkpoint in its folder."""
     outputs: Sequence[Output] = ()

@@ -122,17 +122,23 @@ def solved(scene: Scene, model: "Model", context: RunContext) -> Result:
         raise SceneError(str(error)) from error
     whole = not (result.interrupted and scene.force is not None)  # a force without all of its traces is no result
     if context.report and whole and context.folder is not None and context.ranks.rank == 0:
-        from fingerpad.report.write import attempt, draw_footprint
+        from fingerpad.report.write import attempt, draw_whole
 
-        draw_footprint(result)
+        draw_whole(result)
         attempt(context.folder)
     return result
 
 
 def _section(scene: Scene, model: "Model", context: RunContext) -> Result:
-    """Return what a model answers to a scene without a force, with its band, written into a folder; collective."""
+    """Return what a model answers to a scene without a force, with its finger and band, in a folder; collective."""
     result = _solved(scene, model, context)
-    return result if model.path else kept(with_band(result), context)
+    if model.path:
+        return result
+    if model.sums:
+        from fingerpad.slices import traces
+
+        result = traces.with_sum(result, model, lambda each, _: _solved(each, model, replace(context, folder=None)))
+    return kept(with_band(result) if context.report else result, context)
 
 
 def _solved(scene: Scene, model: "Model", context: RunContext) -> Result:
@@ -208,7 +214,8 @@ def _whole(scene: Scene, model: "Model", context: RunContext) -> Result:
 
     found = traces.whole(scene, model, solve)
     found = replace(found, notes=(*found.notes, *notes))
-    return found if found.interrupted else kept(with_band(found), context)
+    banded = model.path or context.report
+    return found if found.interrupted else kept(with_band(found) if banded else found, context)
 
 
 def gone_on(scene: Scene, model: "Model", context: RunContext) -> Result:

@@ -110,7 +110,7 @@ def sweep(
         (folder / name).unlink(missing_ok=True)
     asked = {"version": version(), "model": model, "parameters": scene.parameters()}
     asked |= {"outputs": [each.to_dict() for each in done.outputs]}
-    said = list(dict.fromkeys(note for each in done for note in leakage(each.scene)))
+    said = list(dict.fromkeys(note for each in done.results for note in leakage(each.scene)))
     leaks = f"{'First point: ' * (len(said) > 1)}{said[0]}" if said else ""
     replace_json(folder / FILES[-1], asked | {"cautions": done.cautions(), "notes": [leaks] if leaks else []})
     done.to_csv(folder / FILES[0])
@@ -122,14 +122,14 @@ def sweep(
 
 def _reached(done: Sweep) -> str:
     """Return a note on how the states of a sweep of full slip alone were reached; empty for another one."""
-    alone = [each.full_slip.reached for each in done if "reached" in each.record and each.full_slip is not None]
+    alone = [each.full_slip.reached for each in done.results if "reached" in each.record and each.full_slip is not None]
     direct = len(alone) - alone.count(PATH)
     return f"{direct} of {len(alone)} states of full slip are from a neighbour, the others from paths." if alone else ""
 
 
 def _older(done: Sweep, folder: Path) -> str:
     """Return a note on points that another state of the program has computed; empty without one."""
-    kept = (each.record.get("provenance", {}).get("versions", {}) for each in done)
+    kept = (each.record.get("provenance", {}).get("versions", {}) for each in done.results)
     found = [versions["source"] for versions in kept if "source" in versions]
     count = len(found) - found.count(source())
     if not count:

@@ -8,8 +8,10 @@ frequency of that. Under a force on the whole finger there are columns of that a
 import math
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
+from fingerpad.results.headline import SECTION, WHOLE
 from fingerpad.results.quantities import FINGER, FRICTION, QUANTITIES, SWEPT, Output, cell
 from fingerpad.results.states import STATES, LoadResult
 from fingerpad.scene import Scene
@@ -23,7 +25,11 @@ OTHER = "full_slip_other"
 """Beginning of the columns of a second state of full slip, where there are two."""
 LOAD = "load"
 """Beginning of the columns of a load over time."""
+FORCE = "full_slip_finger_f_ext"
+"""Column of the force on the whole finger at full slip."""
 _WHOLE = ("mu_app", "f_t", "f_electrostatic", "contact_area", "gross_area")
+_FIRST = ("f_ext", "mu_app", "f_t", "contact_area")  # of a sweep without a force in newtons
+_SECOND = ("mu_app", "f_t", "contact_length")  # of its middle section
 _NEWTONS = ("f_ext", *_WHOLE, "indentation")
 _IN_TIME = ("mu_app", "f_t", "contact_length")
 _ENDS = {"min": "least", "max": "largest", "mean": "mean"}
@@ -84,27 +90,44 @@ def shown(columns: Iterable[str], whole: bool, outputs: Iterable[Output] = ()) -
         outputs: of the sweep, that are computed from a state.
 
     Returns:
-        Full slip. Without friction a whole finger has none, and it is the last state before.
+        Full slip. Without friction a whole finger has none, and it is the last state before. Without a force in newtons
+        the whole finger comes first where it is known, and the middle section second.
     """
-    if not whole:
-        known = {key: QUANTITIES[key] for key in SWEPT} | {each.name: each for each in outputs}
-        return "full_slip", {f"full_slip_{key}": each for key, each in known.items()}
     there = set(columns)
+    if not whole:
+        summed = _of_finger("full_slip", "mu_app") in there
+        finger = {_of_finger("full_slip", key): FINGER[key] for key in _FIRST} if summed else {}
+        known = {key: QUANTITIES[key] for key in SWEPT}
+        known = {key: _of_section(known[key]) for key in _SECOND} if summed else known
+        known |= {each.name: each for each in outputs}
+        return "full_slip", finger | {f"full_slip_{key}": each for key, each in known.items()}
     state = next((name for name in reversed(STATES) if _of_finger(name, "contact_area") in there), "full_slip")
     keys = [key for key in _WHOLE if state == "full_slip" or key not in FRICTION]
     return state, {_of_finger(state, key): FINGER[key] for key in keys}
 
 
+def of_finger(column: str) -> bool:
+    """Return whether a column is of the whole finger."""
+    return "_finger_" in column
+
+
+def said_of(columns: Iterable[str]) -> str:
+    """Return in words what the columns of a table are of."""
+    of = {WHOLE: False, SECTION: False}
+    for column in columns:
+        of[WHOLE if of_finger(column) else SECTION] = True
+    words = [words for words, there in of.items() if there]
+    return f"{WHOLE}, and {SECTION} per metre of finger" if len(words) > 1 else words[0]
+
+
+def _of_section(quantity: Output) -> Output:
+    """Return a quantity of the middle section, so called beside one of the whole finger."""
+    return replace(quantity, words=f"{quantity.symbol} of section")
+
+
 def _of_finger(state: str, key: str) -> str:
     """Return the column of a quantity of the whole finger."""
     return f"{state}_finger_{key}"
-
-
-def newtons_of(result: "Result") -> str:
-    """Return friction of the whole finger at full slip (N) as it is printed."""
-    if result.finger is None or "full_slip" not in result.finger.states:
-        return "–"
-    return result.finger.shown("full_slip", "f_t")
 
 
 def loads(columns: Iterable[str]) -> list[str]:

@@ -14,11 +14,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from fingerpad.reduced.closure_band import with_band
 from fingerpad.results import dataset
+from fingerpad.results.closures import KNOWN
 from fingerpad.results.files import replace
 from fingerpad.results.quantities import FINGER, PER_LENGTH, Output
 from fingerpad.results.states import STATES, WORDS
-from fingerpad.runs.sweep_columns import described, head_of, newtons_of, printed, row, shown, tables
+from fingerpad.runs.sweep_columns import described, head_of, of_finger, printed, row, said_of, shown, tables
 from fingerpad.slices.errors import remarks
 from variational.state import CONDITIONS, RESULTS
 
@@ -54,11 +56,15 @@ class Sweep:
 
     def __iter__(self) -> Iterator["Result"]:
         """Return the results in order."""
-        return iter(self.results)
+        return (self[k] for k in range(len(self)))
 
     def __getitem__(self, k: int) -> "Result":
-        """Return a result by its place."""
-        return self.results[k]
+        """Return a result by its place, with the bands of its friction, which points by a closed form have from here.
+
+        The bands take as long as the point itself, and no table of a sweep has them.
+        """
+        result = self.results[k]
+        return result if KNOWN in result.record else with_band(result)
 
     @property
     def whole(self) -> bool:
@@ -148,14 +154,13 @@ class Sweep:
         replace(Path(path), text.getvalue())
 
     def __str__(self) -> str:
-        """Return full slip over the axes, and loads over time, as tables with units; ± estimated discretisation errors.
+        """Return full slip over the axes, and loads over time, as tables with units; ± estimated errors.
 
-        The last column is friction of the whole finger, where it is known.
+        The first columns are of the whole finger, where it is known, and those of the middle section follow.
         """
         rows, axes = self.rows(), {key: head_of(key) for key in self.axes}
         state, columns = shown((column for each in rows for column in each), self.whole, self.outputs)
-        newtons = not self.whole and any(result.finger is not None for result in self.results)
-        table = [[*axes.values(), *(each.head for each in columns.values()), *(["F_T (N)"] if newtons else [])]]
+        table = [[*axes.values(), *(each.head for each in columns.values())]]
         for each, result in zip(rows, self.results, strict=True):
             first = [printed(each[key]) for key in axes]
             values = {column: each.get(column) for column in columns}
@@ -164,12 +169,13 @@ class Sweep:
                 continue
             errors = {column: each.get(f"{column}_error") for column in columns}
             cells = [of.shown(values[column], errors[column]) for column, of in columns.items()]
-            table.append([*first, *cells, *([newtons_of(result)] if newtons else [])])
-        lines = [f"{'Whole finger, at' if self.whole else 'At'} {WORDS[state]}", *_aligned(table)]
+            table.append([*first, *cells])
+        of = said_of(columns)
+        lines = [f"{of[0].upper()}{of[1:]}, at {WORDS[state]}", *_aligned(table)]
         for name, over_time in tables(rows, axes):
             lines += [f"Over time, in the load {name}", *_aligned(over_time)]
-        forces = dict.fromkeys(each.scene.force for each in self.results if each.scene.force is not None)
-        notes = remarks(forces) if self.whole else [PER_LENGTH]
+        forces = {each.finger.f_ext for each in self.results if each.finger is not None}
+        notes = [*remarks(forces), *([] if any(map(of_finger, columns)) else [PER_LENGTH])]
         return "\n".join([*lines, *notes, *(f"! {caution}" for caution in self.cautions()), *self.notes])
 
     __repr__ = __str__

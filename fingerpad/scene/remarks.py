@@ -13,11 +13,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from fingerpad.scene.fingers import ADULT, FINGERS
 from fingerpad.scene.law_keys import Kept
 from fingerpad.scene.materials import LAYERS
 from fingerpad.scene.messages import clip, show
 from fingerpad.scene.supply import leak_in_words, remains, supply_of
-from fingerpad.scene.viscosity import viscous_layers
+from fingerpad.scene.viscosity import elastic, viscous_layers
 from fingerpad.scene.waveform import Waveform
 from variational.attraction.circuit import GapCircuit
 from variational.contact.friction import Coulomb, Friction
@@ -92,7 +93,7 @@ def remarks(scene: "Scene") -> list[str]:
 
     There is none on the roughness of a closure of one's own, or of a mesh of a file.
     """
-    found = [*offsets(scene), *nothing_ages(scene)]
+    found = [*offsets(scene), *nothing_ages(scene), *name_without_effect(scene)]
     if isinstance(scene.roughness, BearingArea | TabulatedClosure) and scene.geometry.file is None:
         found += ridges_as_roughness(scene.roughness.wavelength, scene.geometry.ridge_wavelength)
         found += missing_waves(scene.roughness.wavelength)
@@ -169,6 +170,36 @@ def nothing_ages(scene: "Scene") -> list[str]:
     law = scene.friction
     if isinstance(law, Friction) and law.memory is not None:
         found.append(f"friction is {type(law).__name__} and {timeless} friction stays as it begins; {remedy}")
+    return found
+
+
+def finger_in_words(scene: "Scene") -> list[str]:
+    """Return who a scene's finger is, and which keys of its name are given otherwise; none of the default finger."""
+    if scene.finger == ADULT:
+        return []
+    other = _changed(scene)
+    count = len(FINGERS[scene.finger].values) - len(other)
+    more = f"; otherwise: {', '.join(other)}" if other else ""
+    return [f"finger {scene.finger}, {FINGERS[scene.finger].words}: {count} keys by its name (docs/fingers.md){more}"]
+
+
+def name_without_effect(scene: "Scene") -> list[str]:
+    """Return a remark where all keys of a finger's name are given otherwise."""
+    values = FINGERS[scene.finger].values
+    if not values or len(_changed(scene)) < len(values):
+        return []
+    return [f"finger is {show(scene.finger)} and all of its keys are given with other values: the name has no effect"]
+
+
+def _changed(scene: "Scene") -> list[str]:
+    """Return the keys of the finger's name that have other values in the scene."""
+    return [key for key, value in FINGERS[scene.finger].values.items() if _value(scene, key) != value]
+
+
+def _value(scene: "Scene", key: str) -> Any:
+    found: Any = scene
+    for part in key.split("."):
+        found = getattr(elastic(found), part, None)
     return found
 
 

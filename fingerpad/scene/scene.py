@@ -11,13 +11,23 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 from pydantic import Field, ValidationError, model_validator
 
-from fingerpad.scene.changes import DEFAULT_HISTORY, changed, with_coarse_start
+from fingerpad.scene.changes import DEFAULT_HISTORY, changed, forget, with_coarse_start, with_finger, without_finger
 from fingerpad.scene.electric import Electric
+from fingerpad.scene.fingers import ADULT, FingerName
 from fingerpad.scene.keys import every
 from fingerpad.scene.law_code import digest, folder_of, imported
 from fingerpad.scene.law_keys import Kept, kept
 from fingerpad.scene.loads import Load, Voltage, drives, refuse_contradictions
-from fingerpad.scene.materials import BEARING_AREA, FRICTION, LAYERS, ROUGHNESS, Materials, refuse_thickness
+from fingerpad.scene.materials import (
+    BEARING_AREA,
+    CLOSURES,
+    FRICTION,
+    LAYERS,
+    MATERIALS,
+    ROUGHNESS,
+    Materials,
+    refuse_thickness,
+)
 from fingerpad.scene.messages import SceneError, first_error, show
 from fingerpad.scene.parameters import (
     Accuracy,
@@ -40,6 +50,9 @@ from variational.roughness.closure import Closure
 
 if TYPE_CHECKING:
     from variational.materials.material import Material
+
+
+_LAWS: dict[str, type] = {**MATERIALS.laws, **CLOSURES.laws}
 
 
 class Scene(Table):
@@ -70,6 +83,9 @@ class Scene(Table):
     """Loads to reach one after the other, at most 1000, in place of the default press, charge and slide."""
     friction: Annotated[float | Friction, FRICTION] = 0.25
     """Friction coefficient mu_0 of skin on the screen, or a table of a law of friction."""
+    finger: FingerName = "adult"
+    """Finger by its name, whose keys are those of docs/fingers.md. A key that is given wins over the name's. "adult" is
+    the default finger."""
     geometry: Geometry = Geometry()
     mesh: MeshSize = MeshSize()
     materials: Materials = Materials()
@@ -89,10 +105,12 @@ class Scene(Table):
         """
         given = plain(data)
         refuse_beside_mesh(given)
+        full, named = with_finger(given, _LAWS)
         try:
-            self.__pydantic_validator__.validate_python(with_coarse_start(given), self_instance=self)
+            self.__pydantic_validator__.validate_python(with_coarse_start(full), self_instance=self)
         except ValidationError as error:
             raise SceneError(first_error(error, Scene, (key.name for key in every(Scene)))) from None
+        forget(self, given, named)
 
     output: Output = Output()
     slices: Slices = Slices()
@@ -248,6 +266,7 @@ class Scene(Table):
         """Return every parameter in use, ready for JSON; as a scene it gives the same run again."""
         unused = {"history"} if self.history is None else {*DEFAULT_HISTORY}
         unused |= {"accuracy"} if self.accuracy is None else set()
+        unused |= {"finger"} if self.finger == ADULT else set()
         unused |= {"force" if self.force is None else "f_ext"}
         found = self.model_dump(mode="json", exclude=unused)
         if self.geometry.file is not None:  # whose mesh has its own shape and sizes
@@ -278,8 +297,20 @@ def load(path: Path | None = None, overrides: Mapping[str, Any] | None = None) -
         SceneError: the file cannot be read, or the first key at fault.
     """
     data = {} if path is None else read_scene(Path(path))
-    put_all(data, overrides or {})
-    return from_data(data)
+    return from_data(overridden(data, overrides or {}))
+
+
+def overridden(data: Mapping[str, Any], changes: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the data of a scene with values by dotted key.
+
+    Another ``finger`` replaces values in the record of a run that are of the record's finger.
+
+    Raises:
+        SceneError: a table, or an entry of a list, that is not there.
+    """
+    found = without_finger(data, laws=False) if "finger" in changes else dict(data)
+    put_all(found, changes)
+    return found
 
 
 def from_data(data: Mapping[str, Any]) -> Scene:

@@ -9,7 +9,6 @@ Files of more than :data:`POINTS` samples are averaged in groups, all of as many
 :data:`_LOST` of the mean square, a carrier for example, the file is refused.
 """
 
-import csv
 import math
 from collections.abc import Sequence
 from typing import Annotated, Any
@@ -93,13 +92,11 @@ def _rows(file: str, name: str) -> _Rows:
 
 
 def _parted(text: str, mark: str, name: str) -> _Rows:
-    """Return the lines of a text with their cells; a decimal comma is none where commas part the cells."""
+    """Return the lines of a text with their cells."""
     try:
-        lines = list(csv.reader(text.splitlines(), delimiter=mark, strict=True))
-    except (ValueError, csv.Error) as error:
+        return files.parted(text, mark)
+    except ValueError as error:
         raise ValueError(f"{name}, which is no table in CSV: {show(clip(str(error), 100))}") from None
-    cells = ([cell.strip() if mark == "," else cell.strip().replace(",", ".") for cell in line] for line in lines)
-    return [(k, line) for k, line in enumerate(cells, start=1) if any(line)]
 
 
 def _count(rows: _Rows) -> int:

@@ -19,7 +19,7 @@ from fingerpad.scene.messages import SceneError
 from fingerpad.scene.remarks import coefficient
 from fingerpad.slices import errors
 from fingerpad.slices.finger import WholeFinger, in_order
-from fingerpad.slices.total import at_force, at_indentation, deepest, profile
+from fingerpad.slices.total import profile, under_one_force
 from fingerpad.slices.trace import LEAST, Trace, TraceError, columns, trace
 from variational.state import ContactState
 
@@ -62,9 +62,7 @@ def estimate(scene: Scene, press: Sequence[ContactState], named: Mapping[str, Co
     traces = {name: _scaled(scene, pressed, name, state, wavelength) for name, state in named.items()}
     if "uncharged" in named and "charged" in named and named["charged"].voltage == 0:  # one state, with one trace
         traces["uncharged"], named = traces["charged"], {**named, "uncharged": named["charged"]}
-    # At one indentation the states bear other forces: the least is one that every trace reaches.
-    force = min(at_indentation(finger, each, deepest(finger, each), count).totals["f_ext"] for each in traces.values())
-    found = {name: at_force(finger, each, force * (1 - 1e-9), count) for name, each in traces.items()}
+    found = under_one_force(finger, traces, count)
     carried = {}
     for name, total in found.items():
         estimated = name != "uncharged" and traces[name] is not traces.get("uncharged")

@@ -133,10 +133,15 @@ class WholeFinger:
         """Return the words of the states."""
         return [called(name, total.totals["f_electrostatic"]) for name, total in self.states.items()]
 
+    def parts(self, *names: str) -> tuple[str, ...]:
+        """Return what the errors of states are made of; of all states by default."""
+        every = (self.carried.get(name, {}) for name in names or self.states)
+        parts = dict.fromkeys(part for each in every for part, known in each.items() if known)
+        return (*parts, *[errors.POINTS] * bool(self.traces))
+
     def remarks(self) -> list[str]:
         """Return what a reader of the numbers must be told."""
-        parts = dict.fromkeys(part for each in self.carried.values() for part, known in each.items() if known)
-        known = [f"±: estimated error, by {', '.join([*parts, *[errors.POINTS] * bool(self.traces)])}."]
+        known = [f"±: estimated error, by {', '.join(self.parts())}."]
         known *= any(map(any, (each.values() for each in self.error.values())))
         return [*known, *errors.remarks([self.f_ext]), f"Slices: {self.source}."]
 

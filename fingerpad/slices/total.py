@@ -1,6 +1,6 @@
 """The finger along its axis, and the sum over its slices: forces in N and areas in m², at an indentation or a force."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cache, cached_property
 from typing import Any
@@ -249,6 +249,22 @@ def at_force(profile: Profile, trace: Trace, force: float, count: int) -> Total:
             )
     delta = brentq(excess, low, high, xtol=1e-16, rtol=1e-14)
     return at_indentation(profile, trace, float(delta), count)
+
+
+def under_one_force(profile: Profile, traces: Mapping[str, Trace], count: int) -> dict[str, Total]:
+    """Return the finger in several states under one force, the largest that all of their traces reach.
+
+    Args:
+        profile: the finger along its axis.
+        traces: of a slice on the scale 1, by state. At one indentation the states bear other forces.
+        count: slices in each stretch of contact.
+
+    Raises:
+        SceneError: the pad has no contact, or more of it than the finger has.
+    """
+    ends = (at_indentation(profile, each, deepest(profile, each), count) for each in traces.values())
+    force = min(total.totals["f_ext"] for total in ends)
+    return {name: at_force(profile, each, force * (1 - 1e-9), count) for name, each in traces.items()}
 
 
 def deepest(profile: Profile, trace: Trace) -> float:

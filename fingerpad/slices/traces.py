@@ -21,7 +21,7 @@ from fingerpad.scene.messages import SceneError
 from fingerpad.scene.parameters import LINE, POINT, POWER
 from fingerpad.slices import errors
 from fingerpad.slices.finger import WholeFinger, in_order
-from fingerpad.slices.total import BeyondTrace, Total, at_force, profile
+from fingerpad.slices.total import BeyondTrace, Total, at_force, profile, under_one_force
 from fingerpad.slices.trace import Trace, TraceError, trace
 from geometry.units import computed
 from variational.state import ContactState, Errors
@@ -98,6 +98,28 @@ def whole(scene: Scene, model: "Model", solve: Solve) -> Result:
     return replace(solve(scene.replace(f_ext=centre), ""), scene=scene, finger=finger)
 
 
+def with_sum(result: Result, model: "Model", solve: Solve) -> Result:
+    """Return the result of a section by a model without a path, with its whole finger, or with a note why it has none.
+
+    The centre of the finger bears the section's force in one of the named states, and less in the others.
+
+    Args:
+        result: of a scene without a force on the whole finger.
+        model: that solved it.
+        solve: solves a scene by it.
+    """
+    scene = result.scene
+    try:
+        found = {name: of_points(scene, model, solve, name, scene.f_ext) for name in states(scene)}
+        totals = under_one_force(
+            profile(scene.slices), {name: each.trace for name, each in found.items()}, scene.slices.count
+        )
+        found = {name: each._replace(total=totals[name]) for name, each in found.items()}
+        return replace(result, finger=summed(scene, model.traces, found))
+    except (SceneError, TraceError) as error:
+        return replace(result, notes=(*result.notes, f"no newtons of the whole finger: {error}"))
+
+
 def history(scene: Scene, name: str, top: float, part: float = LIGHT) -> Scene:
     """Return the scene of a trace of the full model.
 
@@ -143,7 +165,7 @@ def summed(scene: Scene, words: str, found: Mapping[str, Traced]) -> WholeFinger
     """Return the finger on its traces.
 
     Args:
-        scene: with a force.
+        scene: of all.
         words: what the traces are of.
         found: the traces by state.
     """

@@ -22,9 +22,20 @@ of second order, and of any step where S stays. So the stress of a step is the d
 whose tangent is the scaled elastic one. A step that takes no time, :math:`\Delta = 0`, is elastic at the modulus at
 once. In plane strain :math:`S_{33}` and :math:`Q_{33}` are carried along for the stress normal to the plane.
 
-The branches begin without energy, so that each point's work :math:`\int \sum_i Q_i : \tfrac12 \dot C \,dt` is what they
-store and dissipate, and in a material never below zero. Quasi-linear viscoelasticity does not guarantee that at large
-strain; :mod:`variational.relaxation` keeps this work for each point.
+At a frozen inner state a branch is elastic, so that it stores, and can give back at once,
+
+.. math:: \psi_i = \frac{1}{2 \beta_i} Q_i : M : Q_i, \qquad M = (\partial S / \partial E)^{-1},
+
+with Green's strain E (exact where S is linear in E; M is that of the present strain). Strain stays in both halves of a
+step. What a branch loses there is what it dissipates,
+
+.. math:: D_i = \psi_i(Q_i^n) - \psi_i(e^{-\Delta / 2 \tau_i} Q_i^n) + \psi_i(Q_i^*) - \psi_i(Q_i^{n+1}), \qquad
+          Q_i^* = e^{-\Delta / 2 \tau_i} Q_i^n + \beta_i (S^{n+1} - S^n),
+
+the first two terms by M of the step's beginning, the others by M of its end. It is never below zero where weights,
+times and M are positive. Quasi-linear viscoelasticity does not guarantee M at large strain, so that
+:mod:`variational.relaxation` computes D of each branch at each point. Strain normal to the plane is zero and does no
+work, so that M is that of the plane.
 """
 
 from dataclasses import dataclass
@@ -102,9 +113,9 @@ class Viscoelastic(Material):
                 "its own; it must be a law with a bulk modulus, such as Ogden or NeoHooke"
             )
 
-    def step(self, lapse: Any, stress: Any, overstress: list[Any]) -> "StepLaw":
+    def step(self, scale: Any, held: Any, stored: Any) -> "StepLaw":
         """Return the law of a step; arguments as of :class:`StepLaw`."""
-        return StepLaw(self, lapse, stress, overstress)
+        return StepLaw(self, scale, held, stored)
 
     @property
     def made_of(self) -> tuple[Material, dict[str, QLV]]:
@@ -144,21 +155,16 @@ class Viscoelastic(Material):
 class StepLaw(Material):
     """The hyperelastic law of one step, of the energy W above."""
 
-    def __init__(self, law: Viscoelastic, lapse: Any, stress: Any, overstress: list[Any]) -> None:
-        """Take what the step begins with; UFL, stresses with the components 11, 22, 12 and 33.
+    def __init__(self, law: Viscoelastic, scale: Any, held: Any, stored: Any) -> None:
+        """Take what the step begins with; UFL.
 
         Args:
             law: with fields in the place of its numbers.
-            lapse: duration of the step (s).
-            stress: accepted isochoric stress S of the elastic law (Pa).
-            overstress: accepted Q of each branch (Pa).
+            scale: factor on the isochoric energy.
+            held: stress H (Pa) that the past leaves, with the components 11, 22, 12 and 33.
+            stored: energy (J/m^3) that all branches store in the accepted state.
         """
-        self.elastic, self._before, self._past = law.elastic, stress, overstress
-        self._left = [ufl.exp(-lapse / tau) for _, tau in law.branches]
-        self._follows = [beta * ufl.exp(-lapse / (2 * tau)) for beta, tau in law.branches]
-        self._scale = 1 + sum(self._follows)
-        past = zip(self._left, self._follows, overstress, strict=True)
-        self._held = sum(left * Q - follows * stress for left, follows, Q in past)
+        self.elastic, self._scale, self._held, self._stored = law.elastic, scale, held, stored
 
     @property
     def volumetric(self) -> Any:
@@ -179,14 +185,25 @@ class StepLaw(Material):
         return self._scale * self.elastic.distortion_zz(F) + self._held[3] / ufl.det(F)
 
     def density(self, F, p=None):
-        """Return the energy density (J/m^3) of the elastic law, without what branches store."""
-        return self.elastic.density(F, p)
+        """Return the energy density (J/m^3) of the elastic law with what branches store."""
+        return self.elastic.density(F, p) + self._stored
 
-    def updated(self, H) -> tuple[Any, list[Any]]:
-        """Return what the step leaves of the isochoric stress and of each branch's (Pa), UFL."""
+    def strained(self, H) -> Any:
+        """Return S (Pa; 11, 22, 12, 33), Green's strain (11, 22, 12) and M (1/Pa; 11, 22, 33, 12, 13, 23), in a row.
+
+        M leads from stresses 11, 22, 12 to strains 11, 22 and twice 12.
+        """
         F = ufl.classes.Variable(kinematics.deformation_gradient(H), kinematics.GRADIENT)
         S = ufl.inv(F) * ufl.diff(self.elastic.distortion(kinematics.displacement_gradient(F)), F)
         normal = self.elastic.distortion_zz(F) * ufl.det(F)
-        now = ufl.as_vector([S[0, 0], S[1, 1], (S[0, 1] + S[1, 0]) / 2, normal])
-        past = zip(self._left, self._follows, self._past, strict=True)
-        return now, [left * Q + follows * (now - self._before) for left, follows, Q in past]
+        slope = ufl.diff(S, F)
+        rows = []
+        for E in ([[1, 0], [0, 0]], [[0, 0], [0, 1]], [[0, 0.5], [0.5, 0]]):
+            dF = ufl.inv(F).T * ufl.as_matrix(E)  # of which dE = (F^T dF + dF^T F) / 2 is the E given
+            dS = [[sum(slope[i, j, k, m] * dF[k, m] for k in (0, 1) for m in (0, 1)) for j in (0, 1)] for i in (0, 1)]
+            rows.append([dS[0][0], dS[1][1], (dS[0][1] + dS[1][0]) / 2])
+        M = ufl.inv(ufl.as_matrix(rows))
+        stress = S[0, 0], S[1, 1], (S[0, 1] + S[1, 0]) / 2, normal
+        strain = kinematics.green_strain(H)
+        compliance = M[0, 0], M[1, 1], M[2, 2], M[0, 1], M[0, 2], M[1, 2]
+        return ufl.as_vector([*stress, *(strain[k] for k in range(3)), *compliance])

@@ -79,7 +79,7 @@ class AcceptedState:
         solver.equations.to_fields(solver.x)
         coupling.set_air_gaps(self.d_eq.copy())
         problem.history.accept(self.history)
-        problem.lapse.value = 0.0
+        problem.elapse(0.0)
         solver.control = replace(self.control)
         problem.voltage.value = self.voltage
         solver.reaction = self.reaction.copy()

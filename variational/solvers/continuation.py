@@ -118,7 +118,7 @@ class Continuation:
         self.slip = self.observer.slip(self.surface_state)
         history = self.problem.history
         history.accept(history.updated(self.surface_state.history))
-        self.problem.lapse.value = 0.0
+        self.problem.elapse(0.0)
         self._now = AcceptedState.of(self.coupling)
         self.steps += 1
         PETSc.garbage_cleanup(self.problem.mesh.comm)  # objects that several ranks have dropped wait for this
@@ -325,7 +325,8 @@ class Continuation:
         behind: float = 0.0,
     ) -> None:
         counts = self.solver.counts
-        self.problem.dt.value = self.problem.lapse.value = dt
+        self.problem.dt.value = dt
+        self.problem.elapse(dt)
         newton, factorisations, shifted = counts.newton, counts.factorisations, counts.pseudo_transient
         if behind:
             history = self.problem.history

@@ -2,7 +2,7 @@ r"""The equilibrium for given loads: Newton's method, and what is tried where it
 
 The unknowns are the bone's translation and the displacement relative to it (:mod:`~variational.problem`). The first
 tangent of a load is that of the state it starts from, so that the first iterate is the tangent predictor; along a slide
-it is the last one, which goes on serving while it serves.
+and in loads over time, whose steps are small, it is the last one, which goes on serving while it serves.
 :mod:`~variational.solvers.iteration` has the rules for steps.
 
 Where the iteration fails and mostly friction stays out of balance, points on the friction cone are first taken for
@@ -153,8 +153,8 @@ class Solver:
     def new_load(self, control: Control, voltage: float, slipping: bool = False, on_cone: bool = True) -> None:
         """Prescribe a load.
 
-        The next solve starts from the tangent of the present state; along a slide whose last solve ended in an
-        equilibrium, from a kept one.
+        The next solve starts from the tangent of the present state; along a slide, and in loads over time, from a kept
+        one if the last solve ended in an equilibrium.
 
         Args:
             control: what is prescribed of the bone.
@@ -163,8 +163,8 @@ class Solver:
             on_cone: whether there are any, as the last accepted state of a path leaves; else no other guess is tried.
         """
         guess = SLIPS if slipping else STICKS
-        same = self.problem.voltage.value == voltage and self.problem.guess.value == guess
-        self.iteration.tangent.stale |= not (self._solved and same and self.control.x != control.x)
+        small = self.problem.dt.value > 0 or (self.problem.voltage.value == voltage and self.control.x != control.x)
+        self.iteration.tangent.stale |= not (self._solved and small and self.problem.guess.value == guess)
         self.control, self.problem.voltage.value = control, voltage
         self.problem.guess.value = guess
         self._on_cone = on_cone

@@ -1,0 +1,277 @@
+r"""The headline of a result: a sentence, one number with the error of its solution, and what the number is of.
+
+The friction coefficient of a result is that of the whole finger wherever slices can be summed over it, with or without
+a force in newtons. The section at the centre, in plane strain and per metre of finger, is called the *middle section*.
+It is the headline where there is no sum: of a history, of a finger from a file, and where a note has the reason.
+
+Without attraction, friction at full slip is :math:`\mu_0 F` by Coulomb's law, whatever the finger. Under another law
+it would be a result of its own, so that the sentence has the friction force alone.
+"""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from fingerpad.results.closures import KNOWN, known_in_words
+from fingerpad.results.quantities import FINGER, QUANTITIES, Output
+from fingerpad.results.states import LoadResult, called
+
+if TYPE_CHECKING:
+    from fingerpad.results.answer import Answer
+    from fingerpad.slices.finger import WholeFinger
+    from variational.state import ContactState
+
+WHOLE, SECTION = "whole finger", "middle section"
+"""What a headline is of."""
+MESH, PENALTY, MODEL = "mesh", "penalty", "closed form"
+"""Parts of the error of a section's solution."""
+_DIGITS = (2, 3, 4)  # of the numbers in a sentence: as few as tell them apart
+_ROUNDOFF = 1e-9  # by which a number is raised, so that one in the middle of two rounds up on every machine
+
+
+@dataclass(frozen=True)
+class Headline:
+    """What a result comes to."""
+
+    sentence: str
+    """The finding, a full sentence."""
+    of: str
+    """:data:`WHOLE` or :data:`SECTION`."""
+    quantity: Output
+    """Of the number."""
+    value: float
+    """The number (SI); NaN where it is a range, or where there is none."""
+    at: str = ""
+    """The state that the number is of, in words."""
+    error: float = math.nan
+    """Estimated error of the solution (SI); NaN where it is not estimated."""
+    parts: tuple[str, ...] = ()
+    """What the error is of."""
+    ends: tuple[float, float] = (math.nan, math.nan)
+    """Least and largest value (SI) over time, where the number is a range."""
+    known: str = ""
+    """How far the number is known, in words; empty where that is not estimated."""
+
+    @property
+    def symbol(self) -> str:
+        """Symbol of the number, such as µ_app."""
+        return self.quantity.symbol
+
+    @property
+    def number(self) -> str:
+        """The number behind its symbol, with its error and its unit; empty without one."""
+        unit = f" {self.quantity.unit}" if self.quantity.unit else ""
+        if not math.isnan(self.ends[0]):
+            low, high = (self.quantity.shown(end) for end in self.ends)
+            return f"from {low} to {high}{unit}"
+        return "" if math.isnan(self.value) else f"= {self.quantity.shown(self.value, self.error)}{unit}"
+
+    @property
+    def solved(self) -> str:
+        """How far the number is solved, in words; empty where that is not estimated."""
+        error = self.quantity.shown(self.value, self.error).partition(" ± ")[2]
+        return f"solved to ± {error} ({', '.join(self.parts)})" if error else ""
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return the headline, ready for JSON; SI units."""
+        found: dict[str, Any] = {"sentence": self.sentence, "of": self.of, "quantity": self.quantity.name}
+        numbers = {"value": self.value, "error": self.error, "min": self.ends[0], "max": self.ends[1]}
+        return found | {"state": self.at} | {key: value for key, value in numbers.items() if not math.isnan(value)}
+
+    def __str__(self) -> str:
+        """Return the first lines of a printed result: the sentence, the number, and how far it is known."""
+        lines = [self.sentence]
+        if self.number:
+            lines.append(f"  {self.symbol} of the {self.of} {self.number}, {self.at}.")
+        lines += [f"  {text[0].upper()}{text[1:]}." for text in (self.solved, self.known) if text]
+        return "\n".join(lines)
+
+
+def headline(result: "Answer") -> Headline:
+    """Return the headline of a result."""
+    slip, finger = result.full_slip if result.scene.friction_law() is not None else None, result.finger
+    if (load := _timed(result)) is not None:
+        return _over_time(load, slip)
+    if finger is not None and (slip is None or "full_slip" in finger.states):
+        return _of_finger(result, finger)
+    if slip is not None:
+        return _of_slip(result, slip)
+    return _of_contact(result)
+
+
+def missing_slip(result: "Answer") -> str:
+    """Return in words that a slide did not end in full slip; empty where it did, or where nothing slides."""
+    if result.full_slip is not None or not any(load.until_full_slip or load.moves for load in result.scene.loads()):
+        return ""
+    held = any(load.full_slip_reached for load in result.loads)
+    return "not held over a further 0.2 mm" if held else "not reached"
+
+
+# -- what a number is of ---------------------------------------------------------------------------------------
+def _of_finger(result: "Answer", finger: "WholeFinger") -> Headline:
+    """Return the friction coefficient of the whole finger; its ridge contact area without full slip."""
+    volts = result.scene.volts
+    force = f"{finger.f_ext:.4g} N" if result.whole else f"{finger.f_ext * (1 + _ROUNDOFF):.2g} N"
+    conditions = f"{finger.f_ext:.4g} N and {volts:.4g} V"
+    if "full_slip" in finger.states:
+        values, key = finger.values("full_slip"), "mu_app"
+        before = _without(result, finger.f_ext)
+        sentence = _change(result, force, volts, "friction force", before, abs(values["f_t"]), "N")
+        error, parts = _error_of_finger(result, finger, "full_slip", key)
+        at = f"at full slip, {conditions}"
+        return Headline(sentence, WHOLE, FINGER[key], values[key], at, error, parts, known=_known(result, WHOLE))
+    name, quantity = list(finger.states)[-1], FINGER["contact_area"]
+    area = finger.values(name)["contact_area"]
+    attracts = volts and "uncharged" in finger.states and name == "charged"
+    before = quantity.scale * finger.values("uncharged")["contact_area"] if attracts else None
+    sentence = _change(result, force, volts, "ridge contact area", before, quantity.scale * area, "mm²")
+    error, parts = _error_of_finger(result, finger, name, "contact_area", "contact_length")
+    at = f"in {called(name, finger.states[name].totals['f_electrostatic'])}, {conditions}"
+    return Headline(_stuck(result, f"{force} and {volts:.4g} V") or sentence, WHOLE, quantity, area, at, error, parts)
+
+
+def _of_slip(result: "Answer", slip: "ContactState") -> Headline:
+    """Return the friction coefficient of the middle section; its friction force where no force presses it."""
+    force, what = f"{slip.f_ext:.4g} N/m", f"friction force of the {SECTION}"
+    before = _without(result, slip.f_ext) if slip.f_ext > 0 else None
+    sentence = _change(result, force, slip.voltage, what, before, abs(slip.f_t), "N/m")
+    at = f"at full slip, {slip.f_ext:.4g} N/m and {slip.voltage:.4g} V"
+    key = "f_t" if math.isnan(slip.mu_app) else "mu_app"
+    error, parts = _error_of_section(result, slip, key)
+    known = _known(result, SECTION)
+    return Headline(sentence, SECTION, QUANTITIES[key], getattr(slip, key), at, error, parts, known=known)
+
+
+def _of_contact(result: "Answer") -> Headline:
+    """Return the contact length of the middle section in normal contact."""
+    named, quantity = result.named, QUANTITIES["contact_length"]
+    if not named:
+        return Headline("No contact state was kept.", SECTION, quantity, math.nan)
+    name, state = list(named.items())[-1]
+    force = f"{state.f_ext:.4g} N/m"
+    attracts = state.voltage and result.uncharged is not None and name == "charged"
+    before = quantity.scale * result.uncharged.contact_length if attracts and result.uncharged else None
+    after = quantity.scale * state.contact_length
+    sentence = _change(result, force, state.voltage, f"contact length of the {SECTION}", before, after, "mm")
+    at = f"in {called(name, state.voltage)}, {state.f_ext:.4g} N/m and {state.voltage:.4g} V"
+    error, parts = _error_of_section(result, state, "contact_length")
+    sentence = _stuck(result, f"{force} and {state.voltage:.4g} V") or sentence
+    return Headline(sentence, SECTION, quantity, state.contact_length, at, error, parts)
+
+
+def _over_time(load: LoadResult, slip: "ContactState | None") -> Headline:
+    """Return the range of the friction coefficient of the middle section in a load over time; at full slip second."""
+    ends, force = load.extremes["mu_app"], load.extremes["f_t"]
+    low, high = _numbers(force.min, force.max)
+    sentence = f"In the load {load.name} the friction force of the {SECTION} goes from {low} to {high} N/m"
+    sentence += ", without full slip." if load.full_slip_part == 0 else "."
+    at = f"in the load {load.name}, over time"
+    at += f": {load.sticking}" if load.sticking else ""
+    if slip is not None:
+        mu_app = QUANTITIES["mu_app"].shown(slip.mu_app, slip.error.mu_app)
+        at += f"; {mu_app} at full slip, {slip.f_ext:.4g} N/m and {slip.voltage:.4g} V"
+    return Headline(sentence, SECTION, QUANTITIES["mu_app"], math.nan, at, ends=(ends.min, ends.max))
+
+
+def _timed(result: "Answer") -> LoadResult | None:
+    """Return the last load with a waveform, where a force presses the finger all the time and it rubs."""
+    least = result.record.get("force_error") or 0.0
+    waves = {load.name for load in result.scene.loads() if load.wave is not None}
+    timed = [load for load in result.loads if load.name in waves and load.over_time is not None and load.rubs(least)]
+    whole = [load for load in timed if not math.isnan(load.over_time.mean["mu_app"])]  # type: ignore[union-attr]
+    return whole[-1] if whole else None
+
+
+def _known(result: "Answer", of: str) -> str:
+    """Return how far friction is known, in words; empty where the band of the record is of something else."""
+    kept = result.record.get(KNOWN, {})
+    return known_in_words(kept) if kept and kept["whole"] == (of == WHOLE) else ""
+
+
+# -- errors ----------------------------------------------------------------------------------------------------
+def _error_of_section(result: "Answer", state: "ContactState", key: str) -> tuple[float, tuple[str, ...]]:
+    """Return the error of a quantity of a state by mesh and penalty, or by a model without a mesh, and its parts."""
+    share = _of_model(result, "full_slip" if state is result.full_slip else "charged", key)
+    if share is not None:
+        return share * abs(getattr(state, key)), (MODEL,)
+    mesh, penalty = (getattr(each, key, math.nan) for each in (state.error, state.penalty))
+    return (mesh, (MESH,)) if math.isnan(penalty) else (mesh + abs(penalty), (MESH, PENALTY))
+
+
+def _error_of_finger(
+    result: "Answer", finger: "WholeFinger", name: str, key: str, of: str = ""
+) -> tuple[float, tuple[str, ...]]:
+    """Return the error of a quantity of the whole finger, and its parts.
+
+    Args:
+        result: of the finger.
+        finger: in its states.
+        name: of the state.
+        key: of the quantity.
+        of: quantity of the section whose relative errors it has; by default that of the same name.
+    """
+    value, error, parts = finger.values(name)[key], finger.error.get(name, {}).get(key, math.nan), finger.parts(name)
+    of = of or key
+    share, section = _of_model(result, name, of), result.named.get(name)
+    if share is not None:
+        return error + share * value, (MODEL, *parts)
+    penalty = math.nan if section is None else getattr(section.penalty, of) / getattr(section, of)
+    return (error, parts) if math.isnan(penalty) else (error + abs(penalty * value), (*parts, PENALTY))
+
+
+def _of_model(result: "Answer", state: str, key: str) -> float | None:
+    """Return the known relative error of a cheaper model, NaN where it is not known; None of the full model."""
+    known = result.record.get("model_error")
+    return None if known is None else float(known.get(state, {}).get(key, math.nan))
+
+
+# -- sentences -------------------------------------------------------------------------------------------------
+def _without(result: "Answer", force: float) -> float | None:
+    """Return the friction force without attraction under a force, in its unit; None where it is not known."""
+    mu_0 = result.scene.friction
+    return mu_0 * force if isinstance(mu_0, float) else None
+
+
+def _change(
+    result: "Answer", force: str, volts: float, what: str, before: float | None, after: float, unit: str
+) -> str:
+    """Return a sentence on what a voltage changes.
+
+    Args:
+        result: of the scene.
+        force: on the finger, with its unit.
+        volts: the voltage (V).
+        what: is changed.
+        before: its value without the voltage; None where it is not known.
+        after: its value.
+        unit: of both.
+    """
+    drive = result.scene.supply is not None
+    if before is None or not volts:
+        under = "under the drive" if drive else f"and {volts:.4g} V"
+        (shown,) = _numbers(after)
+        return f"At {force} {under} the {what} is {shown} {unit}."
+    subject, ending = ("the drive", "s") if drive else (f"{volts:.4g} V", "s" if abs(volts) == 1 else "")
+    first, second = _numbers(before, after)
+    if first == second:
+        return f"At {force}, {subject} leave{ending} the {what} at {first} {unit}."
+    verb = "raise" if after > before else "lower"
+    return f"At {force}, {subject} {verb}{ending} the {what} from {first} to {second} {unit}."
+
+
+def _stuck(result: "Answer", load: str) -> str:
+    """Return a sentence that full slip is missing; empty where it is not."""
+    how = missing_slip(result)
+    return f"At {load} full slip was {how}, so there is no friction force of sliding." if how else ""
+
+
+def _numbers(*values: float) -> Sequence[str]:
+    """Return numbers with as few digits as tell them apart, all with the same digits after the point."""
+    least, found = min((abs(value) for value in values if value), default=1.0), list[str]()
+    for digits in _DIGITS:
+        after = max(digits - 1 - math.floor(math.log10(least * (1 + _ROUNDOFF))), 0)
+        found = [f"{value * (1 + _ROUNDOFF):.{after}f}" for value in values]
+        if len(set(found)) == len(found):
+            break
+    return found

@@ -1,0 +1,206 @@
+"""The calculator's page: its map, target, two screens, presets and address, in a real browser."""
+
+import json
+import re
+
+import numpy as np
+import pytest
+
+import fingerpad as fp
+from fingerpad.calculator import presets
+from fingerpad.calculator.page import page
+from fingerpad.runs.two_keys import two_keys
+from fingerpad.scene import Scene
+from fingerpad.scene.reading import put
+from tests.browser import asked
+from tests.test_calculator import FIELDS, SAME, SET, by_script, in_si
+
+FIND = "const find = (id) => document.getElementById(id), text = (id) => find(id).textContent;"
+
+
+@pytest.fixture(scope="module")
+def whole() -> str:
+    return page()
+
+
+# -- the map -------------------------------------------------------------------------------------------
+def test_map_is_that_of_the_command(tmp_path):
+    """To 1e-9 of ``fingerpad estimate --over``, some of the places, and refused at the same ones."""
+    over = {"voltage": [0.0, 90.0, 400.0, 5000.0], "electric.d_i": [0.1e-6, 1e-6, 30e-6]}
+    expected = two_keys(Scene(force=0.5), over).values
+    default = in_si({key: field.value for key, field in FIELDS.items()}) | {"force": 0.5}
+    places = [[default | {"voltage": u, "electric.d_i": d} for d in over["electric.d_i"]] for u in over["voltage"]]
+    program = f"""console.log(JSON.stringify({json.dumps(places)}.map((row) => row.map((p) => {{
+      try {{ return closedForm.whole(p, true).mu_app; }} catch (error) {{
+        if (!(error instanceof closedForm.NoEquilibriumError)) throw error;
+        return null;
+      }}
+    }}))));"""
+    found = np.array(by_script(program, tmp_path), dtype=float)
+    assert np.isnan(found).any() and (np.isnan(found) == np.isnan(expected)).all()
+    assert found[np.isfinite(found)] == pytest.approx(expected[np.isfinite(found)], rel=SAME)
+
+
+def test_map_has_the_target_and_takes_clicks_and_keys(whole, tmp_path):
+    """The line of 2x goes through the voltage that ``fingerpad solve`` finds; the ring follows fields."""
+    program = f"""{SET}{FIND}
+    set({{ force: 0.5, target: "2x" }});
+    const words = text("caption_voltage"), svg = find("map").querySelector("svg"), rect = svg.getBoundingClientRect();
+    const hit = (x, y) => ({{ clientX: rect.left + x * rect.width, clientY: rect.top + y * rect.height }});
+    svg.dispatchEvent(new PointerEvent("pointermove", hit(0.5, 0.5)));
+    const under = svg.querySelector(".hover").textContent;
+    svg.dispatchEvent(new MouseEvent("click", hit(0.3, 0.4)));
+    const after = [find("voltage").value, find("electric.d_i").value];
+    find("map").dispatchEvent(new KeyboardEvent("keydown", {{ key: "ArrowUp", bubbles: true }}));
+    return [words, under, after, find("voltage").value, svg.querySelectorAll("image").length];"""
+    words, under, after, up, images = asked(whole, program, tmp_path)
+    (root,) = fp.solve(fp.Scene(force=0.5), "mu_app=2x").values
+    assert float(re.search(r"reached at ([0-9.]+) V\.", words)[1]) == pytest.approx(root, rel=1e-3)
+    assert re.fullmatch(r"[0-9.]+ µm, [0-9.]+ V: [0-9.]+", under)
+    assert float(after[0]) not in (0, 200) and float(after[1]) not in (1, 0.1)
+    assert float(up) == pytest.approx(float(after[0]) + 400 / 20, rel=2e-2) and images == 1
+
+
+# -- two screens, presets ------------------------------------------------------------------------------
+def test_two_screens_are_beside_each_other(whole, tmp_path):
+    program = f"""{SET}{FIND}
+    set({{ force: 0.5 }});
+    find("keep").click();
+    find("electric.d_i").value = "2"; find("electric.d_i").dispatchEvent(new Event("change"));
+    find("electric.d_i").value = "2"; find("electric.d_i").dispatchEvent(new Event("input"));
+    find("friction").dispatchEvent(new Event("change"));
+    const rows = [...find("point").rows].map((row) => [...row.cells].map((cell) => cell.textContent));
+    const dotted = document.querySelectorAll("#over_voltage .other").length;
+    find("drop").click();
+    return [rows, dotted, find("point").rows[0].cells.length];"""
+    rows, dotted, after = asked(whole, program, tmp_path)
+    thin, thick = (
+        fp.run(fp.Scene(force=0.5, electric={"d_i": d}), model="cylinders").finger.states["full_slip"].mu_app
+        for d in (1e-6, 2e-6)
+    )
+    assert rows[0] == ["", "this screen", "kept screen", "this over kept"] and dotted == 1 and after == 2
+    assert rows[1][1:] == [f"{thick:.3f}", f"{thin:.3f}", f"−{100 * (1 - thick / thin):.1f} %"]
+
+
+def test_presets_are_scenes():
+    """Each has a source, and values that a scene takes for fields of the page."""
+    found = presets.presets(FIELDS)
+    assert {"adult", "dry", "moist"} <= {each.name for each in found} and "child" not in {each.name for each in found}
+    for each in found:
+        data: dict = {}
+        for key, value in each.values.items():
+            put(data, key, value)
+        assert Scene(**data) and set(each.values) <= set(FIELDS) and each.source
+
+
+def test_preset_fills_fields_and_names_its_source(whole, tmp_path):
+    program = f"""{FIND}
+    const select = find("preset_Screen");
+    select.value = [...select.options].find((each) => each.textContent.startsWith("parylene")).value;
+    select.dispatchEvent(new Event("change"));
+    return [find("electric.d_i").value, find("electric.eps_i").value, text("preset_said")];"""
+    thickness, permittivity, said = asked(whole, program, tmp_path)
+    assert (thickness, permittivity) == ("5", "3.1") and said.startswith("Parylene C, 5 µm: Assumption:")
+
+
+# -- the address ---------------------------------------------------------------------------------------
+def test_address_has_all_that_is_shown(tmp_path):
+    """A round trip of fields, choices, target and a kept screen; what is not changed is not in it."""
+    program = """
+    const texts = { ...state.start(), voltage: "150", "electric.d_i": "0.5", target: "2x", load: "metre", f_ext: "30" };
+    const kept = { ...state.start(), friction: "0.4" };
+    const fragment = state.to_fragment(texts, kept), back = state.from_fragment("#" + fragment);
+    console.log(JSON.stringify([fragment, JSON.stringify(back.texts) === JSON.stringify(texts),
+      JSON.stringify(back.kept) === JSON.stringify(kept), back.said, state.to_fragment(state.start(), null)]));"""
+    fragment, same, same_kept, said, empty = by_script(program, tmp_path)
+    assert set(fragment.split("&")) == {
+        "voltage=150", "electric.d_i=0.5", "target=2x", "load=metre", "f_ext=30", "kept.friction=0.4"
+    }  # fmt: skip
+    assert same and same_kept and said == [] and empty == ""
+
+
+NONSENSE = {
+    "zebra=3": "zebra is no field of this page",
+    "voltage=abc": "voltage is abc, which is no number; it must be 0 or from 0.001 to 5000 V",
+    "voltage=-5": "voltage is -5 V; it must be 0 or from 0.001 to 5000 V",
+    "voltage=": "voltage is no number; it must be 0 or from 0.001 to 5000 V",
+    "force=0": "force is 0 N; it must be from",
+    "force=0,5": "force is 0,5; write it with a point, as 0.5",
+    "voltage=1e999": "voltage is 1e999, which is no number",
+    "voltage=0x10": "voltage is 0x10, which is no number",
+    "load": "load has no value",
+    "load=tons": "load is tons, which is no choice",
+    "__proto__=1": "__proto__ is no field of this page",
+    "constructor=1": "constructor is no field of this page",
+    "kept.zebra=1": "zebra is no field of this page",
+    "target=-1": "target is -1; it must be greater than 0",
+    "target=much": "target is much; write a number such as 0.5, or 2x for twice",
+    "%=1": "% is no field of this page",
+    "x=" + "y" * 400: "x is yyy",
+}
+
+
+def test_nonsense_in_the_address_is_one_sentence_each(tmp_path):
+    program = f"""console.log(JSON.stringify({json.dumps(list(NONSENSE))}.map((text) => {{
+      const {{ texts, said }} = state.from_fragment("#" + text);
+      return [said, JSON.stringify(texts) === JSON.stringify(state.start())];
+    }})));"""
+    for (text, words), (said, unchanged) in zip(NONSENSE.items(), by_script(program, tmp_path), strict=True):
+        assert len(said) == 1 and said[0].startswith(f"In the address {words}"), text
+        assert said[0].endswith("; it is left out.") and len(said[0]) < 160 and unchanged, text
+
+
+def test_nonsense_in_fields_is_one_sentence_beside_them(whole, tmp_path):
+    wrong = [{"force": "0,5"}, {"force": "0"}, {"force": "-1"}, {"force": ""}, {"target": "2,5x"}]
+    program = f"""{SET}{FIND}
+    return {json.dumps(wrong)}.map((values) => {{
+      set({{ force: 0.5, ...values }});
+      const said = [...document.querySelectorAll("[role=alert]")].map((each) => each.textContent).filter(Boolean);
+      return said;
+    }});"""
+    stale = "A field is refused; the numbers below are those before."
+    for said, words in zip(
+        asked(whole, program, tmp_path),
+        ("write it with a point, as 0.5.", "force is 0 N; it must be from", "force is -1 N;", "force is no number;",
+         "target is 2,5x; write it with a point, as 2.5x."),
+        strict=True,
+    ):  # fmt: skip
+        assert len(said) == 2 and stale in said and words in "".join(said)
+
+
+# -- to be read ----------------------------------------------------------------------------------------
+@pytest.mark.parametrize("width", [390, 1366, 1920])
+def test_nothing_is_cut_off(whole, tmp_path, width):
+    """On a phone, a laptop and a large screen no part is wider than the page, and the curves fill their places."""
+    program = """
+    const beyond = [...document.querySelectorAll("body *")].filter(
+      (each) => each.getBoundingClientRect().right > innerWidth + 0.5 || each.scrollWidth > each.clientWidth + 1 &&
+        ["P", "LABEL", "PRE", "TD", "TH", "FIGURE", "DIV"].includes(each.tagName) && each.clientWidth);
+    return [document.documentElement.scrollWidth, beyond.map((each) => each.outerHTML.slice(0, 80)),
+      [...document.querySelectorAll("svg")].map((each) => each.getBoundingClientRect().width)];"""
+    whole_width, beyond, curves = asked(whole, program, tmp_path, width=width, height=800)
+    assert beyond == [] and whole_width <= width
+    assert len(curves) == 6 and min(curves) > 0.8 * min(width, 800)
+
+
+def test_page_needs_no_network(whole):
+    """It names no address but a DOI in words, which nothing fetches."""
+    asks = r"""(src|href)="(?!data:)|@import|url\((?!#)|fetch\(|https?://(?!www\.w3\.org/2000/svg)"""
+    assert not re.search(asks, whole)
+
+
+# -- dark and light ------------------------------------------------------------------------------------
+def test_dark_and_light_are_legible(whole, tmp_path):
+    """Contrast of text, lines, targets and refusals with the page, of either theme: at least 4.5 (WCAG 2.1, AA)."""
+    program = f"""{FIND}
+    const channel = (c) => (c <= 0.03928 ? c / 12.92 : ((c + 0.055) / 1.055) ** 2.4);
+    const light = (hex) => [1, 3, 5].map((k) => channel(parseInt((hex.length < 5 ? hex.replace(/\\w/g, "$&$&") : hex)
+      .slice(k, k + 2), 16) / 255)).reduce((sum, c, k) => sum + c * [0.2126, 0.7152, 0.0722][k], 0);
+    return [1, 2].map(() => {{
+      find("theme").click();
+      const paper = light(plot.colour("paper"));
+      return ["ink", "line", "other", "goal", "wrong"].map((name) => light(plot.colour(name)))
+        .map((l) => (Math.max(l, paper) + 0.05) / (Math.min(l, paper) + 0.05));
+    }});"""
+    themes = asked(whole, program, tmp_path)
+    assert all(ratio >= 4.5 for theme in themes for ratio in theme)

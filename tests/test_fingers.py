@@ -1,0 +1,142 @@
+"""Fingers by name: what they give, what wins over them, and how a scene changes from one to another."""
+
+import json
+import re
+
+import pytest
+
+import fingerpad as fp
+from fingerpad.cli import main
+from fingerpad.scene import load
+from fingerpad.scene.fingers import FINGERS
+from tests.commands import refused
+from tests.measures import rows_of
+
+NAMES = [name for name in FINGERS if name != "adult"]
+
+
+def value(scene, key):
+    for part in key.split("."):
+        scene = getattr(scene, part)
+    return scene
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_name_gives_its_keys(name):
+    """In scenes from Python, files and the command line, and no others."""
+    scene, default = fp.Scene(finger=name), fp.Scene()
+    assert {key: value(scene, key) for key in FINGERS[name].values} == FINGERS[name].values
+    back = {"finger": "adult"} | {key: value(default, key) for key in FINGERS[name].values}
+    assert load(None, {"finger": name} | back) == default
+    assert load(None, {"finger": name}) == scene and scene.finger == name
+
+
+def test_adult_is_the_default_finger():
+    """Its scene is the default one, and its record is that of before there were names."""
+    assert fp.Scene(finger="adult") == fp.Scene()
+    assert "finger" not in fp.Scene(finger="adult").parameters()
+
+
+def test_given_keys_win(tmp_path):
+    """Key by key, whatever the unit; a law of another kind takes the parameters that it has."""
+    scene = fp.Scene(finger="child", friction=0.4, geometry={"width": "18 mm"})
+    assert (scene.friction, scene.geometry.width, scene.geometry.height) == (0.4, 0.018, 0.0123)
+    file = tmp_path / "scene.toml"
+    file.write_text('finger = "moist"\n[roughness]\nlaw = "Persson"\nhurst = 0.8\n')
+    moist = fp.Scene.load(file)
+    assert (moist.roughness.young, moist.roughness.hurst, moist.friction) == (0.32e6, 0.8, 0.32)
+    with_law = fp.Scene(finger="moist", friction=fp.Coulomb(0.5), roughness={"young": "2 MPa"})
+    assert (with_law.friction, with_law.roughness.young) == (0.5, 2e6)
+    assert fp.Scene(finger="elderly", materials={"dermis": fp.NeoHooke(1e3)}).materials.dermis.shear_modulus == 1e3
+    neo_hooke = fp.Scene(finger="elderly", materials={"dermis": {"law": "NeoHooke"}})
+    assert neo_hooke.materials.dermis == fp.NeoHooke(3240.0)
+    assert fp.Scene(finger="elderly", materials={"dermis": {"alpha": 5.0}}).materials.dermis.shear_modulus == 3240.0
+
+
+def test_another_name_keeps_what_was_given():
+    """By replace, as sweeps do, through several names and back."""
+    scene = fp.Scene(finger="child", friction=0.4, roughness={"gamma": 0.4}, geometry={"width": 0.018})
+    moist = scene.replace(finger="moist")
+    assert (moist.friction, moist.roughness.young, moist.roughness.gamma) == (0.4, 0.32e6, 0.4)
+    assert (moist.geometry.width, moist.geometry.height) == (0.018, 0.014)
+    back = moist.replace(finger="elderly").replace(finger="adult")
+    assert back == fp.Scene(friction=0.4, roughness={"gamma": 0.4}, geometry={"width": 0.018})
+    assert fp.Scene(friction=0.25).replace(finger="dry").friction == 0.25
+    assert fp.Scene(finger="dry").replace(friction=0.3).replace(finger="moist").friction == 0.3
+
+
+@pytest.mark.parametrize("name", FINGERS)
+def test_record_of_a_run_changes_its_name(name, tmp_path):
+    """It gives every key; those that are of its finger are not held for given ones."""
+    record = fp.Scene(finger=name, f_ext=50.0).parameters()
+    read = fp.Scene(**record)
+    assert read == fp.Scene(finger=name, f_ext=50.0)
+    assert read.replace(finger="elderly") == fp.Scene(finger="elderly", f_ext=50.0)
+    file = tmp_path / "scene.json"
+    file.write_text(json.dumps(record))
+    assert load(file, {"finger": "child"}) == fp.Scene(finger="child", f_ext=50.0)
+
+
+def test_sweep_has_fingers_side_by_side(tmp_path, capsys):
+    """With their names in its table; the closed form gives those whose contact is that of the default finger."""
+    argv = ["sweep", "--model", "cylinders", "--over", "finger=dry,adult,moist", "--over", "voltage=0,200"]
+    assert main([*argv, "--out", str(tmp_path), "--quiet"]) == 0
+    rows = rows_of(tmp_path, "table")
+    assert [row["finger"] for row in rows] == ["dry", "dry", "adult", "adult", "moist", "moist"]
+    friction = [float(row["full_slip_mu_app"]) for row in rows]
+    assert friction[::2] == pytest.approx([0.2, 0.25, 0.32], rel=1e-12)
+    dry, adult, moist = (charged / alone for alone, charged in zip(friction[::2], friction[1::2], strict=True))
+    assert dry < adult < moist, "a softer surface closes the gap, and the attraction grows"
+    capsys.readouterr()
+
+
+def test_mesh_of_a_file_keeps_its_shape():
+    """The name gives no lengths beside a mesh but the thickness that the attraction reads."""
+    from fingerpad.scene.changes import with_finger
+
+    data, taken = with_finger({"finger": "child", "geometry": {"file": "finger.msh"}}, {})
+    assert data["geometry"] == {"file": "finger.msh", "sc_thickness": FINGERS["child"].values["geometry.sc_thickness"]}
+    assert [key for key in taken if key.startswith("geometry.")] == ["geometry.sc_thickness"]
+
+
+@pytest.mark.parametrize("bad", ["children", "Child", "", 3, None, ["dry"], {"dry": 1}, True])
+def test_other_names_are_refused(bad):
+    with pytest.raises(fp.SceneError, match="^finger is .*; it must be 'adult', 'woman', .* 'dry' or 'moist'$"):
+        fp.Scene(finger=bad)
+    with pytest.raises(fp.SceneError, match="^finger is "):
+        fp.Scene().replace(finger=bad)
+
+
+def test_commands_know_the_names(tmp_path, capsys):
+    """The reference has them, check has what they give and what is given otherwise."""
+    assert main(["params", "finger"]) == 0
+    assert '"adult", "woman", "child", "elderly", "callused", "dry", "moist"' in capsys.readouterr().out
+    changed = ["--set", "finger=dry", "--set", "friction=0.3", "--set", "mesh.contact=60e-6"]
+    assert main(["check", *changed, "--out", str(tmp_path)]) == 0
+    words = "finger dry, a dry finger: 3 keys by its name (docs/fingers.md); otherwise: friction\n"
+    assert words in capsys.readouterr().out
+    assert "must be 'adult'" in refused(capsys, "check", "--set", "finger=old")
+
+
+def test_name_without_effect_is_remarked():
+    """As in a file with every key, in which the name alone is changed."""
+    from fingerpad.scene.remarks import remarks
+
+    given = fp.Scene().parameters()
+    assert "the name has no effect" in remarks(fp.Scene(**given | {"finger": "callused"}))[0]
+    assert remarks(fp.Scene(finger="callused")) == remarks(fp.Scene()) == []
+
+
+def test_every_value_has_a_source_or_is_an_assumption():
+    """A source is a DOI or a journal; what no source gives says so."""
+    for finger in FINGERS.values():
+        for trait in finger.traits:
+            assert trait.values and re.search(r"doi 10\.\d{4}|\b(19|20)\d\d\b|Assumption|docs/drive", trait.source)
+
+
+def test_defaults_are_those_of_the_scene():
+    """A name gives keys that have a default here, and these are the default finger's."""
+    from fingerpad.scene.fingers import DEFAULTS
+
+    assert {key: value(fp.Scene(), key) for key in DEFAULTS} == dict(DEFAULTS)
+    assert {key for finger in FINGERS.values() for key in finger.values} == DEFAULTS.keys()
