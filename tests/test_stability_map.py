@@ -44,12 +44,12 @@ def options(out, limit=300.0, hours=1.0):
 
 
 def test_default_is_the_products():
-    """The map's default is what a scene has by default, and its sizes have the scene's."""
+    """The map's default is what a scene has by default."""
     from fingerpad.scene import Scene
 
     scene, case = Scene(), plan.DEFAULT
     assert case.parameter == scene.contact.eps_n
-    assert scene.mesh.contact in plan.SIZE.values and case.contact_size <= scene.mesh.contact
+    assert case.contact_size == scene.mesh.contact and case.contact_size in plan.SIZE.values
     assert (case.element, case.voltage, case.mu_f) == (scene.numerics.element, scene.voltage, scene.friction)
     assert case.nu == scene.materials.dermis.poisson
 

@@ -116,13 +116,13 @@ def found():
 
 @pytest.mark.slow
 def test_printed_options_give_the_scene(monkeypatch):
-    """As the command line reads them; whether errors are estimated is left to it."""
+    """As the command line reads them."""
     monkeypatch.chdir(ROOT)
     parser = argparse.ArgumentParser()
     parser.add_argument("scene", nargs="?", type=assumptions.Path)
     parser.add_argument("--set", action="append", default=[])
     for name, options in (assumptions.runs() | assumptions.profiles()).items():
-        scene = scene_of(parser.parse_args([*shlex.split(options), "--set", "output.errors=false"]))
+        scene = scene_of(parser.parse_args(shlex.split(options)))
         assert scene.parameters() == assumptions.scene(options).parameters(), name
 
 

@@ -218,6 +218,7 @@ def draw(docs: Path) -> Path:
         "counts": counts,
         "ends": counts[0][2],
         "named": {n: named_table(each, rows) for n, each in plan.named().items()},
+        "near": {words: rows[case] for words, case in plan.named()["neighbours"].cases.items() if case in rows},
         "slips": {name: full_slips(random, name) for name in scenes.FORMULATIONS},
         "drawn": [
             (k, scenes.drawn(k), [_scene_cell(ends.get((k, name))) for name in scenes.FORMULATIONS])

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geometry import tags
+from geometry.curved import curve_edges
 from geometry.parameters import Fingertip, MeshSize
 from geometry.profiles import GeometryError, Profiles
 
@@ -97,6 +98,7 @@ def build(finger: Fingertip, size: MeshSize, ridges: int = 1, height: float = 1.
     gmsh.model.addPhysicalGroup(1, left + right, tags.SIDES, "sides")
     _sizes(p, size, ridges, curves[0] + curves[1] + curves[2])
     gmsh.model.mesh.generate(2)
+    curve_edges()
     return 1 / _MM
 
 
