@@ -344,5 +344,5 @@ def test_known_point_has_its_errors(whole, tmp_path):
                            ("contact_length", "contact_length", 1e3)):  # fmt: skip
         error = float(re.search(r"± ([0-9.]+)", found["cells"][key])[1])
         assert error == pytest.approx(bands[band] * getattr(state, key) * per, abs=6e-3)
-    assert "±" not in found["cells"]["d_eq"] and found["caption"] == "Section at the centre of the finger"
+    assert "±" not in found["cells"]["d_eq"] and found["caption"] == "Middle section of the finger"
     assert found["voltage"]["bands"] == found["force"]["bands"] == 1

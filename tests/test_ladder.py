@@ -58,16 +58,18 @@ def test_length_that_is_given_is_kept():
 def test_force_beyond_the_runs_is_said():
     found = cylinders.solve(scene(f_ext=2.0))
     assert "extrapolated" in found.notes[0]
-    assert any("known of full runs at 5 to 150 N/m and 0 to 200 V" in text for text in found.cautions)
+    assert any("f_ext is 2 N/m, and it is known for 5 to 150 N/m" in text for text in found.cautions)
     assert not cylinders.solve(scene()).cautions
 
 
 def test_other_screen_than_the_runs_is_said():
     found = cylinders.solve(scene(friction=0.3, electric={"d_i": 2e-6}))
-    assert any("known with the default friction, electric, and not here" in text for text in found.cautions)
+    assert any("electric.d_i is 2e-06 m, and it is known for 1e-06 m" in text for text in found.cautions)
     assert not cylinders.solve(scene(friction=0.3), cylinders.given(1.5e-3, 16)).cautions, "its length is given"
     own = scene().replace(roughness=Held(), friction=Derjaguin(0.3, 1e3))
-    assert any("the default friction, roughness, and not here" in text for text in cylinders.solve(own).cautions)
+    (text,) = cylinders.solve(own).cautions
+    for table in ("friction", "roughness"):
+        assert f"{table} is of another law, and it is known for that of the default scene" in text
 
 
 def test_state_past_the_end_of_the_closure_is_said():

@@ -197,7 +197,7 @@ def test_lint_runs_its_checks(tool):
 def test_docs_are_built_in_the_versions_of_pyproject(tool):
     tool("docs", "--get")
     wanted = (Path(tool("docs", "--place").stdout.strip()) / "wanted").read_text().split()
-    assert [name.partition("==")[0] for name in wanted] == ["sphinx", "myst-parser", "furo", "math-core"]
+    assert [name.partition("==")[0] for name in wanted] == ["sphinx", "myst-parser", "furo", "math-core", "ziamath"]
     command = tool("docs", "out", "-v").stdout.split()
     assert command[:4] == ["run", "python3", "-m", "sphinx"] and command[-3:] == ["-v", ".", "out"]
 

@@ -53,7 +53,7 @@
 
   function show_point(found, { values, given }, other) {
     const rows = values.newtons ? ROWS_OF_FINGERS : ROWS, error = error_of(values, given, found), body = find("point").tBodies[0];
-    const head = values.newtons ? "Whole finger, as a sum of slices" : "Section at the centre of the finger";
+    const head = values.newtons ? "Whole finger, as a sum of slices" : "Middle section of the finger";
     find("point").caption.textContent = head + (error ? "" : ": error not known");
     const beside = other && typeof other.found !== "string" && other.values.newtons === values.newtons;
     const line = (row) => {
@@ -79,7 +79,7 @@
     if (values.newtons) {
       const section = { ...values, newtons: false, f_ext: found.section.f_ext }, known = error_of(section, given, found.section);
       const band = known ? ` ± ${(found.section.mu_app * known.mu_app).toFixed(3)}` : "";
-      parts.push(`Section at the centre of the finger, second: ${show(found.centre, 3)} N/m, where µ_app is ${found.section.mu_app.toFixed(3)}${band}.`);
+      parts.push(`Middle section, second: ${show(found.centre, 3)} N/m, where µ_app is ${found.section.mu_app.toFixed(3)}${band}.`);
     }
     if (given) parts.push("The contact is as given along both curves; the error of this answer is not known.");
     else if (error) parts.push(`Known error, beside full runs: µ_app and friction within ${percent(error.mu_app)}, attraction within ${percent(error.f_electrostatic)}.`);

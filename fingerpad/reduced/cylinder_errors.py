@@ -150,9 +150,18 @@ def _outside(given: Mapping[str, Any], region: Region) -> Iterator[Outside]:
             yield Outside(key, "a law", _span(ends, units[key]))
         elif not within(value, ends):
             yield Outside(key, _span((value, value), units[key]), _span(ends, units[key]))
-    for key in sorted(given.keys() | default.keys()):
-        if key.partition(".")[0] in _TABLES and key not in region.ranges and given.get(key) != default.get(key):
-            yield Outside(key, show(given.get(key)), show(default.get(key)))
+    for table in _TABLES:
+        keys = [key for key in sorted(given.keys() | default.keys()) if key.partition(".")[0] == table]
+        keys = [key for key in keys if key not in region.ranges and given.get(key) != default.get(key)]
+        if any(given.get(key) is None or default.get(key) is None for key in keys):  # another law has other keys
+            yield Outside(table, "of another law", "that of the default scene")
+        else:
+            yield from (Outside(key, *(_shown(each[key], units.get(key, "")) for each in (given, default))) for key in keys)
+
+
+def _shown(value: Any, unit: str) -> str:
+    number = isinstance(value, int | float) and not isinstance(value, bool)
+    return _span((value, value), unit) if number else show(value)
 
 
 @cache
