@@ -94,7 +94,7 @@ def section(shown: dict[str, Any]) -> str:
     controls = """<div class="controls needs-js"><label for="ridge">Ridge</label>
 <select id="ridge"></select><output id="under" aria-live="polite"></output></div>"""
     rows = [(frame["label"], peak, gap) for frame in shown["frames"] for peak, gap in [_extremes(frame["skin"])]]
-    heads = ("state", "highest contact pressure (kPa)", "air gap d_eq of the ridges in contact (µm)")
+    heads = ("state", "highest point of the pressure above (kPa)", "air gap d_eq of the ridges in contact (µm)")
     return html.section(
         "ridge-by-ridge",
         "One ridge, in the state of the slider above",
