@@ -22,7 +22,7 @@ _NEAR = -4.4e-3, 5.6e-3, -0.1e-3, 1.25e-3  # m: left, right, lower and upper end
 _MICRO = 1e6  # 1/m: places are kept in micrometres, a tenth of a pixel
 _KINDS = {"xy": "<i4", "merkel": "<i4", "triangles": "<i4", "lines": "<i4", "beside": "<i4", "tag": "<i1", "sed": "<f2"}
 _WIDE, _HIGH = 5.3, 0.72  # in: a map
-_LEFT, _BELOW = (0.65, 6.3), (1.25, 2.4)  # in: ends of columns and rows
+_LEFT, _BELOW = (0.78, 6.5), (1.25, 2.4)  # in: ends of columns and rows
 _COLOURS = 2.5, 10.0, 0.5, 0.62  # in: place of the bar of colours
 
 
