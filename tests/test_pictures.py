@@ -97,7 +97,7 @@ def assert_picture(path, figure) -> None:
     for label in labels(figure):
         assert label.endswith(")"), label
         assert any(unit in label for unit in ("mm", "µm", "kPa", "N/m", "(–)", "(number)")), label
-    for words in ("f_ext", "75 N/m", "200 V", "0.25"):
+    for words in (r"f$_\mathrm{ext}$", "75 N/m", "200 V", "0.25"):
         assert words in figure.get_suptitle()
 
 
@@ -217,7 +217,7 @@ def test_history(tmp_path, f_ext):
     """It starts with the charged normal state, the last before sliding, and marks both jumps."""
     figure = history(tmp_path / "history.png", steps(f_ext)[3:], "Sliding: " + TITLE, mu_0=0.25)
     assert_picture(tmp_path / "history.png", figure)
-    assert any("µ_app" in label for label in labels(figure))
+    assert any(r"µ$_\mathrm{app}$" in label for label in labels(figure))
     assert any("ridges in\ncontact" in label for label in labels(figure))
     ticks = figure.axes[2].get_yticks()
     assert (ticks == np.round(ticks)).all(), "ridges are counted"

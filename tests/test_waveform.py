@@ -211,7 +211,7 @@ def test_nothing_but_the_voltage_holds_the_skin(offset, allowed):
         (TABLE + "0,1\n1,2,3\n", "whose line 3 has 3 cells"),
         (TABLE + "0,1\n1,inf\n", "whose line 3 has 'inf'; it must be a finite number"),
         (TABLE + "0,1\n1,6000\n", "which at 1 s has a number that is 6000 V; it must be 0 or from 0.001 to 5000 V"),
-        (TABLE + f"0,{'1' * 200_000}\n", "which is no table in CSV: 'field larger than field limit (131072)'"),
+        (TABLE + f"0,{'1' * 200_000}\n", "which is no table in CSV: 'line 2: field larger than field limit (131072)'"),
         (TABLE + "0,1\n2,2\n2,3\n", "times are 2 and then 2 s; each must be later"),
         (
             TABLE + "".join(f"{k},{(-1) ** k}\n" for k in range(2500)),

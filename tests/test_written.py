@@ -100,7 +100,7 @@ def test_no_code_beside_a_scene_is_imported(place):
     assert done.returncode == 2 and "Python finds no module mylaws; put its folder on PYTHONPATH" in done.stderr
     (place / "mylaws.py").write_text(MINE.format(factor=0.1), encoding="utf-8")
     done = command(place, *words, cwd=place, PYTHONPATH=os.pathsep.join([os.getcwd(), str(place)]))
-    assert done.returncode == 0 and "Friction Mine(k=2, tau=5000)." in done.stdout
+    assert done.returncode == 0 and "Friction Mine(k=2, tau=5000 Pa)." in done.stdout
 
 
 # -- every way of a run ----------------------------------------------------------------------------------------
@@ -113,7 +113,7 @@ def test_law_works_from_the_command_line(place):
     one, two = (json.loads((place / name / "summary.json").read_text()) for name in ("one", "two"))
     assert one["full_slip_mu_app"] == two["full_slip_mu_app"] == pytest.approx(0.2 * one["full_slip_f_contact"] / 75.0)
     assert one["parameters"] == two["parameters"] and one["parameters"]["friction"]["law"] == "mylaws:Mine"
-    assert one["laws"]["friction"] == "Mine(k=2, tau=5000)"
+    assert one["laws"]["friction"] == "Mine(k=2, tau=5000 Pa)"
 
 
 def test_results_are_read_where_the_law_is_not(place):

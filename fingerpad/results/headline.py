@@ -90,7 +90,7 @@ class Headline:
 
 def headline(result: "Answer") -> Headline:
     """Return the headline of a result."""
-    slip, finger = result.full_slip if result.scene.friction_law() is not None else None, result.finger
+    slip, finger = result.full_slip if result.scene.friction != 0 else None, result.finger
     if (load := _timed(result)) is not None:
         return _over_time(load, slip)
     if finger is not None and (slip is None or "full_slip" in finger.states):
