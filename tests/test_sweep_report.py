@@ -41,10 +41,11 @@ def test_browser_opens_a_sweep(table, tmp_path, size):
     program = """
     const charts = [...document.querySelectorAll(".chart")];
     const drawn = charts.map((c) => c.querySelectorAll(".scatterlayer .trace").length);
-    return { drawn, wide: document.documentElement.scrollWidth };"""
+    return { drawn, named: charts.map((c) => c.id), wide: document.documentElement.scrollWidth };"""
     page = (table / NAME).read_text(encoding="utf-8")
     found = asked(page, program, tmp_path, width=width, height=height)
-    assert found["drawn"] == [2, 2, 2], "a curve for each force, in three charts"
+    assert found["drawn"] == [2, 2, 2, 2], "a curve for each force, in four charts"
+    assert found["named"] == ["sweep_mu_app", "sweep_f_t", "sweep_contact_length", "sweep_contact_area"]
     assert found["wide"] <= width
 
 

@@ -9,7 +9,7 @@ from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, overload
 
 import numpy as np
 from numpy.typing import NDArray
@@ -58,11 +58,17 @@ class Sweep:
         """Return the results in order."""
         return (self[k] for k in range(len(self)))
 
-    def __getitem__(self, k: int) -> "Result":
+    @overload
+    def __getitem__(self, k: int) -> "Result": ...
+    @overload
+    def __getitem__(self, k: slice) -> tuple["Result", ...]: ...
+    def __getitem__(self, k: int | slice) -> "Result | tuple[Result, ...]":
         """Return a result by its place, with the bands of its friction, which points by a closed form have from here.
 
-        The bands take as long as the point itself, and no table of a sweep has them.
+        The bands take as long as the point itself, and no table of a sweep has them. A slice is a tuple of results.
         """
+        if isinstance(k, slice):
+            return tuple(self[place] for place in range(len(self))[k])
         result = self.results[k]
         return result if KNOWN in result.record else with_band(result)
 
