@@ -156,7 +156,9 @@ def _outside(given: Mapping[str, Any], region: Region) -> Iterator[Outside]:
         if any(given.get(key) is None or default.get(key) is None for key in keys):  # another law has other keys
             yield Outside(table, "of another law", "that of the default scene")
         else:
-            yield from (Outside(key, *(_shown(each[key], units.get(key, "")) for each in (given, default))) for key in keys)
+            yield from (
+                Outside(key, *(_shown(each[key], units.get(key, "")) for each in (given, default))) for key in keys
+            )
 
 
 def _shown(value: Any, unit: str) -> str:
