@@ -9,6 +9,7 @@ import pytest
 import fingerpad as fp
 from fingerpad.calculator import presets
 from fingerpad.calculator.page import page
+from fingerpad.reduced import cylinder_errors
 from fingerpad.runs.two_keys import two_keys
 from fingerpad.scene import Scene
 from fingerpad.scene.reading import put
@@ -74,12 +75,13 @@ def test_two_screens_are_beside_each_other(whole, tmp_path):
     find("drop").click();
     return [rows, dotted, find("point").rows[0].cells.length];"""
     rows, dotted, after = asked(whole, program, tmp_path)
-    thin, thick = (
-        fp.run(fp.Scene(force=0.5, electric={"d_i": d}), model="cylinders").finger.states["full_slip"].mu_app
-        for d in (1e-6, 2e-6)
-    )
+    runs = [fp.run(fp.Scene(force=0.5, electric={"d_i": d}), model="cylinders") for d in (1e-6, 2e-6)]
+    thin, thick = (each.finger.states["full_slip"].mu_app for each in runs)
+    known, unknown = (each.record["model_error"].get(cylinder_errors.WHOLE, {}) for each in runs)
     assert rows[0] == ["", "this screen", "kept screen", "this over kept"] and dotted == 1 and after == 2
-    assert rows[1][1:] == [f"{thick:.3f}", f"{thin:.3f}", f"−{100 * (1 - thick / thin):.1f} %"]
+    assert known and not unknown, "the error is known for the default screen alone"
+    band = f"{thin:.3f} ± {thin * known['mu_app']:.3f}"
+    assert rows[1][1:] == [f"{thick:.3f}", band, f"−{100 * (1 - thick / thin):.1f} %"]
 
 
 def test_presets_are_scenes():

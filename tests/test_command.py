@@ -174,7 +174,10 @@ def test_files_of_commands_without_finite_elements(plain):
     assert (
         "The mesh is not drawn, since gmsh is not installed." in found["check"][1] and not (folder / "checked").exists()
     )
-    assert found["run"][1].startswith("Result (model 'cylinders')")
+    said = found["run"][1]
+    assert said.startswith("At 0.32 N, 200 V raise the friction force from ")
+    whole, section = "\nWhole finger, as a sum of slices\n", "\nMiddle section of the finger (model 'cylinders')\n"
+    assert 0 < said.find(whole) < said.find(section)
     assert found["again"][1].replace("again", "out") == found["run"][1], "the scene of a folder, by its model"
     assert json.loads((folder / "out" / "summary.json").read_text(encoding="utf-8"))["f_ext"] == 50.0
 

@@ -118,7 +118,9 @@ def test_loads_that_were_never_tried_are_named(tmp_path, capsys):
     assert main([*argv, "--set", "voltage=5000"]) == 0
     text = capsys.readouterr().out
     assert "can be run" not in text
-    assert "charge has 75 N/m and 5000 V, and tried were f_ext 5 to 150 N/m, voltage 0 to 200 V" in text
+    told, tried = text.split("charge has 75 N/m and 5000 V, and tried were ")
+    assert told.endswith("whether its loads can be reached is not known: ")
+    assert tried.startswith("force 0.05 to 1.2 N, f_ext 5 to 150 N/m, voltage 0 to 200 V, ")
     assert main(argv) == 0
     assert capsys.readouterr().out.endswith("The scene can be run.\n")
 

@@ -88,6 +88,9 @@ def test_shown_command_runs(line, folder, capsys, monkeypatch):
     words = small(line)
     if words[0] == "report":
         fp.run(model="cylinders", out=words[1])
+    if words[0] == "animate":  # a full run, whose steps have moved
+        with no_pictures():
+            fp.run(fp.Scene.load("scene.toml"), out=words[1])
     if words[0] == "feel":  # a run with a load over time
         loads = [{"name": "press", "f_ext": 1.0, "duration": 0.02}]
         fp.run(fp.Scene(**NINE, history=loads, output={"errors": False}), out=words[1])

@@ -179,7 +179,8 @@ def _curve(scene: Scene, supply: Supply) -> tuple[Array, Array, Array]:
             found = solved(scene.replace(voltage=voltage), model, context)
         state = found.full_slip
         assert state is not None
-        force = state.f_t if found.finger is None else float(found.finger.values("full_slip")["f_t"])
+        whole = found.finger if scene.force is not None else None  # in the unit of the drive
+        force = state.f_t if whole is None else float(whole.values("full_slip")["f_t"])
         return force, float(found.record["full_slip_d_eq"])
 
     still = at(0.0)
