@@ -74,8 +74,8 @@ def test_named_states_are_the_section_at_the_centre(traced):
 
 def test_report_of_a_force_repeats_it(traced):
     """With the force that was given and the scene's own keys."""
-    page = html.unescape(run_page.page(traced))
-    assert "0.002 N on the whole finger, 100 V. Loads at its centre" in page
+    page = html.unescape(run_page.page(traced)).replace("\u00a0", " ")
+    assert "A force of 0.002 N on the whole finger. Loads at its centre, where f<sub>ext</sub> is an estimate" in page
     command = page.partition("<code>fingerpad run ")[2].partition("</code>")[0]
     assert "--set force=0.002 " in command and "f_ext=" not in command
 
@@ -127,8 +127,9 @@ def test_run_that_was_never_charged_has_one_normal_contact(ran):
         found = with_newtons(replace(cut, finger=None))
         assert found.finger.values("charged") == found.finger.values("uncharged")
         assert found.finger.error["charged"] == found.finger.error["uncharged"]
-        page = html.unescape(run_page.page(found))
-        assert "contact length in normal contact; 1 N/m, 0 V" in page
+        page = html.unescape(run_page.page(found)).replace("\u00a0", " ")
+        assert f"in normal contact, {found.finger.f_ext:.4g} N and 0 V" in page
+        assert found.headline.quantity.name == "contact_area" and "100 V" not in str(found.headline)
         assert not re.search(r"(?<!un)charged(?! cylinders)", str(found))
         assert not re.search(r"(?<!un)charged normal contact", page, re.IGNORECASE)
 
@@ -223,12 +224,16 @@ def test_report_and_text_of_a_force_begin_with_the_whole_finger(tmp_path):
     whole = result.finger.values("full_slip")
     assert whole["mu_app"] != pytest.approx(result.full_slip.mu_app, rel=0.05)
     page = (tmp_path / "report.html").read_text(encoding="utf-8")
-    mu, f_t = (result.finger.shown("full_slip", key) for key in ("mu_app", "f_t"))
-    assert mu.startswith(f"{whole['mu_app']:.3f}") and f"<h1>µ<sub>app</sub> = {mu}</h1>" in page
-    assert f"friction force {f_t} N; 2 N on the whole finger, 200 V" in page
+    mu = result.finger.shown("full_slip", "mu_app")
+    assert mu.startswith(f"{whole['mu_app']:.3f}") and result.headline.value == whole["mu_app"]
+    page = page.replace("\u00a0", " ")
+    assert "<h1>At 2 N, 200 V raise the friction force from 0.50 to 0.87 N.</h1>" in page
+    assert f"{whole['f_t']:.2f}" == "0.87" and mu.startswith(result.headline.number[2:])
+    said = '<span class="said">of the whole finger, at full slip, 2 N and 200 V: '
+    assert f'<p class="number">µ<sub>app</sub> {result.headline.number} {said}' in page
     assert page.index('id="newtons"') < page.index('id="numbers"') and "under its own part of the force" in page
     text = str(result)
-    assert text.startswith("Whole finger, as a sum of slices")
+    assert text.startswith(f"{result.headline}\nWhole finger, as a sum of slices")
     assert text.index("Middle section of the finger (model 'cylinders')") > 0
     read = fp.Result.load(tmp_path).finger
     assert read.under(1.0).to_dict() == result.finger.under(1.0).to_dict()

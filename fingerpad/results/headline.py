@@ -122,6 +122,10 @@ def _of_finger(result: "Answer", finger: "WholeFinger") -> Headline:
         at = f"at full slip, {conditions}"
         return Headline(sentence, WHOLE, FINGER[key], values[key], at, error, parts, known=_known(result, WHOLE))
     name, quantity = list(finger.states)[-1], FINGER["contact_area"]
+    section = result.named.get(name)
+    if section is not None and not (section.voltage or finger.states[name].totals["f_electrostatic"]):
+        volts = 0.0  # a run can end before its voltage
+    conditions = f"{finger.f_ext:.4g} N and {volts:.4g} V"
     area = finger.values(name)["contact_area"]
     attracts = volts and "uncharged" in finger.states and name == "charged"
     before = quantity.scale * finger.values("uncharged")["contact_area"] if attracts else None
