@@ -54,7 +54,7 @@ class Result(Answer):
         """Draw the skin, the deformed finger, the history of sliding, or the footprint of the whole finger.
 
         Loads over time have another picture, ``"time"``, charged states the electric field of a ridge, ``"field"``, and
-        full runs the whole finger in three dimensions, ``"solid"``.
+        whole fingers one in three dimensions, ``"solid"``.
 
         Args:
             kind: ``"surface"``, ``"finger"``, ``"history"``, ``"footprint"``, ``"time"``, ``"field"`` or ``"solid"``.
@@ -74,7 +74,7 @@ class Result(Answer):
             from fingerpad.results.whole_picture import draw  # Matplotlib
 
             place = None if path is None else Path(path)
-            return draw(self, self._drawn(), kind, place) if terminal.rank() == 0 else None
+            return draw(self, kind, place) if terminal.rank() == 0 else None
         if (drawing := self._drawn()) is not None:
             return drawing.figure(kind, None if path is None else Path(path))
         if not self.steps:
