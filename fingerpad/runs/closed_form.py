@@ -65,9 +65,13 @@ class ClosedForm:
             raise SceneError(str(error)) from error
 
     def newtons(self, scene: Scene) -> float:
-        """Return the force (N) on the whole finger whose centre bears ``f_ext`` without voltage."""
+        """Return the force (N) on the whole finger whose centre bears ``f_ext`` at full slip, without voltage.
+
+        It is the force of a run of the same model, which a voltage does not change (:func:`slices.estimate.estimate`).
+        """
         self.model.check(scene)
-        made, finger = self._traced(scene, "uncharged", scene.f_ext, 0).trace, profile(scene.slices)
+        still, finger = scene.replace(voltage=0.0), profile(scene.slices)
+        made = self._traced(still, STATE, scene.f_ext, 0).trace
         return at_indentation(finger, made, deepest(finger, made), scene.slices.count).totals["f_ext"]
 
     def _total(self, scene: Scene) -> Total:
