@@ -29,7 +29,7 @@ def test_estimate_is_the_closed_form(tmp_path, capsys):
 
 
 def test_estimate_has_the_whole_finger_first(tmp_path, capsys):
-    """With newtons and without: the same finger, whose centre bears 75 N/m without voltage."""
+    """With newtons and without: the same finger, that of a run whose centre bears 75 N/m. Four digits are printed."""
     assert main(["estimate", "--voltage", "0,200", "--csv", str(tmp_path / "one.csv")]) == 0
     assert capsys.readouterr().out.startswith("Friction of the whole finger at full slip")
     _, charged = rows_of(tmp_path, "one")
@@ -38,6 +38,7 @@ def test_estimate_has_the_whole_finger_first(tmp_path, capsys):
     assert charged["mu_app"] == again["mu_app"] and float(charged["mu_app"]) > float(charged["mu_app_of_section"])
     finger = fp.run(Scene(force=float(charged["force"])), model="cylinders").finger
     assert float(again["mu_app"]) == pytest.approx(finger.states["full_slip"].mu_app, rel=1e-12)
+    assert fp.run(Scene(), model="cylinders").finger.f_ext == pytest.approx(float(charged["force"]), rel=1e-4)
 
 
 def test_estimate_without_a_whole_finger_has_the_section(capsys):
@@ -51,8 +52,8 @@ def test_estimate_without_a_whole_finger_has_the_section(capsys):
 def test_estimate_says_where_its_error_is_not_known(capsys):
     assert main(["estimate", "--f-ext", "75,5000", "--set", "roughness.gamma=0.6"]) == 0
     text = capsys.readouterr().out
-    assert "At 1 of 2 points the error is not known: f_ext is known for" in text
-    assert "Here the error is not known: roughness.gamma is known for 0.5." in text
+    assert "At 1 of 2 points the error is not known; it is for f_ext 5 to 150 N/m." in text
+    assert "Here the error is not known; it is for roughness.gamma 0.5." in text
 
 
 @pytest.mark.parametrize(

@@ -67,11 +67,18 @@ def test_newtons_are_of_the_whole_finger(over, force):
 
 
 def test_newtons_without_a_force_have_f_ext_at_the_centre():
-    """Without voltage the section at the centre bears the scene's f_ext. Tolerance as above."""
+    """At full slip the section at the centre bears the scene's f_ext. Tolerance as above."""
     found = fp.solve(target="F_T=0.3 N")
     assert "No force is given" in found.notes[0]
-    pressed = fp.run(found.scene.replace(voltage=0.0), model="cylinders").full_slip
-    assert pressed.f_ext == pytest.approx(75.0, rel=1e-2)
+    slid = fp.run(found.scene, model="cylinders").full_slip
+    assert slid.f_ext == pytest.approx(75.0, rel=3e-3)
+
+
+def test_answer_names_what_it_is_of():
+    """Without a force a coefficient is that of the middle section, and a note says how the finger's is had."""
+    section, finger = (str(fp.solve(scene, "mu_app=2x")) for scene in (None, fp.Scene(force=0.5)))
+    assert "µ_app of the middle section at full slip" in section and "give force for it" in section
+    assert "µ_app of the whole finger at full slip" in finger and "give force" not in finger
 
 
 def test_drive_is_varied_by_its_amplitude():

@@ -1,12 +1,14 @@
 """A quantity over two keys by the closed form: ``fingerpad estimate --over KEY --over KEY``, its table and picture."""
 
 import shlex
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 import fingerpad as fp
 from fingerpad.cli import estimate_map, main
+from fingerpad.reduced import cylinder_errors
 from fingerpad.reduced.cylinders import Cylinders
 from fingerpad.results.quantities import FINGER
 from fingerpad.runs.closed_form import ClosedForm
@@ -40,6 +42,23 @@ def test_section_is_mapped_where_its_force_is_varied():
     assert not found.target.whole and found.known.tolist() == [[True, True], [False, False]]
     one = fp.run(fp.Scene(f_ext=25.0, voltage=200.0), model="cylinders").full_slip
     assert found.values[0, 0] == pytest.approx(one.mu_app, rel=1e-12)
+
+
+def test_error_is_known_up_to_the_limit_of_the_attraction(monkeypatch):
+    """Some 4 times the force at 0.05 N and 200 V, beyond a limit of 3; the other places have less."""
+    region = cylinder_errors.REGIONS[0]
+    limited = replace(region, ranges={**region.ranges, cylinder_errors.PULL: (0.0, 3.0)})
+    over = {"voltage": [100.0, 200.0], "force": [0.05, 0.5]}
+    for regions, known in (((region,), [[True, True]] * 2), ((limited,), [[True, True], [False, True]])):
+        monkeypatch.setattr(cylinder_errors, "REGIONS", regions)
+        found = two_keys(fp.Scene(), over)
+        assert found.known.tolist() == known
+    assert "The error of the whole finger is known at 3 of 4 points." in estimate_map.text(found)
+
+
+def test_error_is_that_of_the_quantity():
+    """No full run has tested the indentation of the closed form."""
+    assert not two_keys(fp.Scene(), {"voltage": [0.0, 100.0], "force": [0.1, 0.5]}, "indentation=0.5 mm").known.any()
 
 
 def test_places_without_an_answer_are_left_out():

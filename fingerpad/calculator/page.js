@@ -68,7 +68,7 @@
   }
 
   const span = ({ key, low, high }) => {
-    const field = state.by_key[key], unit = field && field.unit ? ` ${field.unit}` : "", name = field ? key.split(".").pop() : "attraction over force";
+    const field = state.by_key[key], unit = field && field.unit ? ` ${field.unit}` : "", name = field ? key.split(".").pop() : key;
     const ends = [low, high].map((v) => show(field ? v * field.per : v));
     return `${name} ${ends[0] === ends[1] ? ends[0] : ends.join(" to ")}${unit}`;
   };

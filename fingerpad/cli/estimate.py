@@ -84,7 +84,8 @@ def main(argv: Sequence[str]) -> int:
     echo("\nµ_app is friction over force, at full slip: first of the whole finger, as a sum of slices, then of the")
     echo("section at its centre. L_R is the length of skin on the screen.")
     if key == "f_ext":
-        echo("The force on the whole finger has that f_ext at the finger's centre without voltage.")
+        echo("F_ext has that f_ext at the finger's centre at full slip, as in fingerpad run --model cylinders. The")
+        echo("full model has indentations of its own, and so another F_ext.")
     states = [row["state"] for row in rows if "state" in row]
     limits = (f"{text[0].upper()}{text[1:]}." for text in on_states(states, scene.closure()))
     if over:
@@ -176,7 +177,7 @@ def _known(rows: Sequence[Mapping[str, Any]]) -> list[str]:
     beyond = Counter(each._replace(value="") for row in rows for each in row.get("outside", []))
     for each, count in beyond.items():
         points = f"At {count} of {len(rows)} points" if count < len(rows) else "Here"
-        said.append(f"{points} the error is not known: {each.key} is known for {each.known}.")
+        said.append(f"{points} the error is not known; it is for {each.key} {each.known}.")
     return said
 
 

@@ -90,7 +90,7 @@ def text(found: TwoKeys) -> str:
         cells.append([head, *(quantity.shown(float(value)) for value in found.values[j, :])])
     widths = [max(map(len, column)) for column in zip(*cells, strict=True)]
     lines += ["", *("  ".join(map(str.rjust, row, widths)).rstrip() for row in cells)]
-    lines.append(f"\nThe error of the section is known at {found.known.sum()} of {found.known.size} points.")
+    lines.append(f"\nThe error{of} is known at {found.known.sum()} of {found.known.size} points.")
     return "\n".join(lines)
 
 

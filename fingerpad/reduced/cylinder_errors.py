@@ -30,8 +30,8 @@ from variational.state import ContactState
 Bands = Mapping[str, Mapping[str, float]]
 """Relative errors by state and quantity; those of a whole finger at full slip are under :data:`WHOLE`."""
 WHOLE = "finger"
-PULL = "f_electrostatic/f_ext"
-"""Key of a region's range of the attraction at full slip over the external force, which no scene gives."""
+PULL = "attraction over external force"
+"""Key, in words, of a region's range of this ratio at full slip, which no scene gives."""
 
 
 @dataclass(frozen=True)
@@ -184,30 +184,28 @@ def errors(scene: Scene, states: Mapping[str, ContactState]) -> Bands:
         scene: with ``f_ext``.
         states: of its result by name, full slip too.
     """
-    pull = states["full_slip"].f_electrostatic / scene.f_ext
-    region = find(scene, pull)
+    attraction = states["full_slip"].f_electrostatic
+    region = find(scene, attraction / scene.f_ext)
     known = {} if region is None else region.errors
-    found = {name: dict(known[name]) for name in states if name in known}
-    return {name: each | _of_friction(each, pull) if name == "full_slip" else each for name, each in found.items()}
+    found = {name: known[name] for name in states if name in known}
+    return found | ({"full_slip": at_full_slip(scene, attraction)} if found else {})
 
 
-def of_finger(scene: Scene, f_electrostatic: float) -> Mapping[str, float]:
-    """Return the known relative errors of a whole finger at full slip by quantity; empty where none is known.
+def at_full_slip(scene: Scene, f_electrostatic: float) -> dict[str, float]:
+    """Return the known relative errors at full slip by quantity, those of friction too; empty where none is known.
 
     Args:
-        scene: with ``force``.
-        f_electrostatic: attraction on the finger (N).
+        scene: with ``f_ext``, or with ``force`` for the whole finger.
+        f_electrostatic: attraction on the section (N/m), or on the finger (N).
     """
-    assert scene.force is not None
-    pull = f_electrostatic / scene.force
+    force, name = (scene.f_ext, "full_slip") if scene.force is None else (scene.force, WHOLE)
+    pull = f_electrostatic / force
     region = find(scene, pull)
-    return {} if region is None else dict(region.errors[WHOLE]) | _of_friction(region.errors[WHOLE], pull)
-
-
-def _of_friction(known: Mapping[str, float], pull: float) -> dict[str, float]:
-    """Return the errors of friction where the attraction is a multiple of the external force."""
+    if region is None:
+        return {}
+    known = region.errors[name]
     share = known["f_electrostatic"] * pull / (1 + pull)
-    return {"mu_app": share, "f_t": share}
+    return {**known, "mu_app": share, "f_t": share}
 
 
 def in_words(bands: Bands) -> str:

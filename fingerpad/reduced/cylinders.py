@@ -128,7 +128,7 @@ class Cylinders(Model):
         cautions = [each for each in section.cautions if each not in own]
         if "full_slip" in finger.states:
             attraction = finger.states["full_slip"].totals["f_electrostatic"]
-            known = cylinder_errors.of_finger(scene, attraction)
+            known = cylinder_errors.at_full_slip(scene, attraction)
             cautions += cylinder_errors.cautions(scene, attraction / scene.force)
         errors = {**section.record["model_error"], **({cylinder_errors.WHOLE: known} if known else {})}
         return replace(found, record={**section.record, "model_error": errors}, cautions=tuple(cautions))

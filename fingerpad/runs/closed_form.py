@@ -1,5 +1,6 @@
 """Values at full slip by a model without a path, one state alone: what a search over a key evaluates many times."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import partial
 
@@ -28,14 +29,19 @@ class ClosedForm:
         Raises:
             SceneError: the model has no full slip here.
         """
+        return self.values(scene, [quantity.name], whole)[0]
+
+    def values(self, scene: Scene, names: Sequence[str], whole: bool) -> list[float]:
+        """Return quantities (SI) by their names, as :meth:`value` does."""
         try:
             self.model.check(scene)
             if whole:
-                return self._total(scene).values[quantity.name]
+                found = self._total(scene).values
+                return [found[name] for name in names]
             (state,) = self.model.over_forces(scene, [scene.f_ext], STATE, self.section)
         except LawError as error:
             raise SceneError(str(error)) from error
-        return float(getattr(state, quantity.name))
+        return [float(getattr(state, name)) for name in names]
 
     def section(self, scene: Scene) -> Result:
         """Return the result of the section: the scene's own, or that at the centre of the finger under ``force``."""
@@ -59,9 +65,13 @@ class ClosedForm:
             raise SceneError(str(error)) from error
 
     def newtons(self, scene: Scene) -> float:
-        """Return the force (N) on the whole finger whose centre bears ``f_ext`` without voltage."""
+        """Return the force (N) on the whole finger whose centre bears ``f_ext`` at full slip, without voltage.
+
+        It is the force of a run of the same model, which a voltage does not change (:func:`slices.estimate.estimate`).
+        """
         self.model.check(scene)
-        made, finger = self._traced(scene, "uncharged", scene.f_ext, 0).trace, profile(scene.slices)
+        still, finger = scene.replace(voltage=0.0), profile(scene.slices)
+        made = self._traced(still, STATE, scene.f_ext, 0).trace
         return at_indentation(finger, made, deepest(finger, made), scene.slices.count).totals["f_ext"]
 
     def _total(self, scene: Scene) -> Total:

@@ -78,7 +78,8 @@ class Solution:
 
     def __str__(self) -> str:
         """Return each value of the key, what the quantity is there, and what is known of its error."""
-        quantity, axis, of = self.target.quantity, self.axis, " of the whole finger" if self.target.whole else ""
+        quantity, axis = self.target.quantity, self.axis
+        of = " of the whole finger" if self.target.whole else " of the middle section"
         lines = [
             f"{self.target} over {axis.key} from {axis.shown(axis.low, axis.high)}: {quantity.words}{of} at full slip, "
             "by the closed form."
@@ -145,8 +146,11 @@ def solve(
         raise SceneError(f"{goal.name} is a quantity of the {kind} and {given}; give {other} in its place")
     if goal.whole and not newtons:
         force = float(f"{form.newtons(scene):.4g}")
-        notes.append(f"No force is given; {force:g} N have the f_ext of {scene.f_ext:g} N/m at the finger's centre.")
+        at = f"the f_ext of {scene.f_ext:g} N/m at the finger's centre, at full slip"
+        notes.append(f"No force is given; {force:g} N have {at}.")
         scene = scene.replace(force=force)
+    elif not goal.whole and over != "f_ext":
+        notes.append("The whole finger has another value; give force for it, as force = 0.5 N.")
     solution = _Problem(scene, goal, axis(scene, over, between), form).solution(notes)
     solution = solution.confirmed(RunContext()) if way.path else solution
     for root in solution.roots:

@@ -43,7 +43,7 @@ class TwoKeys:
     reached: Array
     """The quantity as the target has it: in SI, or over its value without voltage."""
     known: NDArray[np.bool_]
-    """Whether the error of the closed form is known there."""
+    """Whether the error of the closed form is known there, for this quantity."""
     lost: tuple[str, ...]
     """Why there is no answer, a sentence for each such place."""
 
@@ -134,8 +134,9 @@ class _Map:
             for k, other in enumerate(self.keys[1]):
                 try:
                     scene = with_values(self.scene, {self.axes[0].key: one, self.axes[1].key: other})
-                    known[j, k] = is_known(scene)
-                    values[j, k] = self.form.value(scene, self.target.quantity, self.target.whole)
+                    names = [self.target.quantity.name, "f_electrostatic"]
+                    values[j, k], attraction = self.form.values(scene, names, self.target.whole)
+                    known[j, k] = names[0] in cylinder_errors.at_full_slip(scene, attraction)
                     reached[j, k] = values[j, k] / self._base(scene, (one, other), base)
                 except SceneError as error:
                     at = " and ".join(f"{a.key} {a.shown(v)}" for a, v in zip(self.axes, (one, other), strict=True))
@@ -153,8 +154,3 @@ class _Map:
         if others not in found:
             found[others] = self.form.value(scene.replace(voltage=0.0), self.target.quantity, self.target.whole)
         return found[others] or np.nan  # nothing has no multiple
-
-
-def is_known(scene: Scene) -> bool:
-    """Return whether the error of the closed form is known: of the whole finger where the scene has a force on it."""
-    return cylinder_errors.find(scene) is not None
