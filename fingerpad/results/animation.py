@@ -5,7 +5,7 @@ no solution of the model; over a jump there are none.
 """
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from io import BytesIO
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -64,12 +64,13 @@ class _Scene(NamedTuple):
     """Stress (kPa)."""
 
 
-def animate(result: "Answer", path: Path) -> Path:
-    """Write the animation of a run that has a folder; return the file.
+def animate(result: "Answer", path: Path, on_frame: Callable[[int, int], None] = lambda done, count: None) -> Path:
+    """Write the animation of a run that has a folder; return the file, which is there as a whole or not at all.
 
     Args:
         result: of a full run.
         path: of the file, whose name ends with ``.webp`` or ``.gif``.
+        on_frame: called with the number of frames that are drawn, and of all.
 
     Raises:
         SceneError: the run has no motion, or the name another ending; one sentence.
@@ -87,8 +88,11 @@ def animate(result: "Answer", path: Path) -> Path:
     half = 1.0 + (float(np.nanmax(np.abs(places))) if np.isfinite(places).any() else 4.0)
     highest = _KPA * max(float(np.nanmax(found.skin[:, [1, 3]])), 1.0)
     scene = _Scene(states, found, coefficient(result.scene), half, highest)
-    frames = _frames(states)
-    _save(path, [_drawn(scene, frame) for frame in frames])
+    frames, pictures = _frames(states), list[Image.Image]()
+    for frame in frames:
+        pictures.append(_drawn(scene, frame))
+        on_frame(len(pictures), len(frames))
+    _save(path, pictures)
     return path
 
 
