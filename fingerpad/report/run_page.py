@@ -48,7 +48,7 @@ _MAX_FINGERS = 4  # pictures of the finger
 def page(result: Result) -> str:
     """Return the page of a run."""
     shown = frames(result)
-    face = slider(shown) or _face(result)
+    face = slider(shown) or (html.picture(result.folder / _FACE, _SAID[_FACE]) if result.folder is not None else "")
     title = f"fingerpad: {result.headline.sentence}"
     answer, spikes = felt(result)
     sections = [
@@ -72,11 +72,6 @@ def page(result: Result) -> str:
     body = "\n".join([html.first(head(result), face), f"<nav>{links}</nav>", html.beside(sections)])
     data = {"finger": shown, "steps": _columns(result), "errors": _errors(result)}
     return html.page(title, body, data | ({"felt": spikes} if spikes else {}))
-
-
-def _face(result: Result) -> str:
-    """Return the picture of the whole finger that a run under a force begins with; nothing without one."""
-    return "" if result.folder is None else html.picture(result.folder / _FACE, _SAID[_FACE])
 
 
 def _asked(result: Result) -> str:
@@ -241,12 +236,7 @@ def _receptors(result: Result) -> str:
 
 
 def _pictures(result: Result, face: str) -> str:
-    """Return the finger at the end of each load, in their order, then the pictures of several states.
-
-    Args:
-        result: of a run.
-        face: what the first screen shows, which is left out here.
-    """
+    """Return the finger at the end of each load, in order, then several states; none that the first screen shows."""
     folder = result.folder
     if folder is None:
         return ""
