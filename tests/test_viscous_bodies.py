@@ -81,6 +81,7 @@ def test_energy_of_random_histories(seed):
     assert max(abs(each.released) / each.stored for each in found) < 1e-8
     assert sum(each.viscous for each in found) > 1e-5 * found[-1].stored
     assert min(each.viscous_dissipation for each in found) > 0.0
+    assert found[-1].viscous_dissipation == pytest.approx(body.problem.spent()[1], rel=1e-9)
     assert least_dissipation(body.continuation) >= 0.0
 
 
