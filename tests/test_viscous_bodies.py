@@ -188,6 +188,15 @@ def test_left_out():
     assert used(scene(PRESS, HOLD))["dermis"].endswith(", QLV(moduli=" + text_of(PRESETS["fingerpad"]))
 
 
+def test_errors_that_are_not_estimated_are_named():
+    """Where they are asked for, as a caution of the result."""
+    asked = scene(PRESS, HOLD)
+    (text,) = [text for text in remarks(asked) if "not estimated" in text]
+    assert text.startswith("materials.subcutis.viscosity is given and errors of the mesh are not estimated")
+    for other in (asked.replace(output={"errors": False}), scene(PRESS, HOLD, preset=None)):
+        assert not [text for text in remarks(other) if "not estimated" in text]
+
+
 def text_of(law: QLV) -> str:
     return f"{law.moduli}, times={law.times})"
 
