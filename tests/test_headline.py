@@ -56,6 +56,15 @@ def test_waveform_without_full_slip_is_in_the_title():
     assert words in str(found)
 
 
+@pytest.mark.parametrize("least", [0.0, 8.8e-15, -8.8e-15, 2e-4])
+def test_waveform_from_rest_has_no_digits_of_roundoff(least):
+    """Friction that is nothing beside the largest is 0 with the digits of the largest, and has no sign."""
+    states = [state(0.0, least), state(0.1, 0.4902772)]
+    load = load_result("wave", states, None, (), SCENE.history[1].wave)
+    found = Result(SCENE, "full", None, state(), state(), loads=(load,)).headline
+    assert "goes from 0.00 to 0.49 N/m, without full slip." in found.sentence
+
+
 def test_waveform_with_some_full_slip_says_in_how_much():
     """Of the states after its begin; no reason for a caution, and nothing where all are of full slip."""
     some, every = waved(True, False, True, False), waved(True, True, True, True)
