@@ -19,7 +19,7 @@ def test_estimate_is_the_closed_form(tmp_path, capsys):
     file = tmp_path / "mu.csv"
     assert main(["estimate", "--f-ext", "50,75", "--voltage", "0:100:2", "--csv", str(file)]) == 0
     out = capsys.readouterr().out
-    assert "Known error of the section (±), at most: µ_app and friction 1.1 %, attraction 5.3 %." in out
+    assert "Known error of the section (±), at most: µ_app and friction 1.2 %, attraction 5.3 %." in out
     rows = rows_of(tmp_path, "mu")
     loads = [(float(r["f_ext_of_section"]), float(r["voltage"])) for r in rows]
     assert loads == [(50, 0), (50, 100), (75, 0), (75, 100)]

@@ -121,7 +121,7 @@ def test_command_prints_the_key(capsys):
     words = ["--target=contrast=10 %", "--over=electric.d_i", "--from=1 um", "--to=0.1 mm"]
     assert main(["solve", *words]) == 0
     said = capsys.readouterr().out
-    assert "electric.d_i = 21.3" in said and "relative rise of µ_app by the voltage" in said
+    assert "electric.d_i = 21.56" in said and "relative rise of µ_app by the voltage" in said
 
 
 @pytest.mark.parametrize(

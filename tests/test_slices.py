@@ -238,7 +238,7 @@ def test_force_beyond_the_trace():
     """The message has how far the trace goes, in N/m and in N."""
     with pytest.raises(BeyondTrace, match=r"the force is 3 N, and .* to 150 N/m goes up to 1\.\d+ N of the whole"):
         at_force(profile(Slices(length=0.1)), kept(200.0), 3.0, 16)
-    with pytest.raises(BeyondTrace, match="indented by 0.00196 m, and the trace .* ends at 0.000992 m under 150 N/m"):
+    with pytest.raises(BeyondTrace, match="indented by 0.00196 m, and the trace .* ends at 0.00099 m under 150 N/m"):
         at_indentation(profile(Slices()), kept(200.0), 2e-3, 16)
     with pytest.raises(TraceError, match="beyond the trace"):
         kept(200.0).at(np.array([2e-3]))

@@ -242,6 +242,8 @@ def test_report_and_text_of_a_force_begin_with_the_whole_finger(tmp_path):
     assert text.index("Middle section of the finger (model 'cylinders')") > 0
     read = fp.Result.load(tmp_path).finger
     assert read.under(1.0).to_dict() == result.finger.under(1.0).to_dict()
-    less = fp.run(fp.Scene(force=1.0), model="cylinders").finger.values("full_slip")
-    assert read.under(1.0).values("full_slip")["f_t"] == pytest.approx(less["f_t"], rel=5e-3), "traces of other points"
+    for force, off in ((1.0, 5e-3), (0.4, 1e-2)):
+        less = fp.run(fp.Scene(force=force), model="cylinders").finger.values("full_slip")
+        found = read.under(force).values("full_slip")
+        assert found["f_t"] == pytest.approx(less["f_t"], rel=off), "traces of other points"
     assert fp.Result.load(tmp_path).scene.force == 2.0 and str(fp.Result.load(tmp_path)) == text

@@ -10,10 +10,9 @@ fingerpad/reduced/cylinder_errors.json; prints the contact lengths that fingerpa
 """
 
 import argparse
-import itertools
 import json
 import sys
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -34,9 +33,9 @@ from benchmarks.loads.compared import (
     regions,
     sections,
 )
-from benchmarks.loads.scenes import COUNT, MESHES, MOST, PULL, Data, checked, scenes, section
+from benchmarks.loads.meshes import errors, without
+from benchmarks.loads.scenes import COUNT, MESHES, PULL, Data, scenes
 from benchmarks.loads.states import pressed, solved
-from benchmarks.models import name
 from fingerpad.reduced import uncharged
 from fingerpad.reduced.cylinder_errors import REGIONS, WHOLE
 from fingerpad.results.files import replace
@@ -61,7 +60,8 @@ def compute(args: argparse.Namespace) -> None:
     slipped = [_short(each) for each in states["far"]]
     numbers = {"scenes": kept, "mesh": checked, "far": {"full_slip": slipped, "charged": far}, "count": COUNT}
     harness.keep("loads", numbers, harness.made(), args.docs)
-    found = regions(sections(kept), fingers(kept))
+    better = without(kept, errors(checked, harness.kept("models", args.docs).numbers["scenes"]))
+    found = regions(sections(better), fingers(better))
     replace(REGIONS_FILE, json.dumps(found, indent=1) + "\n")
     print(in_the_program(numbers))
 
@@ -112,24 +112,6 @@ def in_the_program(numbers: Mapping[str, Any]) -> str:
 
 
 # -- page ----------------------------------------------------------------------------------------------------
-def by_key(compared: Sequence[Compared]) -> list[tuple[str, str, list[Compared]]]:
-    """Return the sections in three parts of the range of each key: the key, the part in words and the sections."""
-    values: dict[str, Callable[[Compared], float]] = {
-        "force of the section (N/m)": lambda each: each.force,
-        "voltage (V)": lambda each: each.values["voltage"],
-        "µ_0": lambda each: each.values["friction"],
-        "h_0 (µm)": lambda each: 1e6 * section(each.values, 1.0).h_0,
-        "attraction over force": lambda each: each.attraction / each.force,
-    }
-    found = []
-    for words, value in values.items():
-        ends = np.quantile([value(each) for each in compared], [0, 1 / 3, 2 / 3, 1])
-        for k, (low, high) in enumerate(itertools.pairwise(ends)):
-            part = [each for each in compared if low <= value(each) and (value(each) < high or k == 2)]
-            found += [(words, f"{low:.3g} to {high:.3g}", part)] if part else []  # few scenes may share a value
-    return found
-
-
 def spread(compared: Sequence[Compared]) -> list[float]:
     """Return in per cent: mean, rms, 90 % and worst error of the attraction, and the worst of friction."""
     errors = np.array([each.error for each in compared])
@@ -137,26 +119,20 @@ def spread(compared: Sequence[Compared]) -> list[float]:
     return [100 * float(each) for each in (*parts, max(abs(each.of_friction) for each in compared))]
 
 
-def mesh_errors(numbers: Mapping[str, Any], docs: Path) -> list[tuple[float, float, float]]:
-    """Return force, voltage and the relative difference (%) of µ_app of the coarse meshes from docs/models.json."""
-    full = harness.kept("models", docs).numbers["scenes"]
-    loads = [each for which in range(len(MESHES)) for each in checked(which)]
-    runs = [full[name(f_ext, voltage)]["full"]["summary"]["full_slip_mu_app"] for f_ext, voltage in loads]
-    mu_app = [state["mu_app"] for state in numbers["mesh"]]
-    return [(*load, 100 * (mu / run - 1)) for load, mu, run in zip(loads, mu_app, runs, strict=True)]
-
-
 def draw(docs: Path) -> Path:
     """Draw the page and its picture from the kept numbers."""
     numbers = harness.kept("loads", docs).numbers
-    every, whole = sections(numbers["scenes"]), fingers(numbers["scenes"])
+    mesh = errors(numbers["mesh"], harness.kept("models", docs).numbers["scenes"])
+    better = without(numbers["scenes"], mesh)
+    every, whole = sections(better), fingers(better)
     states = [state for each in numbers["scenes"] for state in each["states"]]
     tried = [each for each in states if not each.get("failure", "").startswith("not tried")]
     harness.picture(docs / "loads.png", (9.5, 4.2), lambda figure: _paint(figure, every))
     names = {
-        "every": every, "whole": whole, "states": states, "tried": tried, "mesh": mesh_errors(numbers, docs),
-        "rows": by_key(every), "regions": [judged(every, whole, k) for k in range(len(BANDS) - 1)],
-        "LEAST": LEAST, "MARGIN": MARGIN, "PART": PART, "MOST": MOST, "PULL": PULL, "MESHES": MESHES,
+        "every": every, "whole": whole, "states": states, "tried": tried,
+        "mesh": [(sizes["contact"], each) for sizes, some in zip(MESHES, mesh, strict=True) for each in some],
+        "regions": [judged(every, whole, k) for k in range(len(BANDS) - 1)],
+        "LEAST": LEAST, "MARGIN": MARGIN, "PART": PART, "PULL": PULL, "MESHES": MESHES,
         "known": [REGIONS[0].errors[key]["f_electrostatic"] for key in ("full_slip", WHOLE)],
         "lost": [each for each in tried if "failure" in each],
     }  # fmt: skip
