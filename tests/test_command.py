@@ -73,6 +73,7 @@ def test_options_of_petsc_are_told_from_the_others(words, own, petsc):
         (["--voltage", "3"], "--voltage is not an option; did you mean --set voltage=...?"),
         (["-f_ext=3"], "-f_ext=3 is not an option; did you mean --set f_ext=...?"),
         (["--uot", "x"], "--uot is not an option; did you mean --out?"),
+        (["one.toml", "two.toml"], "two.toml is a word too many; options are --help,"),
         (["-snes_monitor"], "-snes_monitor is not an option; did you mean -fingerpad_snes_monitor?"),
         (["--set"], "command line: argument --set: expected one argument"),
         (["--out", "results\udcff"], "--out results\\udcff is not UTF-8;"),

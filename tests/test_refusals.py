@@ -44,6 +44,7 @@ def refusal(path: Path | None = None, **overrides) -> str:
         ("geometry.ridge_count", 5.0, "geometry.ridge_count is 5.0; it must be a whole number"),
         ("numerics.quadrature_points", 9, "numerics.quadrature_points is 9; it must be at most 8"),
         ("friction", "0.25", "friction is '0.25'; it must be a number"),
+        ("friction", [0.25], "friction is [0.25]; it must be a number, a table or a Friction"),
         ("voltage", -1e9, "voltage is -1000000000 V; it must be 0 or from 0.001 to 5000 V, with either sign"),
         ("friction", 2.1, "friction is 2.1; it must be 0 or from 1e-06 to 2"),
         ("mesh", 3, "mesh is 3; it must be a table of keys"),

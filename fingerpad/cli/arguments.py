@@ -147,7 +147,8 @@ class Parser(argparse.ArgumentParser):
 
     def _refuse(self, word: str, petsc: bool) -> NoReturn:
         instead = _instead(word, self._option_string_actions, petsc)
-        raise SceneError(f"{clip(word) or 'an empty text'} is not an option; {instead}")
+        what = "is not an option" if word.startswith("-") or not word else "is a word too many"
+        raise SceneError(f"{clip(word) or 'an empty text'} {what}; {instead}")
 
 
 def scene_of(args: argparse.Namespace, meshed: bool = True) -> Scene:

@@ -280,7 +280,6 @@ def _panel(ax: "Axes", rows: "pd.DataFrame", known: "Computed") -> None:
     over_voltage = rows.voltage.nunique() > rows.force.nunique()
     x, other, name = ("voltage", "force", about["force_unit"]) if over_voltage else ("force", "voltage", "V")
     axis = np.union1d(points[x], np.linspace(points[x].min(), points[x].max(), _DRAWN))
-    repeated = rows.groupby([other, x]).size().max() > 1
     for k, (held, mine) in enumerate(rows.groupby(other)):
         colour, label = style.CATEGORIES[k % len(style.CATEGORIES)], f"{held:.3g} {name}"
         level = np.full(len(axis), held)
@@ -290,6 +289,7 @@ def _panel(ax: "Axes", rows: "pd.DataFrame", known: "Computed") -> None:
         at = points[np.isclose(points[other], held, rtol=CLOSE if over_voltage else 1e-6, atol=0.0)]
         ax.errorbar(at[x], factor * at.value, factor * at.error, fmt=".", ms=9, capsize=2, color=colour)
         marker = style.MARKERS[k % len(style.MARKERS)]
+        repeated = mine.groupby(x).size().max() > 1
         if repeated:
             ax.plot(mine[x], scale * mine.measured, marker, ms=3, color=colour, alpha=0.5)
         repeats = mine.groupby(x).agg({"measured": ["mean", "std"], "spread": "mean"})

@@ -144,7 +144,8 @@ def _about(state: ContactState | None) -> str:
         return ""
     slides = abs(state.f_t) > 1e-9 * abs(state.f_ext) and not math.isnan(state.mu_app)
     slip = f", µ_app = {state.mu_app:.3f} of the middle section" if slides else ""
-    length = f"L_R = {_MM * state.contact_length:.3f} mm, {state.ridges_in_contact} ridges in contact"
+    count = state.ridges_in_contact
+    length = f"L_R = {_MM * state.contact_length:.3f} mm, {count} ridge{'s' * (count != 1)} in contact"
     return f"{conditions_of(state)}{slip}, {length}"
 
 

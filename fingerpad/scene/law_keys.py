@@ -17,6 +17,7 @@ from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from contextvars import ContextVar
 from dataclasses import MISSING, Field, dataclass, fields, is_dataclass
+from numbers import Real
 from typing import Any, NoReturn
 
 import numpy as np
@@ -158,8 +159,10 @@ class LawKey:
             law = self._kind_of(type(self.default) if name is None else name)
             self._refuse_hash(law, given_table)
             given_table = self.completed(given_table, law)
-        elif self.number:
+        elif self.number and isinstance(value, str | Real):
             return _number(keys_of(self.default)[self.number], value, ())
+        elif self.number:
+            raise fail(f"is {show(value)}; it must be a number, a table or a {self.kind.base.__name__}")
         else:
             raise PydanticKnownError("model_type", {"class_name": "table"})
         found = self._made(law, given_table, given)
