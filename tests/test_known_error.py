@@ -114,6 +114,20 @@ def test_no_band_where_no_run_is(scene):
     assert scene.parameters()[key.partition(".")[0]] != Scene().parameters()[key.partition(".")[0]]
 
 
+def test_other_finger_is_named_by_its_tables():
+    """Not by each of its 21 sizes and moduli; two keys of a table are named."""
+    (text,) = cylinder_errors.cautions(Scene(finger="woman"))
+    assert [each.key for each in cylinder_errors.in_short(cylinder_errors.outside(Scene(finger="woman")))] == [
+        "geometry", "materials"
+    ]  # fmt: skip
+    assert text.endswith(
+        "here: geometry is another one, and it is known for that of the default scene; "
+        "materials is another one, and it is known for that of the default scene"
+    )
+    (text,) = cylinder_errors.cautions(from_data({"electric": {"d_i": 2e-6, "eps_i": 4.0}}))
+    assert "electric.d_i is 2e-06 m" in text and "electric.eps_i is 4" in text
+
+
 # -- the kept runs ---------------------------------------------------------------------------------------------------
 def test_lengths_in_the_program_are_the_runs():
     """The lengths that `cylinders` interpolates are the kept full runs', to the four digits they are kept with."""

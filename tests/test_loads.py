@@ -9,7 +9,7 @@ from benchmarks.loads.__main__ import REGIONS_FILE, far
 from benchmarks.loads.scenes import AXES, COUNT, PULL, checked, forces, scenes, section
 from fingerpad.reduced import cylinder_errors, cylinders, uncharged
 from fingerpad.runs.solve import run
-from fingerpad.scene import Scene
+from fingerpad.scene import Scene, from_data
 from tests.commands import kept
 
 COVERED = 0.9
@@ -51,18 +51,53 @@ def test_regions_of_the_program_are_those_of_the_states(sections, fingers):
             assert region.ranges[key][1] <= high
 
 
-def test_printed_error_covers_states_that_it_was_not_made_of(numbers, sections):
-    """Nine of ten, as a result of the closed form prints it; where nothing is printed the caution names a key."""
-    inside = []
+@pytest.fixture(scope="module")
+def known(sections) -> list[tuple[compared.Compared, dict[str, float]]]:
+    """Each section with its errors at full slip, as a result prints them; without any a caution says so."""
+    found = []
     for each in sections:
-        scene = section(each.values, each.force)
-        result = cylinders.solve(scene)
-        known, slip = result.record["model_error"].get("full_slip"), result.full_slip
-        assert slip is not None
-        assert known is not None or any("error of this model is not known here" in text for text in result.cautions)
-        if known is not None and not compared.fits(each):
-            inside.append(abs(each.of_friction) <= known["mu_app"])
-    assert sum(inside) >= COVERED * len(inside)
+        result = cylinders.solve(section(each.values, each.force))
+        errors = result.record["model_error"].get("full_slip", {})
+        assert bool(errors) != any("error of this model is not known here" in text for text in result.cautions)
+        found.append((each, errors))
+    return found
+
+
+def test_printed_error_covers_states_that_it_was_not_made_of(known):
+    """Nine of ten. Until a band of the friction coefficient has enough states, no error is printed that this tests."""
+    inside = [abs(each.of_friction) <= errors["mu_app"] for each, errors in known if errors and not compared.fits(each)]
+    if len(cylinder_errors.REGIONS) == 1:
+        assert not inside
+        pytest.skip("no band has enough states: no error over people's loads is claimed yet")
+    assert inside and sum(inside) >= COVERED * len(inside)
+
+
+# -- the way from states to a printed error, on states that are made up ------------------------------------------------
+def made_up(count: int) -> list[compared.Compared]:
+    """Return sections at 50 N/m, 100 V and friction coefficients from 0.4 to 0.6, with errors of 1 to 2 %."""
+    values = [{"force": 0.5, "voltage": 100.0, "friction": 0.4 + 0.2 * k / count, "electric.d_i": 2e-6,
+               "electric.eps_i": 3.9} for k in range(count + 1)]  # fmt: skip
+    return [compared.Compared(k, 50.0, 20.0, 0.01 * (1 + k / count), each) for k, each in enumerate(values)]
+
+
+def test_band_with_enough_states_has_an_error(monkeypatch):
+    """It covers the states that make it, and holds in their range alone: of friction, and of the attraction."""
+    few = compared.LEAST - 1  # that make the error, and that test it
+    assert compared.regions(made_up(2 * few - 1), []) == []
+    some = made_up(40)
+    (found,) = compared.regions(some, [])
+    error = found["errors"]["full_slip"]["f_electrostatic"]
+    assert compared.covered(some, error) == len(some) and 0.02 < error < 0.02 * compared.MARGIN + 2e-3
+    monkeypatch.setattr(cylinder_errors, "REGIONS", (cylinder_errors.REGIONS[0], cylinder_errors.Region(**found)))
+    scene = section(some[20].values, 50.0)
+    pull = 20.0 / 50.0
+    printed = cylinder_errors.at_full_slip(scene, 20.0)
+    assert printed["mu_app"] == pytest.approx(error * pull / (1 + pull), rel=1e-12)
+    assert not cylinder_errors.at_full_slip(scene, 21.0)
+    assert not cylinder_errors.at_full_slip(scene.replace(friction=0.61), 20.0)
+    finger = {"force": 0.5, "voltage": 100.0, "friction": 0.5, "electric": {"d_i": 2e-6}}
+    (outside,) = cylinder_errors.outside(from_data(finger))
+    assert (outside.key, outside.known) == ("force", "sections alone")
 
 
 def test_a_bound_that_is_too_small_does_not_cover(sections):
@@ -82,7 +117,7 @@ def test_tables_go_on_by_the_kept_states(numbers):
 
 
 def test_meshes_are_fine_enough(numbers):
-    """Beside full runs with facets of 10 µm the attraction differs by less than half of the closed form's error."""
+    """Beside full runs with facets of 10 µm the attraction differs by less than 3 %, half the closed form's error."""
     full, states = kept("models.json")["scenes"], iter(numbers["mesh"])
     for load in (*checked(0), *checked(1)):
         run_of = full["{:g} N/m, {:g} V".format(*load)]["full"]["summary"]

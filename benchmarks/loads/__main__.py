@@ -10,10 +10,9 @@ fingerpad/reduced/cylinder_errors.json; prints the contact lengths that fingerpa
 """
 
 import argparse
-import itertools
 import json
 import sys
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -34,7 +33,7 @@ from benchmarks.loads.compared import (
     regions,
     sections,
 )
-from benchmarks.loads.scenes import COUNT, MESHES, MOST, PULL, Data, checked, scenes, section
+from benchmarks.loads.scenes import COUNT, MESHES, PULL, Data, checked, scenes
 from benchmarks.loads.states import pressed, solved
 from benchmarks.models import name
 from fingerpad.reduced import uncharged
@@ -112,24 +111,6 @@ def in_the_program(numbers: Mapping[str, Any]) -> str:
 
 
 # -- page ----------------------------------------------------------------------------------------------------
-def by_key(compared: Sequence[Compared]) -> list[tuple[str, str, list[Compared]]]:
-    """Return the sections in three parts of the range of each key: the key, the part in words and the sections."""
-    values: dict[str, Callable[[Compared], float]] = {
-        "force of the section (N/m)": lambda each: each.force,
-        "voltage (V)": lambda each: each.values["voltage"],
-        "µ_0": lambda each: each.values["friction"],
-        "h_0 (µm)": lambda each: 1e6 * section(each.values, 1.0).h_0,
-        "attraction over force": lambda each: each.attraction / each.force,
-    }
-    found = []
-    for words, value in values.items():
-        ends = np.quantile([value(each) for each in compared], [0, 1 / 3, 2 / 3, 1])
-        for k, (low, high) in enumerate(itertools.pairwise(ends)):
-            part = [each for each in compared if low <= value(each) and (value(each) < high or k == 2)]
-            found += [(words, f"{low:.3g} to {high:.3g}", part)] if part else []  # few scenes may share a value
-    return found
-
-
 def spread(compared: Sequence[Compared]) -> list[float]:
     """Return in per cent: mean, rms, 90 % and worst error of the attraction, and the worst of friction."""
     errors = np.array([each.error for each in compared])
@@ -155,8 +136,8 @@ def draw(docs: Path) -> Path:
     harness.picture(docs / "loads.png", (9.5, 4.2), lambda figure: _paint(figure, every))
     names = {
         "every": every, "whole": whole, "states": states, "tried": tried, "mesh": mesh_errors(numbers, docs),
-        "rows": by_key(every), "regions": [judged(every, whole, k) for k in range(len(BANDS) - 1)],
-        "LEAST": LEAST, "MARGIN": MARGIN, "PART": PART, "MOST": MOST, "PULL": PULL, "MESHES": MESHES,
+        "regions": [judged(every, whole, k) for k in range(len(BANDS) - 1)],
+        "LEAST": LEAST, "MARGIN": MARGIN, "PART": PART, "PULL": PULL, "MESHES": MESHES,
         "known": [REGIONS[0].errors[key]["f_electrostatic"] for key in ("full_slip", WHOLE)],
         "lost": [each for each in tried if "failure" in each],
     }  # fmt: skip

@@ -120,16 +120,23 @@ def regions(sections: Sequence[Compared], fingers: Sequence[Compared]) -> list[d
 
 
 def hull(some: Sequence[Compared], whole: Sequence[Compared]) -> dict[str, tuple[float, float]]:
-    """Return the range by key of sections and fingers in which the error is known; without voltage it is nothing."""
+    """Return the range by key of sections and fingers in which the error is known; without voltage it is nothing.
+
+    Without fingers it has no force, and the program then claims an error of sections alone.
+    """
     found = {"force": [each.force for each in whole], "f_ext": [each.force for each in some]}
     found |= {key: [each.values[key] for each in some] for key in some[0].values if key != "force"}
     found |= {PULL: [each.attraction / each.force for each in (*some, *whole)]}
-    ends = {key: (0.0 if key in ("voltage", PULL) else min(values), max(values)) for key, values in found.items()}
-    return {key: tuple(float(f"{end:.3g}") for end in each) for key, each in ends.items()}  # type: ignore[misc]
+    least = {key: 0.0 if key in ("voltage", PULL) else min(values, default=0.0) for key, values in found.items()}
+    return {key: (_end(least[key]), _end(max(values))) for key, values in found.items() if values}
+
+
+def _end(value: float) -> float:
+    return float(f"{value:.3g}")
 
 
 def fits(one: Compared) -> bool:
-    """Return whether a scene is one that the error is made of; the others test it. Blocks of eight take turns."""
+    """Return whether a scene is one that the error is made of; the others test it. :data:`BLOCK` scenes take turns."""
     return one.scene // BLOCK % 2 == 0
 
 

@@ -48,18 +48,29 @@ class Pool:
             raise RuntimeError("the path asks for another mesh")
         slips = FullSlips(simulation)
         pool = cls(which, slips, [slips.first(Conditions.of(model))])
-        path, counts = slips.finger.continuation, slips.finger.solver.counts
-        solve = path.solve
-
-        def capped(pseudo_transient: bool) -> None:
-            if counts.factorisations > pool.most:
-                raise _TooManyError(f"not found with {MOST} factorisations")
-            solve(pseudo_transient)
-
-        path.solve = capped
+        pool._cap()
         for f_ext, voltage, friction in LADDER[which]:
             pool.state({"voltage": voltage} | DEFAULT | {"friction": friction}, f_ext)
         return pool
+
+    def _cap(self) -> None:
+        """Let iterations end, and no solve begin, once :attr:`most` factorisations are made."""
+        from petsc4py import PETSc
+
+        path, solver = self.slips.finger.continuation, self.slips.finger.solver
+        solve, snes = path.solve, solver.iteration.snes
+        test, too_many = snes.getConvergenceTest()[0], PETSc.SNES.ConvergedReason.DIVERGED_MAX_IT
+
+        def judge(*iterate: Any) -> int:
+            return test(*iterate) or (too_many if solver.counts.factorisations >= self.most else 0)
+
+        def begin(pseudo_transient: bool) -> None:
+            if solver.counts.factorisations >= self.most:
+                raise _TooManyError(f"not found with {MOST} factorisations")
+            solve(pseudo_transient)
+
+        snes.setConvergenceTest(judge)
+        path.solve = begin
 
     def state(self, data: Data, f_ext: float) -> Data:
         """Return full slip from the nearest states, ready for JSON; its ``failure`` where none leads to it."""

@@ -160,7 +160,8 @@ def _row(found: Result) -> dict[str, Any]:
             force, pull = finger.f_ext, total["f_electrostatic"]
     if cylinder_errors.WHOLE in known:
         values[_ERROR] = known[cylinder_errors.WHOLE]["mu_app"] * values["mu_app"]
-    return values | {"state": section, "error": known, "outside": cylinder_errors.outside(found.scene, pull / force)}
+    outside = cylinder_errors.in_short(cylinder_errors.outside(found.scene, pull / force))
+    return values | {"state": section, "error": known, "outside": outside}
 
 
 def _known(rows: Sequence[Mapping[str, Any]]) -> list[str]:

@@ -13,7 +13,8 @@ It vanishes without voltage. :func:`data` is the same table for the calculator, 
 """
 
 import json
-from collections.abc import Iterable, Iterator, Mapping
+from collections import Counter
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from functools import cache
 from importlib.resources import files
@@ -126,8 +127,15 @@ def outside(scene: Scene, pull: float = 0.0) -> list[Outside]:
 
 def cautions(scene: Scene, pull: float = 0.0) -> list[str]:
     """Return in one sentence why the error is not known, empty where it is known; arguments of :func:`find`."""
-    keys = outside(scene, pull)
+    keys = in_short(outside(scene, pull))
     return [f"the error of this model is not known here: {'; '.join(map(str, keys))}"] if keys else []
+
+
+def in_short(keys: Sequence[Outside]) -> list[Outside]:
+    """Return keys for a reader: in place of more than two of one table, the table, as for another finger."""
+    tables = Counter(each.key.partition(".")[0] for each in keys)
+    many = {table: Outside(table, "another one", "that of the default scene") for table in tables if tables[table] > 2}
+    return list(dict.fromkeys(many.get(each.key.partition(".")[0], each) for each in keys))
 
 
 def _given(scene: Scene, pull: float) -> dict[str, Any]:
