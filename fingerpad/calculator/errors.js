@@ -14,7 +14,7 @@ const modelErrors = (() => {
   /** Return the keys of values that are outside of a region, with its ranges: [{key, low, high}]. */
   function beyond(region, values, answer) {
     const load = values.newtons ? "force" : "f_ext", other = values.newtons ? "f_ext" : "force", found = [];
-    const given = { ...values, "attraction over external force": answer ? pull_of(values, answer) : 0 };
+    const given = { ...values, "attraction over force": answer ? pull_of(values, answer) : 0 };
     if (!region.ranges[load]) found.push({ key: load, low: NaN, high: NaN });
     for (const [key, ends] of Object.entries(region.ranges))
       if (key !== other && !within(given[key], ends)) found.push({ key, low: ends[0], high: ends[1] });

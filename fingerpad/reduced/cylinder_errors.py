@@ -31,7 +31,7 @@ from variational.state import ContactState
 Bands = Mapping[str, Mapping[str, float]]
 """Relative errors by state and quantity; those of a whole finger at full slip are under :data:`WHOLE`."""
 WHOLE = "finger"
-PULL = "attraction over external force"
+PULL = "attraction over force"
 """Key, in words, of a region's range of this ratio at full slip, which no scene gives."""
 
 
