@@ -123,7 +123,7 @@ def test_margin_is_the_error_of_the_model_over_the_slope(target, value, over):
 
 def test_margin_is_not_known_elsewhere():
     (other,) = fp.solve(target="contrast=10 %", over="electric.d_i").roots
-    assert math.isnan(other.margin), "the error is known with the default screen alone"
+    assert math.isnan(other.margin), "no full run has such a thick coating"
 
 
 def test_answers_that_end_are_told():

@@ -33,9 +33,9 @@ const modelErrors = (() => {
     return { ...known, mu_app: friction, f_t: friction };
   }
 
-  /** Return the keys for which the error is not known, by the nearest region; empty where it is known. */
+  /** Return the keys for which the error is not known, by the nearest region, the widest of these; empty if known. */
   const outside = (values, answer) => regions.map((region) => beyond(region, values, answer))
-    .reduce((least, keys) => (keys.length < least.length ? keys : least));
+    .reduce((least, keys) => (keys.length <= least.length ? keys : least));
 
   return { of, outside };
 })();
