@@ -141,7 +141,7 @@ def test_cylinders_and_tables(young, capsys):
     """Of clamped closures, whose friction is one number."""
     found = cylinders.solve(fp.Scene(roughness={"young": young}))
     assert any("beyond zero separation" in text for text in found.cautions)
-    assert found.full_slip.mu_app == pytest.approx(0.5379, abs=1e-4)
+    assert found.full_slip.mu_app == pytest.approx(0.5427, abs=1e-4)
     for command in ("estimate", "microscale"):
         assert main([command, "--set", f"roughness.young={young}"]) == 0
         assert "the closure is out of its range: the mean pressure of ridges is beyond" in capsys.readouterr().out

@@ -127,7 +127,7 @@ def test_estimate_takes_a_drive(capsys):
     """Beside the row of its mean attraction stands friction over its period."""
     assert main(["estimate", "--set", DRIVE]) == 0
     out = capsys.readouterr().out
-    assert "141.4" in out and "At 75 N/m. Friction force at full slip over a period: mean 28.3" in out
+    assert "141.4" in out and "At 75 N/m. Friction force at full slip over a period: mean 28.43" in out
 
 
 def test_microscale_takes_a_drive(capsys):

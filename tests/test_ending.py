@@ -2,7 +2,6 @@
 
 import json
 import os
-import random
 import resource
 import signal
 import subprocess
@@ -17,7 +16,7 @@ from mpi4py import MPI
 from fingerpad.results.files import Table, replace_json
 from fingerpad.results.interrupt import Interrupt, Interrupted
 from tests.commands import python
-from tests.measures import accepted, rows_of
+from tests.measures import accepted
 
 pytestmark = pytest.mark.slow
 ROOT = Path(__file__).resolve().parents[1]
@@ -254,116 +253,3 @@ def test_library_leaves_signals_alone():
     code = "import fingerpad, fingerpad.__main__, fingerpad.cli.run\n"
     code += "assert signal.getsignal(signal.SIGINT) is signal.default_int_handler"
     assert interrupted(code).returncode == 0
-
-
-TABLES = ("steps", "ridges", "coupling")
-
-
-def tables(folder: Path) -> dict[str, list[dict[str, str]]]:
-    """Return all tables as text, without the time that steps took."""
-    found = {}
-    for name in TABLES:
-        found[name] = [{k: v for k, v in row.items() if "seconds" not in k} for row in rows_of(folder, name)]
-    return found
-
-
-WRAPPER = """
-import os, sys
-kind, number = sys.argv.pop(1), int(sys.argv.pop(1))
-from variational.solvers.coupling import Coupling
-from fingerpad.results import checkpoint, files
-def kill_at(owner, name, do=lambda *args: None):
-    plain, count = getattr(owner, name), [0]
-    def call(*args, **more):
-        count[0] += 1
-        if count[0] == number:
-            do(*args)
-            os.kill(os.getpid(), 9)
-        return plain(*args, **more)
-    setattr(owner, name, call)
-if kind == "solve":
-    kill_at(Coupling, "solve")
-elif kind == "part":
-    kill_at(checkpoint.np, "savez", lambda stream, *rest: stream.write(b"PK half of it"))
-elif kind == "row":
-    kill_at(files.Table, "write")
-from fingerpad.results.drawing import Drawing
-Drawing.write = lambda *args: None
-from fingerpad.cli import main
-sys.exit(main(sys.argv[1:]))
-"""
-
-
-def process(kind: str, number: int, *words: str) -> int:
-    """Run a command that kills itself at a solve, in writing a part of the checkpoint, or at a row of a table."""
-    done = python("-c", WRAPPER, kind, number, *words)
-    assert done.returncode in (0, -signal.SIGKILL), done.stderr[-2000:]
-    return done.returncode
-
-
-VISCOUS = """# a viscous finger under a voltage over time
-geometry.ridge_count = 9
-mesh = {contact = 40e-6, receptor = 100e-6, interface = 200e-6, growth = 1.0, touching_half_arc = 1.0e-3}
-output = {errors = false, receptors = false}
-materials.dermis.viscosity = {preset = "fingerpad"}
-materials.stratum_corneum.viscosity = {preset = "fingerpad"}
-[[history]]
-name = "press"
-f_ext = 2.0
-[[history]]
-name = "wave"
-bone_x_by = 100e-6
-duration = 10e-3
-voltage = {waveform = "sine", amplitude = 100.0, frequency = 100.0}
-"""
-MOMENTS = [("solve", 9), ("part", 3), ("row", 40), *(("solve", n) for n in random.Random(1).sample(range(2, 21), 7))]
-
-
-@pytest.fixture(scope="module")
-def undisturbed(tmp_path_factory):
-    """Return a file of a scene with an error estimate, and the tables of its run."""
-    text = (ROOT / "demos" / "scenes" / "small_finger.toml").read_text(encoding="utf-8")
-    return ended(tmp_path_factory.mktemp("undisturbed"), text.replace("contact = 20e-6", "contact = 40e-6"))
-
-
-@pytest.fixture(scope="module")
-def viscous(tmp_path_factory):
-    """Return the same of a viscous finger under a voltage over time."""
-    return ended(tmp_path_factory.mktemp("viscous"), VISCOUS)
-
-
-def ended(folder: Path, text: str):
-    file = folder / "scene.toml"
-    file.write_text(text, encoding="utf-8")
-    assert process("", 0, "run", str(file), "--quiet", "--out", str(folder / "run")) == 0
-    return file, tables(folder / "run"), (folder / "run" / "summary.json").read_text(encoding="utf-8")
-
-
-@pytest.mark.parametrize(
-    ("kind", "number"), [MOMENTS[0], *(pytest.param(*m, marks=pytest.mark.long) for m in MOMENTS[1:])]
-)
-def test_kill_9(undisturbed, tmp_path, kind, number):
-    """At a solve of the path or of the error estimate, in writing a part, between two rows."""
-    killed_and_resumed(undisturbed, tmp_path / "run", kind, number)
-
-
-@pytest.mark.parametrize(
-    ("kind", "number"), [("solve", 20), *(pytest.param(*m, marks=pytest.mark.long) for m in [("part", 3), ("row", 30)])]
-)
-def test_kill_9_of_viscous_layers(viscous, tmp_path, kind, number):
-    """What viscous layers keep of their past goes on to the last bit."""
-    killed_and_resumed(viscous, tmp_path / "run", kind, number)
-
-
-def killed_and_resumed(undisturbed, out, kind, number):
-    file, whole, summary = undisturbed
-    assert process(kind, number, "run", str(file), "--quiet", "--out", str(out)) == -signal.SIGKILL
-    resumed = (out / "checkpoint").exists()
-    words = ["--resume", str(out)] if resumed else [str(file), "--out", str(out)]
-    assert process("", 0, "run", "--quiet", *words) == 0
-    assert tables(out) == whole
-
-    def lines(text):
-        return [line for line in text.splitlines() if not any(word in line for word in ("seconds", "memory"))]
-
-    assert lines((out / "summary.json").read_text(encoding="utf-8")) == lines(summary)

@@ -56,6 +56,15 @@ def test_waveform_without_full_slip_is_in_the_title():
     assert words in str(found)
 
 
+@pytest.mark.parametrize("least", [0.0, 8.8e-15, -8.8e-15, 2e-4])
+def test_waveform_from_rest_has_no_digits_of_roundoff(least):
+    """Friction that is nothing beside the largest is 0 with the digits of the largest, and has no sign."""
+    states = [state(0.0, least), state(0.1, 0.4902772)]
+    load = load_result("wave", states, None, (), SCENE.history[1].wave)
+    found = Result(SCENE, "full", None, state(), state(), loads=(load,)).headline
+    assert "goes from 0.00 to 0.49 N/m, without full slip." in found.sentence
+
+
 def test_waveform_with_some_full_slip_says_in_how_much():
     """Of the states after its begin; no reason for a caution, and nothing where all are of full slip."""
     some, every = waved(True, False, True, False), waved(True, True, True, True)
@@ -125,9 +134,9 @@ def sentence(model: str = "cylinders", **scene) -> str:
         ({"force": "0.5 N"}, "At 0.5 N, 200 V raise the friction force from 0.13 to 0.30 N."),
         ({}, "At 0.54 N, 200 V raise the friction force from 0.13 to 0.32 N."),
         ({"voltage": 0.0}, "At 0.54 N and 0 V the friction force is 0.13 N."),
-        ({"voltage": 1.0}, "At 0.54 N, 1 V leaves the friction force at 0.1348 N."),
-        ({"friction": 0.0}, "At 0.54 N, 200 V raise the ridge contact area from 11 to 15 mm²."),
-        ({"friction": fp.Derjaguin(0.2, 1e4)}, "At 0.54 N and 200 V the friction force is 0.40 N."),
+        ({"voltage": 1.0}, "At 0.54 N, 1 V leaves the friction force at 0.1347 N."),
+        ({"friction": 0.0}, "At 0.54 N, 200 V raise the ridge contact area from 11 to 16 mm²."),
+        ({"friction": fp.Derjaguin(0.2, 1e4)}, "At 0.54 N and 200 V the friction force is 0.41 N."),
         (
             {"slices": {"length": 5e-3}},
             "At 75 N/m, 200 V raise the friction force of the middle section from 19 to 39 N/m.",
@@ -150,7 +159,7 @@ def test_number_is_the_first_line_of_all_that_is_written(tmp_path):
     found = fp.run(fp.Scene(force="0.5 N"), model="cylinders", out=tmp_path)
     words = found.headline.sentence
     kept = json.loads((tmp_path / "summary.json").read_text(encoding="utf-8"))["headline"]
-    assert str(found).startswith(f"{words}\n  µ_app of the whole finger = 0.601")
+    assert str(found).startswith(f"{words}\n  µ_app of the whole finger = 0.606")
     assert kept["sentence"] == words and kept["of"] == "whole finger" and kept["value"] == found.headline.value
     assert fp.Result.load(tmp_path).headline.to_dict() == kept
     assert head(found).startswith(f"<header><h1>{words}</h1>")

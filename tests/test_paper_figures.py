@@ -1,6 +1,7 @@
 """The paper's figures by ``fingerpad paper``: names, numbers of runs that are made up, pictures of the kept ones."""
 
 import json
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -9,7 +10,7 @@ import pytest
 from benchmarks.harness import kept
 from fingerpad.cli import main
 from fingerpad.paper import loads, maps, scenes, section, sine
-from fingerpad.paper.figures import FIGURES, draw, find
+from fingerpad.paper.figures import FIGURES, compute, draw, find
 from fingerpad.paper.run import Unfinished, computed
 from variational.snapshot import Snapshot
 
@@ -58,6 +59,28 @@ def test_a_run_that_fails(tmp_path, monkeypatch):
         computed({"any": scenes.stiffer()}, tmp_path, 1)
     assert main(["paper", "9A", "--out", str(tmp_path)]) == 1
     assert not (tmp_path / "figure_9A.png").exists()
+
+
+def test_stopped(tmp_path, monkeypatch, capsys):
+    """Ctrl-C says where runs are kept, and that the same command goes on; no picture is left behind."""
+
+    def stop(*_):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("fingerpad.runs.batch.sweep", stop)
+    assert main(["paper", "9A", "--out", str(tmp_path)]) == 130
+    assert f"stopped; runs are kept in {tmp_path}, and the same command goes on\n" in capsys.readouterr().err
+    assert not list(tmp_path.iterdir())
+
+
+def test_numbers_are_strict_json(tmp_path):
+    """What is no number, as between ridges, is null: other programs cannot read NaN."""
+    x = {"f_ext": 1.0, "voltage": 0.0, "scale": 1.0, "states": {}}
+    for state in ("charged", "partial", "full_slip"):
+        x["states"][state] = {name: [1.0, float("nan"), 2.0] for name in ("x", "p", "p_el", "t", "d_eq")}
+    _, kept_in = compute(replace(FIGURES["2"], numbers=lambda *_: x), tmp_path, 1)
+    found = json.loads(kept_in.read_text(encoding="utf-8"), parse_constant=pytest.fail)
+    assert found["states"]["partial"]["p"] == [1.0, None, 2.0]
 
 
 def test_sites_by_what_voltage_does():

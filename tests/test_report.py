@@ -10,14 +10,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 from matplotlib.collections import LineCollection
-from PIL import Image
 
 from fingerpad.cli import main
 from fingerpad.reduced.registry import find
 from fingerpad.report import run_page, trust
 from fingerpad.report.write import NAME, write
-from fingerpad.results import motion
-from fingerpad.results.animation import ENDINGS
 from fingerpad.results.arrays import skin_of
 from fingerpad.results.quantities import cell
 from fingerpad.results.result import Result
@@ -147,50 +144,6 @@ def test_numbers_stand_there_without_scripts(page, folder, tmp_path):
     assert found["wide"] <= 390
 
 
-# -- animation ---------------------------------------------------------------------------------------------
-@pytest.mark.parametrize("ending", ENDINGS)
-def test_animation_has_a_frame_for_each_state(folder, tmp_path, capsys, ending):
-    """And some between states, each load at least as many as it is said to have; the last frame stands longest."""
-    file = tmp_path / f"run{ending}"
-    assert main(["animate", str(folder), "--out", str(file)]) == 0 and str(file) in capsys.readouterr().out
-    with Image.open(file) as shown:
-        assert shown.size == (810, 540) and shown.n_frames > len(Result.load(folder).steps)
-        first = shown.convert("RGB").tobytes()
-        shown.seek(shown.n_frames - 1)
-        assert shown.convert("RGB").tobytes() != first
-    assert file.stat().st_size < 3e6
-
-
-def test_motion_ends_in_the_last_state(folder):
-    """Its skin is that of the last step, in single precision, and its places are the reference plus displacements."""
-    kept, state = motion.read(folder), Result.load(folder).steps[-1]
-    assert kept.step[-1] == state.step and len(kept.step) == len(Result.load(folder).steps)
-    xy, skin = kept.between(len(kept.step) - 1, 0.0)
-    last = skin_of(folder / "surface_slide.npz", "end")
-    assert skin == pytest.approx(np.stack([last[name] for name in motion.ROWS]), rel=1e-6, abs=1e-9, nan_ok=True)
-    assert xy.min(axis=0)[1] == pytest.approx(0.0, abs=1e-6), "the skin is not on the screen"
-
-
-def test_long_run_keeps_some_of_its_states():
-    """The first and the last are among them, and there are never more than a few hundred."""
-    kept: dict[int, motion.Moved] = {}
-    for step in range(1, 2001):
-        kept[step] = {}
-        motion.thin(kept)
-        assert list(kept) == sorted(kept) and step in kept and len(kept) <= 160
-    assert len(kept) > 50
-
-
-@pytest.mark.parametrize(
-    ("name", "words"), [("a.mp4", "must end with one of .webp, .gif"), ("a.webp", "has no motion.npz")]
-)
-def test_animation_that_cannot_be_made_is_refused(copy, capsys, name, words):
-    (copy / motion.FILE).unlink()
-    assert main(["animate", str(copy), "--out", str(copy / name)]) == 2
-    said = capsys.readouterr().err
-    assert words in said and said.count("\n") == 1
-
-
 # -- pictures ----------------------------------------------------------------------------------------------
 def test_field_lines_are_as_dense_as_the_field_is_strong(folder, tmp_path):
     """They end on the screen; between the same number of lines lies the same flux of E = sqrt(2 p_el / eps_0).
@@ -206,14 +159,6 @@ def test_field_lines_are_as_dense_as_the_field_is_strong(folder, tmp_path):
     assert np.median(np.abs(flux / np.median(flux) - 1)) < 0.02
     p_el = skin_of(folder / "surface.npz", "full_slip")["p_el"]
     assert strength.max() <= 1e-6 * math.sqrt(2 * np.nanmax(p_el) / VACUUM_PERMITTIVITY) * (1 + 1e-6)
-
-
-def test_finger_in_three_dimensions_is_drawn_from_its_slices(folder, tmp_path):
-    result = Result.load(folder)
-    if result.finger is None:
-        pytest.skip("the small finger has no sum of slices")
-    result.plot("solid", tmp_path / "solid.png")
-    assert (tmp_path / "solid.png").stat().st_size > 10_000
 
 
 # -- trust -------------------------------------------------------------------------------------------------

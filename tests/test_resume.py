@@ -15,8 +15,8 @@ from fingerpad.results.checkpoint import Checkpoint, CheckpointError
 from fingerpad.runs.batch import key, sweep
 from fingerpad.scene import SceneError
 from tests.runs import tables_alone
-from tests.test_ending import tables
 from tests.test_history import Own
+from tests.test_killed import tables
 from variational.problem import Problem
 from variational.solvers.coupling import Coupling
 

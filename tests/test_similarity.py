@@ -51,7 +51,8 @@ def test_default_finger_is_as_before():
 def test_other_fingers_are_refused(changes, table):
     scene = fp.Scene(**changes)
     assert similar(scene) == table
-    with pytest.raises(fp.SceneError, match=f"^{table} is not that of the default finger or of one similar"):
+    whose = f" of finger '{changes['finger']}'" if "finger" in changes else ""
+    with pytest.raises(fp.SceneError, match=f"^{table}{whose} is not that of the default finger or of one similar"):
         cylinders.solve(scene)
 
 

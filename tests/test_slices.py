@@ -10,12 +10,14 @@ import pytest
 from numpy.testing import assert_allclose
 
 from fingerpad.results.finger_picture import footprint, ridges_along
+from fingerpad.results.solid_picture import _strips, solid
 from fingerpad.scene import Scene, SceneError
 from fingerpad.scene.parameters import Slices
 from fingerpad.slices.errors import MESH
 from fingerpad.slices.finger import WholeFinger
 from fingerpad.slices.total import BeyondTrace, Profile, at_force, at_indentation, profile
 from fingerpad.slices.trace import Trace, TraceError, gross_width, trace
+from geometry.profiles import Profiles
 from tests.measures import contact_state
 from variational.state import ContactState, RidgeStates
 
@@ -212,12 +214,31 @@ def test_footprint_has_a_panel_for_each_state(tmp_path):
     assert [words.partition(" ")[0] for words in bands] == ["light:", "dark:"] and "ridges" in bands[1]
 
 
+def test_finger_in_three_dimensions_has_the_ridges_of_its_slices(tmp_path):
+    """Pieces of ridges lie on the screen, on the lowest skin, with the contact area and the highest mean pressure.
+
+    Tolerance: outer halves of the outermost slices are not drawn.
+    """
+    shape, trace = Slices(count=64), kept(200.0)
+    total, section = at_force(profile(shape), trace, 0.5, shape.count), Profiles(Scene().geometry)
+    finger = WholeFinger({"full_slip": total}, "kept runs", {}, {"full_slip": trace}, shape)
+    (ax, bar) = solid(finger, section, tmp_path / "solid.png", None, "full_slip").axes
+    skin, ridges = ax.collections
+    pieces, values = _strips(total, None, section.finger.ridge_wavelength)
+    across, along = pieces[:, 1] - pieces[:, 0] + pieces[:, 2] - pieces[:, 3], pieces[:, 2] - pieces[:, 1]
+    area = float((across[:, 0] / 2 * along[:, 1]).sum())
+    assert area == pytest.approx(1e6 * total.totals["contact_area"], rel=0.02)
+    assert (pieces[:, :, 2] == 0).all() and ax.get_zlim()[0] <= 0 < ax.get_zlim()[1]
+    assert np.asarray(ridges.get_array()).max() == values.max() == pytest.approx(1e-3 * total.pressure.max(), rel=0.01)
+    assert "(kPa)" in bar.get_title() and (tmp_path / "solid.png").stat().st_size > 10_000
+
+
 # -- refusals ------------------------------------------------------------------------------------------
 def test_force_beyond_the_trace():
     """The message has how far the trace goes, in N/m and in N."""
     with pytest.raises(BeyondTrace, match=r"the force is 3 N, and .* to 150 N/m goes up to 1\.\d+ N of the whole"):
         at_force(profile(Slices(length=0.1)), kept(200.0), 3.0, 16)
-    with pytest.raises(BeyondTrace, match="indented by 0.00196 m, and the trace .* ends at 0.000992 m under 150 N/m"):
+    with pytest.raises(BeyondTrace, match="indented by 0.00196 m, and the trace .* ends at 0.00099 m under 150 N/m"):
         at_indentation(profile(Slices()), kept(200.0), 2e-3, 16)
     with pytest.raises(TraceError, match="beyond the trace"):
         kept(200.0).at(np.array([2e-3]))

@@ -49,15 +49,17 @@ def test_force_is_the_one_asked_for(traced):
 
 
 def test_files_have_the_finger(traced):
-    """Sums and slices in result.nc, the footprint and a section of the report."""
+    """Sums and slices in result.nc, both pictures and a section of the report."""
     xarray = pytest.importorskip("xarray")
     with xarray.open_dataset(traced.folder / "result.nc", engine="scipy") as data:
         slip = data.sel(state="full_slip")
         total = float((slip.slice_thickness * slip.slice_f_ext).sum())
         assert total == pytest.approx(float(slip.finger_f_ext), rel=1e-12)
         assert data.finger_gross_area.attrs["units"] == "m^2"
-    assert (traced.folder / "footprint.png").exists() and not (traced.folder / "checkpoint").exists()
-    assert "The whole finger, in newtons" in run_page.page(traced)
+    there = {file.name for file in traced.folder.iterdir()}
+    assert {"footprint.png", "solid.png"} <= there and "checkpoint" not in there
+    page = run_page.page(traced)
+    assert "The whole finger, in newtons" in page and "The finger in three dimensions" in page
 
 
 def test_named_states_are_the_section_at_the_centre(traced):

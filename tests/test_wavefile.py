@@ -166,6 +166,7 @@ def test_command_reads_a_file(tmp_path, capsys):
     assert "U: amplitude 75 V, peak to peak 150 V" in capsys.readouterr().out
     for words, refusal in (
         (["--probe", "10"], "--probe is given without --file"),
+        (["--file", file, "--probe", "1:100"], "command line: argument --probe: 1:100 is not allowed; it must"),
         (["--file", file, "--set", "voltage=3"], "--set voltage is given and --file too"),
     ):
         assert main(["drive", *words]) == 2

@@ -37,9 +37,9 @@ from benchmarks.loads.compared import (
     regions,
     sections,
 )
-from benchmarks.loads.scenes import COUNT, LARGEST, MESHES, PULL, Data, checked, scenes
+from benchmarks.loads.meshes import errors, without
+from benchmarks.loads.scenes import COUNT, LARGEST, MESHES, PULL, Data, scenes
 from benchmarks.loads.states import pressed, solved
-from benchmarks.models import name
 from fingerpad.reduced import uncharged
 from fingerpad.reduced.cylinder_errors import REGIONS, WHOLE
 from fingerpad.results.files import replace
@@ -64,7 +64,8 @@ def compute(args: argparse.Namespace) -> None:
     slipped = [_short(each) for each in states["far"]]
     numbers = {"scenes": kept, "mesh": checked, "far": {"full_slip": slipped, "charged": far}, "count": COUNT}
     harness.keep("loads", numbers, harness.made(), args.docs)
-    found = regions(bands(sections(kept), fingers(kept)))
+    better = without(kept, errors(checked, harness.kept("models", args.docs).numbers["scenes"]))
+    found = regions(bands(sections(better), fingers(better)))
     replace(REGIONS_FILE, json.dumps(found, indent=1) + "\n")
     print(in_the_program(numbers))
 
@@ -122,25 +123,19 @@ def spread(compared: Sequence[Compared]) -> list[float]:
     return [100 * float(each) for each in (*parts, max(abs(each.of_friction) for each in compared))]
 
 
-def mesh_errors(numbers: Mapping[str, Any], docs: Path) -> list[tuple[float, float, float]]:
-    """Return force, voltage and the relative difference (%) of µ_app of the coarse meshes from docs/models.json."""
-    full = harness.kept("models", docs).numbers["scenes"]
-    loads = [each for which in range(len(MESHES)) for each in checked(which)]
-    runs = [full[name(f_ext, voltage)]["full"]["summary"]["full_slip_mu_app"] for f_ext, voltage in loads]
-    mu_app = [state["mu_app"] for state in numbers["mesh"]]
-    return [(*load, 100 * (mu / run - 1)) for load, mu, run in zip(loads, mu_app, runs, strict=True)]
-
-
 def draw(docs: Path) -> Path:
     """Draw the page and its picture from the kept numbers."""
     numbers = harness.kept("loads", docs).numbers
-    compared, whole = sections(numbers["scenes"]), fingers(numbers["scenes"])
+    mesh = errors(numbers["mesh"], harness.kept("models", docs).numbers["scenes"])
+    better = without(numbers["scenes"], mesh)
+    compared, whole = sections(better), fingers(better)
     every = both(compared)
     states = [state for each in numbers["scenes"] for state in each["states"]]
     tried = [each for each in states if not each.get("failure", "").startswith("not tried")]
     harness.picture(docs / "loads.png", (9.5, 4.2), lambda figure: _paint(figure, every))
     names = {
-        "every": every, "whole": whole, "states": states, "tried": tried, "mesh": mesh_errors(numbers, docs),
+        "every": every, "whole": whole, "states": states, "tried": tried,
+        "mesh": [(sizes["contact"], each) for sizes, some in zip(MESHES, mesh, strict=True) for each in some],
         "regions": [judged(band, k) for k, band in enumerate(bands(compared, whole))],
         "LEAST": LEAST, "MARGIN": MARGIN, "PART": PART, "PULL": PULL, "MESHES": MESHES,
         "WITHOUT": WITHOUT, "LARGEST": LARGEST,

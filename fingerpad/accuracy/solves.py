@@ -128,12 +128,12 @@ def _solve(
     found = edges.about(ends, model.mesh)
     simulation = StateSolver(model.changed(edges=found), comm)
     recorder, over, finger = StateRecorder(simulation), StateRecorder(simulation), simulation.finger
-    springs, soft = finger.problem.interface.formulation, ""
+    springs, soft, viewer = finger.problem.interface.formulation, "", Viewer(finger) if views else None
     for name, state in states.items():
         simulation.re_equilibrate(state.snapshot, WORDS.get(name, name), state.direction)
         recorder.keep(name, state.direction != 0)
-        if views:
-            recorder.views[name] = Viewer(finger).view(simulation.present(finger.ridge_loads()))
+        if viewer is not None:
+            recorder.views[name] = viewer.view(simulation.present(finger.ridge_loads()))
         if stiffer is not None:
             try:
                 simulation.over_stiffer_screen(stiffer, WORDS.get(name, name), state.direction)

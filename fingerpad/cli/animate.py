@@ -1,9 +1,12 @@
 """``fingerpad animate``: a run as a moving picture, from its folder."""
 
+import sys
 from collections.abc import Sequence
 
 from fingerpad.cli.arguments import Kind, Parser, echo, path
+from fingerpad.ctrl_c import raises
 from fingerpad.results.result import Result
+from fingerpad.runs.batch import progress
 
 _EXAMPLES = """
     fingerpad animate results/mine
@@ -19,6 +22,15 @@ def main(argv: Sequence[str]) -> int:
     kind = Kind("an animation", (".webp", ".gif"))
     parser.add_file("--out", kind, f"file of the animation (default: {_NAME} in the folder)", None)
     args = parser.read(argv)
-    file = Result.load(args.folder).animate(args.out or args.folder / _NAME)
+    result, file = Result.load(args.folder), args.out or args.folder / _NAME
+    from fingerpad.results.animation import animate  # Matplotlib
+
+    try:
+        with raises(), progress() as bar:
+            task = bar.add_task("frames drawn", total=None)
+            animate(result, file, lambda done, count: bar.update(task, completed=done, total=count))
+    except KeyboardInterrupt:
+        print(f"fingerpad: stopped by Ctrl-C; {file} was not written, and what was there stays", file=sys.stderr)
+        raise
     echo(f"Written: {file} ({file.stat().st_size / 1e6:.1f} MB)")
     return 0

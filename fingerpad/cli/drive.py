@@ -11,7 +11,7 @@ from fingerpad.reduced.detection import REFERENCE
 from fingerpad.results.quantities import Output
 from fingerpad.runs.drive import FREQUENCIES, Drive, drive, thresholds
 from fingerpad.scene import Scene, load
-from fingerpad.scene.messages import SceneError
+from fingerpad.scene.messages import SceneError, clip
 from fingerpad.scene.remarks import circuit_in_words, leakage
 from geometry.units import to_si
 
@@ -36,7 +36,7 @@ def main(argv: Sequence[str]) -> int:
     parser.add_argument("--frequency", metavar="RANGE", help=words)
     parser.add_argument("--file", metavar="CSV", help="drive: one period from a file, as an oscilloscope writes it")
     parser.add_argument("--column", metavar="NAME", help="its column of voltages, where it has several")
-    parser.add_argument("--probe", type=float, metavar="FACTOR", help="factor on its voltages, as 100 of a 1:100 one")
+    parser.add_argument("--probe", type=_factor, metavar="FACTOR", help="factor on its voltages, as 100 of a 1:100 one")
     words = "picture: voltage, attraction and friction over a period, and the spectrum of friction"
     parser.add_file("--plot", PICTURE, words, dest="period")
     output.add_files(parser, _COLUMNS, "picture: relative thresholds over the frequency", "--thresholds")
@@ -62,6 +62,15 @@ def main(argv: Sequence[str]) -> int:
         found.plot(args.period)
         echo(f"Written: {args.period}")
     return 0
+
+
+def _factor(text: str) -> float:
+    """Return a number, whose range the scene checks."""
+    try:
+        return float(text)
+    except ValueError:
+        given = clip(text) or "an empty text"
+        raise argparse.ArgumentTypeError(f"{given} is not allowed; it must be a number") from None
 
 
 def _scene(args: argparse.Namespace) -> Scene:

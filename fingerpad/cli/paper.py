@@ -1,10 +1,13 @@
 """``fingerpad paper``: a figure of Forsbach, Heß and Papangelo (2023) by this model."""
 
+import sys
 from collections.abc import Sequence
 
 from fingerpad.cli.arguments import Parser, echo, positive
+from fingerpad.ctrl_c import raises
 from fingerpad.paper.figures import FIGURES, compute, find
 from fingerpad.paper.run import Unfinished
+from fingerpad.runs import batch  # noqa: F401  # before Ctrl-C raises
 
 _EXAMPLES = """
     fingerpad paper
@@ -29,9 +32,13 @@ def main(argv: Sequence[str]) -> int:
         if each.cost:
             echo(f"Times are of two idle cores. Runs that {args.out} has are not repeated; the same command goes on.")
         try:
-            written = compute(each, args.out, args.jobs)
+            with raises():
+                written = compute(each, args.out, args.jobs)
         except Unfinished as error:
             echo(f"Figure {each.name} is not drawn: {error}")
             return 1
+        except (KeyboardInterrupt, SystemExit):  # of signals
+            print(f"fingerpad: stopped; runs are kept in {args.out}, and the same command goes on", file=sys.stderr)
+            raise
         echo(f"Written: {', '.join(map(str, written))}")
     return 0

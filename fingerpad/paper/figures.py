@@ -3,7 +3,6 @@
 A figure is an entry of :data:`FIGURES`. Its numbers go into a JSON file beside the picture and can be drawn again.
 """
 
-import json
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -13,7 +12,7 @@ from matplotlib.figure import Figure
 
 from fingerpad.paper import loads, maps, microscale, section, sine, transition
 from fingerpad.results import style
-from fingerpad.results.files import replace
+from fingerpad.results.files import replace_json
 from fingerpad.scene.messages import SceneError, clip
 
 
@@ -99,6 +98,6 @@ def compute(figure: PaperFigure, out: Path, jobs: int) -> list[Path]:
     out.mkdir(parents=True, exist_ok=True)
     numbers = figure.numbers(out, jobs)
     picture, kept = (out / f"figure_{figure.name}.{ending}" for ending in ("png", "json"))
-    replace(kept, json.dumps(numbers) + "\n")
+    replace_json(kept, numbers)
     draw(figure, numbers, picture)
     return [picture, kept]

@@ -62,10 +62,11 @@ def paint_friction(figure: Figure, numbers: Numbers) -> None:
     f_ext, f_t = np.array(numbers["f_ext"]), np.array(numbers["full_slip_f_t"], dtype=float)
     for k, voltage in enumerate(numbers["voltage"]):
         look: dict[str, Any] = {"color": style.voltage(voltage), "marker": "o", "ms": 4, "label": f"{voltage:g} V"}
-        left.plot(f_ext, WIDTH * f_t[:, k], **look)
+        left.plot(WIDTH * f_ext, WIDTH * f_t[:, k], **look)
         right.plot(WIDTH * f_ext, f_t[:, k] / f_ext, **look)
-    left.set(xlabel="external force $f_{ext}$ (N/m)", ylabel="friction force $F_T$ (N), for 20 mm", ylim=(0, None))
-    right.set(xlabel="external force $F_{ext}$ (N), for 20 mm", ylabel="apparent friction µ_app (–)", ylim=(0, None))
+    force = f"external force $F_{{ext}}$ (N), for 20 mm; 1 N: {1 / WIDTH:g} N/m"
+    left.set(xlabel=force, ylabel="friction force $F_T$ (N), for 20 mm", ylim=(0, None))
+    right.set(xlabel=force, ylabel="apparent friction µ_app (–)", ylim=(0, None))
     left.set_title("A  Friction force at full slip")
     right.set_title("B  Apparent friction coefficient")
     right.legend(title="voltage")

@@ -102,7 +102,7 @@ def paint(figure: Figure, numbers: Mapping[str, Any]) -> None:
     highest = max(float(np.quantile(body.sed, 0.999)) for body in bodies.values())
     scale = finger_picture.Scales((left, right, bottom, top), (left, right, bottom, top), highest)
     figure.set_layout_engine("none")  # panels have their places
-    figure.suptitle(f"Strain energy density at {numbers['f_ext']:g} N/m; white: between layers; points: Merkel sites")
+    figure.suptitle(f"Strain energy density at {numbers['f_ext']:g} N/m; lines: layers; points: Merkel sites")
     for (voltage, load), body in bodies.items():
         row, column = list(_LOADS).index(load), _VOLTAGES.index(voltage)
         x, y = _LEFT[column], _BELOW[1 - row]

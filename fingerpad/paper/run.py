@@ -89,11 +89,12 @@ class Run:
 
 
 def known(scene: Scene, out: Path) -> bool:
-    """Return whether a folder has a scene's run to full slip, or to its end."""
-    from fingerpad.runs.batch import result
-
-    summary = result(scene, out)
-    return summary is not None and "failure" not in summary
+    """Return whether a folder has a scene's run to its end."""
+    try:
+        Run(scene, out)
+    except Unfinished:
+        return False
+    return True
 
 
 def computed(scenes: Mapping[Name, Scene], out: Path, jobs: int) -> dict[Name, Run]:
@@ -110,5 +111,7 @@ def computed(scenes: Mapping[Name, Scene], out: Path, jobs: int) -> dict[Name, R
 
 
 def _words(name: Hashable) -> str:
-    """Return the name of a run on the screen."""
-    return f"{name[0]:g} N/m, {name[1]:g} V" if isinstance(name, tuple) else str(name)
+    """Return the name of a run on the screen: of a force and a voltage, of a voltage, or a word."""
+    if isinstance(name, tuple):
+        return f"{name[0]:g} N/m, {name[1]:g} V"
+    return f"{name:g} V" if isinstance(name, float) else str(name)

@@ -42,11 +42,12 @@ def paint(figure: Figure, numbers: Mapping[str, Any]) -> None:
         touches, other = np.where(p > 0, 1.0, np.nan), ax.twinx()
         x, scale = 1e3 * x, numbers["scale"]
         ax.plot(x, p / scale, color=style.BLACK, lw=1.2, label="contact pressure p")
-        ax.plot(x, touches * (p - p_el) / scale, color=style.BLUE, lw=1.2, ls="--", label="elastic stress p − σ_el")
+        elastic = touches * (p - p_el) / scale
+        ax.plot(x, elastic, color=style.BLUE, lw=1.2, ls="--", label=r"elastic stress p − $\sigma_{el}$")
         ax.plot(x, touches * t / scale, color=style.VERMILION, lw=1.2, label="shear")
         other.plot(x, 1e6 * touches * d_eq, color=style.GREEN, lw=2.5, label="air gap (right)")
         ax.axhline(0, color=style.GREY, lw=0.6)
-        other.set(ylabel="$d_{eq}$ (µm)", ylim=(0, 4))
+        other.set(ylabel="air gap $d_{eq}$ (µm)", ylim=(0, 4))
         ax.set(ylabel="stress over $f_{ext}/L_R$ (–)", title=title)
     handles = [*axes[0].get_legend_handles_labels()[0], *other.get_legend_handles_labels()[0]]
     figure.legend(handles=handles, loc="outside upper center", ncols=4)

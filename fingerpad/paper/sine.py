@@ -14,6 +14,12 @@ from fingerpad.results import style
 
 Array = NDArray[np.float64]
 Which = NDArray[np.bool_]
+_WORDS = {
+    "highest": "highest at 0 V",
+    "enters": "enters the contact",
+    "leaves": "leaves the contact",
+    "changes least": "changes least",
+}
 
 
 def steady(run: Run) -> list[int]:
@@ -64,7 +70,8 @@ def paint(figure: Figure, numbers: Mapping[str, Any]) -> None:
     for k, site in enumerate(numbers["sites"]):
         look = {"color": style.CATEGORIES[k % len(style.CATEGORIES)], "marker": style.MARKERS[k % len(style.MARKERS)]}
         paper = scenes.NAMED[site["kind"]]
-        below.plot(phase, site["sed"], ms=4, **look, label=f"ridge {site['ridge']}: {site['kind']}, as M{paper}")
+        words = f"ridge {site['ridge']}: {_WORDS[site['kind']]} (the paper's M{paper})".replace("-", "−")
+        below.plot(phase, site["sed"], ms=4, **look, label=words)
     above.set(ylabel="voltage (V)", title=f"Full slip at {numbers['f_ext']:g} N/m, on half a period of the voltage")
     middle.set_ylabel("µ_app (–)")
     below.set(xlabel="phase, in periods of the voltage", ylabel="energy density at site\nover the highest at 0 V (–)")

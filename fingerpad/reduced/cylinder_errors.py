@@ -68,9 +68,9 @@ _DEFAULT_SCREEN = Region(
     44,
     {"force": (0.05, 1.2), "f_ext": (5.0, 150.0), "voltage": (0.0, 200.0), PULL: (0.0, 5.0)},
     {
-        "full_slip": {"f_electrostatic": 0.053, "contact_length": 0.059},
-        "charged": {"f_electrostatic": 0.163, "contact_length": 0.111},
-        WHOLE: {"f_electrostatic": 0.035, "contact_area": 0.057, "gross_area": 0.077},
+        "full_slip": {"f_electrostatic": 0.053, "contact_length": 0.078},
+        "charged": {"f_electrostatic": 0.137, "contact_length": 0.117},
+        WHOLE: {"f_electrostatic": 0.048, "contact_area": 0.076, "gross_area": 0.073},
     },
 )
 

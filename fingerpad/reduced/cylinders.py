@@ -39,6 +39,8 @@ from fingerpad.results.answer import Cost
 from fingerpad.results.result import Result
 from fingerpad.results.states import WORDS
 from fingerpad.scene import Scene, SceneError
+from fingerpad.scene.fingers import ADULT
+from fingerpad.scene.messages import show
 from fingerpad.scene.remarks import leakage, remarks, skin_modulus, used
 from geometry.parameters import Fingertip
 from geometry.profiles import Profiles
@@ -50,7 +52,10 @@ if TYPE_CHECKING:
     from fingerpad.slices.finger import WholeFinger
 
 Array = NDArray[np.float64]
-_ELSE = "use the model 'full', or the command compare with --contact-length and --ridges, or with the --run of a folder"
+_ELSE = (
+    "use the model 'full', as fingerpad run does, or the command compare with --contact-length and --ridges, or with "
+    "the --run of a folder"
+)
 
 
 def fitted(scene: Scene) -> Footprint:
@@ -79,8 +84,10 @@ def _scaled(scene: Scene) -> Similar:
     """Return how the finger is scaled; refuse one that is not similar to the default finger."""
     found = similar(scene)
     if isinstance(found, str):
+        whose = "" if scene.finger == ADULT else f" of finger {show(scene.finger)}"
         raise SceneError(
-            f"{found} is not that of the default finger or of one similar to it, whose contact length is known; {_ELSE}"
+            f"{found}{whose} is not that of the default finger or of one similar to it, whose contact length is known; "
+            f"{_ELSE}"
         )
     return found
 

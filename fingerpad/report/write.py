@@ -62,11 +62,11 @@ def attempt(folder: Path) -> Path | None:
 def draw_whole(result: Result) -> None:
     """Write the pictures of a whole finger at the end of a run; a line on the console where that fails; serial.
 
-    These are ``footprint.png`` and, of a full run under a force in newtons, ``solid.png``.
+    These are ``footprint.png`` and, under a force in newtons, ``solid.png``.
     """
     if result.finger is None or result.folder is None:
         return
-    for kind in ("footprint", "solid") if result.whole and result.steps else ("footprint",):
+    for kind in ("footprint", "solid") if result.whole else ("footprint",):
         try:
             result.plot(kind, result.folder / f"{kind}.png")
         except (OSError, ValueError) as error:

@@ -5,7 +5,7 @@ no solution of the model; over a jump there are none.
 """
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from io import BytesIO
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -64,12 +64,13 @@ class _Scene(NamedTuple):
     """Stress (kPa)."""
 
 
-def animate(result: "Answer", path: Path) -> Path:
-    """Write the animation of a run that has a folder; return the file.
+def animate(result: "Answer", path: Path, on_frame: Callable[[int, int], None] = lambda done, count: None) -> Path:
+    """Write the animation of a run that has a folder; return the file, which is there as a whole or not at all.
 
     Args:
         result: of a full run.
         path: of the file, whose name ends with ``.webp`` or ``.gif``.
+        on_frame: called with the number of frames that are drawn, and of all.
 
     Raises:
         SceneError: the run has no motion, or the name another ending; one sentence.
@@ -87,8 +88,11 @@ def animate(result: "Answer", path: Path) -> Path:
     half = 1.0 + (float(np.nanmax(np.abs(places))) if np.isfinite(places).any() else 4.0)
     highest = _KPA * max(float(np.nanmax(found.skin[:, [1, 3]])), 1.0)
     scene = _Scene(states, found, coefficient(result.scene), half, highest)
-    frames = _frames(states)
-    _save(path, [_drawn(scene, frame) for frame in frames])
+    frames, figure, pictures = _frames(states), _figure(), list[Image.Image]()
+    for frame in frames:
+        pictures.append(_drawn(scene, frame, figure))
+        on_frame(len(pictures), len(frames))
+    _save(path, pictures)
     return path
 
 
@@ -104,13 +108,22 @@ def _frames(states: Sequence[ContactState]) -> list[_Frame]:
     return found[: len(found) - parts + 1]
 
 
-def _drawn(scene: _Scene, frame: _Frame) -> Image.Image:
-    """Return the picture of a frame."""
-    xy, skin = scene.motion.between(frame.state, frame.part)
+def _figure() -> Figure:
+    """Return a figure with empty panels, on which all frames are drawn: to make them takes as long as a frame."""
     with style.look():
         figure = Figure(figsize=(style.WIDTH, _HEIGHT))
+        for box in (_WHOLE, _FORCES, _NEAR, _STRESS):
+            style.panel(figure, *box)
+    return figure
+
+
+def _drawn(scene: _Scene, frame: _Frame, figure: Figure) -> Image.Image:
+    """Return the picture of a frame, drawn on a figure with panels."""
+    xy, skin = scene.motion.between(frame.state, frame.part)
+    with style.look():
+        whole, forces, near, stress = figure.axes
+        style.clear(figure.axes)
         style.head(figure, _words(scene.states[frame.state]))
-        whole, forces, near, stress = (style.panel(figure, *box) for box in (_WHOLE, _FORCES, _NEAR, _STRESS))
         _draw_finger(whole, scene, _MM * xy, None)
         _draw_finger(near, scene, _MM * xy, scene.half)
         whole.add_artist(Rectangle((-scene.half, _LOW), 2 * scene.half, _HIGH - _LOW, fill=False, ls="--"))

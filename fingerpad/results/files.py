@@ -35,9 +35,11 @@ def replace(file: Path, text: str | bytes) -> None:
     try:
         part.write_bytes(text.encode("utf-8") if isinstance(text, str) else text)
         part.replace(file)
-    except OSError as error:
+    except BaseException as error:  # Ctrl-C is one
         with contextlib.suppress(OSError):  # where the folder takes no file
             part.unlink()
+        if not isinstance(error, OSError):
+            raise
         raise OSError(error.errno, error.strerror, str(file)) from error  # the system names no file of a full disk
 
 

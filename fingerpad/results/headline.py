@@ -28,6 +28,7 @@ MESH, PENALTY, MODEL = "mesh", "penalty", "closed form"
 """Parts of the error of a section's solution."""
 _DIGITS = (2, 3, 4)  # of the numbers in a sentence: as few as tell them apart
 _ROUNDOFF = 1e-9  # by which a number is raised, so that one in the middle of two rounds up on every machine
+_SMALL = 1e-3  # of the largest number in a sentence, below which another is shown without digits of its own
 
 
 @dataclass(frozen=True)
@@ -271,11 +272,15 @@ def _stuck(result: "Answer", load: str) -> str:
 
 
 def _numbers(*values: float) -> Sequence[str]:
-    """Return numbers with as few digits as tell them apart, all with the same digits after the point."""
-    least, found = min((abs(value) for value in values if value), default=1.0), list[str]()
+    """Return numbers with as few digits as tell them apart, all with the same digits after the point.
+
+    Those below a thousandth of the largest do not count for the digits.
+    """
+    most, found = max(map(abs, values), default=0.0), list[str]()
+    least = min((abs(value) for value in values if abs(value) > _SMALL * most), default=1.0)
     for digits in _DIGITS:
         after = max(digits - 1 - math.floor(math.log10(least * (1 + _ROUNDOFF))), 0)
-        found = [f"{value * (1 + _ROUNDOFF):.{after}f}" for value in values]
+        found = [f"{round(value * (1 + _ROUNDOFF), after) + 0.0:.{after}f}" for value in values]  # no minus before 0
         if len(set(found)) == len(found):
             break
     return found

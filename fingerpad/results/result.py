@@ -54,7 +54,7 @@ class Result(Answer):
         """Draw the skin, the deformed finger, the history of sliding, or the footprint of the whole finger.
 
         Loads over time have another picture, ``"time"``, charged states the electric field of a ridge, ``"field"``, and
-        full runs the whole finger in three dimensions, ``"solid"``.
+        whole fingers one in three dimensions, ``"solid"``.
 
         Args:
             kind: ``"surface"``, ``"finger"``, ``"history"``, ``"footprint"``, ``"time"``, ``"field"`` or ``"solid"``.
@@ -74,7 +74,7 @@ class Result(Answer):
             from fingerpad.results.whole_picture import draw  # Matplotlib
 
             place = None if path is None else Path(path)
-            return draw(self, self._drawn(), kind, place) if terminal.rank() == 0 else None
+            return draw(self, kind, place) if terminal.rank() == 0 else None
         if (drawing := self._drawn()) is not None:
             return drawing.figure(kind, None if path is None else Path(path))
         if not self.steps:
@@ -148,6 +148,14 @@ class Result(Answer):
 
     def to_dict(self) -> dict[str, Any]:
         """Return the content of ``summary.json``, ready for JSON; SI units."""
+        found = {"headline": self.headline.to_dict(), **self._numbers(), **self.record}
+        found |= {name: text for name in ("failure", "interrupted") if (text := getattr(self, name))}
+        found |= {name: list(kept) for name in ("notes", "cautions") if (kept := getattr(self, name))}
+        found |= {"outputs": [each.to_dict() for each in self.outputs]} if self.outputs else {}
+        return found | ({"finger": self.finger.to_dict()} if self.finger is not None else {})
+
+    def _numbers(self) -> dict[str, Any]:
+        """Return what ``summary.json`` holds of every result."""
         last, values = self.last, self.values()
         nested = {
             name: {key: values[f"{name}_{key}"] for key in self._kept()}
@@ -155,8 +163,7 @@ class Result(Answer):
             | ({} if state.reached == PATH else {"reached": state.reached})
             for name, state in self.named.items()
         }
-        found: dict[str, Any] = {
-            "headline": self.headline.to_dict(),
+        return {
             "model": self.model,
             "f_ext": 0.0 if last is None else last.f_ext,
             "voltage": 0.0 if last is None else last.voltage,
@@ -166,12 +173,7 @@ class Result(Answer):
             "states": nested,
             "loads": [load.to_dict() for load in self.loads],
             "parameters": self.scene.parameters(),
-            **self.record,
         }
-        found |= {name: text for name in ("failure", "interrupted") if (text := getattr(self, name))}
-        found |= {name: list(kept) for name in ("notes", "cautions") if (kept := getattr(self, name))}
-        found |= {"outputs": [each.to_dict() for each in self.outputs]} if self.outputs else {}
-        return found | ({"finger": self.finger.to_dict()} if self.finger is not None else {})
 
     @classmethod
     def from_dict(cls, summary: Mapping[str, Any], folder: Path | None = None) -> "Result":
@@ -197,7 +199,7 @@ class Result(Answer):
             folder=folder,
             finger=WholeFinger.from_dict(summary["finger"], bare.scene.slices) if "finger" in summary else None,
         )
-        used = {*bare.to_dict(), "failure", "interrupted", "notes", "cautions", "outputs", "finger"}
+        used = {*bare._numbers(), "headline", "failure", "interrupted", "notes", "cautions", "outputs", "finger"}
         used |= {f"{name}_{each.name}_{kind}" for name in STATES for each in fields(Errors) for kind in CHANGES}
         record = {key: value for key, value in summary.items() if key not in used}
         if "laws" in parameters:  # objects of Python, of which only the names are kept
