@@ -27,6 +27,7 @@ TIMES = (4e-3, 70e-3, 1.4)  # s, of the force of a pressed fingerpad (Pawluk and
 DEPTH, HOLD = -0.7e-3, 10.0  # m, s
 COARSE = {"contact": 60e-6, "receptor": 100e-6, "interface": 200e-6, "growth": 1.0}  # m, but for the growth
 SMALL_CONTACT = 20e-6  # m
+FACETS = 10e-6  # m, of the finger under a step of voltage
 STEP = 1e-3  # s, of the scene over time
 MEASURED = 20  # steps
 FORCE, VOLTAGE = 20.0, 150.0  # N/m, V
@@ -43,7 +44,13 @@ def compute(args: argparse.Namespace) -> None:
     import fingerpad.startup  # noqa: F401
 
     numbers = {}
-    for name, part in {"held": _held, "energy": _energy, "cost": _cost, "steps": _voltage_steps}.items():
+    for name, part in {
+        "held": _held,
+        "energy": _energy,
+        "cost": _cost,
+        "steps": _voltage_steps,
+        "coarser": _coarser,
+    }.items():
         _say(name)
         numbers[name] = part()
     keep("viscosity", numbers, made(), args.docs)
@@ -212,7 +219,12 @@ def _voltage_steps() -> dict[str, Any]:
     return found
 
 
-def _voltage_step(preset: str | None, speed: float) -> dict[str, Any]:
+def _coarser() -> dict[str, Any]:
+    """Return friction after the step at the lower speed with facets twice as large, elastic and viscous."""
+    return {preset or "elastic": _voltage_step(preset, SPEEDS[0], 2 * FACETS) for preset in (None, "fingerpad")}
+
+
+def _voltage_step(preset: str | None, speed: float, facets: float = FACETS) -> dict[str, Any]:
     """Return friction after the step, and the sliding way (m) to full slip, which short loads resolve."""
     import tomllib
 
@@ -228,7 +240,7 @@ def _voltage_step(preset: str | None, speed: float) -> dict[str, Any]:
         {"name": "on", "bone_x_by": LATE * speed - PIECES * PIECE, "speed": speed},
     ]
     scene = Scene(
-        geometry=small["geometry"], mesh=small["mesh"] | {"contact": 40e-6}, output=NO_OUTPUT,
+        geometry=small["geometry"], mesh=small["mesh"] | {"contact": facets}, output=NO_OUTPUT,
         materials=_layers(preset), history=history, numerics={"step_scale": 0.5},
     )  # fmt: skip
     states = _states(scene)
@@ -251,6 +263,21 @@ def draw(docs: Path) -> Path:
     """Write docs/viscosity.md and its picture from docs/viscosity.json."""
     picture(docs / "viscosity.png", (10, 4), lambda figure: _paint(figure, kept("viscosity", docs).numbers))
     return page(docs, "viscosity", "make viscosity", globals())
+
+
+def gap(runs: Mapping[str, Any]) -> float:
+    """Return by how much the last rise of the preset for fingers differs from the elastic one, over the latter."""
+    elastic, viscous = (
+        next(each for name, each in runs.items() if name.startswith(skin)) for skin in ("elastic", "fingerpad")
+    )
+    return float((viscous["to"] - viscous["from"]) / (elastic["to"] - elastic["from"]) - 1)
+
+
+def on_two_meshes(numbers: Mapping[str, Any]) -> list[tuple[str, float, Any, Any]]:
+    """Return skin, size of facets (m), run, and the run with the smaller facets."""
+    fine = {skin: numbers["steps"][f"{skin} at {1e3 * SPEEDS[0]:g} mm/s"] for skin in numbers["coarser"]}
+    sizes = ((FACETS, fine), (2 * FACETS, numbers["coarser"]))
+    return [(skin, size, runs[skin], fine[skin]) for skin in fine for size, runs in sizes]
 
 
 def _paint(figure: Figure, numbers: Mapping[str, Any]) -> None:

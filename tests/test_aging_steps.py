@@ -24,7 +24,7 @@ def test_after_a_change_at_once():
 
 
 def test_between_samples():
-    """Time since a change counts up to 1.5 shortest times: 0.6 of that time is the longest first step."""
+    """Time since a change counts up to 1.5 shortest times: 0.625 of that time is the longest first step."""
     assert longest(duration=0.1, since=1e-3) == pytest.approx((TAU + 1e-3) / 4)
     assert longest(duration=0.1, since=10.0) == pytest.approx(0.625 * TAU)
     assert longest(0.5, duration=0.1, since=10.0) == pytest.approx((2.5 * TAU + 0.05) / 4)

@@ -17,6 +17,7 @@ from variational.materials.ogden import Ogden
 from variational.materials.saint_venant import SaintVenant
 from variational.problem import Interface
 from variational.roughness.bam import BearingArea
+from variational.solvers import continuation
 from variational.solvers.continuation import StepFailed, Target
 
 MU_F, H_0, FORCE, VOLTAGE = 0.25, 0.51e-6, 4.4, 150.0
@@ -222,6 +223,16 @@ def test_full_slip_goes_on():
     assert body.state.f_t == pytest.approx(MU_F * body.state.f_contact, rel=1e-6)
     assert body.state.slip_began == first.slip_began
     assert body.state.bone_x == pytest.approx(first.bone_x + 100e-6)
+
+
+def test_full_slip_from_full_slip_takes_one_step(monkeypatch):
+    """Also where roundoff, here 1e-11 m, has it begin before the load does."""
+    body = ridge().press(FORCE).slide(until_full_slip=True)
+    first, exact = body.state, continuation.return_to_onset
+    monkeypatch.setattr(continuation, "return_to_onset", lambda *given: exact(*given) + 1e-11)
+    again = body.slide(until_full_slip=True).state
+    assert again.step == first.step + 1 and again.all_slip
+    assert again.f_t == pytest.approx(first.f_t, rel=1e-6)
 
 
 @pytest.mark.mpi

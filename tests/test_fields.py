@@ -83,6 +83,27 @@ def test_strain_is_that_of_the_displacement(ran):
     assert {*np.unique(fields.layer)} <= {*tags.LAYERS.values()}
 
 
+def test_stress_and_energy_are_those_of_the_law(ran):
+    """Of nail and its bed, on both halves: by the strain, with Lamé's constants of the law.
+
+    Tolerance: 1e-3. The law's stress is Cauchy's but for parts of some strains, the largest of which is below 1e-4.
+    """
+    fields = ran.fields["press"]
+    inside = straight(fields)
+    for name in ("nail", "nail bed"):
+        law = getattr(ran.scene.materials, name.replace(" ", "_"))
+        mine = inside & (fields.layer == tags.LAYERS[name])
+        strain, stress = fields.strain[mine], fields.stress[mine]
+        assert {*np.sign(fields.points[fields.triangles[mine], 0].mean(axis=1))} == {-1.0, 1.0}
+        shear, trace = law.young / (2 + 2 * law.poisson), np.trace(strain, axis1=1, axis2=2)
+        lame = 2 * shear * law.poisson / (1 - 2 * law.poisson)
+        expected = 2 * shear * strain + lame * trace[:, None, None] * np.eye(3)
+        assert np.abs(strain).max() < 1e-4
+        np.testing.assert_allclose(stress, expected, rtol=0, atol=1e-3 * np.abs(expected).max())
+        energy = (expected * strain).sum(axis=(1, 2)) / 2
+        np.testing.assert_allclose(fields.sed[mine], energy, rtol=0, atol=1e-3 * energy.max())
+
+
 def test_skin_over_the_contact_is_compressed(ran):
     """On average within 0.3 mm, normal to the screen, by no more than the highest pressure; stress is symmetric."""
     fields = ran.fields["press"]

@@ -39,6 +39,7 @@ HISTORIES = {
     "receptors": ([PRESS, CHARGE, SLIDE], {"output": {"receptors": True, "errors": True}}),
     "drive": (None, {"f_ext": 2.0, "voltage": DRIVE, "electric": LOSSY}),
     "drive over time": ([PRESS, WAVE], {"electric": LOSSY}),
+    "viscous waveform": ([PRESS, WAVE], {"materials": VISCOUS}),
     "mixed": ([PRESS, CHARGE, SLIDE], {"numerics": {"element": "P2-P1"}}),
 }
 
@@ -114,7 +115,7 @@ def test_goes_on_to_the_last_bit(history, tmp_path, killed_at):
 
 
 @pytest.mark.mpi
-@pytest.mark.parametrize("history", ["charged at rest", "viscous"])
+@pytest.mark.parametrize("history", ["charged at rest", "viscous", "viscous waveform"])
 def test_on_another_number_of_ranks(history, tmp_path, killed_at):
     """Begun on one rank and finished on all; to 1e-8 the numbers of one rank."""
     comm = MPI.COMM_WORLD

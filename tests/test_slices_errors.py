@@ -248,3 +248,6 @@ def test_error_of_slices_at_the_force_at_hand():
     (all_of_them,) = errors.remarks([0.6, 0.55, 0.5, 0.45])
     assert "at 0.45 to 0.6 N" in all_of_them
     assert none.endswith(": friction, attraction, gross area, ridge area, indentation not known.")
+    (short,) = errors.remarks([0.5], {"f_t", "contact_area", "f_ext"})
+    assert short.endswith("dimensions: friction −0.7 to +0.2 %, ridge area −0.2 to +4 %.")
+    assert errors.remarks([0.5], {"mu_app"}) == []

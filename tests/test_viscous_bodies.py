@@ -81,6 +81,7 @@ def test_energy_of_random_histories(seed):
     assert max(abs(each.released) / each.stored for each in found) < 1e-8
     assert sum(each.viscous for each in found) > 1e-5 * found[-1].stored
     assert min(each.viscous_dissipation for each in found) > 0.0
+    assert found[-1].viscous_dissipation == pytest.approx(body.problem.spent()[1], rel=1e-9)
     assert least_dissipation(body.continuation) >= 0.0
 
 
@@ -185,6 +186,15 @@ def test_left_out():
     (text,) = [text for text in remarks(scene(PRESS)) if "relax" in text]
     assert "nothing will relax" in text
     assert used(scene(PRESS, HOLD))["dermis"].endswith(", QLV(moduli=" + text_of(PRESETS["fingerpad"]))
+
+
+def test_errors_that_are_not_estimated_are_named():
+    """Where they are asked for, as a caution of the result."""
+    asked = scene(PRESS, HOLD)
+    (text,) = [text for text in remarks(asked) if "not estimated" in text]
+    assert text.startswith("materials.subcutis.viscosity is given and errors of the mesh are not estimated")
+    for other in (asked.replace(output={"errors": False}), scene(PRESS, HOLD, preset=None)):
+        assert not [text for text in remarks(other) if "not estimated" in text]
 
 
 def text_of(law: QLV) -> str:

@@ -13,6 +13,7 @@ from variational.materials.qlv import QLV
 from variational.materials.viscoelastic import Viscoelastic
 
 pytestmark = pytest.mark.mpi
+AREA = 1e-3 * HEIGHT  # m^2, of the block
 
 
 @pytest.fixture(scope="module")
@@ -40,6 +41,7 @@ def test_held_strain(body, element):
     for lapse in (0.003, 0.04, 0.2, 0.01):
         strained.to(sheared(-0.05, 0.08), lapse)
         whole += lost(strained)
+        assert strained.problem.spent()[1] == pytest.approx(AREA * lost(strained).sum(), rel=1e-9)
     expected = before * -np.expm1(-2 * 0.253 / np.array(MOUSE.times))
     np.testing.assert_allclose(whole, expected, rtol=1e-10)
     np.testing.assert_allclose(before - strained.value("branch energies"), expected, rtol=1e-10)

@@ -13,6 +13,7 @@ if TYPE_CHECKING:
 _LEFT, _RIGHT, _WIDTH, _ROW = 92.0, 110.0, 480.0, 26.0  # px
 _LEAST, _APART = 3.0, 34.0  # px, of the shortest bar, and between two ticks
 _TICKS = (0.02, 0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.8, 1, 1.5, 2, 3, 5, 10, 20, 50, 100)
+_SYMBOL = 'µ<tspan dy="4" font-size="12">app</tspan><tspan dy="-4">&#8203;</tspan>'  # typeset, as SVG has it
 _SAID = "Each grey bar has one assumption changed. The band takes these parts as independent."
 
 
@@ -41,10 +42,10 @@ def bars(result: "Result") -> str:
     lines.append(_line(at(mu), end, "#000"))
     for k, (name, least, most, colour) in enumerate(rows):
         x, y, width = at(least), _ROW * k + 6, max(at(most) - at(least), _LEAST)
-        lines.append(_text(_LEFT - 8, y + 13, name, "end"))
+        lines.append(_text(_LEFT - 8, y + 13, text(name), "end"))
         lines.append(f'<rect x="{x:.1f}" y="{y:g}" width="{width:.1f}" height="{_ROW - 10:g}" fill="{colour}"/>')
         lines.append(_text(_WIDTH - _RIGHT + 8, y + 13, f"{least:.2f} to {most:.2f}", "start"))
-    lines.append(_text((_LEFT + _WIDTH - _RIGHT) / 2, end + 36, f"µ_app of the {found.of} (–)", "middle"))
+    lines.append(_text((_LEFT + _WIDTH - _RIGHT) / 2, end + 36, f"{_SYMBOL} of the {found.of} (–)", "middle"))
     return (
         f'<figure class="bars"><svg viewBox="0 0 {_WIDTH:g} {end + 42:g}" role="img" font-size="15" '
         f'aria-label="How far µ_app is solved, and how far it is known">{"".join(lines)}</svg>'
@@ -57,4 +58,4 @@ def _line(x: float, end: float, colour: str) -> str:
 
 
 def _text(x: float, y: float, words: str, anchor: str) -> str:
-    return f'<text x="{x:.1f}" y="{y:g}" text-anchor="{anchor}">{text(words)}</text>'
+    return f'<text x="{x:.1f}" y="{y:g}" text-anchor="{anchor}">{words}</text>'

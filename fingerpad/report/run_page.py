@@ -41,12 +41,14 @@ _SAID = {
     "footprint.png": "Gross contact (light), ridges (dark) and pressure, slice by slice",
     "solid.png": "The finger in three dimensions from its unloaded slices, from below; ridges by mean pressure",
 }
+_FACE = "solid.png"  # on the first screen of a run without states to step through
 _MAX_FINGERS = 4  # pictures of the finger
 
 
 def page(result: Result) -> str:
     """Return the page of a run."""
     shown = frames(result)
+    face = slider(shown) or (html.picture(result.folder / _FACE, _SAID[_FACE]) if result.folder is not None else "")
     title = f"fingerpad: {result.headline.sentence}"
     answer, spikes = felt(result)
     sections = [
@@ -57,7 +59,7 @@ def page(result: Result) -> str:
         section(shown),
         _sliding(result),
         _over_time(result),
-        _pictures(result),
+        _pictures(result, face),
         _receptors(result),
         answer,
         _model(result),
@@ -67,13 +69,13 @@ def page(result: Result) -> str:
     ]
     there = [name for part in sections for name in _LINKS if f'id="{name}"' in part]
     links = "".join(f'<a href="#{name}">{_LINKS[name]}</a>' for name in there)
-    body = "\n".join([html.first(head(result), slider(shown)), f"<nav>{links}</nav>", html.beside(sections)])
+    body = "\n".join([html.first(head(result), face), f"<nav>{links}</nav>", html.beside(sections)])
     data = {"finger": shown, "steps": _columns(result), "errors": _errors(result)}
     return html.page(title, body, data | ({"felt": spikes} if spikes else {}))
 
 
 def _asked(result: Result) -> str:
-    rows = []
+    rows, heads = [], ("load", "change", *["state at its end"] * bool(result.loads))
     for load in result.scene.loads():
         given = {
             "external force": (load.f_ext, 1.0, "N/m"),
@@ -89,7 +91,7 @@ def _asked(result: Result) -> str:
         words += [load.pace] if load.pace else []
         words += ["ends at full slip"] if load.until_full_slip else []
         reached = [end for end in result.loads if end.name == load.name]
-        rows.append((load.name, ", ".join(words), _cell(reached)))
+        rows.append((load.name, ", ".join(words), _cell(reached))[: len(heads)])
     intro = "A fingertip on a charged screen, loaded in this order:"
     if result.whole:
         intro = f"A force of {result.scene.force:.4g} N on the whole finger. Loads at its centre"
@@ -98,7 +100,7 @@ def _asked(result: Result) -> str:
         "asked",
         "What was asked",
         html.paragraph(intro),
-        html.table(("load", "change", "state at its end"), rows),
+        html.table(heads, rows),
         html.paragraph(f"{_of_path(result)}{PER_LENGTH}", "note"),
     )
 
@@ -233,8 +235,8 @@ def _receptors(result: Result) -> str:
     )  # fmt: skip
 
 
-def _pictures(result: Result) -> str:
-    """Return the finger at the end of each load, in their order, then the pictures of several states."""
+def _pictures(result: Result, face: str) -> str:
+    """Return the finger at the end of each load, in order, then several states; none that the first screen shows."""
     folder = result.folder
     if folder is None:
         return ""
@@ -243,7 +245,7 @@ def _pictures(result: Result) -> str:
     files += [(folder / name, words) for name, words in _SAID.items()]
     left = len(list(folder.glob("finger_*.png"))) - len(fingers[:_MAX_FINGERS])
     more = f"{left} more pictures of the finger are in the folder." if left else ""
-    drawn = [html.picture(file, words) for file, words in files]
+    drawn = [part for part in (html.picture(file, words) for file, words in files) if part != face]
     damaged = [file.name for file in sorted(folder.glob("*.npz")) if not arrays_of(file)]
     drawn += [html.paragraph(f"{name} is left out: it has no arrays of a run.", "note") for name in damaged]
     return html.section("pictures", "Pictures", *drawn, html.paragraph(more, "note") if more else "")

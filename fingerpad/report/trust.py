@@ -152,7 +152,7 @@ def _balance(result: "Result") -> Iterator[Finding]:
 def _stability(result: "Result") -> Iterator[Finding]:
     known = {name: state.stable for name, state in result.named.items() if state.stable is not None}
     if not known:
-        yield Finding("stability is not examined", CARE, "The stability of the named states was not examined.")
+        yield Finding("stability is not examined", CARE, "A finger would leave an unstable state by itself.")
         return
     words_of = {name: called(name, result.named[name].voltage) for name in known}
     unstable = [words_of[name] for name, stable in known.items() if not stable]

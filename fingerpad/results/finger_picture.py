@@ -56,6 +56,7 @@ _LIGHT = 0.25  # opacity of the gross contact
 _ALONG = 400  # places along the finger at which ridges are drawn
 _ROUNDOFF = 1e-12  # m
 _FOOTPRINT, _APART, _WIDER = (0.95, 8.8, 1.2, 3.8), 0.35, 1.4  # in: all panels; between them; last one over a state's
+_LABEL = 0.55  # in, more between the last panel and the one before, whose label it is
 _DECADES = 1e3  # span of the colours of the energy density
 
 
@@ -322,7 +323,7 @@ def _footprint_boxes(states: int, half: float, end: float) -> list[Box]:
     each = (right - left) / (states + _WIDER) - _APART
     boxes = []
     for k in range(states + 1):
-        begin = left + k * (each + _APART) + (_APART if k == states else 0)
+        begin = left + k * (each + _APART) + (_LABEL if k == states else 0)
         place = fitted((begin, begin + each, bottom, top), (-half, half, -end, end))
         boxes.append(place if k < states else (begin, right, *place[2:]))
     return boxes

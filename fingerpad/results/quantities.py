@@ -163,7 +163,7 @@ STEPS = _listed(
     ("processor_seconds", "s", "processor time of all ranks since the start of the run"),
     ("viscous", "J/m", "work done in the step on the branches of viscous layers, which store and dissipate it"),
     ("viscous_dissipation", "J/m", "energy dissipated in the step by the branches of viscous layers"),
-    ("viscous_least", "", "least dissipation of a branch at a point in the step over the largest; not below 0"),
+    ("viscous_least", "", "least dissipation of a branch at a point over the largest in the step; < 0: energy made"),
     ("mesh_contact", "m", "contact size of the mesh"),
     ("time", "s", "time since the start of the first load over time"),
 )  # fmt: skip

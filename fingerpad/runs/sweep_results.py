@@ -181,7 +181,8 @@ class Sweep:
         for name, over_time in tables(rows, axes):
             lines += [f"Over time, in the load {name}", *_aligned(over_time)]
         forces = {each.finger.f_ext for each in self.results if each.finger is not None}
-        notes = [*remarks(forces), *([] if any(map(of_finger, columns)) else [PER_LENGTH])]
+        known = remarks(forces, {column.rpartition("finger_")[2] for column in columns})
+        notes = [*known, *([] if any(map(of_finger, columns)) else [PER_LENGTH])]
         return "\n".join([*lines, *notes, *(f"! {caution}" for caution in self.cautions()), *self.notes])
 
     __repr__ = __str__

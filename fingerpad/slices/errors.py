@@ -13,7 +13,7 @@ At a force each quantity has the span of all comparisons there, between whose fo
 """
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from itertools import groupby
 
 import numpy as np
@@ -228,21 +228,27 @@ def _around(points: Sequence[tuple[float, Ends]], force: float) -> list[Ends]:
     return [below[-1][1], above[0][1]] if below and above else []
 
 
-def remarks(forces: Iterable[float]) -> list[str]:
-    """Return what is known of the error at forces (N), a sentence for neighbours that share it."""
+def remarks(forces: Iterable[float], names: Collection[str] = tuple(COMPARED)) -> list[str]:
+    """Return what is known of the error at forces (N), a sentence for neighbours that share it.
+
+    Args:
+        forces: on the whole finger.
+        names: of the quantities in :data:`COMPARED` that a reader has before them.
+    """
+    compared = {name: text for name, text in COMPARED.items() if name in names}
     start, beside = "Error of the sum of slices at", "beside a finger of 20 × 14 × 28 mm in three dimensions"
     found = []
-    for words, same in groupby(sorted(set(forces)), _remark):
+    for words, same in groupby(sorted(set(forces) if compared else ()), lambda force: _remark(force, compared)):
         numbers = [f"{force:.4g}" for force in same]
         at = ", ".join(numbers) if len(numbers) < 3 else f"{numbers[0]} to {numbers[-1]}"
         found.append(f"{start} {at} N, {beside}: {words}.")
     return found
 
 
-def _remark(force: float) -> str:
+def _remark(force: float, compared: Mapping[str, str]) -> str:
     found = known_at(force)
-    words = [f"{COMPARED[name]} {percent(ends)}" for name, ends in found.items()]
-    missing = ", ".join(text for name, text in COMPARED.items() if name not in found)
+    words = [f"{text} {percent(found[name])}" for name, text in compared.items() if name in found]
+    missing = ", ".join(text for name, text in compared.items() if name not in found)
     return "; ".join([", ".join(words)] * bool(words) + [f"{missing} not known"] * bool(missing))
 
 

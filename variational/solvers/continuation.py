@@ -190,7 +190,7 @@ class Continuation:
             p.step = largest / 2 if slides else largest
         most = _MAX_FURTHER_STEPS + int(np.ceil(_MAX_STEPS_PER_LARGEST / largest))
         while p.part < 1:
-            if p.part > 0 and target.until_full_slip and self.slip[1]:
+            if self.steps > p.steps and target.until_full_slip and self.slip[1]:
                 return True
             if self.steps - p.steps >= most:
                 slow = NotConverged(f"TOO_SMALL_STEPS, {most} of them, do not get to the end of the load", False)
