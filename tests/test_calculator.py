@@ -320,10 +320,12 @@ def shown(whole: str, folder, *values: dict) -> list[dict]:
 
 
 def test_point_that_no_run_is_at_has_no_error(whole, tmp_path):
-    """Nor has a curve of another skin or screen a solid line; its end is at 200 V exactly."""
-    beyond = [{"voltage": 201}, {"f_ext": 151}, {"f_ext": 4.9}]
-    other = [{"friction": 0.26}, {"electric.d_i": 2}, {"roughness.h_rms": 4}, {"length": 1.5, "ridges": 16}]
-    pages = shown(whole, tmp_path, *beyond, *other, {"voltage": 300})
+    """Nor has a curve of another skin or screen a solid line; its end is at the largest known voltage exactly."""
+    known = [each.ranges["voltage"][1] for each in cylinder_errors.REGIONS[1:] if 0.25 <= each.ranges["friction"][1]]
+    end_of_known = [*known, cylinder_errors.REGIONS[0].ranges["voltage"][1]][0]
+    beyond = [{"voltage": end_of_known + 1}, {"f_ext": 451}, {"f_ext": 0.9}]
+    other = [{"friction": 1.1}, {"electric.d_i": 20}, {"roughness.h_rms": 4}, {"length": 1.5, "ridges": 16}]
+    pages = shown(whole, tmp_path, *beyond, *other, {"voltage": end_of_known + 20})
     for found in pages:
         assert not any("±" in cell for cell in found["cells"].values())
         assert found["caption"].endswith("error not known") and found["always"].endswith(", error not known")
@@ -332,7 +334,7 @@ def test_point_that_no_run_is_at_has_no_error(whole, tmp_path):
         assert [found[curve][part] for curve in ("voltage", "force") for part in ("solid", "bands")] == [0] * 4
         assert all("dashed, since its error is not known" in words for words in found["captions"])
     (first, last), (begin, end) = pages[-1]["voltage"]["ends"]
-    assert (last - begin) / (end - begin) == pytest.approx(200 / 400, abs=1e-3) and first == begin
+    assert (last - begin) / (end - begin) == pytest.approx(end_of_known / 400, abs=1e-3) and first == begin
 
 
 def test_known_point_has_its_errors(whole, tmp_path):

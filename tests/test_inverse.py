@@ -1,6 +1,7 @@
 """Questions the other way round: the key at which a target is reached, and refusals of what cannot be."""
 
 import math
+import re
 from contextlib import nullcontext
 from dataclasses import replace
 
@@ -44,26 +45,36 @@ def test_range_ends_where_answers_end():
 @pytest.mark.parametrize(
     ("target", "over", "value"),
     [
-        ("mu_app=2x", "voltage", lambda state: (state.mu_app, 0.5)),
-        ("contrast=10 %", "electric.d_i", lambda state: (state.mu_app, 0.275)),
+        ("mu_app=2x", "f_ext", lambda state: (state.mu_app, 0.5)),
+        ("f_T=30 N/m", "voltage", lambda state: (state.f_t, 30.0)),
         ("f_T=30 N/m", "f_ext", lambda state: (state.f_t, 30.0)),
-        ("L_R=1.4 mm", "f_ext", lambda state: (state.contact_length, 1.4e-3)),
-        ("µ_app=40 %", "roughness.h_rms", lambda state: (state.mu_app, 0.4)),
+        ("L_R=1.4 mm", "electric.d_i", lambda state: (state.contact_length, 1.4e-3)),
+        ("f_el=50 N/m", "roughness.h_rms", lambda state: (state.f_electrostatic, 50.0)),
     ],
 )
-def test_model_has_the_target_at_the_key(target, over, value):
+def test_section_has_the_target_at_the_key(target, over, value):
     """The model, run at the key that was found. Tolerance: of the key, 1e-6 of its range."""
     (root,) = fp.solve(target=target, over=over).roots
     found, wanted = value(fp.run(root.scene, model="cylinders").full_slip)
     assert found == pytest.approx(wanted, rel=2e-5) and root.value == pytest.approx(wanted, rel=2e-5)
 
 
-@pytest.mark.parametrize(("over", "force"), [("voltage", 0.5), ("force", None)])
-def test_newtons_are_of_the_whole_finger(over, force):
+@pytest.mark.parametrize(
+    ("target", "over", "force", "value"),
+    [
+        ("F_T=0.3 N", "voltage", 0.5, 0.3),
+        ("F_T=0.3 N", "force", None, 0.3),
+        ("mu_app=2x", "voltage", None, 0.5),
+        ("contrast=10 %", "electric.d_i", None, 0.275),
+        ("µ_app=40 %", "roughness.h_rms", None, 0.4),
+    ],
+)
+def test_whole_finger_has_the_target_at_the_key(target, over, force, value):
     """Tolerance: a run follows other states first, and its trace of full slip has other points."""
-    (root,) = fp.solve(fp.Scene(force=force) if force else None, "F_T=0.3 N", over).roots
-    finger = fp.run(root.scene, model="cylinders").finger
-    assert finger.values("full_slip")["f_t"] == pytest.approx(0.3, rel=3e-3)
+    (root,) = fp.solve(fp.Scene(force=force) if force else None, target, over).roots
+    totals = fp.run(root.scene, model="cylinders").finger.values("full_slip")
+    assert totals["f_t" if target.startswith("F") else "mu_app"] == pytest.approx(value, rel=3e-3)
+    assert root.value == pytest.approx(value, rel=2e-5)
 
 
 def test_newtons_without_a_force_have_f_ext_at_the_centre():
@@ -74,11 +85,16 @@ def test_newtons_without_a_force_have_f_ext_at_the_centre():
     assert slid.f_ext == pytest.approx(75.0, rel=3e-3)
 
 
-def test_answer_names_what_it_is_of():
-    """Without a force a coefficient is that of the middle section, and a note says how the finger's is had."""
-    section, finger = (str(fp.solve(scene, "mu_app=2x")) for scene in (None, fp.Scene(force=0.5)))
-    assert "µ_app of the middle section at full slip" in section and "give force for it" in section
-    assert "µ_app of the whole finger at full slip" in finger and "give force" not in finger
+def test_friction_is_of_the_whole_finger():
+    """As in the headline of a result, with or without a force; over f_ext it is that of the middle section."""
+    finger, without, section = (
+        fp.solve(scene, "mu_app=2x", over)
+        for scene, over in ((fp.Scene(force=0.5), "voltage"), (None, "voltage"), (None, "f_ext"))
+    )
+    assert "µ_app of the whole finger at full slip" in str(finger) and "No force is given" not in str(finger)
+    assert "No force is given. It is 0.5" in str(without)
+    assert without.values == pytest.approx(fp.solve(without.scene, "mu_app=2x").values, rel=1e-12)
+    assert "µ_app of the middle section at full slip" in str(section) and "vary force for it" in str(section)
 
 
 def test_drive_is_varied_by_its_amplitude():
@@ -101,14 +117,14 @@ def test_all_values_are_named():
 def test_margin_is_the_error_of_the_model_over_the_slope(target, value, over):
     """Two targets that differ by the known error have keys that differ by the margin. Tolerance: the curvature."""
     (root,) = fp.solve(target=target.format(value), over=over).roots
-    error = root.section.record["model_error"]["full_slip"]["mu_app"]
+    error = root.closed.record["model_error"]["full_slip" if over == "f_ext" else "finger"]["mu_app"]
     ends = [fp.solve(target=target.format(value * (1 + sign * error)), over=over).values[0] for sign in (-1, 1)]
     assert (ends[1] - ends[0]) / 2 == pytest.approx(root.margin, rel=1e-2)
 
 
 def test_margin_is_not_known_elsewhere():
     (other,) = fp.solve(target="contrast=10 %", over="electric.d_i").roots
-    assert math.isnan(other.margin), "the error is known with the default screen alone"
+    assert math.isnan(other.margin), "no full run has such a thick coating"
 
 
 def test_answers_that_end_are_told():
@@ -120,8 +136,9 @@ def test_answers_that_end_are_told():
 def test_command_prints_the_key(capsys):
     words = ["--target=contrast=10 %", "--over=electric.d_i", "--from=1 um", "--to=0.1 mm"]
     assert main(["solve", *words]) == 0
+    (d_i,) = fp.solve(target="contrast=10 %", over="electric.d_i", between=(1e-6, 1e-4)).values
     said = capsys.readouterr().out
-    assert "electric.d_i = 21.56" in said and "relative rise of µ_app by the voltage" in said
+    assert f"electric.d_i = {1e6 * d_i:.4g} µm" in said and "relative rise of µ_app by the voltage" in said
 
 
 @pytest.mark.parametrize(
@@ -147,7 +164,7 @@ def test_command_prints_the_key(capsys):
         (["--target=mu_app=2x", "--from=9"], "one of --from and --to is given without the other"),
         (["--target=mu_app=2x", "--from=9", "--to=8"], "the range of voltage is 9 to 8; the last value"),
         (["--target=mu_app=2x", "--from=1 m", "--to=2 m"], "voltage is '1 m'; its unit is not a unit of voltage"),
-        (["--target=mu_app=2"], "at voltage 0 to 400 V mu_app is 0.25 to 1.6"),
+        (["--target=mu_app=0.1"], "at voltage 0 to 400 V mu_app is 0.25 to"),
         (["--target=mu_app=9x"], "times its value without voltage; 9 times is not reached"),
         (["--target=mu_app=9999x", "--to=5000", "--from=0"], "9999 times is not reached; at 3011 V there is no"),
         (["--target=contrast=900 %"], "%; 900 % is not reached"),
@@ -171,15 +188,16 @@ def test_full_model_is_beside_the_closed_form(monkeypatch):
     def instead(scene, model, context):
         found = fp.run(scene, model="cylinders")
         state = found.full_slip
-        error = type(state.error)(mu_app=0.004)
-        object.__setattr__(state, "error", error)
+        object.__setattr__(state, "error", type(state.error)(f_t=0.4))
         assert model.name == "full" and np.isfinite(state.mu_app)
         return found
 
     monkeypatch.setattr("fingerpad.runs.inverse.solved", instead)
-    found = fp.solve(target="mu_app=2x", model="full")
+    found = fp.solve(target="f_t=30 N/m", model="full")
     assert found.roots[0].full is not None
-    assert "full model: µ_app 0.5000 ± 0.0040, " in str(found) and "±: estimated discretisation error" in str(found)
+    assert "full model: f_T 30.00 ± 0.40 N/m, " in str(found) and "±: estimated discretisation error" in str(found)
+    finger = str(fp.solve(target="F_T=0.3 N", model="full"))
+    assert re.search(r"full model: F_T 0\.(2999|300\d) ± 0\.\d+ N, [+-]0\.\d % from the closed form", finger)
 
 
 @pytest.mark.parametrize(("stops", "code", "count"), [("SIGINT", 130, 1), ("", 1, 2)])

@@ -84,12 +84,19 @@ def test_ends_of_a_range_belong_to_it():
                 assert region.ranges[key] and cylinder_errors.find(scenes[0]) is not None
                 nearest = cylinder_errors.outside(scenes[1])
                 assert nearest or cylinder_errors.find(scenes[1]) is not region
-    scene = from_data({"voltage": 200.2})
+
+
+def test_caution_names_the_end_of_the_widest_region():
+    """Of those with the default friction coefficient, by its voltage and by the attraction that the result has."""
+    fits = [each for each in cylinder_errors.REGIONS[1:] if cylinder_errors.within(0.25, each.ranges["friction"])]
+    (wide,) = fits or cylinder_errors.REGIONS[:1]
+    voltage, pull = wide.ranges["voltage"][1], wide.ranges[cylinder_errors.PULL][1]
+    scene = from_data({"voltage": round(voltage) + 1})
     (found,) = cylinder_errors.outside(scene, 1.0)
-    assert (found.key, found.value, found.known) == ("voltage", "200.2 V", "0 to 200 V")
-    assert str(found) in cylinder_errors.cautions(scene, 1.0)[0] and not cylinder_errors.outside(Scene(), 5.0)
-    (found,) = cylinder_errors.outside(Scene(), 5.1)
-    assert found.key == cylinder_errors.PULL and found.known == "0 to 5"
+    assert (found.key, found.value, found.known) == ("voltage", f"{scene.voltage:g} V", f"0 to {voltage:g} V")
+    assert str(found) in cylinder_errors.cautions(scene, 1.0)[0] and not cylinder_errors.outside(Scene(), pull)
+    (found,) = cylinder_errors.outside(Scene(), pull + 0.1)
+    assert found.key == cylinder_errors.PULL and found.known == f"0 to {pull:g}"
 
 
 @pytest.mark.parametrize(
@@ -124,8 +131,8 @@ def test_other_finger_is_named_by_its_tables():
         "here: geometry is another one, and it is known for that of the default scene; "
         "materials is another one, and it is known for that of the default scene"
     )
-    (text,) = cylinder_errors.cautions(from_data({"electric": {"d_i": 2e-6, "eps_i": 4.0}}))
-    assert "electric.d_i is 2e-06 m" in text and "electric.eps_i is 4" in text
+    (text,) = cylinder_errors.cautions(from_data({"electric": {"d_i": 2e-5, "eps_i": 40.0}}))
+    assert "electric.d_i is 2e-05 m" in text and "electric.eps_i is 40" in text
 
 
 # -- the kept runs ---------------------------------------------------------------------------------------------------

@@ -1,6 +1,7 @@
 """The closed form's error over people's loads: that of the kept states, tested on those that it was not made of."""
 
 import json
+import math
 
 import pytest
 
@@ -32,6 +33,11 @@ def sections(numbers, mesh) -> list[compared.Compared]:
 
 
 @pytest.fixture(scope="module")
+def reached(sections) -> list[compared.Compared]:
+    return compared.both(sections)
+
+
+@pytest.fixture(scope="module")
 def fingers(numbers, mesh) -> list[compared.Compared]:
     return compared.fingers(meshes.without(numbers["scenes"], mesh))
 
@@ -46,9 +52,11 @@ def test_scenes_are_the_seeded_ones(numbers):
 
 
 def test_regions_of_the_program_are_those_of_the_states(sections, fingers):
-    made = json.loads(json.dumps(compared.regions(sections, fingers)))
+    made = json.loads(json.dumps(compared.regions(compared.bands(sections, fingers))))
     assert json.loads(REGIONS_FILE.read_text(encoding="utf-8")) == made
     assert len(cylinder_errors.REGIONS) == 1 + len(made)
+    errors = [region.errors["full_slip"]["f_electrostatic"] for region in cylinder_errors.REGIONS[1:]]
+    assert errors == sorted(errors), "a region begins where the last one ends, and has to have the larger error"
     for region in cylinder_errors.REGIONS[1:]:
         assert region.ranges[cylinder_errors.PULL][1] <= PULL
         for key, (low, high, _) in AXES.items():
@@ -57,10 +65,10 @@ def test_regions_of_the_program_are_those_of_the_states(sections, fingers):
 
 
 @pytest.fixture(scope="module")
-def known(sections) -> list[tuple[compared.Compared, dict[str, float]]]:
+def known(reached) -> list[tuple[compared.Compared, dict[str, float]]]:
     """Each section with its errors at full slip, as a result prints them; without any a caution says so."""
     found = []
-    for each in sections:
+    for each in reached:
         result = cylinders.solve(section(each.values, each.force))
         errors = result.record["model_error"].get("full_slip", {})
         assert bool(errors) != any("error of this model is not known here" in text for text in result.cautions)
@@ -88,9 +96,9 @@ def made_up(count: int) -> list[compared.Compared]:
 def test_band_with_enough_states_has_an_error(monkeypatch):
     """It covers the states that make it, and holds in their range alone: of friction, and of the attraction."""
     few = compared.LEAST - 1  # that make the error, and that test it
-    assert compared.regions(made_up(2 * few - 1), []) == []
+    assert compared.regions(compared.bands(made_up(2 * few - 1), [])) == []
     some = made_up(40)
-    (found,) = compared.regions(some, [])
+    (found,) = compared.regions(compared.bands(some, []))
     error = found["errors"]["full_slip"]["f_electrostatic"]
     assert compared.covered(some, error) == len(some) and 0.02 < error < 0.02 * compared.MARGIN + 2e-3
     monkeypatch.setattr(cylinder_errors, "REGIONS", (cylinder_errors.REGIONS[0], cylinder_errors.Region(**found)))
@@ -105,11 +113,22 @@ def test_band_with_enough_states_has_an_error(monkeypatch):
     assert (outside.key, outside.known) == ("force", "sections alone")
 
 
-def test_a_bound_that_is_too_small_does_not_cover(sections):
+def test_region_ends_where_the_full_model_has_no_result():
+    """Of sections over force every second one above 60 N/m is not reached: the region ends with a tenth of those."""
+    some = [each._replace(force=5.0 + 2.5 * k, attraction=2.0 + k) for k, each in enumerate(made_up(40))]
+    lost = [each._replace(error=math.nan) if each.force > 60 and k % 2 else each for k, each in enumerate(some)]
+    band = compared.bands(lost, [])[1]
+    assert len(band.some) + len(band.without) < len(some)
+    assert 0 < len(band.without) <= compared.WITHOUT * (len(band.some) + len(band.without))
+    assert max(each.force for each in band.some) == compared.region_of(band)["ranges"]["f_ext"][1] > 60
+    assert len(compared.bands(some, [])[1].some) == len(some)
+
+
+def test_a_bound_that_is_too_small_does_not_cover(reached):
     """So that the count above can fail: a third of an error leaves more than a tenth of the states outside."""
-    error = compared.bound(sections)
-    assert compared.covered(sections, error) >= compared.PART * len(sections) - 1
-    assert compared.covered(sections, error / 3) < COVERED * len(sections)
+    error = compared.bound(reached)
+    assert compared.covered(reached, error) >= compared.PART * len(reached) - 1
+    assert compared.covered(reached, error / 3) < COVERED * len(reached)
 
 
 def test_tables_go_on_by_the_kept_states(numbers):

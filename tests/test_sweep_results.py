@@ -14,6 +14,7 @@ import xarray
 import fingerpad as fp
 from fingerpad.cli import main
 from fingerpad.cli import sweep as cli_sweep
+from fingerpad.reduced import cylinder_errors
 from fingerpad.report.sweep_page import _curves
 from fingerpad.report.write import read, write
 from fingerpad.runs.sweep_results import Sweep, _stacked
@@ -254,7 +255,8 @@ def test_cautions_of_points_are_the_sweep_s(tmp_path):
     cautions = found.cautions()
     start = "the error of this model is not known here: "
     unknown = [text for text in cautions if text.startswith(start)]
-    ours = f"{start}electric.d_i is 0.0001 m, and it is known for 1e-06 m (2 of 6 points)"
+    low, high = cylinder_errors.REGIONS[1].ranges["electric.d_i"]
+    ours = f"{start}electric.d_i is 0.0001 m, and it is known for {low:g} to {high:g} m (2 of 6 points)"
     assert unknown[0] == ours, "of two thicknesses at 200 V"
     assert [re.search(r"\((\d) of 6 points\)$", text)[1] for text in unknown] == ["2", "1", "2"], "others at 400 V"
     places = [text for text in cautions if "the closure is out of its range" in text and "d_eq rises" in text]

@@ -37,7 +37,7 @@ def test_line_is_where_the_target_is_reached():
 
 def test_section_is_mapped_where_its_force_is_varied():
     """Over f_ext the quantities are those of the section, whose error is known at the loads of full runs."""
-    found = two_keys(fp.Scene(), {"voltage": [200.0, 250.0], "f_ext": [25.0, 75.0]})
+    found = two_keys(fp.Scene(), {"voltage": [200.0, 400.0], "f_ext": [25.0, 75.0]})
     assert "The error of the section is known at 2 of 4 points." in estimate_map.text(found)
     assert not found.target.whole and found.known.tolist() == [[True, True], [False, False]]
     one = fp.run(fp.Scene(f_ext=25.0, voltage=200.0), model="cylinders").full_slip

@@ -25,16 +25,20 @@ from benchmarks.loads.compared import (
     LEAST,
     MARGIN,
     PART,
+    WITHOUT,
+    Band,
     Compared,
+    bands,
+    both,
     covered,
     fingers,
     fits,
-    in_band,
+    region_of,
     regions,
     sections,
 )
 from benchmarks.loads.meshes import errors, without
-from benchmarks.loads.scenes import COUNT, MESHES, PULL, Data, scenes
+from benchmarks.loads.scenes import COUNT, LARGEST, MESHES, PULL, Data, scenes
 from benchmarks.loads.states import pressed, solved
 from fingerpad.reduced import uncharged
 from fingerpad.reduced.cylinder_errors import REGIONS, WHOLE
@@ -61,7 +65,7 @@ def compute(args: argparse.Namespace) -> None:
     numbers = {"scenes": kept, "mesh": checked, "far": {"full_slip": slipped, "charged": far}, "count": COUNT}
     harness.keep("loads", numbers, harness.made(), args.docs)
     better = without(kept, errors(checked, harness.kept("models", args.docs).numbers["scenes"]))
-    found = regions(sections(better), fingers(better))
+    found = regions(bands(sections(better), fingers(better)))
     replace(REGIONS_FILE, json.dumps(found, indent=1) + "\n")
     print(in_the_program(numbers))
 
@@ -124,15 +128,17 @@ def draw(docs: Path) -> Path:
     numbers = harness.kept("loads", docs).numbers
     mesh = errors(numbers["mesh"], harness.kept("models", docs).numbers["scenes"])
     better = without(numbers["scenes"], mesh)
-    every, whole = sections(better), fingers(better)
+    compared, whole = sections(better), fingers(better)
+    every = both(compared)
     states = [state for each in numbers["scenes"] for state in each["states"]]
     tried = [each for each in states if not each.get("failure", "").startswith("not tried")]
     harness.picture(docs / "loads.png", (9.5, 4.2), lambda figure: _paint(figure, every))
     names = {
         "every": every, "whole": whole, "states": states, "tried": tried,
         "mesh": [(sizes["contact"], each) for sizes, some in zip(MESHES, mesh, strict=True) for each in some],
-        "regions": [judged(every, whole, k) for k in range(len(BANDS) - 1)],
+        "regions": [judged(band, k) for k, band in enumerate(bands(compared, whole))],
         "LEAST": LEAST, "MARGIN": MARGIN, "PART": PART, "PULL": PULL, "MESHES": MESHES,
+        "WITHOUT": WITHOUT, "LARGEST": LARGEST,
         "known": [REGIONS[0].errors[key]["f_electrostatic"] for key in ("full_slip", WHOLE)],
         "lost": [each for each in tried if "failure" in each],
     }  # fmt: skip
@@ -143,6 +149,8 @@ class Judged(NamedTuple):
     """A band of the friction coefficient on the page."""
 
     friction: str
+    limits: tuple[float, ...]
+    """Largest force of a section (N/m), voltage (V) and attraction over force."""
     made: int
     """States that make an error."""
     error: float | None
@@ -150,17 +158,28 @@ class Judged(NamedTuple):
     tests: int
     inside: int | None
     """Of the states that test the error."""
+    without: int
+    """States that the full model did not reach."""
+    of_finger: float | None
+    """Error of the attraction of a finger (%)."""
     fingers: int
+    """Fingers that test it."""
+    fingers_inside: int | None
 
 
-def judged(every: Sequence[Compared], whole: Sequence[Compared], k: int) -> Judged:
+def judged(band: Band, k: int) -> Judged:
     """Return what the page has of a band."""
-    some, words = in_band(every, k), f"{BANDS[k]:g} to {BANDS[k + 1]:g}"
-    tests, made = [each for each in some if not fits(each)], sum(map(fits, some))
-    found = [each for each in regions(some, in_band(whole, k)) if made]
-    error = found[0]["errors"]["full_slip"]["f_electrostatic"] if found else None
-    inside = None if error is None else covered(tests, error)
-    return Judged(words, made, None if error is None else 100 * error, len(tests), inside, len(in_band(whole, k)))
+    region, words = region_of(band), f"{BANDS[k]:g} to {BANDS[k + 1]:g}"
+    tests = [each for each in band.whole if not fits(each)]
+    places = [(each.force, each.values["voltage"], each.attraction / each.force) for each in band.some]
+    limits = tuple(max(values) for values in zip(*places, strict=True))
+    numbers = len(band.made), len(band.tests), len(band.without), len(tests)
+    if region is None:
+        return Judged(words, limits, numbers[0], None, numbers[1], None, numbers[2], None, numbers[3], None)
+    errors = [region["errors"][state]["f_electrostatic"] for state in ("full_slip", WHOLE)]
+    inside = [covered(some, error) for some, error in zip((band.tests, tests), errors, strict=True)]
+    return Judged(words, limits, numbers[0], 100 * errors[0], numbers[1], inside[0], numbers[2], 100 * errors[1],
+                  numbers[3], inside[1])  # fmt: skip
 
 
 def _paint(figure: Figure, every: Sequence[Compared]) -> None:

@@ -1,10 +1,12 @@
 """Both models side by side: attraction of a section and of a whole finger, and the error that covers it."""
 
+import itertools
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from benchmarks.loads.scenes import Data, section
 from fingerpad.reduced.cylinder_errors import PULL, WHOLE
@@ -23,6 +25,8 @@ LEAST, MARGIN = 8, 1.25
 """Least number of states that make an error, and that test it; factor on what covers those that make it."""
 BLOCK = 2  # scenes of the sequence that make the error, or test it, in turn
 PART = 0.95  # of the states that the error is to cover
+WITHOUT = 0.1  # of the states inside a region, at most, that the full model did not reach
+Array = NDArray[np.float64]
 
 
 class Compared(NamedTuple):
@@ -38,6 +42,8 @@ class Compared(NamedTuple):
     """The full model's attraction over that, less 1."""
     values: Data
     """Of the scene by key."""
+    whole: bool = False
+    """Whether it is a finger."""
 
     @property
     def share(self) -> float:
@@ -51,16 +57,24 @@ class Compared(NamedTuple):
 
 
 def sections(kept: Iterable[Data]) -> list[Compared]:
-    """Return every state of kept scenes beside the closed form; those that one of the two has not are left out."""
+    """Return every state of kept scenes beside the closed form, those that the closed form refuses left out.
+
+    The error of a state that the full model did not reach is NaN.
+    """
     found = []
     for each in kept:
         for state in each["states"]:
             own = _closed(each["values"], [state["f_ext"]])
-            if own and "f_electrostatic" in state:
+            if own:
                 f_el = own[0].f_electrostatic
-                error = state["f_electrostatic"] / f_el - 1
+                error = state.get("f_electrostatic", math.nan) / f_el - 1
                 found.append(Compared(each["scene"], state["f_ext"], f_el, error, each["values"]))
     return found
+
+
+def both(compared: Iterable[Compared]) -> list[Compared]:
+    """Return the states that both models have."""
+    return [each for each in compared if not math.isnan(each.error)]
 
 
 def _closed(data: Data, under: Sequence[float]) -> list[ContactState]:
@@ -88,7 +102,7 @@ def fingers(kept: Iterable[Data]) -> list[Compared]:
         most = [at_indentation(finger, made, deepest(finger, made), count).totals["f_ext"] for made in traces]
         force = min(data["force"], *most)
         one, full = (at_force(finger, made, force, count).totals["f_electrostatic"] for made in traces)
-        found.append(Compared(each["scene"], force, one, full / one - 1, data))
+        found.append(Compared(each["scene"], force, one, full / one - 1, data, True))
     return found
 
 
@@ -98,25 +112,85 @@ def _state(values: Mapping[str, Any]) -> ContactState:
     return ContactState(**own, voltage=math.nan)
 
 
-def in_band(compared: Iterable[Compared], k: int) -> list[Compared]:
-    """Return those whose friction coefficient is in a band of :data:`BANDS`."""
-    return [each for each in compared if BANDS[k] <= each.values["friction"] <= BANDS[k + 1]]
+class Band(NamedTuple):
+    """Scenes of a range of the friction coefficient, inside the limits of force, voltage and attraction over force."""
+
+    some: list[Compared]
+    """Sections."""
+    whole: list[Compared]
+    """Fingers."""
+    without: list[Compared]
+    """Sections without a result of the full model, at most :data:`WITHOUT` of all."""
+
+    @property
+    def made(self) -> list[Compared]:
+        """Sections that make the error."""
+        return [each for each in self.some if fits(each)]
+
+    @property
+    def tests(self) -> list[Compared]:
+        """Sections that test it."""
+        return [each for each in self.some if not fits(each)]
 
 
-def regions(sections: Sequence[Compared], fingers: Sequence[Compared]) -> list[dict[str, Any]]:
-    """Return the regions in which the error is known, by bands of the friction coefficient, as the program reads them.
+def bands(sections: Sequence[Compared], fingers: Sequence[Compared]) -> list[Band]:
+    """Return the scenes of each band of :data:`BANDS` in the limits that hold most sections, few without result.
 
-    A band with fewer than :data:`LEAST` states to make the error or to test it is none.
+    Args:
+        sections: of which the full model may have no result.
+        fingers: of them.
     """
     found = []
     for k in range(len(BANDS) - 1):
-        some, whole = in_band(sections, k), in_band(fingers, k)
-        if min(sum(map(fits, some)), sum(not fits(each) for each in some)) < LEAST:
-            continue
-        error, of_finger = (bound(each for each in every if fits(each)) for every in (some, [*whole, *some]))
-        errors = {"full_slip": {"f_electrostatic": error}, WHOLE: {"f_electrostatic": of_finger}}
-        found.append({"runs": len(some), "ranges": hull(some, whole), "errors": errors})
+        every, whole = _in_band(sections, k), _in_band(fingers, k)
+        some, without = both(every), [each for each in every if math.isnan(each.error)]
+        limits = _limits(some, without)
+        parts = ([each for each in part if np.all(_place(each) <= limits)] for part in (some, whole, without))
+        found.append(Band(*parts))
     return found
+
+
+def _in_band(compared: Iterable[Compared], k: int) -> list[Compared]:
+    return [each for each in compared if BANDS[k] <= each.values["friction"] <= BANDS[k + 1]]
+
+
+def _place(one: Compared) -> Array:
+    """Return the force (N/m) of the section or at the centre of the finger, the voltage and attraction over force."""
+    force = Scene(force=one.force).centre_force if one.whole else one.force
+    return np.array([force, one.values["voltage"], one.attraction / one.force])
+
+
+def _limits(some: Sequence[Compared], without: Sequence[Compared]) -> Array:
+    """Return upper ends of places in which most sections are, at most :data:`WITHOUT` of them without result."""
+    found, lost = (np.array([_place(each) for each in every]).reshape(-1, 3) for every in (some, without))
+    most, best = 0, np.zeros(3)
+    for force, voltage in itertools.product(np.unique(found[:, 0]), np.unique(found[:, 1])):
+        pulls, others = (np.sort(each[np.all(each[:, :2] <= (force, voltage), axis=1), 2]) for each in (found, lost))
+        count, beside = np.arange(1, len(pulls) + 1), np.searchsorted(others, pulls, "right")
+        few = np.flatnonzero(beside <= WITHOUT * (count + beside))
+        if len(few) and count[few[-1]] > most:
+            most, best = count[few[-1]], np.array([force, voltage, pulls[few[-1]]])
+    return best
+
+
+def regions(every: Iterable[Band]) -> list[dict[str, Any]]:
+    """Return the regions in which the error is known, by band, as the program reads them.
+
+    One begins at the friction coefficient at which the one before ends; its error is the larger one.
+    """
+    found = [region for band in every if (region := region_of(band)) is not None]
+    for last, region in itertools.pairwise(found):
+        region["ranges"]["friction"] = last["ranges"]["friction"][1], region["ranges"]["friction"][1]
+    return found
+
+
+def region_of(band: Band) -> dict[str, Any] | None:
+    """Return the region of a band; None with fewer than :data:`LEAST` states to make the error or to test it."""
+    if min(len(band.made), len(band.tests)) < LEAST:
+        return None
+    error, of_finger = (bound(each for each in every if fits(each)) for every in (band.some, band.whole + band.some))
+    errors = {"full_slip": {"f_electrostatic": error}, WHOLE: {"f_electrostatic": of_finger}}
+    return {"runs": len(band.some), "ranges": hull(band.some, band.whole), "errors": errors}
 
 
 def hull(some: Sequence[Compared], whole: Sequence[Compared]) -> dict[str, tuple[float, float]]:

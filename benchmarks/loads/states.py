@@ -9,7 +9,20 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from benchmarks.loads.scenes import DEFAULT, FAR, LADDER, LIGHT, MESHES, MOST, PULL, Data, meshed, section, tasks
+from benchmarks.loads.scenes import (
+    DEFAULT,
+    FAR,
+    LADDER,
+    LARGEST,
+    LIGHT,
+    MESHES,
+    MOST,
+    PULL,
+    Data,
+    meshed,
+    section,
+    tasks,
+)
 from fingerpad.reduced import cylinders
 from fingerpad.results.files import replace
 from fingerpad.scene import from_data
@@ -73,32 +86,30 @@ class Pool:
         path.solve = begin
 
     def state(self, data: Data, f_ext: float) -> Data:
-        """Return full slip from the nearest states, ready for JSON; its ``failure`` where none leads to it."""
+        """Return full slip from the nearest state, ready for JSON; its ``failure`` where that does not lead to it."""
         from fingerpad.model.full_slip import Conditions
         from variational.solvers.continuation import StepFailed
 
-        pull = _pull(data, f_ext)
-        if pull > PULL:
-            return {"f_ext": f_ext, "failure": f"not tried: attraction is {pull:.3g} times the force"} | _NONE
-        counts, why = self.slips.finger.solver.counts, ""
+        f_el = _attraction(data, f_ext)
+        if f_el > min(LARGEST, PULL * f_ext):
+            return {"f_ext": f_ext, "failure": f"not tried: attraction is {f_el:.3g} N/m"} | _NONE
+        counts = self.slips.finger.solver.counts
         wanted, before = Conditions.of(_model(data, f_ext, self.which)), counts.factorisations
-        for start in sorted(self.solved, key=lambda each: _distance(each.conditions, wanted))[:2]:
-            self.most = counts.factorisations + MOST
-            try:
-                found = self.slips.solve(wanted, start)
-            except (StepFailed, _TooManyError) as error:
-                why = why or str(error)
-                continue
-            self.solved.append(found)
-            return _kept(found.state, f_ext) | {"factorisations": counts.factorisations - before}
-        return {"f_ext": f_ext, "failure": why, "factorisations": counts.factorisations - before}
+        self.most = before + MOST
+        start = min(self.solved, key=lambda each: _distance(each.conditions, wanted))
+        try:
+            self.solved.append(self.slips.solve(wanted, start))
+            kept = _kept(self.solved[-1].state, f_ext)
+        except (StepFailed, _TooManyError) as error:
+            kept = {"f_ext": f_ext, "failure": str(error)}
+        return kept | {"factorisations": counts.factorisations - before}
 
 
-def _pull(data: Data, f_ext: float) -> float:
-    """Return the attraction over the force by the closed form."""
+def _attraction(data: Data, f_ext: float) -> float:
+    """Return the attraction (N/m) by the closed form."""
     slip = cylinders.solve(section(data, f_ext)).full_slip
     assert slip is not None
-    return slip.f_electrostatic / f_ext
+    return slip.f_electrostatic
 
 
 def _model(data: Data, f_ext: float, which: int) -> Any:

@@ -14,7 +14,7 @@ const modelErrors = (() => {
   /** Return the keys of values that are outside of a region, with its ranges: [{key, low, high}]. */
   function beyond(region, values, answer) {
     const load = values.newtons ? "force" : "f_ext", other = values.newtons ? "f_ext" : "force", found = [];
-    const given = { ...values, "attraction over external force": answer ? pull_of(values, answer) : 0 };
+    const given = { ...values, "attraction over force": answer ? pull_of(values, answer) : 0 };
     if (!region.ranges[load]) found.push({ key: load, low: NaN, high: NaN });
     for (const [key, ends] of Object.entries(region.ranges))
       if (key !== other && !within(given[key], ends)) found.push({ key, low: ends[0], high: ends[1] });
@@ -33,9 +33,9 @@ const modelErrors = (() => {
     return { ...known, mu_app: friction, f_t: friction };
   }
 
-  /** Return the keys for which the error is not known, by the nearest region; empty where it is known. */
+  /** Return the keys for which the error is not known, by the nearest region, the widest of these; empty if known. */
   const outside = (values, answer) => regions.map((region) => beyond(region, values, answer))
-    .reduce((least, keys) => (keys.length < least.length ? keys : least));
+    .reduce((least, keys) => (keys.length <= least.length ? keys : least));
 
   return { of, outside };
 })();

@@ -85,7 +85,7 @@
     else if (error) parts.push(`Known error, beside full runs: µ_app and friction within ${percent(error.mu_app)}, attraction within ${percent(error.f_electrostatic)}.`);
     else {
       const beyond = modelErrors.outside(values, found).filter(({ low }) => !Number.isNaN(low)).map(span).join(", ");
-      parts.push(`The error is not known here${beyond && `; it is for ${beyond}`}.`);
+      parts.push(`The error is not known here${beyond && `; it is known for ${beyond}`}.`);
     }
     const point = found.section || found, at = closedForm.closure_of(values).state(point.p_c, values.voltage);
     if (at) parts.push(`The mean pressure of ${show(point.p_c, 4)} Pa is ${at}.`);

@@ -152,7 +152,7 @@ def page() -> str:
     """Return the page."""
     values = {
         "finding": _finding(),
-        "error": html.escape(" ".join(map(_error, cylinder_errors.REGIONS)) + " Elsewhere its error is not known."),
+        "error": html.escape(f"{_error(cylinder_errors.REGIONS[0])}{_others()} Elsewhere its error is not known."),
         "known": _band(),
         "leakage": html.escape(LEAKAGE),
         "table": _table(),
@@ -200,6 +200,17 @@ def _error(region: cylinder_errors.Region) -> str:
         f"The attraction is known to {whole:.1f} % for the whole finger, and to {section:.1f} % for its section, at "
         f"{cylinder_errors.where(region)}. µ_app has the share of this error that attraction has of contact force."
     )
+
+
+def _others() -> str:
+    """Return how far the attraction is known over other screens and friction coefficients."""
+    parts = [
+        f"{100 * each.errors[cylinder_errors.WHOLE]['f_electrostatic']:.1f} % at friction coefficients of "
+        f"{each.ranges['friction'][0]:.2g} to {each.ranges['friction'][1]:.2g}"
+        for each in cylinder_errors.REGIONS[1:]
+    ]
+    of = " Over other screens, and larger forces and voltages, it is known for the whole finger to"
+    return f"{of} {', '.join(parts)}; notes below name the limits." if parts else ""
 
 
 def _band() -> str:

@@ -178,7 +178,7 @@ def _known(rows: Sequence[Mapping[str, Any]]) -> list[str]:
     beyond = Counter(each._replace(value="") for row in rows for each in row.get("outside", []))
     for each, count in beyond.items():
         points = f"At {count} of {len(rows)} points" if count < len(rows) else "Here"
-        said.append(f"{points} the error is not known; it is for {each.key} {each.known}.")
+        said.append(f"{points} the error is not known; it is known for {each.key} {each.known}.")
     return said
 
 

@@ -31,7 +31,7 @@ from variational.state import ContactState
 Bands = Mapping[str, Mapping[str, float]]
 """Relative errors by state and quantity; those of a whole finger at full slip are under :data:`WHOLE`."""
 WHOLE = "finger"
-PULL = "attraction over external force"
+PULL = "attraction over force"
 """Key, in words, of a region's range of this ratio at full slip, which no scene gives."""
 
 
@@ -119,10 +119,10 @@ def find(scene: Scene, pull: float = 0.0) -> Region | None:
 def outside(scene: Scene, pull: float = 0.0) -> list[Outside]:
     """Return the keys for which the error is not known, by the nearest region; empty where it is known.
 
-    Arguments are those of :func:`find`.
+    That is the one with the fewest such keys, and of these the widest. Arguments are those of :func:`find`.
     """
     given = _given(scene, pull)
-    return min(([*_outside(given, region)] for region in REGIONS), key=len)
+    return min(([*_outside(given, region)] for region in reversed(REGIONS)), key=len)
 
 
 def cautions(scene: Scene, pull: float = 0.0) -> list[str]:

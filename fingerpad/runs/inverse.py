@@ -3,15 +3,19 @@
 The closed form is the model "cylinders" (:mod:`fingerpad.reduced.cylinders`), of one state alone. The key is varied
 over a range (:mod:`fingerpad.runs.axis`), and each place at which the quantity crosses the target is refined
 (:mod:`fingerpad.runs.roots`). The full model confirms each value by one run, where it is asked for.
+
+Friction is that of the whole finger, as in the headline of a result; that of the middle section where ``f_ext`` is
+varied, or the target has a unit per metre. A scene without a force gets the one whose centre bears its ``f_ext``.
 """
 
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
+from fingerpad.reduced.cylinder_errors import WHOLE
 from fingerpad.reduced.cylinders import Cylinders
 from fingerpad.reduced.registry import find
-from fingerpad.results.quantities import PLUS_MINUS
+from fingerpad.results.quantities import FINGER, PLUS_MINUS
 from fingerpad.results.result import Result
 from fingerpad.runs.axis import Axis, axis
 from fingerpad.runs.closed_form import STATE, ClosedForm
@@ -37,8 +41,8 @@ class Root:
     """Error of the key (SI) by the known error of the closed form; NaN where this is not known."""
     scene: Scene
     """With the key."""
-    section: Result
-    """Of the closed form: the section, at the centre of the finger where the scene has a force."""
+    closed: Result
+    """Of the closed form: the section and, where the scene has a force, the whole finger."""
     full: Result | None = None
     """Of the full model, where it was asked for."""
 
@@ -105,7 +109,8 @@ class Solution:
             found = getattr(full.full_slip, name), full.full_slip.error.known().get(name)
         if found is None:
             return f"full model: no full slip{f': {full.failure}' if full.failure else ''}"
-        ratio = f", {100 * (found[0] / root.value - 1):+.1f} % from the closed form" if root.value else ""
+        off = round(100 * (found[0] / root.value - 1), 1) + 0.0 if root.value else math.nan  # no -0.0
+        ratio = f", {off:+.1f} % from the closed form" if root.value else ""
         return f"full model: {self.target.quantity.symbol} {_cell(self.target, *found)}{ratio}"
 
 
@@ -139,18 +144,18 @@ def solve(
     form = ClosedForm(Cylinders() if way.path else way)
     form.model.check(scene)
     newtons = over == "force" or (scene.force is not None and over != "f_ext")
-    goal, notes = read(target, newtons), list[str]()
+    goal, notes = read(target, over != "f_ext"), list[str]()
     if over == "f_ext" and goal.whole or newtons and not goal.whole:
         kind, other = ("whole finger", "force") if goal.whole else ("section", "f_ext")
         given = f"over is {over}" if over in ("f_ext", "force") else "force is given"
         raise SceneError(f"{goal.name} is a quantity of the {kind} and {given}; give {other} in its place")
     if goal.whole and not newtons:
         force = float(f"{form.newtons(scene):.4g}")
-        at = f"the f_ext of {scene.f_ext:g} N/m at the finger's centre, at full slip"
-        notes.append(f"No force is given; {force:g} N have {at}.")
+        at = f"the section at the finger's centre then bears the scene's f_ext, {scene.f_ext:g} N/m, at full slip"
+        notes.append(f"No force is given. It is {force:g} N: {at}.")
         scene = scene.replace(force=force)
-    elif not goal.whole and over != "f_ext":
-        notes.append("The whole finger has another value; give force for it, as force = 0.5 N.")
+    elif over == "f_ext" and goal.quantity.name in FINGER:
+        notes.append("The whole finger has another value; vary force for it.")
     solution = _Problem(scene, goal, axis(scene, over, between), form).solution(notes)
     solution = solution.confirmed(RunContext()) if way.path else solution
     for root in solution.roots:
@@ -184,7 +189,7 @@ class _Problem:
         roots = tuple(self._root(search, place) for place in places)
         known = [note for root in roots for note in self._known(root)]
         refused = [f"{text[0].upper()}{text[1:]}." for text in [self._refused(search)] if text]
-        cautions = (f"! {caution}" for root in roots for caution in root.section.cautions)
+        cautions = (f"! {caution}" for root in roots for caution in root.closed.cautions)
         return Solution(
             target, axis, self._scene, roots, tuple(dict.fromkeys([*notes, *known, *jumps, *refused, *cautions]))
         )
@@ -213,25 +218,24 @@ class _Problem:
 
     def _root(self, search: Roots, place: float) -> Root:
         scene = self._at(place)
-        section, value = self._form.section(scene), self._value(scene)
-        share, margin = self._share(section), math.nan
+        closed, value = self._form.result(scene), self._value(scene)
+        share, margin = self._share(closed), math.nan
         if share is not None:
             margin = abs(share * search.values[place] / search.slope(place))
             margin *= self._axis.value(place) if self._axis.logarithmic else 1.0
             margin = margin if margin < self._axis.high - self._axis.low else math.nan  # where the slope vanishes
-        return Root(self._axis.value(place), value, margin, scene, section)
+        return Root(self._axis.value(place), value, margin, scene, closed)
 
-    def _share(self, section: Result) -> float | None:
-        """Return the known relative error of the quantity of a section; that of friction is that of its coefficient."""
-        known, name = section.record["model_error"].get(STATE, {}), self._target.quantity.name
-        return None if self._target.whole else known.get("mu_app" if name == "f_t" else name)
+    def _share(self, closed: Result) -> float | None:
+        """Return the known relative error of the quantity in a result of the closed form."""
+        known = closed.record["model_error"].get(WHOLE if self._target.whole else STATE, {})
+        return known.get(self._target.quantity.name)
 
     def _known(self, root: Root) -> list[str]:
-        """Return what is known of the error of a root; a caution of its section tells where nothing is."""
-        if self._target.whole:
-            return errors.remarks([root.scene.force or 0.0])
-        share = self._share(root.section)
-        return [] if share is None else [f"The closed form is known to {100 * share:.1f} % beside the full model."]
+        """Return what is known of the error of a root; a caution of its result tells where nothing is."""
+        share = self._share(root.closed)
+        known = [] if share is None else [f"The closed form is known to {100 * share:.1f} % beside the full model."]
+        return known + (errors.remarks([root.scene.force or 0.0]) if self._target.whole else [])
 
     def _refused(self, search: Roots) -> str:
         """Return where there is no answer, nearest to those that there are, and why; empty where there is one."""
