@@ -38,10 +38,10 @@ from benchmarks.loads.compared import (
     sections,
 )
 from benchmarks.loads.meshes import errors, without
-from benchmarks.loads.scenes import COUNT, LARGEST, MESHES, PULL, Data, scenes
+from benchmarks.loads.scenes import COUNT, LARGEST, MESHES, PULL, Data, scenes, section
 from benchmarks.loads.states import pressed, solved
 from fingerpad.reduced import uncharged
-from fingerpad.reduced.cylinder_errors import REGIONS, WHOLE
+from fingerpad.reduced.cylinder_errors import REGIONS, WHOLE, find
 from fingerpad.results.files import replace
 
 _SHORT = ("f_ext", "f_t", "mu_app", "f_electrostatic", "contact_length", "ridges_in_contact", "bone_height",
@@ -130,11 +130,12 @@ def draw(docs: Path) -> Path:
     better = without(numbers["scenes"], mesh)
     compared, whole = sections(better), fingers(better)
     every = both(compared)
+    beyond = [each for each in every if not find(section(each.values, each.force), each.attraction / each.force)]
     states = [state for each in numbers["scenes"] for state in each["states"]]
     tried = [each for each in states if not each.get("failure", "").startswith("not tried")]
     harness.picture(docs / "loads.png", (9.5, 4.2), lambda figure: _paint(figure, every))
     names = {
-        "every": every, "whole": whole, "states": states, "tried": tried,
+        "every": every, "beyond": beyond, "whole": whole, "states": states, "tried": tried,
         "mesh": [(sizes["contact"], each) for sizes, some in zip(MESHES, mesh, strict=True) for each in some],
         "regions": [judged(band, k) for k, band in enumerate(bands(compared, whole))],
         "LEAST": LEAST, "MARGIN": MARGIN, "PART": PART, "PULL": PULL, "MESHES": MESHES,
