@@ -233,7 +233,8 @@ def test_report_and_text_of_a_force_begin_with_the_whole_finger(tmp_path):
     assert float(mu.partition(" ")[0]) == pytest.approx(whole["mu_app"], abs=5e-4) and result.headline.value == whole["mu_app"]
     page = page.replace("\u00a0", " ")
     assert "<h1>At 2 N, 200 V raise the friction force from 0.50 to 0.88 N.</h1>" in page
-    assert f"{whole['f_t']:.2f}" == "0.88" and result.headline.number.startswith(f"= {whole['mu_app']:.3f} ± ")
+    assert f"{whole['f_t']:.2f}" == "0.88"
+    assert result.headline.number.startswith(f"= {whole['mu_app']:.3f} ± ")
     said = '<span class="said">of the whole finger, at full slip, 2 N and 200 V: '
     assert f'<p class="number">µ<sub>app</sub> {result.headline.number} {said}' in page
     assert page.index('id="newtons"') < page.index('id="numbers"') and "under its own part of the force" in page
