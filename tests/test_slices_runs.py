@@ -230,7 +230,10 @@ def test_report_and_text_of_a_force_begin_with_the_whole_finger(tmp_path):
     assert whole["mu_app"] != pytest.approx(result.full_slip.mu_app, rel=0.05)
     page = (tmp_path / "report.html").read_text(encoding="utf-8")
     mu = result.finger.shown("full_slip", "mu_app")
-    assert float(mu.partition(" ")[0]) == pytest.approx(whole["mu_app"], abs=5e-4) and result.headline.value == whole["mu_app"]
+    assert (
+        float(mu.partition(" ")[0]) == pytest.approx(whole["mu_app"], abs=5e-4)
+        and result.headline.value == whole["mu_app"]
+    )
     page = page.replace("\u00a0", " ")
     assert "<h1>At 2 N, 200 V raise the friction force from 0.50 to 0.88 N.</h1>" in page
     assert f"{whole['f_t']:.2f}" == "0.88"
