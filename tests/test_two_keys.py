@@ -81,9 +81,18 @@ def test_command_writes_table_and_picture(tmp_path, capsys):
     assert (tmp_path / "map.png").stat().st_size > 10_000
 
 
+@pytest.mark.parametrize(("target", "said"), [("mu_app=900", True), ("mu_app=2x", False)])
+def test_target_that_is_not_reached_is_said(capsys, tmp_path, target, said):
+    words = f"estimate --over voltage=0:200:3 --over friction=0.2,0.3 --target {target} --plot {tmp_path / 'map.png'}"
+    assert main(shlex.split(words)) == 0
+    out, err = capsys.readouterr()
+    assert ("mu_app = 900 is not reached at any point." in out) == said and not err
+
+
 @pytest.mark.parametrize(
     ("line", "words"),
     [
+        ("--over voltage --over f_ext --force 0.5", "--force is given, and --over varies the other force; give one of"),
         ("--over voltage --over voltage", "--over voltage is given twice; a map is over two different keys"),
         ("--over voltage", "--over is given 1 time; a map is over two keys"),
         ("--over voltage --over friction --over force", "--over is given 3 times; a map is over two keys"),

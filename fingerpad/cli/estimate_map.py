@@ -40,6 +40,8 @@ def main(args: argparse.Namespace, scene: Scene) -> int:
         option = f"--{key.replace('_', '-')}"
         if key in over:
             raise SceneError(f"--over {key} is given and {option} too; write the values as --over {key}=0:200:5")
+        if {key, *over} >= {"force", "f_ext"}:
+            raise SceneError(f"{option} is given, and --over varies the other force; give one of the two")
         refuse_twice(args, key, option)
         values = several(args, scene, key)
         if len(values) > 1:
@@ -50,6 +52,8 @@ def main(args: argparse.Namespace, scene: Scene) -> int:
     echo()
     notes = errors.remarks([found.scene.force]) if found.scene.force and "force" not in over else []
     notes = notes if found.target.whole else [PER_LENGTH]
+    if args.target and not found.crossed:
+        notes = [f"{found.target} is not reached at any point.", *notes]
     for note in (*notes, LEAKAGE, *(f"{each}." for each in remarks(scene)), *_lost(found)):
         echo(note)
     columns = [output.ERROR_KNOWN, *(Output(axis.key, "") for axis in found.axes), found.target.quantity]
@@ -133,14 +137,13 @@ def draw(found: TwoKeys, line: bool, file: Path, _: Sequence[dict[str, Any]]) ->
         if not found.known.all():
             unknown = ax.contourf(x, y, found.known, levels=[-1, 0.5], colors="none", hatches=["/"])
             unknown.set(edgecolor="white", linewidth=0)
-        if line:
-            drawn = ax.contour(x, y, np.ma.masked_invalid(found.reached), levels=[found.target.value],
-                               colors=style.VERMILION, linewidths=3)  # fmt: skip
-            if not drawn.get_paths() or not len(drawn.get_paths()[0]):
-                ax.set_title(f"{found.target} is not reached here")
-            else:
-                ax.plot([], [], color=style.VERMILION, lw=3, label=str(found.target))
-                ax.legend(loc="upper left", frameon=True)
+        if line and found.crossed:
+            reached = np.ma.masked_invalid(found.reached)
+            ax.contour(x, y, reached, levels=[found.target.value], colors=style.VERMILION, linewidths=3)
+            ax.plot([], [], color=style.VERMILION, lw=3, label=str(found.target))
+            ax.legend(loc="upper left", frameon=True)
+        elif line:
+            ax.set_title(f"{found.target} is not reached here")
         for each, set_scale, ticks in ((x_axis, ax.set_xscale, ax.xaxis), (y_axis, ax.set_yscale, ax.yaxis)):
             set_scale("log" if each.logarithmic else "linear")
             if each.logarithmic:

@@ -47,6 +47,11 @@ class TwoKeys:
     lost: tuple[str, ...]
     """Why there is no answer, a sentence for each such place."""
 
+    @property
+    def crossed(self) -> bool:
+        """Whether the target's value is between those of the map."""
+        return bool(np.nanmin(self.reached) <= self.target.value <= np.nanmax(self.reached))
+
     def rows(self) -> Iterator[dict[str, float]]:
         """Yield the values of both keys and of the quantity (SI), and 1 where its error is known, else 0."""
         names = (self.axes[0].key, self.axes[1].key)
