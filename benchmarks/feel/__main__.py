@@ -66,7 +66,10 @@ def compute(args: argparse.Namespace) -> None:
         "hold": in_hold(onset),
         "shear": shear(onset),
         "same": {**differing(charged, same), "mu_app": mu_app},
-        "steps": {f"{f:g}": of_step(run(f"step_{f:g}", scenes.step(f))) for f in scenes.LOADS},
+        "steps": {
+            f"{f:g}": of_step(run(f"viscous_step_{f:g}", scenes.step(f, scenes.VISCOSITY))) for f in scenes.LOADS
+        },
+        "elastic": {f"{f:g}": of_step(run(f"step_{f:g}", scenes.step(f))) for f in scenes.LOADS},
         "gratings": [
             {"load": f, "period": p, **of_grating(run(f"grating_{f:g}_{1e3 * p:g}", scenes.grating(f, p)))}
             for f in scenes.GRATING_LOADS
