@@ -8,6 +8,7 @@ time. Writes docs/feel.json, and from it docs/feel.md and its picture.
 
 import argparse
 import sys
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -167,28 +168,31 @@ def _by_unit(spikes: Spikes, law: str) -> dict[tuple[int | None, str], int]:
 
 
 def of_step(result: fp.Result) -> dict[str, Any]:
-    """Return changes of friction, length and surface strain in the rise and the fall of a voltage, and spikes."""
-    spikes = result.afferents(["RA1", "SA1"])
-    start, _ = _span(spikes, "step")
-    states = [state for state in result.steps if state.load == "step"]
+    """Return changes of friction, length and surface strain in the rise and the fall of a voltage, and spikes.
+
+    Time begins with the state before the load of the voltage; what the skin has from before is steady.
+    """
+    first = next(k for k, state in enumerate(result.steps) if state.load == "step") - 1
+    start = max(result.steps[first].time, 0.0)
+    states = [replace(state, time=max(state.time, 0.0) - start) for state in result.steps[first:]]
+    spikes = replace(result, steps=tuple(states)).afferents(["RA1", "SA1"])
 
     def at(time: float) -> ContactState:
         return [state for state in states if state.time <= time + 1e-9][-1]
 
     found = {}
-    for name, after, end in (("rise", scenes.RISE, scenes.FALL), ("fall", scenes.FALL, scenes.LAST)):
-        begin, last = start + after, start + end
+    for name, begin, last in (("rise", scenes.RISE, scenes.FALL), ("fall", scenes.FALL, scenes.LAST)):
         one, other = at(begin), at(last)
         strains = (
             np.concatenate([state.stimuli.surface_strain_left, state.stimuli.surface_strain_right])
             for state in (one, other)
             if state.stimuli is not None
         )
-        before, changed = strains
+        before, after = strains
         found[name] = {
             "f_t": abs(other.f_t - one.f_t),
             "length": abs(other.contact_length - one.contact_length),
-            "strain": float(np.sqrt(np.nanmean((changed - before) ** 2))),
+            "strain": float(np.sqrt(np.nanmean((after - before) ** 2))),
             **{law: spikes.between(law, begin, begin + _ANSWER) for law in spikes.laws},
         }
     return found | {"slips": all(state.all_slip for state in states)}

@@ -4,8 +4,6 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
 import fingerpad as fp
 from fingerpad.scene import Scene
 from fingerpad.scene import load as load_scene
@@ -14,8 +12,7 @@ LOADS = (25.0, 75.0, 150.0)  # N/m
 LOAD, VOLTS = 75.0, 200.0  # N/m, V
 PRESS, HOLD, SPEED = 0.04, 0.3, 20e-3  # s, s, m/s
 RISE, FALL, STEP, LAST = 0.02, 0.07, 0.01, 0.12  # s: when a voltage rises and falls, in what time, and the end
-SAMPLED = 3e-3  # s, between two states of a hold, as RA1 needs them
-HELD, SETTLED = 0.3, 0.5  # s, in which viscous skin relaxes before the voltage rises: held, and in sliding
+RELAXED, SLOW = 5.0, 2e-3  # s, m/s: viscous skin relaxes held, and in a slow slide, before the voltage rises
 SOFT = ("subcutis", "dermis", "viable_epidermis", "stratum_corneum")
 VISCOSITY = "fingerpad"  # preset of the soft layers
 PERIODS, GRATING_LOADS, GRATING_SPEED = (1.0e-3, 2.5e-3), (4.0, 10.0), 50e-3  # m, N/m, m/s
@@ -55,10 +52,8 @@ def step(f_ext: float, preset: str | None = None) -> Scene:
     last = {"name": "step", "bone_x_by": SPEED * LAST, "voltage": table}
     if preset is None:
         return _scene(_press(f_ext), _SLIDE, last)
-    often = np.linspace(0.0, HELD, 1 + round(HELD / SAMPLED)).tolist()  # so that afferents have a state at each
-    steady = {"waveform": "file", "times": often, "voltages": [0.0] * len(often)}
-    hold = {"name": "hold", "bone_x_by": 0.0, "duration": HELD, "voltage": steady}
-    settle = {"name": "settle", "bone_x_by": SPEED * SETTLED, "duration": SETTLED}
+    hold = {"name": "hold", "bone_x_by": 0.0, "duration": RELAXED}
+    settle = {"name": "settle", "bone_x_by": SLOW * RELAXED, "duration": RELAXED}
     materials = {layer: {"viscosity": {"preset": preset}} for layer in SOFT}
     return _scene(_press(f_ext, PRESS), hold, _SLIDE | {"speed": SPEED}, settle, last, materials=materials)
 
