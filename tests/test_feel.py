@@ -19,6 +19,7 @@ STEP = {
 }
 NUMBERS = {
     "steps": {"25": {**STEP, "rise": STEP["rise"] | {"f_t": 3.0}}, "75": STEP, "150": STEP},
+    "elastic": {load: STEP for load in ("25", "75", "150")},
     "gratings": [
         {"load": load, "period": period, "f_t": 1e-3 / period, "rate": 25 / load / period, "RA1": 25 / load / period}
         for load in scenes.GRATING_LOADS

@@ -8,6 +8,7 @@ time. Writes docs/feel.json, and from it docs/feel.md and its picture.
 
 import argparse
 import sys
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -66,7 +67,10 @@ def compute(args: argparse.Namespace) -> None:
         "hold": in_hold(onset),
         "shear": shear(onset),
         "same": {**differing(charged, same), "mu_app": mu_app},
-        "steps": {f"{f:g}": of_step(run(f"step_{f:g}", scenes.step(f))) for f in scenes.LOADS},
+        "steps": {
+            f"{f:g}": of_step(run(f"viscous_step_{f:g}", scenes.step(f, scenes.VISCOSITY))) for f in scenes.LOADS
+        },
+        "elastic": {f"{f:g}": of_step(run(f"step_{f:g}", scenes.step(f))) for f in scenes.LOADS},
         "gratings": [
             {"load": f, "period": p, **of_grating(run(f"grating_{f:g}_{1e3 * p:g}", scenes.grating(f, p)))}
             for f in scenes.GRATING_LOADS
@@ -164,9 +168,14 @@ def _by_unit(spikes: Spikes, law: str) -> dict[tuple[int | None, str], int]:
 
 
 def of_step(result: fp.Result) -> dict[str, Any]:
-    """Return changes of friction, length and surface strain in the rise and the fall of a voltage, and spikes."""
-    spikes = result.afferents(["RA1", "SA1"])
-    states = [state for state in result.steps if state.load == "step"]
+    """Return changes of friction, length and surface strain in the rise and the fall of a voltage, and spikes.
+
+    Time begins with the state before the load of the voltage; what the skin has from before is steady.
+    """
+    first = next(k for k, state in enumerate(result.steps) if state.load == "step") - 1
+    start = max(result.steps[first].time, 0.0)
+    states = [replace(state, time=max(state.time, 0.0) - start) for state in result.steps[first:]]
+    spikes = replace(result, steps=tuple(states)).afferents(["RA1", "SA1"])
 
     def at(time: float) -> ContactState:
         return [state for state in states if state.time <= time + 1e-9][-1]

@@ -21,8 +21,8 @@ RMS = {"SA1": 0.2, "RA1": 0.2, "PC": 0.3}
 """Largest rms of log10 of the thresholds after one gain a class."""
 _OZDAMAR = "Özdamar et al. 2020, arXiv 2103.16489 (abstract)"
 _ISLEYEN = "İşleyen et al. 2020, 10.1109/TOH.2019.2959993 (abstract)"
-_ELASTIC = "computed elastic: without viscosity, which the source blames, and without growth of friction over time"
-_SLIPS = f"{_ELASTIC}; where all points slip, friction without voltage is µ_0 f_ext before the rise and after the fall"
+_VISCOUS = "viscosity is that of one preset in all soft layers; friction does not grow over time"
+_SLIPS = f"{_VISCOUS}; where all points slip, friction without voltage is µ_0 f_ext before the rise and after the fall"
 
 
 class Statement(NamedTuple):
@@ -93,15 +93,18 @@ def _by(holds: bool) -> str:
 
 
 def _felt(numbers: Mapping[str, Any]) -> Verdict:
-    step = numbers["steps"][f"{scenes.LOAD:g}"]
-    rise, fall = step["rise"]["RA1"], step["fall"]["RA1"]
-    why = f"{_ELASTIC}; the finger sticks after the rise, and its spikes last beyond the 30 ms that are counted"
-    return f"{rise} spikes of RA1 in the rise, {fall} in the fall", _by(rise > MORE * fall), why
+    (rise, fall), elastic = (
+        [numbers[skin][f"{scenes.LOAD:g}"][change]["RA1"] for change in ("rise", "fall")]
+        for skin in ("steps", "elastic")
+    )
+    why = f"{_VISCOUS}; the finger sticks after the rise, and its spikes last beyond the 30 ms that are counted"
+    ours = f"{rise} spikes of RA1 in the rise, {fall} in the fall; elastic {elastic[0]} and {elastic[1]}"
+    return ours, _by(rise > MORE * fall), why
 
 
-def _ratios(numbers: Mapping[str, Any], key: str) -> dict[str, float]:
-    """Return the change in the rise over that in the fall, by load."""
-    return {load: step["rise"][key] / step["fall"][key] for load, step in numbers["steps"].items()}
+def _ratios(numbers: Mapping[str, Any], key: str, skin: str = "steps") -> dict[str, float]:
+    """Return the change in the rise over that in the fall, by load; of viscous skin, or of ``"elastic"`` one."""
+    return {load: step["rise"][key] / step["fall"][key] for load, step in numbers[skin].items()}
 
 
 def _listed(ratios: Mapping[str, float], spec: str = ".3f") -> str:
@@ -109,14 +112,20 @@ def _listed(ratios: Mapping[str, float], spec: str = ".3f") -> str:
 
 
 def _friction(numbers: Mapping[str, Any]) -> Verdict:
-    ratios = _ratios(numbers, "f_t")
-    return f"rise over fall {_listed(ratios)}", _by(min(ratios.values()) > CHANGED), _SLIPS
+    ratios, elastic = _ratios(numbers, "f_t"), _ratios(numbers, "f_t", "elastic")
+    return f"rise over fall {_listed(ratios)}; elastic {_listed(elastic)}", _by(min(ratios.values()) > CHANGED), _SLIPS
 
 
 def _contact(numbers: Mapping[str, Any]) -> Verdict:
     length, strain = _ratios(numbers, "length"), _ratios(numbers, "strain")
     holds = min([*length.values(), *strain.values()]) > CHANGED
-    return f"rise over fall: length {_listed(length)}; strain {_listed(strain)}", _by(holds), _ELASTIC
+    before = [
+        max(abs(ratio - 1) for ratio in _ratios(numbers, key, "elastic").values()) for key in ("length", "strain")
+    ]
+    words = (
+        f"rise over fall: length {_listed(length)}; strain {_listed(strain)}; elastic all within {max(before):.1%} of 1"
+    )
+    return words, _by(holds), _VISCOUS
 
 
 def _low_load(numbers: Mapping[str, Any]) -> Verdict:
@@ -206,7 +215,11 @@ def _same(numbers: Mapping[str, Any]) -> Verdict:
     parts = {law: found[law]["apart"] / max(found[law]["charged"], 1) for law in ("SA1", "RA1")}
     counts = (f"{law} {found[law]['charged']} and {found[law]['same']} spikes, {parts[law]:.0%} apart" for law in parts)
     words = f"µ_app {found['mu_app']:.3f}; {'; '.join(counts)}; SED at Merkel sites {found['sed']:.0%} apart (median)"
-    return words, _by(max(parts.values()) <= FEW), "attraction also presses each ridge, which friction alone does not"
+    why = (
+        "attraction also presses each ridge, which friction alone does not; an earlier computation of this page had "
+        "RA1 11 % apart, a miss: the bar lies within what the solution's digits move"
+    )
+    return words, _by(max(parts.values()) <= FEW), why
 
 
 def _thresholds(numbers: Mapping[str, Any]) -> Verdict:

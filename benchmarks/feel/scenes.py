@@ -1,4 +1,4 @@
-"""The runs of the page on what is felt: the default finger on a coarse mesh, a small one for gratings; elastic."""
+"""The runs of the page on what is felt: the default finger on a coarse mesh, a small one for gratings."""
 
 from collections.abc import Mapping
 from pathlib import Path
@@ -12,6 +12,9 @@ LOADS = (25.0, 75.0, 150.0)  # N/m
 LOAD, VOLTS = 75.0, 200.0  # N/m, V
 PRESS, HOLD, SPEED = 0.04, 0.3, 20e-3  # s, s, m/s
 RISE, FALL, STEP, LAST = 0.02, 0.07, 0.01, 0.12  # s: when a voltage rises and falls, in what time, and the end
+RELAXED, SLOW = 5.0, 2e-3  # s, m/s: viscous skin relaxes held, and in a slow slide, before the voltage rises
+SOFT = ("subcutis", "dermis", "viable_epidermis", "stratum_corneum")
+VISCOSITY = "fingerpad"  # preset of the soft layers
 PERIODS, GRATING_LOADS, GRATING_SPEED = (1.0e-3, 2.5e-3), (4.0, 10.0), 50e-3  # m, N/m, m/s
 SMALL = Path(__file__).parents[2] / "demos" / "scenes" / "small_finger.toml"
 _GRATINGS = 3  # periods of a grating that are passed
@@ -37,11 +40,22 @@ def onset() -> Scene:
     return _scene(_press(LOAD, PRESS), hold, {"name": "slide"} | slide)
 
 
-def step(f_ext: float) -> Scene:
-    """A voltage that rises, stays and falls while the finger slides under a load (N/m)."""
+def step(f_ext: float, preset: str | None = None) -> Scene:
+    """A voltage that rises, stays and falls while the finger slides under a load (N/m).
+
+    Args:
+        f_ext: the load.
+        preset: of the viscosity of the soft layers, which relax before the voltage rises; elastic without it.
+    """
     times = [0.0, RISE, RISE + STEP, FALL, FALL + STEP, LAST]
     table = {"waveform": "file", "times": times, "voltages": [0.0, 0.0, VOLTS, VOLTS, 0.0, 0.0]}
-    return _scene(_press(f_ext), _SLIDE, {"name": "step", "bone_x_by": SPEED * LAST, "voltage": table})
+    last = {"name": "step", "bone_x_by": SPEED * LAST, "voltage": table}
+    if preset is None:
+        return _scene(_press(f_ext), _SLIDE, last)
+    hold = {"name": "hold", "bone_x_by": 0.0, "duration": RELAXED}
+    settle = {"name": "settle", "bone_x_by": SLOW * RELAXED, "duration": RELAXED}
+    materials = {layer: {"viscosity": {"preset": preset}} for layer in SOFT}
+    return _scene(_press(f_ext, PRESS), hold, _SLIDE | {"speed": SPEED}, settle, last, materials=materials)
 
 
 def grating(f_ext: float, period: float) -> Scene:
