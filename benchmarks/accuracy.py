@@ -31,7 +31,13 @@ from fingerpad.scene.parameters import Accuracy
 from geometry.bodies import pad
 
 _LIMIT = 7200.0  # s of processor time for one scene
-_SHORT = {"mu_app": "µ_app", "f_t": "f_T", "contact_length": "contact length", "sed": "SED"}
+_SHORT = {
+    "mu_app": "µ_app",
+    "f_t": "f_T",
+    "contact_length": "contact length",
+    "p_max": "highest pressure",
+    "sed": "SED",
+}
 _TEN = ({"mu_app": 0.01, "contact_length": 0.03}, {"sed": 0.05})  # requested of each scene drawn
 _DEFAULT = ({"mu_app": 0.01}, _TEN[0], {"contact_length": 0.01}, _TEN[1])  # of the default scene
 _PARAMETERS = {"contact": "contact size (µm)", "growth": "growth", "receptor": "sites (µm)"}
@@ -46,7 +52,12 @@ _QUARTER = (
 
 
 WANTED = 0.9  # of the cases of each kind
-KINDS = {"friction": ("µ_app", "f_T"), "contact length": ("contact length",), "energy density": ("SED",)}
+KINDS = {
+    "friction": ("µ_app", "f_T"),
+    "contact length": ("contact length",),
+    "highest pressure": ("highest pressure",),
+    "energy density": ("SED",),
+}
 WHOLE, HERTZ = "whole run", "Hertz"  # sources; the others are studies of benchmarks/errors.py
 HALF_WIDTHS = tuple(part * HALF_WIDTH for part in (0.817, 0.893, 0.961, 1.049, 1.137))
 FACETS = (5, 10, 20, 40)  # to HALF_WIDTH
