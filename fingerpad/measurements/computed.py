@@ -229,7 +229,7 @@ def _of_sweep(sweep: Table, table: Measured) -> pd.DataFrame:
 
 
 def _place(sweep: Table) -> str:
-    return f"the sweep in {clip(str(sweep.folder), 80)}"
+    return f"the sweep in {ends(sweep.folder)}"
 
 
 def refuse_mixed(runs: Sequence[Result]) -> None:

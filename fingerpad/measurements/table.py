@@ -25,7 +25,7 @@ from typing import NamedTuple
 import numpy as np
 import pandas as pd
 
-from fingerpad.scene.messages import SceneError, clip
+from fingerpad.scene.messages import SceneError, clip, ends
 from geometry.units import to_si
 from variational import files
 
@@ -172,7 +172,7 @@ def read(
 
 def _file(file: Path) -> tuple[str, str, pd.DataFrame]:
     """Return the name of a file, what its rows are called, and its cells by head and line."""
-    name = clip(str(file), 80)
+    name = ends(file)
     try:
         text = files.text(files.read(file, files.MOST_OF_TEXT))
     except OSError as error:
