@@ -69,6 +69,16 @@ def test_each_rule_can_miss(number):
     assert rules.judge(numbers)[number - 1].verdict == MISS
 
 
+def test_elastic_skin_stands_beside_viscous_skin_and_does_not_count():
+    """Elastic numbers that would be misses are printed, and change no verdict."""
+    numbers = copy.deepcopy(NUMBERS)
+    numbers["elastic"] = {load: {"rise": STEP["fall"], "fall": STEP["fall"]} for load in numbers["steps"]}
+    one, two, three, *_ = rules.judge(numbers)
+    assert [row.verdict for row in (one, two, three)] == [HIT] * 3
+    assert one.ours.endswith("elastic 10 and 10") and "elastic 1.000 (25 N/m)" in two.ours
+    assert three.ours.endswith("elastic all within 0.0% of 1")
+
+
 def test_weak_hits_say_so():
     """A rank correlation of the bar exactly, a hit that rests on SA1 not increasing, and the first measure of shear."""
     numbers = copy.deepcopy(NUMBERS)

@@ -144,6 +144,14 @@ def test_command_says_what_it_did(grid, tmp_path, capsys):
     assert (tmp_path / "lab.png").stat().st_size > 10_000
 
 
+def test_table_is_named_by_the_end_of_its_path(tmp_path, capsys):
+    """Where its name is, however long its folder is."""
+    folder = tmp_path / ("a" * 90)
+    folder.mkdir()
+    (folder / "lab.csv").write_bytes(b"")
+    assert "lab.csv has no rows" in refused(capsys, "compare-data", str(folder / "lab.csv"), "--run", "nowhere")
+
+
 @pytest.mark.parametrize("content", [b"\x89PNG\r\n\x1a\n\0\0", b"", b"\xff\xfe", b"\n\n;;;\n", b"a;b\n" + b"1;" * 3000])
 def test_files_that_are_no_tables(tmp_path, capsys, content):
     """One sentence each."""
