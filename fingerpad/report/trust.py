@@ -155,12 +155,13 @@ def _stability(result: "Result") -> Iterator[Finding]:
         yield Finding("stability is not examined", CARE, "A finger would leave an unstable state by itself.")
         return
     words_of = {name: called(name, result.named[name].voltage) for name in known}
+    of = "" if result.finger is None or result.steps else " of the middle section, under its force or a tenth more"
     unstable = [words_of[name] for name, stable in known.items() if not stable]
     if unstable:
-        words = f"Unstable: {', '.join(unstable)}. A finger would leave such a state by itself."
+        words = f"Unstable: {', '.join(unstable)}{of}. A finger would leave such a state by itself."
         yield Finding("a state is unstable", BAD, words)
     else:
-        words = f"Examined and stable: {', '.join(words_of.values())}. A small disturbance dies out."
+        words = f"Examined and stable: {', '.join(words_of.values())}{of}. A small disturbance dies out."
         yield Finding("stability", GOOD, words)
 
 
