@@ -118,8 +118,8 @@ def test_text_without_pint_is_refused():
     """Where it is not installed, in a sentence."""
     done = without("from fingerpad import scene; scene.load(None, {'f_ext': '50 dyn/cm'})", *HEAVY, "pint")
     assert done.stderr.splitlines()[-1].endswith(
-        "SceneError: f_ext is '50 dyn/cm'; its unit needs the package pint, which is not installed; it must be a number "
-        "in N/m or a text such as '50 N/m'"
+        "SceneError: f_ext is '50 dyn/cm'; its unit needs the package pint, which is not installed; it must be a "
+        "number in N/m or a text such as '50 N/m'"
     )
 
 
