@@ -46,8 +46,8 @@ _MARGIN = 2.0  # the same, when it is made anew
 class _Weak:
     """A form of the problem, compiled and searched for its fields once, for all layers.
 
-    ``fem.create_form`` searches the form for its fields each time, and reads nothing else of it. So it is given the list
-    of the fields in its place.
+    ``fem.create_form`` searches the form for its fields each time, and reads nothing else of it. So it is given the
+    list of the fields in its place.
     """
 
     def __init__(self, V: fem.FunctionSpace, form: ufl.Form) -> None:
