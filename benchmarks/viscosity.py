@@ -2,11 +2,14 @@
 
 environment/run python3 -m benchmarks.viscosity [--draw]     also: make viscosity
 
-Writes docs/viscosity.json, and from it docs/viscosity.md and its picture; some ten minutes, a line for each part done.
+Writes docs/viscosity.json, and from it docs/viscosity.md and its picture; some 25 minutes, a line for each part done.
 """
 
 import argparse
+import json
+import subprocess
 import sys
+import tempfile
 import time
 from collections.abc import Mapping
 from pathlib import Path
@@ -48,6 +51,7 @@ def compute(args: argparse.Namespace) -> None:
         "held": _held,
         "energy": _energy,
         "cost": _cost,
+        "second": _second,
         "steps": _voltage_steps,
         "coarser": _coarser,
     }.items():
@@ -177,13 +181,33 @@ def _cost() -> dict[str, float]:
     The samples of the sine are one step apart, in both.
     """
     found: dict[str, dict[str, float]] = {}
-    wave = {"waveform": "sine", "amplitude": VOLTAGE, "frequency": 1 / (SAMPLES * STEP)}
-    slide = {"name": "slide", "bone_x_by": 20e-3 * STEP * MEASURED, "duration": STEP * MEASURED, "voltage": wave}
-    history = [{"name": "press", "f_ext": FORCE}, slide]
+    history = _sine(MEASURED)
     for name, preset in (("elastic", None), ("viscous", "fingerpad")):
         mesh = {"contact": SMALL_CONTACT}
         found[name] = _timed(Scene(mesh=mesh, output=NO_OUTPUT, materials=_layers(preset), history=history))
     return {f"{name}_{key}": value for name, each in found.items() for key, value in each.items()}
+
+
+def _sine(steps: int) -> list[dict[str, Any]]:
+    """Return the loads of a press and of a slide under a sine of voltage, with a sample a step."""
+    wave = {"waveform": "sine", "amplitude": VOLTAGE, "frequency": 1 / (SAMPLES * STEP)}
+    slide = {"name": "slide", "bone_x_by": SPEEDS[0] * STEP * steps, "duration": STEP * steps, "voltage": wave}
+    return [{"name": "press", "f_ext": FORCE}, slide]
+
+
+def _second() -> dict[str, float]:
+    """Return what one second costs as a command with all of its files, stimuli of receptors among them."""
+    scene = Scene(
+        mesh={"contact": SMALL_CONTACT}, output={"errors": False}, materials=_layers("fingerpad"),
+        history=_sine(round(1 / STEP)),
+    )  # fmt: skip
+    with tempfile.TemporaryDirectory() as place:
+        file, out = Path(place) / "scene.json", Path(place) / "out"
+        file.write_text(json.dumps(scene.parameters()), encoding="utf-8")
+        command = [sys.executable, "-m", "fingerpad", "run", str(file), "--out", str(out), "--quiet"]
+        subprocess.run(command, check=True, stdout=subprocess.DEVNULL)
+        summary = json.loads((out / "summary.json").read_text(encoding="utf-8"))
+    return {name: summary[name] for name in ("steps", "processor_seconds", "unknowns")}
 
 
 def _timed(scene: Scene) -> dict[str, float]:
