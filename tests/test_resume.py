@@ -40,6 +40,7 @@ HISTORIES = {
     "drive": (None, {"f_ext": 2.0, "voltage": DRIVE, "electric": LOSSY}),
     "drive over time": ([PRESS, WAVE], {"electric": LOSSY}),
     "viscous waveform": ([PRESS, WAVE], {"materials": VISCOUS}),
+    "stimuli": ([PRESS, WAVE], {"materials": VISCOUS, "output": {"receptors": True, "errors": False}}),
     "mixed": ([PRESS, CHARGE, SLIDE], {"numerics": {"element": "P2-P1"}}),
 }
 
@@ -83,7 +84,7 @@ def killed_at(monkeypatch):
 
 
 # -- the same numbers ------------------------------------------------------------------------------------
-ALWAYS = ["charged at rest", "there and back", "receptors", "drive over time", "viscous"]
+ALWAYS = ["charged at rest", "there and back", "receptors", "drive over time", "viscous", "stimuli"]
 LONG = [pytest.param(name, marks=pytest.mark.long) for name in HISTORIES if name not in ALWAYS]
 
 
