@@ -165,7 +165,7 @@ def test_signal_on_the_coarser_path(monkeypatch, tmp_path):
     assert result.failure.startswith(f"stopped by SIGTERM after step {steps}") and "--resume" in result.failure
     monkeypatch.setattr(solves, "follow", plain)
     again = fp.run(scene(), out=tmp_path, resume=True)
-    assert again.values() == whole.values()
+    assert again.values() == whole.values() and again.notes == whole.notes
     assert again.record["accuracy"]["over_time"] == whole.record["accuracy"]["over_time"]
     assert again.cost.newton_iterations == whole.cost.newton_iterations
 

@@ -25,6 +25,7 @@ from fingerpad.model.simulation import Simulation
 from fingerpad.model.stimuli import SiteStimuli
 from fingerpad.results.interrupt import Interrupted
 from fingerpad.results.states import WORDS
+from fingerpad.results.terminal import about
 from fingerpad.richardson import of_two_paths
 from geometry.profiles import GeometryError
 from variational.solvers.continuation import StepFailed
@@ -77,9 +78,10 @@ class WholePath(Estimate):
             self.over_time = differences(self._states, self._coarse)
             self._errors = of_two_paths(self.over_time, coarse.mesh.contact / self.base.mesh.contact)
         if "f_t" in self._errors:
+            error = about(100 * self._errors["f_t"])
             self._note(
-                f"Over time, friction has an estimated discretisation error of up to {100 * self._errors['f_t']:.2g} % "
-                "of its largest value, from the path on elements twice as large."
+                f"Over time, friction has an estimated discretisation error of up to {error} % of its largest value, "
+                "from the path on elements twice as large."
             )
 
     def summary(self) -> dict[str, Any]:

@@ -18,6 +18,7 @@ from fingerpad.afferents.afferent import Afferent, History
 from fingerpad.afferents.registry import DEFAULT, find
 from fingerpad.results.over_time import without_parts_of_jumps
 from fingerpad.results.spikes import Densities, Span, Spikes, Unit
+from fingerpad.results.terminal import about
 from fingerpad.scene.messages import SceneError, show
 from variational.state import ContactState
 
@@ -187,7 +188,8 @@ def _mesh(result: "Answer", states: Sequence[ContactState]) -> str:
     sites = f" and {1e6 * sizes['receptor']:.3g} µm at the Merkel sites" if "receptor" in sizes else ""
     begins = f"Stimuli and spikes are of the mesh of the path, with elements of {contact}{sites}."
     over_time = (result.record.get("accuracy") or {}).get("over_time", {})
-    errors = [f"{words} {over_time[key]['error']:.1%}" for key, words in _OVER_TIME.items() if key in over_time]
+    known = {words: over_time[key]["error"] for key, words in _OVER_TIME.items() if key in over_time}
+    errors = [f"{words} {about(100 * error)} %" for words, error in known.items()]
     if errors:
         return (
             f"{begins} Estimated discretisation errors over time, from the path on elements twice as large, are at "
