@@ -1,6 +1,6 @@
 """The states of a path solved for again: on other meshes, with other steps, over a stiffer screen; and their cost."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
@@ -126,6 +126,7 @@ def solve_again(
     comm: MPI.Comm,
     views: bool = False,
     stiffer: Formulation | None = None,
+    examined: Collection[str] = (),
 ) -> Solve:
     """Solve for states of a finger on meshes that are finest where their contact ends; collective.
 
@@ -137,6 +138,7 @@ def solve_again(
         comm: communicator of the mesh.
         views: whether tables and pictures are to show the states (:attr:`Solve.views`).
         stiffer: the contact over a screen of twice the stiffness, where the states are wanted over that too.
+        examined: names of the states whose stability is to be examined.
 
     Raises:
         StepFailed: see :meth:`StateSolver.re_equilibrate`.
@@ -144,13 +146,19 @@ def solve_again(
     normal = {name: state for name, state in states.items() if not state.direction}
     options = replace(model.options, both_halves=model.options.both_halves and not model.options.symmetric_start)
     slips = {name: state for name, state in states.items() if state.direction}
-    solves = [_solve(model.changed(options=options), normal, comm, views, stiffer)] if normal else []
-    solves += [_solve(model, slips, comm, views, stiffer)] if slips else []
+    also = views, stiffer, examined
+    solves = [_solve(model.changed(options=options), normal, comm, *also)] if normal else []
+    solves += [_solve(model, slips, comm, *also)] if slips else []
     return together(solves)
 
 
 def _solve(
-    model: FingerModel, states: Mapping[str, State], comm: MPI.Comm, views: bool, stiffer: Formulation | None
+    model: FingerModel,
+    states: Mapping[str, State],
+    comm: MPI.Comm,
+    views: bool,
+    stiffer: Formulation | None,
+    examined: Collection[str],
 ) -> Solve:
     profiles = Profiles(model.geometry)
     ends = ((edges.ends(state.snapshot, profiles.along_skin, state.facet), state.facet) for state in states.values())
@@ -161,6 +169,8 @@ def _solve(
     for name, state in states.items():
         simulation.re_equilibrate(state.snapshot, WORDS.get(name, name), state.direction)
         recorder.keep(name, state.direction != 0)
+        if name in examined:
+            recorder.examine(name)
         if viewer is not None:
             recorder.views[name] = viewer.view(simulation.present(finger.ridge_loads()))
         if stiffer is not None:
@@ -171,6 +181,7 @@ def _solve(
                 soft = str(error)
             finger.problem.set_formulation(springs)
     finger.solver.iteration.free()
+    simulation.checks.free()
     return replace(recorder.solve(), stiffer=over.solve() if over.states and not soft else None, soft=soft)
 
 

@@ -151,6 +151,18 @@ class StateRecorder:
         direction = 1 if self._simulation.finger.solver.reaction[0] <= 0 else -1
         self.states[name] = self._state(direction * (name == "full_slip" if slips is None else slips))
 
+    def examine(self, name: str) -> None:
+        """Add the stability of the present state, which was kept; collective.
+
+        Args:
+            name: of the state.
+
+        Raises:
+            StepFailed: the stability cannot be examined.
+        """
+        kept, checked = self.states[name], self._simulation.checks.check(name)
+        self.states[name] = replace(kept, state=checked.of(kept.state))
+
     def _state(self, direction: int) -> State:
         f = self._simulation.finger
         loads = f.ridge_loads()

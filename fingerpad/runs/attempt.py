@@ -18,7 +18,7 @@ from fingerpad.model.report import Clock, Report
 from fingerpad.model.simulation import RestartRequired, Simulation
 from fingerpad.model.state import broken, force_error
 from fingerpad.reduced.closure_band import with_band
-from fingerpad.results.checkpoint import Checkpoint, CheckpointError
+from fingerpad.results.checkpoint import Checkpoint, CheckpointError, Growing
 from fingerpad.results.interrupt import Interrupt, Interrupted
 from fingerpad.results.over_time import NOTE
 from fingerpad.results.provenance import provenance, refuse_unread
@@ -118,6 +118,7 @@ class Attempt:
             state = {
                 "simulation": self.simulation.kept(),
                 "report": self.report.kept(),
+                "states": Growing(self.report.record.states),
                 "recorder": recorder,
                 "restarts": self._restarts.kept(),
                 "mesh": self._model.mesh.model_dump(),
@@ -136,11 +137,12 @@ class Attempt:
             CheckpointError: it is of another mesh.
         """
         self._has_kept, self._done = True, kept["done"]
+        states = kept["states"].items
         try:
-            self.simulation.resume(kept["simulation"], [*kept["report"]["states"]])
+            self.simulation.resume(kept["simulation"], [*states])
         except OtherBody as error:
             raise CheckpointError(f"the checkpoint is of another mesh: {error}") from error
-        self.report.resume(kept["report"], self._done)
+        self.report.resume(states, kept["report"], self._done)
         if self._recorder is not None:
             self._recorder.resume(kept["recorder"])
 
