@@ -78,9 +78,9 @@ class WholePath(Estimate):
             self.over_time = differences(self._states, self._coarse)
             self._errors = of_two_paths(self.over_time, coarse.mesh.contact / self.base.mesh.contact)
         if "f_t" in self._errors:
-            error = about(100 * self._errors["f_t"])
+            part = about(100 * self._errors["f_t"])
             self._note(
-                f"Over time, friction has an estimated discretisation error of up to {error} % of its largest value, "
+                f"Over time, friction has an estimated discretisation error of up to {part} % of its largest value, "
                 "from the path on elements twice as large."
             )
 
