@@ -163,7 +163,8 @@ class PathRecord:
             found[name] = replace(state, skin=skin, slip_held=state.slip_held or name == "full_slip")
             check = self._check(state)
             if check is not None:
-                found[name] = check.of(found[name])
+                verdict, least = check.stable, check.frozen.lambda_min
+                found[name] = replace(found[name], stable=verdict, lambda_min=least, gain=check.gain)
         return found
 
     def _check(self, state: ContactState) -> "Checked | None":

@@ -20,14 +20,15 @@ surfaces are under that pressure (Forsbach et al. 2023, Eqs. 3, 4 and 13):
 .. math:: 2 a p_c = f + 2 \sigma c, \qquad d_{eq} = d_{eq}(p_c).
 
 Without voltage this is Hertz's law. There are two ways to close the equations: a is given, and f is borne over it; or
-f is given, and a follows from the second equation. The gap at c grows with m then, which leaves one m at each p_c, and
+f is given, and a follows from the second equation. E* may grow with p_c, as in a ridge that friction shears. The gap
+at c grows with m then, which leaves one m at each p_c, and
 one equation in p_c. It can have several roots: that of the highest pressure is
 the branch in contact, on which the loop over the scales contracts; others are unstable, or states of a ridge that has
 not jumped on the screen yet. Where the highest root vanishes the ridge is past its pull-off fold and there is none.
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -45,7 +46,6 @@ _ROUNDOFF = 2e-16  # relative
 _STEP = 1e-9  # of Newton's method, relative; the next one would be of its square
 _TOLERANCE = 1e-14  # of the pressure, relative
 _ITERATIONS = 100  # of a root, at most; bisection to roundoff takes 60
-_NO_EDGE = 1e-6  # relative difference of gap and reach behind which there is no root
 
 
 class NoEquilibriumError(ValueError):
@@ -99,6 +99,8 @@ class Cylinder:
     """Effective insulator thickness (m)."""
     closure: Closure
     """The microscale."""
+    stiffening: Callable[[Any], Array] | None = None
+    """What the modulus gains (Pa) at mean contact pressures (Pa); None where it is constant."""
 
     def under_loads(self, f: ArrayLike, voltage: Voltage) -> list[RidgeState]:
         """Return the state under each of several external forces.
@@ -151,7 +153,7 @@ class Cylinder:
             """Return the logarithm of the gap over the reach, and its derivative with respect to y = ln(m - 1)."""
             beyond = np.exp(y)
             m, root = 1 + beyond, np.sqrt(beyond * (2 + beyond))
-            angle, logarithm = np.log1p(beyond + root), np.log1p(beyond)  # arcosh m, ln m
+            angle, logarithm = np.arcsinh(root), np.log1p(beyond)
             round_part, pulled_part = m * root - angle, root * angle - m * logarithm
             a, slope = self._half_width(loads, beyond, sigma)
             bent, pulled = a / self.radius, 4 * sigma / (np.pi * loads.modulus)
@@ -162,16 +164,9 @@ class Cylinder:
 
         low, high, y = (np.full_like(sigma, np.log(end)) for end in (_LEAST, _LARGEST, 1.0))
         y = y if near is None else np.log(near)
-        for _ in range(_ITERATIONS):
-            value, slope = opening(y)
-            low, high = np.where(value < 0, y, low), np.where(value < 0, high, y)
-            step = value / slope
-            inside = (y - step > low) & (y - step < high)
-            small = abs(step) <= _STEP + 4 * _ROUNDOFF * np.exp(-y)  # the gap is a difference, good to 1e-16 / (m - 1)
-            y = np.where(inside | small, y - step, (low + high) / 2)
-            if small.all():
-                return np.exp(y)
-        none = abs(opening(y)[0]) > _NO_EDGE
+        none = np.zeros_like(sigma, dtype=bool) if near is not None else opening(high)[0] < 0
+        if near is None and loads.half is None:
+            none |= opening(low)[0] > 0
         if none.any():
             k = int(np.argmax(none))
             raise NoEquilibriumError(
@@ -181,6 +176,15 @@ class Cylinder:
                 else f"no contact bears {loads.f[k]:g} N/m under an attraction of {sigma[k]:.3g} Pa; "
                 "try a smaller voltage or another force"
             )
+        for _ in range(_ITERATIONS):
+            value, slope = opening(y)
+            low, high = np.where(value < 0, y, low), np.where(value < 0, high, y)
+            step = value / slope
+            inside = (y - step > low) & (y - step < high)
+            small = abs(step) <= _STEP + 4 * _ROUNDOFF * np.exp(-y)  # the gap is a difference, good to 1e-16 / (m - 1)
+            y = np.where(inside | small, y - step, (low + high) / 2)
+            if small.all():
+                break
         return np.exp(y)
 
     # -- the microscale --------------------------------------------------------------------------------
@@ -191,7 +195,7 @@ class Cylinder:
         loads = _Loads(f, np.broadcast_to(np.asarray(self.modulus, dtype=float), f.shape), half)
         count, every = len(f), len(_PRESSURES)
         grid = loads[np.tile(np.arange(count), every)]
-        beyond, values = (each.reshape(every, count) for each in self._excess(_PRESSURES, voltage, grid))
+        values = self._excess(_PRESSURES, voltage, grid)[1].reshape(every, count)
         crossed = np.sign(values[:-1]) != np.sign(values[1:])
         none = ~crossed.any(axis=0) | (values[-1] <= 0)
         if none.any():
@@ -200,7 +204,7 @@ class Cylinder:
                 f"ridge at {'a drive' if callable(voltage) else f'{voltage:g} V'}; try another force or length"
             )
         k, load = np.nonzero(crossed)
-        crossing, near = loads[load], beyond[k, load]
+        crossing, near = loads[load], None
 
         def excess(p_c: Array) -> Array:
             nonlocal near
@@ -208,13 +212,12 @@ class Cylinder:
             return found
 
         roots = _roots(excess, (_PRESSURES[k], values[k, load]), (_PRESSURES[k + 1], values[k + 1, load]))
-        found = [np.flatnonzero(load == n) for n in range(count)]  # places of growing pressure
-        last = np.array([places[-1] for places in found])
-        p_c = roots[last]
-        a, edge, sigma, d_eq = self._at(p_c, voltage, loads, near[last])
-        attraction = 2 * sigma * a * (1 + edge)
-        columns: Any = np.array([2 * a, 2 * a * (1 + edge), p_c, d_eq, f + attraction, attraction]).T.tolist()
-        others = (tuple(map(float, roots[places[:-1]])) for places in found)
+        found = [roots[load == n] for n in range(count)]  # of growing pressure
+        p_c = np.array([pressures[-1] for pressures in found])
+        a, beyond, sigma, d_eq = self._at(p_c, voltage, loads)
+        attraction = 2 * sigma * a * (1 + beyond)
+        columns: Any = np.array([2 * a, 2 * a * (1 + beyond), p_c, d_eq, f + attraction, attraction]).T.tolist()
+        others = (tuple(map(float, pressures[:-1])) for pressures in found)
         return [RidgeState(*(*each, more)) for each, more in zip(columns, others, strict=True)]
 
     def _at(
@@ -228,7 +231,10 @@ class Cylinder:
             loads: of each ridge.
             near: values of m - 1 to start at.
         """
-        d_eq = np.repeat(np.asarray(self.closure(p_c).d_eq, dtype=float), len(loads.f) // len(p_c))
+        count = len(loads.f) // len(p_c)
+        d_eq = np.repeat(np.asarray(self.closure(p_c).d_eq, dtype=float), count)
+        if self.stiffening is not None:
+            loads = replace(loads, modulus=loads.modulus + np.repeat(self.stiffening(p_c), count))
         volts = voltage(d_eq) if callable(voltage) else voltage
         sigma = VACUUM_PERMITTIVITY * volts**2 / 2 / (self.h_0 + d_eq) ** 2
         beyond = self._edge(loads, sigma, self.h_0 + 2 * d_eq, near)
