@@ -131,9 +131,9 @@ class Answer:
 
     def _drawn(self) -> "Drawing | None":
         """Return what pictures are drawn from, of a result that was read from its folder; None off rank 0."""
-        from fingerpad.results import terminal
+        from fingerpad import launcher
 
-        if self.drawing is None and self.steps and self.folder is not None and terminal.rank() == 0:
+        if self.drawing is None and self.steps and self.folder is not None and launcher.rank() == 0:
             return _drawing(self, self.folder)
         return self.drawing
 
