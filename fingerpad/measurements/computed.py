@@ -115,8 +115,10 @@ def computed(source: Source | Sequence[Source], table: Measured) -> Computed:
             voltage, or two of them have other values at the same force and voltage.
     """
     found = list[Result | Table]()
-    several = isinstance(source, Sequence | Iterator) and not isinstance(source, Sweep | str | bytes)
-    for each in source if several else [source]:
+    several: list[Any] = [source]
+    if isinstance(source, Sequence) and not isinstance(source, Sweep | str | bytes):
+        several = [*source]
+    for each in several:
         refuse_type("result", each, Source, _SOURCES)
         found += each if isinstance(each, Sweep) else [content(Path(each)) if isinstance(each, str | Path) else each]
     if not found:

@@ -158,8 +158,9 @@ def _chosen(name: str, labels: Sequence[_Label], places: Sequence[int], column: 
     if column is None and len(places) == 2:
         return 1
     names = [label.name or str(place + 1) for label, place in zip(labels, places, strict=True)]
-    for known in ([label.head for label in labels], names) if column is not None else ():
-        same = [k for k in range(1, len(places)) if known[k].casefold() == column.strip().casefold()]
+    wanted = None if column is None else column.strip().casefold()
+    for known in ([label.head for label in labels], names):
+        same = [k for k in range(1, len(places)) if known[k].casefold() == wanted]
         if same:
             return same[0]
     given = "is not given" if column is None else f"is {show(column)}"
