@@ -33,7 +33,7 @@ def __getattr__(name: str) -> Any:
             import_module("fingerpad.startup")
         if name in _HOMES:
             return getattr(import_module(_HOMES[name]), name)
-        laws = {} if name.startswith("_") else import_module("fingerpad.scene").laws_by_name()
+        laws = import_module("fingerpad.scene").laws_by_name() if name[:1].isupper() else {}  # which are classes
     if name in laws:
         return laws[name]
     raise AttributeError(f"module 'fingerpad' has no attribute {name!r}; it has {', '.join(__all__)}")

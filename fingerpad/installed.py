@@ -9,7 +9,6 @@ import sysconfig
 import tomllib
 from collections.abc import Iterator
 from contextlib import contextmanager
-from importlib import metadata
 from pathlib import Path
 
 COMPILER = "C compiler"
@@ -23,6 +22,8 @@ def version() -> str:
     project = Path(__file__).parents[1] / "pyproject.toml"
     if project.is_file():
         return str(tomllib.loads(project.read_text(encoding="utf-8"))["project"]["version"])
+    from importlib import metadata  # which imports mail's parser
+
     return metadata.version("fingerpad")
 
 

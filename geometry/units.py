@@ -1,7 +1,8 @@
 """Numbers with a unit, as text, and their ranges: ``"50 N/m"``, ``"0.05 N/mm"``, ``"5 µm"``, ``"0.2 kV"``, ``"16 GB"``.
 
-The units are pint's (BSD licence), which is imported when the first text comes. A text is converted in decimals and
-rounded once, so that "5 µm" is the same number as 5e-6. A number alone is in the SI unit; a text without a unit is
+The units are pint's (BSD licence), which is imported when the first text comes that is not in one of :data:`_PLAIN`,
+with a prefix or as a ratio of two: pint reads its definitions for a fifth of a second. A text is converted in decimals
+and rounded once, so that "5 µm" is the same number as 5e-6. A number alone is in the SI unit; a text without a unit is
 refused, since nobody can tell a forgotten unit from a number in quotation marks. Temperatures, decibels and the like
 are refused as all units of another dimension are.
 
@@ -49,6 +50,9 @@ _NUMBER = re.compile(r"\s*([+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]{1,
 _COMMA = re.compile(r"\s*([+-]?[0-9]+),([0-9]+(?:[eE][+-]?[0-9]+)?)(?![0-9])([^,]*)")
 _UNIT = re.compile(rf"{_NAME}(?:(?:\s*[*/·]\s*|\s+){_NAME})*")  # pint's own texts can be whole calculations
 
+_PLAIN = ("m", "N", "V", "Pa", "s", "Hz")
+_PREFIXES = {"": 0, "n": -9, "u": -6, "µ": -6, "μ": -6, "m": -3, "k": 3, "M": 6}  # powers of ten
+
 # What a number may have been meant in, over the SI unit that it is taken for.
 _SLIPS = {
     "m": ("lengths are in m", (1e-3, 1e-6, 1e-9, 1e-2)),
@@ -91,6 +95,8 @@ def to_si(text: str, unit: str) -> float:
         raise ValueError(wanted)
     if not given:
         raise ValueError(f"it has no unit; {wanted}")
+    if (power := _power(given, unit)) is not None:
+        return float(Decimal(number).scaleb(power))
     try:
         found = _root(given)
     except ImportError:
@@ -101,6 +107,16 @@ def to_si(text: str, unit: str) -> float:
     if root != wanted_root:
         raise ValueError(f"its unit is not a unit of {QUANTITIES[unit]}; {wanted}")
     return float(Decimal(number) * factor / one)
+
+
+def _power(given: str, unit: str) -> int | None:
+    """Return the power of ten from a unit of :data:`_PLAIN`, or a ratio of two, to an SI unit; None of all else."""
+    parts, wanted = given.split("/"), unit.split("/")
+    if len(parts) != len(wanted) or not all(of in _PLAIN for of in wanted):
+        return None
+    powers = [_PREFIXES.get(part.removesuffix(of)) for part, of in zip(parts, wanted, strict=True) if part.endswith(of)]
+    known = [power for power in powers if power is not None]
+    return known[0] - sum(known[1:]) if len(known) == len(parts) else None
 
 
 @cache

@@ -97,8 +97,8 @@ def test_newtons_have_the_share_of_each_ridge(monkeypatch):
     """States on the scene's own mesh are those of a run of the same drive, but for facets that end elsewhere."""
     states, again = [], newtons.solve_again
 
-    def kept(model, coarse, comm):
-        solve = again(model, coarse, comm)
+    def kept(*given, **named):
+        solve = again(*given, **named)
         states.extend(each.state for words, each in solve.states.items() if words.startswith("full slip"))
         return solve
 

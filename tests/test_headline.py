@@ -86,8 +86,14 @@ def test_head_has_what_is_solved_and_what_was_examined(monkeypatch):
 
 
 def test_unknown_error_is_not_claimed():
+    """The line above how far friction is known says so; of a whole finger the section's is missing in its ±."""
     page = head(Result(fp.Scene(), "full", None, None, state()))
-    assert "Solved to" not in page and "= 0.4000 <" in page
+    assert "<b>Solved to an error that is not estimated</b>." in page and "= 0.4000 <" in page
+    finger = replace(whole(), carried={})
+    solved = Result(fp.Scene(), "full", None, None, state(), finger=finger).headline.solved
+    assert solved.endswith("(points of the traces; not in it: middle section, whose error is not estimated)")
+    known = Result(fp.Scene(), "full", None, None, state(error=Errors(mu_app=0.004)), finger=whole()).headline.solved
+    assert "not in it" not in known
 
 
 def test_plus_minus_is_explained_where_it_is_printed():

@@ -46,7 +46,7 @@ found = scene.load(None, {"voltage": 100.0})
 check(found)
 assert 0.25 < fp.run(found, model="cylinders").full_slip.mu_app < 0.5
 assert found.closure()(1e4).d_eq > 0
-table = fp.sweep(found, sys.argv[1], model="cylinders", voltage=[0.0, 100.0])
+table = fp.sweep(found.replace(f_ext="75 N/m"), sys.argv[1], model="cylinders", voltage=[0.0, 100.0])
 assert table.array("mu_app")[1] == fp.run(found, model="cylinders").full_slip.mu_app
 fp.run(fp.Scene(friction=fp.Derjaguin(0.3, 5e3)), model="cylinders")
 fp.Coulomb(0.3)
@@ -67,9 +67,19 @@ def test_modules_import_no_finite_elements():
 
 
 def test_closed_form_works_without_finite_elements(tmp_path):
-    """Read, check, run and sweep: all that a newcomer does before the first run; laws of friction are formulas."""
-    done = without(WORK, *HEAVY, "pint", "rich", argument=str(tmp_path))
-    assert done.returncode == 0, done.stderr
+    """Read, check, run and sweep: all that a newcomer does before the first run; laws of friction are formulas.
+
+    Nor with pictures and tables of other packages, whose import takes longer than the sweep.
+    """
+    done = without(WORK, *HEAVY, "pint", "rich", "matplotlib", "pandas", "xarray", argument=str(tmp_path))
+    assert (done.returncode, done.stderr) == (0, "")
+    assert {"report.html", "sweep.nc", "table.csv"} <= {file.name for file in tmp_path.iterdir()}
+
+
+def test_help_is_printed_without_scenes():
+    """Of the program, whose commands read their own modules."""
+    done = without("from fingerpad.cli import main; main(['--help'])", "numpy", "pydantic", "scipy")
+    assert done.returncode == 0 and "estimate" in done.stdout, done.stderr
 
 
 def test_what_is_blocked_is_blocked():

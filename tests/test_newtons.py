@@ -32,8 +32,8 @@ def found() -> tuple[fp.Result, dict[str, list]]:
     """The result, and the states that were solved for again on the scene's own mesh, at growing forces."""
     fine, again = dict[str, list](), newtons.solve_again
 
-    def kept(*given):
-        solve = again(*given)
+    def kept(*given, **named):
+        solve = again(*given, **named)
         for words, each in solve.states.items():
             name = next(name for name, word in WORDS.items() if words.startswith(word))
             fine.setdefault(name, []).append(each.state)

@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 from mpi4py import MPI
 
+from fingerpad import launcher
 from fingerpad.cli import main
 from fingerpad.results import terminal
 from fingerpad.results.terminal import Console, Pace, between
@@ -131,7 +132,7 @@ class Screen:
 
 @pytest.fixture
 def bare(monkeypatch):
-    for name in (*terminal._RANKS, "NO_COLOR"):
+    for name in (*launcher.RANKS, "NO_COLOR"):
         monkeypatch.delenv(name, raising=False)
     monkeypatch.setenv("TERM", "xterm")
     return monkeypatch

@@ -185,7 +185,7 @@ def test_what_is_wrong_is_told(folder, changes, what, kind):
     [
         (0.019, "mesh", "1.9 % of its value"),
         (0.11, "the mesh is coarse", "too coarse for more than a trend"),
-        (float("nan"), "errors are not estimated", "no estimate"),
+        (float("nan"), "errors are not estimated", "did not estimate"),
     ],
 )
 def test_size_of_the_error_is_told(folder, error, what, words):

@@ -37,6 +37,7 @@ HISTORIES = {
     "augmented": ([PRESS, CHARGE, SLIDE], {"contact": {"formulation": "augmented"}}),
     "more ridges": ([PRESS, CHARGE, SLIDE], {"mesh": {"touching_half_arc": 0.5e-3}}),  # all loads again
     "receptors": ([PRESS, CHARGE, SLIDE], {"output": {"receptors": True, "errors": True}}),
+    "receptors over time": ([PRESS, WAVE], {"output": {"receptors": True}, "materials": VISCOUS}),
     "drive": (None, {"f_ext": 2.0, "voltage": DRIVE, "electric": LOSSY}),
     "drive over time": ([PRESS, WAVE], {"electric": LOSSY}),
     "viscous waveform": ([PRESS, WAVE], {"materials": VISCOUS}),
@@ -83,7 +84,7 @@ def killed_at(monkeypatch):
 
 
 # -- the same numbers ------------------------------------------------------------------------------------
-ALWAYS = ["charged at rest", "there and back", "receptors", "drive over time", "viscous"]
+ALWAYS = ["charged at rest", "there and back", "receptors", "receptors over time", "drive over time", "viscous"]
 LONG = [pytest.param(name, marks=pytest.mark.long) for name in HISTORIES if name not in ALWAYS]
 
 
@@ -183,7 +184,7 @@ def test_refusals(cut_short, tmp_path_factory, capsys):
     shutil.copytree(cut_short / "checkpoint", other / "checkpoint")
     refused("is of another scene", other, friction=0.3)
     for old, new, match in (
-        ('"format": 2', '"format": 0', "another format"),
+        ('"format": 3', '"format": 0', "another format"),
         ('"source": "', '"source": "x', "source"),
     ):
         head.write_text(text.replace(old, new), encoding="utf-8")

@@ -121,6 +121,20 @@ def test_friction_of_the_sum_is_the_coefficient_times_its_contact_force(voltage)
     assert total.thickness.sum() == pytest.approx(np.ptp(profile(Slices()).contact(total.delta)), rel=1e-12)
 
 
+@pytest.mark.parametrize("force", [0.01, 0.3, 0.6])
+def test_force_is_found_with_few_sums(force, monkeypatch):
+    """The logarithms of force and depth are nearly on a line: half as many sums as by Brent's method on the depth."""
+    counted = list[float]()
+
+    def counting(finger, trace, delta, count):
+        counted.append(delta)
+        return at_indentation(finger, trace, delta, count)
+
+    monkeypatch.setattr("fingerpad.slices.total.at_indentation", counting)
+    found = at_force(profile(Slices()), kept(200.0), force, 48).totals["f_ext"]
+    assert found == pytest.approx(force, rel=1e-12) and len(counted) <= 9
+
+
 def test_slices_refined():
     """The error falls as the number of slices to the power of -2 at least: the trace's cubics have kinks in slope."""
     sums = [at_indentation(profile(Slices()), kept(200.0), 0.68e-3, n).totals["f_t"] for n in (8, 32, 128, 2048)]

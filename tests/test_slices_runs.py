@@ -9,7 +9,8 @@ import pytest
 
 import fingerpad as fp
 from fingerpad.reduced.registry import find
-from fingerpad.report import run_page
+from fingerpad.report import run_page, trust
+from fingerpad.report.page import GOOD
 from fingerpad.runs import solve
 from fingerpad.runs.context import RunContext
 from fingerpad.scene import SceneError, load
@@ -75,6 +76,13 @@ def test_named_states_are_the_section_at_the_centre(traced):
     slip = traced.full_slip
     assert slip.f_t == pytest.approx(0.25 * (slip.f_ext + slip.f_electrostatic), rel=1e-6)
     assert not traced.steps and traced.scene.force == FORCE
+
+
+def test_stability_of_the_section_is_examined(traced):
+    """In all its states, on the scene's own mesh; so the report of a sound run of a force has no caution on it."""
+    assert all(state.stable and state.lambda_min > 0 for state in traced.named.values())
+    found = {finding.what: finding for finding in trust.findings(traced)}
+    assert found["stability"].verdict == GOOD and "full slip of the middle section" in found["stability"].words
 
 
 def test_report_of_a_force_repeats_it(traced):

@@ -90,6 +90,9 @@ def test_check_reports_a_short_load(tmp_path, capsys):
     for history in ([PRESS, long], [PRESS, slide, WAVE], [PRESS, still]):
         assert list(too_short(Scene(history=history))) == []
     assert list(too_short(SCENE.replace(geometry={"ridge_count": 9}))) == []
+    viscous = {"dermis": {"viscosity": {"preset": "fingerpad"}}}
+    (same,) = too_short(SCENE.replace(materials=viscous))
+    assert same == said.replace("thumb", "thumb, less of viscous skin")
     assert list(too_short(Scene())) == []
     scene = tmp_path / "scene.toml"
     scene.write_text(

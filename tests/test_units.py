@@ -13,6 +13,7 @@ from fingerpad.scene import Scene, SceneError, as_kept
 from fingerpad.scene import scene as scenes
 from fingerpad.slices.estimate import with_newtons
 from fingerpad.slices.traces import history
+from geometry import units
 from geometry.units import QUANTITIES, computed, to_si
 from tests.measures import contact_state
 from tests.small_finger import small
@@ -92,18 +93,33 @@ def test_every_unit_of_a_parameter_is_known(unit):
 @pytest.mark.parametrize("form", ["", ".0f~P"])
 def test_quantities_of_pint_keep_their_digits(form):
     """Whatever their format for printing is."""
-    units = pint.UnitRegistry()
-    units.formatter.default_format = form
-    found = Scene(mesh={"contact": 12.7 * units.um}, voltage=np.float64(0.1503) * units.kV)
+    registry = pint.UnitRegistry()
+    registry.formatter.default_format = form
+    found = Scene(mesh={"contact": 12.7 * registry.um}, voltage=np.float64(0.1503) * registry.kV)
     assert (found.mesh.contact, found.voltage) == (pytest.approx(12.7e-6, rel=1e-15), pytest.approx(150.3, rel=1e-15))
+
+
+@pytest.mark.parametrize(
+    ("unit", "given"),
+    [(unit, f"{prefix}{unit}") for unit in units._PLAIN for prefix in units._PREFIXES]
+    + [("N/m", given) for given in ("N/m", "mN/mm", "kN/m", "N/mm")]
+    + [("Pa/m", "kPa/mm"), ("m/s", "mm/s"), ("m/s", "m/ms")],
+)
+def test_plain_units_are_those_of_pint(unit, given, monkeypatch):
+    """To the last bit, for numbers that are rounded."""
+    numbers = ("0.3", "-75", "1.7e-3", "123.456")
+    plain = [to_si(f"{number} {given}", unit) for number in numbers]
+    assert units._power(given, unit) is not None
+    monkeypatch.setattr(units, "_power", lambda *given: None)
+    assert plain == [to_si(f"{number} {given}", unit) for number in numbers]
 
 
 def test_text_without_pint_is_refused():
     """Where it is not installed, in a sentence."""
-    done = without("from fingerpad import scene; scene.load(None, {'f_ext': '50 N/m'})", *HEAVY, "pint")
+    done = without("from fingerpad import scene; scene.load(None, {'f_ext': '50 dyn/cm'})", *HEAVY, "pint")
     assert done.stderr.splitlines()[-1].endswith(
-        "SceneError: f_ext is '50 N/m'; its unit needs the package pint, which is not installed; it must be a number "
-        "in N/m or a text such as '50 N/m'"
+        "SceneError: f_ext is '50 dyn/cm'; its unit needs the package pint, which is not installed; it must be a "
+        "number in N/m or a text such as '50 N/m'"
     )
 
 

@@ -1,6 +1,6 @@
 """The states of a path solved for again: on other meshes, with other steps, over a stiffer screen; and their cost."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
@@ -17,7 +17,7 @@ from fingerpad.model.simulation import RestartRequired, Simulation
 from fingerpad.results.states import SLIDE_ON, WORDS
 from fingerpad.scene import Load
 from geometry.parameters import MeshSize
-from geometry.profiles import Profiles
+from geometry.profiles import GeometryError, Profiles
 from variational.contact.formulation import Formulation
 from variational.solvers.continuation import StepFailed
 from variational.solvers.snapshot import StateSnapshot
@@ -91,12 +91,42 @@ class StateSolver(Simulation):
             raise StepFailed(f"{name}: {self._restart.reason}")
 
 
+def follow(
+    model: FingerModel,
+    comm: MPI.Comm,
+    on_step: Callable[[Simulation, "Step", float], None] = lambda simulation, step, done: None,
+) -> Solve | RestartRequired:
+    """Return the named states of a model's path, or what must be added to the model; collective.
+
+    Args:
+        model: the finger and its loads.
+        comm: communicator of the mesh.
+        on_step: called after each accepted step with the path, the step and the part of the history that is done; may
+            raise to stop.
+
+    Raises:
+        GeometryError: the finger cannot be meshed.
+        StepFailed: a load could not be reached.
+    """
+
+    def record(step: "Step", done: float) -> None:
+        recorder.record(step)
+        on_step(simulation, step, done)
+
+    simulation = Simulation(model, comm, record)
+    recorder = StateRecorder(simulation)
+    restart = simulation.run()
+    simulation.finger.solver.iteration.free()
+    return recorder.solve() if restart is None else restart
+
+
 def solve_again(
     model: FingerModel,
     states: Mapping[str, State],
     comm: MPI.Comm,
     views: bool = False,
     stiffer: Formulation | None = None,
+    examined: Collection[str] = (),
 ) -> Solve:
     """Solve for states of a finger on meshes that are finest where their contact ends; collective.
 
@@ -108,6 +138,7 @@ def solve_again(
         comm: communicator of the mesh.
         views: whether tables and pictures are to show the states (:attr:`Solve.views`).
         stiffer: the contact over a screen of twice the stiffness, where the states are wanted over that too.
+        examined: names of the states whose stability is to be examined.
 
     Raises:
         StepFailed: see :meth:`StateSolver.re_equilibrate`.
@@ -115,13 +146,19 @@ def solve_again(
     normal = {name: state for name, state in states.items() if not state.direction}
     options = replace(model.options, both_halves=model.options.both_halves and not model.options.symmetric_start)
     slips = {name: state for name, state in states.items() if state.direction}
-    solves = [_solve(model.changed(options=options), normal, comm, views, stiffer)] if normal else []
-    solves += [_solve(model, slips, comm, views, stiffer)] if slips else []
+    also = views, stiffer, examined
+    solves = [_solve(model.changed(options=options), normal, comm, *also)] if normal else []
+    solves += [_solve(model, slips, comm, *also)] if slips else []
     return together(solves)
 
 
 def _solve(
-    model: FingerModel, states: Mapping[str, State], comm: MPI.Comm, views: bool, stiffer: Formulation | None
+    model: FingerModel,
+    states: Mapping[str, State],
+    comm: MPI.Comm,
+    views: bool,
+    stiffer: Formulation | None,
+    examined: Collection[str],
 ) -> Solve:
     profiles = Profiles(model.geometry)
     ends = ((edges.ends(state.snapshot, profiles.along_skin, state.facet), state.facet) for state in states.values())
@@ -132,6 +169,8 @@ def _solve(
     for name, state in states.items():
         simulation.re_equilibrate(state.snapshot, WORDS.get(name, name), state.direction)
         recorder.keep(name, state.direction != 0)
+        if name in examined:
+            recorder.examine(name)
         if viewer is not None:
             recorder.views[name] = viewer.view(simulation.present(finger.ridge_loads()))
         if stiffer is not None:
@@ -142,6 +181,7 @@ def _solve(
                 soft = str(error)
             finger.problem.set_formulation(springs)
     finger.solver.iteration.free()
+    simulation.checks.free()
     return replace(recorder.solve(), stiffer=over.solve() if over.states and not soft else None, soft=soft)
 
 
@@ -227,20 +267,34 @@ class Solves:
         loads = loads_to_normal_contact(self.model.loads)
         model = self.model.changed(mesh=self.found[0].mesh, loads=loads, numerics=numerics)
         self._pause()
-        recorder: StateRecorder | None = None
+        found = follow(model, self._comm)
+        if isinstance(found, RestartRequired):
+            more = self.model.changed(mesh=found.model.mesh, options=found.model.options)
+            self.restart = replace(found, model=more)
+            raise StepFailed(found.reason)
+        return self._keep(found)
 
-        def on_step(step: "Step", done: float) -> None:
-            assert recorder is not None
-            recorder.record(step)
+    def on_coarser_path(self, on_step: Callable[["Simulation", "Step", float], None]) -> Solve:
+        """Return the named states of the whole path on elements twice as large; collective.
 
-        simulation = Simulation(model, self._comm, on_step)
-        recorder = StateRecorder(simulation)
-        restart = simulation.run()
-        if restart is not None:
-            more = self.model.changed(mesh=restart.model.mesh, options=restart.model.options)
-            self.restart = replace(restart, model=more)
-            raise StepFailed(restart.reason)
-        return self._keep(recorder.solve())
+        The loads are gone through again where more of the model turns out to matter on that mesh.
+
+        Args:
+            on_step: see :func:`follow`.
+
+        Raises:
+            GeometryError: there is no such mesh.
+            StepFailed: the path was lost, or ``on_step`` stopped it.
+        """
+        mesh = self.model.coarser(self.model.mesh)
+        if mesh.contact == self.model.mesh.contact:
+            raise GeometryError(f"the ridges have no larger elements than {mesh.contact * 1e6:.3g} µm")
+        found = follow(self.model.changed(mesh=mesh), self._comm, on_step)
+        while isinstance(found, RestartRequired):
+            self.show(f"on elements twice as large: {found.reason}; all loads again")
+            found = follow(found.model, self._comm, on_step)
+        self.found.append(found)
+        return found
 
     def _keep(self, solve: Solve) -> Solve:
         self.found.append(solve)

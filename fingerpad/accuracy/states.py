@@ -136,7 +136,10 @@ class StateRecorder:
 
     def resume(self, kept: Mapping[str, Any]) -> None:
         """Go on from what another process kept."""
-        self.states, self._begun = kept["states"], kept["begun"]
+        self.states, self._begun = dict(kept["states"]), kept["begun"]
+        pair = [self.states[name] for name in ("uncharged", "charged") if name in self.states]
+        if len(pair) == 2 and pair[0].state.step == pair[1].state.step:  # at 0 V one state
+            self.states["uncharged"] = pair[1]
 
     def keep(self, name: str, slips: bool | None = None) -> None:
         """Keep the present state; collective.
@@ -147,6 +150,18 @@ class StateRecorder:
         """
         direction = 1 if self._simulation.finger.solver.reaction[0] <= 0 else -1
         self.states[name] = self._state(direction * (name == "full_slip" if slips is None else slips))
+
+    def examine(self, name: str) -> None:
+        """Add the stability of the present state, which was kept; collective.
+
+        Args:
+            name: of the state.
+
+        Raises:
+            StepFailed: the stability cannot be examined.
+        """
+        kept, checked = self.states[name], self._simulation.checks.check(name)
+        self.states[name] = replace(kept, state=checked.of(kept.state))
 
     def _state(self, direction: int) -> State:
         f = self._simulation.finger

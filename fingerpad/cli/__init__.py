@@ -12,9 +12,8 @@ import sys
 from collections.abc import Sequence
 from difflib import get_close_matches
 
+from fingerpad import launcher
 from fingerpad.installed import OPTIONAL, needed_by, version
-from fingerpad.results import terminal
-from fingerpad.scene.messages import SceneError, clip
 
 COMMANDS = {
     "estimate": "friction over force and voltage by a closed form, in seconds, without finite elements",
@@ -55,8 +54,6 @@ def main(argv: Sequence[str] | None = None) -> int:
             code = _call(words)
         sys.stdout.flush()
         return code
-    except SceneError as error:
-        return refuse(str(error))
     except ImportError as error:
         if error.name not in OPTIONAL:
             raise
@@ -72,6 +69,8 @@ def main(argv: Sequence[str] | None = None) -> int:
             return refuse(f"the output cannot be written: {error.strerror}")
         if error.filename is None:
             raise
+        from fingerpad.scene.messages import clip
+
         return refuse(f"{clip(str(error.filename), 80)} cannot be used: {error.strerror}")
 
 
@@ -82,26 +81,37 @@ def _drop_output() -> None:
 
 def refuse(message: str) -> int:
     """Print a message on rank 0; return the exit code of a refusal."""
-    if terminal.rank() == 0:
+    if launcher.rank() == 0:
         print(f"fingerpad: {message}", file=sys.stderr)
     return 2
 
 
 def _call(words: list[str]) -> int:
     if not words or words[0] in ("-h", "--help"):
-        if terminal.rank() == 0:
+        if launcher.rank() == 0:
             print(_help())
         return 0 if words else 2
     if words[0] == "--version":
-        if terminal.rank() == 0:
+        if launcher.rank() == 0:
             print(f"fingerpad {version()}")
         return 0
+    from fingerpad.scene.messages import SceneError  # with all keys of a scene, which the help does not need
+
+    try:
+        return _command(words)
+    except SceneError as error:
+        return refuse(str(error))
+
+
+def _command(words: list[str]) -> int:
     name = words[0]
     if name not in COMMANDS:
+        from fingerpad.scene.messages import SceneError, clip
+
         near = get_close_matches(name[:60], COMMANDS, n=1)
         instead = f"did you mean {near[0]}?" if near else f"commands are {', '.join(COMMANDS)}"
         raise SceneError(f"{clip(name) or 'an empty text'} is not a command; {instead}")
-    if terminal.rank() and name not in _COLLECTIVE:
+    if launcher.rank() and name not in _COLLECTIVE:
         return 0
     own = importlib.import_module(f"fingerpad.cli.{_BESIDE.get(name, name)}")
     try:

@@ -11,9 +11,9 @@ from difflib import get_close_matches
 from pathlib import Path
 from typing import Any, NamedTuple, NoReturn
 
+from fingerpad import launcher
 from fingerpad.cli import COMMANDS, ranges
 from fingerpad.model.options import check
-from fingerpad.results import terminal
 from fingerpad.scene import Scene, from_data, load, override
 from fingerpad.scene.keys import every
 from fingerpad.scene.messages import SceneError, clip, ends
@@ -66,7 +66,7 @@ class Parser(argparse.ArgumentParser):
         raise SceneError(f"command line: {message}")
 
     def _print_message(self, message: str, file: Any = None) -> None:
-        if terminal.rank() == 0:
+        if launcher.rank() == 0:
             super()._print_message(message, file)
 
     def add_scene(self) -> None:
@@ -319,5 +319,5 @@ def _same(one: Path, other: Path) -> bool:
 
 def echo(text: str = "", end: str = "\n") -> None:
     """Print on rank 0."""
-    if terminal.rank() == 0:
+    if launcher.rank() == 0:
         print(text, end=end, file=sys.stdout)

@@ -52,7 +52,7 @@ def main(argv: Sequence[str]) -> int:
     echo(str(found))
     files = [name for name in FILES if (args.out / name).exists()]
     echo(f"Written: {args.out / files[0]}, {', '.join(files[1:])}" if files[1:] else f"Written: {args.out / files[0]}")
-    return 1 if any(result.failure for result in found) else 0
+    return 1 if any(result.failure for result in found.results) else 0
 
 
 def study(file: Path | None, given: Sequence[str], over: Sequence[str]) -> tuple[dict[str, Any], dict[str, list[Any]]]:

@@ -111,6 +111,10 @@ class Checked:
         """Whether the skin stays, each ridge's air gap following its pressure."""
         return self.frozen.stable and self.gain < 1
 
+    def of(self, state: ContactState) -> ContactState:
+        """Return a state with this stability."""
+        return replace(state, stable=self.stable, lambda_min=self.frozen.lambda_min, gain=self.gain)
+
     def __str__(self) -> str:
         """Return the verdict in words."""
         verdict = "stable" if self.stable else "not stable"

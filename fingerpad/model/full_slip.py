@@ -144,8 +144,7 @@ class FullSlips:
         state, checked = solved.state, self.simulation.checks.check(solved.state.reached)
         if not checked.stable:
             raise StepFailed(f"{state.reached}: full slip is {checked}")
-        state = replace(state, stable=True, lambda_min=checked.frozen.lambda_min, gain=checked.gain)
-        return replace(solved, state=state)
+        return replace(solved, state=checked.of(state))
 
     def _set_laws(self, friction: Friction | None, roughness: Closure | None, h_0: float, share: Share | None) -> None:
         self.finger.problem.set_laws(friction, h_0, share)

@@ -163,8 +163,7 @@ class PathRecord:
             found[name] = replace(state, skin=skin, slip_held=state.slip_held or name == "full_slip")
             check = self._check(state)
             if check is not None:
-                verdict, least = check.stable, check.frozen.lambda_min
-                found[name] = replace(found[name], stable=verdict, lambda_min=least, gain=check.gain)
+                found[name] = check.of(found[name])
         return found
 
     def _check(self, state: ContactState) -> "Checked | None":

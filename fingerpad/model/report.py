@@ -172,10 +172,9 @@ class Report:
                     self.record.ends[done[-1].load] = View(done[-1], None, None, snapshot, merkel)
 
     def kept(self) -> dict[str, Any]:
-        """Return what another process needs to go on with all tables and pictures, whole on rank 0."""
+        """Return what another process needs to go on with all tables and pictures but the states, whole on rank 0."""
         self.record.prune(self._loads)
         return {
-            "states": self.record.states,
             "skins": self.record.skins,
             "moved": self.record.moved,
             "ends": self.record.ends,
@@ -184,16 +183,17 @@ class Report:
             "log": self._writer.log_text(),
         }
 
-    def resume(self, kept: Mapping[str, Any], done: float) -> None:
+    def resume(self, states: list[ContactState], kept: Mapping[str, Any], done: float) -> None:
         """Go on from what another process kept; collective.
 
         Args:
-            kept: what it kept, on every rank.
+            states: all that it accepted, on every rank.
+            kept: what it kept besides, on every rank.
             done: part of the whole history that is done.
         """
         self._writer.earlier_log = kept["log"]
         self._writer.take()
-        self.record.states, self._logged, self._shown = kept["states"], kept["logged"], kept["shown"]
+        self.record.states, self._logged, self._shown = states, kept["logged"], kept["shown"]
         if self._simulation.finger.problem.mesh.comm.rank == 0:
             self.record.skins, self.record.ends, self.record.moved = kept["skins"], kept["ends"], kept["moved"]
         for state in self.record.states:

@@ -113,7 +113,8 @@ def find(scene: Scene, pull: float = 0.0) -> Region | None:
         pull: attraction at full slip over that force.
     """
     given = _given(scene, pull)
-    return next((region for region in REGIONS if not [*_outside(given, region)]), None)
+    changed = _changed(given)
+    return next((region for region in REGIONS if next(_outside(given, changed, region), None) is None), None)
 
 
 def outside(scene: Scene, pull: float = 0.0) -> list[Outside]:
@@ -122,7 +123,8 @@ def outside(scene: Scene, pull: float = 0.0) -> list[Outside]:
     That is the one with the fewest such keys, and of these the widest. Arguments are those of :func:`find`.
     """
     given = _given(scene, pull)
-    return min(([*_outside(given, region)] for region in reversed(REGIONS)), key=len)
+    changed = _changed(given)
+    return min(([*_outside(given, changed, region)] for region in reversed(REGIONS)), key=len)
 
 
 def cautions(scene: Scene, pull: float = 0.0) -> list[str]:
@@ -145,8 +147,17 @@ def _given(scene: Scene, pull: float) -> dict[str, Any]:
     return given
 
 
-def _outside(given: Mapping[str, Any], region: Region) -> Iterator[Outside]:
-    """Yield the keys in which values are outside of a region."""
+def _changed(given: Mapping[str, Any]) -> dict[str, list[str]]:
+    """Return the keys of :data:`_TABLES` whose values are not the default scene's, by table."""
+    default, found = _default(), {table: list[str]() for table in _TABLES}
+    for key in sorted(given.keys() | default.keys()):
+        if given.get(key) != default.get(key) and (table := key.partition(".")[0]) in found:
+            found[table].append(key)
+    return found
+
+
+def _outside(given: Mapping[str, Any], changed: Mapping[str, Sequence[str]], region: Region) -> Iterator[Outside]:
+    """Yield the keys in which values are outside of a region; ``changed`` as of :func:`_changed`."""
     default, units = _default(), _units()
     if "force" in given and "force" not in region.ranges:
         yield Outside("force", _span((given["force"],) * 2, units["force"]), "sections alone")
@@ -158,9 +169,8 @@ def _outside(given: Mapping[str, Any], region: Region) -> Iterator[Outside]:
             yield Outside(key, "a law", _span(ends, units[key]))
         elif not within(value, ends):
             yield Outside(key, _span((value, value), units[key]), _span(ends, units[key]))
-    for table in _TABLES:
-        keys = [key for key in sorted(given.keys() | default.keys()) if key.partition(".")[0] == table]
-        keys = [key for key in keys if key not in region.ranges and given.get(key) != default.get(key)]
+    for table, others in changed.items():
+        keys = [key for key in others if key not in region.ranges]
         if any(given.get(key) is None or default.get(key) is None for key in keys):  # another law has other keys
             yield Outside(table, "of another law", "that of the default scene")
         else:

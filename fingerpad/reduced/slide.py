@@ -27,6 +27,7 @@ from collections.abc import Iterator
 from fingerpad.reduced import cylinders
 from fingerpad.scene import Scene, SceneError
 from fingerpad.scene.loads import ways
+from fingerpad.scene.viscosity import elastic, viscous_layers
 
 STIFFNESS = 7.0e3
 """Friction over the way and the root of the number of ridges (N/m²). *Assumption*: of the default shape and skin."""
@@ -36,14 +37,16 @@ def way(scene: Scene, f_ext: float, voltage: float) -> float:
     """Return about how far the bone must be from where it was unloaded for full slip (m).
 
     Args:
-        scene: its laws and shape.
+        scene: its laws and shape; of viscous layers their lasting elastic law, with which the way is longest.
         f_ext: external force (N/m).
         voltage: of Eq. 3 (V).
 
     Raises:
         SceneError: the cylinders have no answer.
     """
-    state = cylinders.solve(scene.replace(history=None, f_ext=f_ext, voltage=voltage)).full_slip
+    layers = {name: elastic(law) for name, law in scene.materials}
+    lasting = scene.model_copy(update={"materials": scene.materials.model_copy(update=layers)})
+    state = cylinders.solve(lasting.replace(history=None, f_ext=f_ext, voltage=voltage)).full_slip
     if state is None:
         raise SceneError("the cylinders do not slip")
     return float(state.f_t / (STIFFNESS * state.ridges_in_contact**0.5))
@@ -65,8 +68,9 @@ def too_short(scene: Scene) -> Iterator[str]:
             needed = way(scene, force, load.wave.peak)
         except SceneError:
             return
+        less = ", less of viscous skin" if viscous_layers(scene.materials) else ""
         if needed > farthest:
             yield (
                 f"{load.name}: the finger may never slip fully, since that needs some {1e3 * needed:.2g} mm from where "
-                f"it was unloaded, by a rule of thumb, and the bone goes {1e3 * farthest:.2g} mm"
+                f"it was unloaded, by a rule of thumb{less}, and the bone goes {1e3 * farthest:.2g} mm"
             )

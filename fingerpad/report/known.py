@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 
 from fingerpad.report.page import text
 from fingerpad.results.closures import KNOWN
-from fingerpad.results.style import BLUE, GREY, VERMILION
+from fingerpad.results.palette import BLUE, GREY, VERMILION
 
 if TYPE_CHECKING:
     from fingerpad.results.result import Result

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 _SMALL, _LARGE = 0.02, 0.1
 """Relative errors below which an error is small, and above which the mesh is too coarse for more than a trend."""
 
+_NO_ERROR = "The run did not estimate the error of its mesh. It is not in any ±, nor in the band of what is known."
 _MIN_FACETS = 4
 """Facets in contact on a ridge below which the effect of a rigid screen is doubtful: at two or three,
 a few Gauss points bear the contact, and their number changes with the stiffness."""
@@ -62,7 +63,8 @@ def verdict(found: list[Finding]) -> tuple[str, str]:
 
 def _cautions(result: "Result") -> Iterator[Finding]:
     for text in result.cautions:
-        yield Finding("limit of validity", CARE, f"{text[0].upper()}{text[1:].removesuffix('.')}.")
+        key = {".", "_"} & set(text.split(" ", 1)[0])  # a key of the scene begins the sentence, spelled as it is
+        yield Finding("limit of validity", CARE, f"{text[0] if key else text[0].upper()}{text[1:].removesuffix('.')}.")
 
 
 def _end(result: "Result") -> Finding:
@@ -91,7 +93,7 @@ def _mesh(result: "Result") -> Iterator[Finding]:
         return
     shares = _shares(result, state)
     if any(math.isnan(share) for share in shares.values()):
-        yield Finding("errors are not estimated", CARE, "This run has no estimate of its discretisation error.")
+        yield Finding("errors are not estimated", CARE, _NO_ERROR)
         return
     yield from _facets(result, state)
     name = max(shares, key=lambda each: shares[each])
@@ -155,12 +157,13 @@ def _stability(result: "Result") -> Iterator[Finding]:
         yield Finding("stability is not examined", CARE, "A finger would leave an unstable state by itself.")
         return
     words_of = {name: called(name, result.named[name].voltage) for name in known}
+    of = "" if result.finger is None or result.steps else " of the middle section, under its force or a tenth more"
     unstable = [words_of[name] for name, stable in known.items() if not stable]
     if unstable:
-        words = f"Unstable: {', '.join(unstable)}. A finger would leave such a state by itself."
+        words = f"Unstable: {', '.join(unstable)}{of}. A finger would leave such a state by itself."
         yield Finding("a state is unstable", BAD, words)
     else:
-        words = f"Examined and stable: {', '.join(words_of.values())}. A small disturbance dies out."
+        words = f"Examined and stable: {', '.join(words_of.values())}{of}. A small disturbance dies out."
         yield Finding("stability", GOOD, words)
 
 

@@ -33,11 +33,9 @@ def write(folder: Path) -> Path:
         SceneError: the folder holds nothing that a report can be made of, or files that are not of a run, or it cannot
             be written to.
     """
-    from fingerpad.report import run_page, sweep_page
-
     found = read(folder)
     try:
-        page = run_page.page(found) if isinstance(found, Result) else sweep_page.page(found)
+        page = _page(found)
     except (LookupError, ValueError, TypeError, AttributeError) as error:  # of files that somebody else has written
         where, kind = clip(str(folder), 80), type(error).__name__
         raise SceneError(f"no report of {where} can be made of its files ({kind}: {clip(str(error))})") from error
@@ -47,6 +45,16 @@ def write(folder: Path) -> Path:
         where = clip(str(folder / NAME), 80)
         raise SceneError(f"the report cannot be written to {where}: {error.strerror}") from None
     return folder / NAME
+
+
+def _page(found: "Result | Table") -> str:
+    if isinstance(found, Result):
+        from fingerpad.report import run_page
+
+        return run_page.page(found)
+    from fingerpad.report import sweep_page
+
+    return sweep_page.page(found)
 
 
 def attempt(folder: Path) -> Path | None:

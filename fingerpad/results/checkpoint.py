@@ -1,9 +1,11 @@
 """The checkpoint of a run: its last accepted state and all of its tables, from which it goes on after it was cut short.
 
 ``checkpoint/head.json`` in the folder of results says of which scene and by which program; ``0001.npz``, ... hold
-arrays and JSON, without pickle, each the whole of what a run goes on from. One is written beside, flushed to the disk
-and put in place, so that after a power cut it is there as a whole or not at all; the last two stay. The folder goes
-when the run reaches its end.
+arrays and JSON, without pickle, each what a run goes on from. A list that only grows (:class:`Growing`), as that of the
+accepted states, is not written again and again: ``0001.more.npz``, ... hold what a checkpoint has more of it than the
+one before. Files are written beside, flushed to the disk and put in place, so that after a power cut each is there as a
+whole or not at all. The last two checkpoints stay, and all that their lists need. The folder goes when the run reaches
+its end.
 """
 
 import hashlib
@@ -11,7 +13,7 @@ import json
 import os
 import zipfile
 from collections.abc import Iterable, Mapping
-from dataclasses import fields, is_dataclass
+from dataclasses import dataclass, fields, is_dataclass
 from pathlib import Path
 from typing import Any
 
@@ -22,13 +24,31 @@ from fingerpad.results.files import read_object, remove, replace_json
 from fingerpad.scene import SceneError
 
 Arrays = dict[str, NDArray[Any]]
-_FORMAT = 2
-_FACTS = "facts"
+_FORMAT = 3
+_FACTS, _MORE = "facts", "more"
 _STAY = 2  # checkpoints, of which the earlier serves where the last is damaged
 
 
 class CheckpointError(SceneError):
     """A checkpoint from which a run cannot go on; one sentence."""
+
+
+@dataclass(frozen=True)
+class Growing:
+    """A list to which items are added, and none of whose items ever changes. A checkpoint holds one of it."""
+
+    items: list[Any]
+
+
+@dataclass
+class _Kept:
+    """Files that hold the items of a growing list."""
+
+    last: Any = None
+    """The last item, by which the list is known again."""
+    count: int = 0
+    numbers: tuple[int, ...] = ()
+    """Of the checkpoints with which they were written."""
 
 
 class Checkpoint:
@@ -49,10 +69,13 @@ class Checkpoint:
         self._results, self._folder = results, results / "checkpoint"
         scene = hashlib.sha256(json.dumps(parameters, sort_keys=True).encode()).hexdigest()
         self._head = {"format": _FORMAT, "scene": scene, **versions}
-        self.number = 0
+        self.number, self._kept = 0, _Kept()
 
     def _file(self, number: int) -> Path:
         return self._folder / f"{number:04d}.npz"
+
+    def _more(self, number: int) -> Path:
+        return self._folder / f"{number:04d}.more.npz"
 
     def _last(self) -> int:
         """Return the number of the last state in the folder."""
@@ -80,12 +103,8 @@ class Checkpoint:
                     f"the checkpoint in {results} is of another {name} ({str(head.get(name))[:12]}, and "
                     f"{str(value)[:12]} now), which may compute other numbers; run again without --resume"
                 )
-        try:
-            with zipfile.ZipFile(self._file(last)) as state:
-                damaged = state.testzip() is not None or f"{_FACTS}.npy" not in state.namelist()
-        except (OSError, zipfile.BadZipFile, ValueError):
-            damaged = True
-        if damaged:
+        more = self._more(last)
+        if not _whole(self._file(last)) or (more.exists() and not _whole(more)):
             raise CheckpointError(
                 f"{self._file(last)} is not whole; delete it, to go on from the one before it if there is one"
             )
@@ -108,38 +127,37 @@ class Checkpoint:
         Raises:
             CheckpointError: it holds something else.
         """
-        file = self._file(self.number)
+        file, known = self._file(self.number), {cls.__name__: cls for cls in (*classes, Growing)}
         try:
-            with np.load(file, allow_pickle=False) as stream:
-                arrays = dict(stream)
-            facts = json.loads(arrays.pop(_FACTS).tobytes())
-            found: dict[str, Any] = _restored(facts, arrays, {cls.__name__: cls for cls in classes})
-        except (KeyError, TypeError, ValueError, RecursionError) as error:
+            found: dict[str, Any] = _read(file, known)
+            numbers = tuple(found.pop(_MORE))
+            if numbers:
+                grown = next(each for each in found.values() if isinstance(each, Growing))
+                for number in numbers:
+                    file = self._more(number)
+                    grown.items.extend(_read(file, known))
+                self._kept = _Kept(grown.items[-1], len(grown.items), numbers)
+        except (KeyError, OSError, TypeError, ValueError, RecursionError, zipfile.BadZipFile) as error:
             raise CheckpointError(f"{file} holds no state of a run ({error!r}); run again without --resume") from error
         return found
 
     def write(self, state: Mapping[str, Any]) -> None:
-        """Write a state; the last but one goes, and with the first of a run those of an earlier run."""
+        """Write a state; the last but one goes, and with the first of a run those of an earlier run.
+
+        Args:
+            state: arrays, dataclasses, dictionaries and numbers by name; one of its values may be :class:`Growing`.
+        """
         if self.number == 0:
             self.delete()
             self._folder.mkdir()
             replace_json(self._folder / "head.json", self._head)
-        parts: dict[str, list[NDArray[Any]]] = {}
-        facts = json.dumps(_plain(state, parts, {})).encode()
-        arrays: dict[str, Any] = {name: np.concatenate(each) for name, each in parts.items()}
-        arrays[_FACTS] = np.frombuffer(facts, dtype=np.uint8)
-        file = self._file(self.number + 1)
-        beside = file.with_suffix(".part")
-        remove(beside)
-        try:
-            with beside.open("xb") as stream:
-                np.savez(stream, **arrays)
-                stream.flush()
-                os.fsync(stream.fileno())
-            beside.replace(file)
-        except OSError:
-            beside.unlink(missing_ok=True)
-            raise
+        number, kept = self.number + 1, self._kept
+        for name, value in state.items():
+            if isinstance(value, Growing):
+                kept = self._grown(value.items, number)
+                state = {**state, name: Growing([])}
+        _write(self._file(number), {**state, _MORE: list(kept.numbers)})
+        self._kept = kept
         self.number += 1
         folder = os.open(self._folder, os.O_RDONLY)
         try:
@@ -148,9 +166,54 @@ class Checkpoint:
             os.close(folder)
         self._file(self.number - _STAY).unlink(missing_ok=True)
 
+    def _grown(self, items: list[Any], number: int) -> _Kept:
+        """Write what a list has more than the last checkpoint, all of it where it is another list."""
+        kept = self._kept
+        if len(items) < kept.count or (kept.count and items[kept.count - 1] is not kept.last):
+            kept = _Kept()
+        if len(items) == kept.count:
+            return kept
+        _write(self._more(number), items[kept.count :])
+        return _Kept(items[-1], len(items), (*kept.numbers, number))
+
     def delete(self) -> None:
         """Delete all of it."""
         remove(self._folder)
+
+
+def _write(file: Path, value: Any) -> None:
+    """Write a value, as a whole or not at all."""
+    parts: dict[str, list[NDArray[Any]]] = {}
+    facts = json.dumps(_plain(value, parts, {})).encode()
+    arrays: dict[str, Any] = {name: np.concatenate(each) for name, each in parts.items()}
+    arrays[_FACTS] = np.frombuffer(facts, dtype=np.uint8)
+    beside = file.with_suffix(".part")
+    remove(beside)
+    try:
+        with beside.open("xb") as stream:
+            np.savez(stream, **arrays)
+            stream.flush()
+            os.fsync(stream.fileno())
+        beside.replace(file)
+    except OSError:
+        beside.unlink(missing_ok=True)
+        raise
+
+
+def _read(file: Path, classes: Mapping[str, type]) -> Any:
+    """Return the value that a file holds."""
+    with np.load(file, allow_pickle=False) as stream:
+        arrays = dict(stream)
+    return _restored(json.loads(arrays.pop(_FACTS).tobytes()), arrays, classes)
+
+
+def _whole(file: Path) -> bool:
+    """Return whether a file is there and undamaged."""
+    try:
+        with zipfile.ZipFile(file) as state:
+            return state.testzip() is None and f"{_FACTS}.npy" in state.namelist()
+    except (OSError, zipfile.BadZipFile, ValueError):
+        return False
 
 
 def _plain(value: Any, parts: dict[str, list[NDArray[Any]]], sizes: dict[str, int]) -> Any:

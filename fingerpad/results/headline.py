@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 WHOLE, SECTION = "whole finger", "middle section"
 """What a headline is of."""
 MESH, PENALTY, MODEL = "mesh", "penalty", "closed form"
-"""Parts of the error of a section's solution."""
+"""Parts of the error of a section's solution; of a whole finger's, that of the mesh has a longer name."""
 _DIGITS = (2, 3, 4)  # of the numbers in a sentence: as few as tell them apart
 _ROUNDOFF = 1e-9  # by which a number is raised, so that one in the middle of two rounds up on every machine
 _SMALL = 1e-3  # of the largest number in a sentence, below which another is shown without digits of its own
@@ -71,8 +71,12 @@ class Headline:
     @property
     def solved(self) -> str:
         """How far the number is solved, in words; empty where that is not estimated."""
-        error = self.quantity.shown(self.value, self.error).partition(" ± ")[2]
-        return f"solved to ± {error} ({', '.join(self.parts)})" if error else ""
+        error, missing = self.quantity.shown(self.value, self.error).partition(" ± ")[2], ""
+        if not math.isnan(self.value) and not any(part.startswith((MESH, MODEL)) for part in self.parts):
+            missing = f"{SECTION}, whose error is not estimated"
+        if not error:
+            return "solved to an error that is not estimated" if missing else ""
+        return f"solved to ± {error} ({', '.join(self.parts)}{missing and '; not in it: '}{missing})"
 
     def to_dict(self) -> dict[str, Any]:
         """Return the headline, ready for JSON; SI units."""
@@ -201,6 +205,8 @@ def _error_of_section(result: "Answer", state: "ContactState", key: str) -> tupl
     if share is not None:
         return share * abs(getattr(state, key)), (MODEL,)
     mesh, penalty = (getattr(each, key, math.nan) for each in (state.error, state.penalty))
+    if math.isnan(mesh):
+        return mesh, ()
     return (mesh, (MESH,)) if math.isnan(penalty) else (mesh + abs(penalty), (MESH, PENALTY))
 
 

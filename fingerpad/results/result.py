@@ -7,7 +7,8 @@ from dataclasses import asdict, dataclass, fields, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from fingerpad.results import dataset, terminal
+from fingerpad import launcher
+from fingerpad.results import dataset
 from fingerpad.results.answer import Answer, Cost
 from fingerpad.results.closures import RECORD, in_words
 from fingerpad.results.files import read_object
@@ -74,7 +75,7 @@ class Result(Answer):
             from fingerpad.results.whole_picture import draw  # Matplotlib
 
             place = None if path is None else Path(path)
-            return draw(self, kind, place) if terminal.rank() == 0 else None
+            return draw(self, kind, place) if launcher.rank() == 0 else None
         if (drawing := self._drawn()) is not None:
             return drawing.figure(kind, None if path is None else Path(path))
         if not self.steps:

@@ -22,11 +22,10 @@ from matplotlib.ticker import MaxNLocator
 from PIL import Image
 
 from fingerpad.results.files import replace
+from fingerpad.results.palette import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, SKY, VERMILION, YELLOW  # noqa: F401
 from fingerpad.results.quantities import SYMBOL
 from variational.state import ContactState
 
-BLACK, ORANGE, SKY, GREEN, YELLOW = "#000000", "#E69F00", "#56B4E9", "#009E73", "#F0E442"
-BLUE, VERMILION, PURPLE, GREY = "#0072B2", "#D55E00", "#CC79A7", "#999999"
 CATEGORIES = (BLUE, VERMILION, GREEN, PURPLE, SKY, ORANGE, BLACK)
 MARKERS = ("o", "s", "^", "D", "v", "P", "X")
 STATE = {"uncharged": SKY, "charged": BLUE, "full_slip": VERMILION}

@@ -1,7 +1,7 @@
 """What a person at a terminal gets of a run: one line a step, a progress bar and the time that is left.
 
-Launchers of MPI give each rank a number in the environment, so that it is there before MPI has started. mpirun prints
-through a terminal of its own, whatever its output goes to: under a launcher, the output of the launcher counts.
+mpirun prints through a terminal of its own, whatever its output goes to: under a launcher, the output of the launcher
+counts.
 """
 
 import math
@@ -12,14 +12,13 @@ import time
 from collections.abc import Callable, Collection
 from typing import TYPE_CHECKING, TextIO
 
+from fingerpad import launcher
 from fingerpad.results.quantities import PER_LENGTH, cell
 from variational.state import ContactState, StepRecord
 
 if TYPE_CHECKING:
     from mpi4py import MPI
 
-_RANKS = ("OMPI_COMM_WORLD_RANK", "PMIX_RANK", "PMI_RANK", "MV2_COMM_WORLD_RANK", "SLURM_PROCID")
-_SIZES = ("OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "MV2_COMM_WORLD_SIZE")
 _TERMINAL = r"/dev/(pts/\d+|tty\w*|console)"
 _LEGEND = (
     "f_ext: external force on the bone; U: voltage; bone x, bone y: its place; f_T: friction; µ_app = f_T / f_ext",
@@ -37,22 +36,6 @@ _ROUNDOFF = 1e-9  # of a load's end
 _SHORT = 1.0  # s, below which no time is printed
 
 
-def rank() -> int:
-    """Return the rank of this process under a launcher of MPI, 0 without one."""
-    return _rank() or 0
-
-
-def ranks() -> int:
-    """Return the number of processes that a launcher of MPI has started, 1 without one."""
-    given = (os.environ.get(name, "") for name in _SIZES)
-    return next((int(text) for text in given if text.isdecimal()), 1)
-
-
-def launched() -> bool:
-    """Return whether a launcher of MPI has started this process."""
-    return _rank() is not None
-
-
 def watched(stream: TextIO | None = None) -> bool:
     """Return whether a person watches a stream, to whom progress bars and colours may be shown.
 
@@ -60,14 +43,9 @@ def watched(stream: TextIO | None = None) -> bool:
         stream: standard output if None.
     """
     stream = sys.stdout if stream is None else stream
-    if rank() or os.environ.get("NO_COLOR") or os.environ.get("TERM", "dumb") == "dumb" or not stream.isatty():
+    if launcher.rank() or os.environ.get("NO_COLOR") or os.environ.get("TERM", "dumb") == "dumb" or not stream.isatty():
         return False
-    return _rank() is None or _launcher_is_watched()
-
-
-def _rank() -> int | None:
-    given = (os.environ.get(name, "") for name in _RANKS)
-    return next((int(text) for text in given if text.isdecimal()), None)
+    return not launcher.launched() or _launcher_is_watched()
 
 
 def _launcher_is_watched() -> bool:

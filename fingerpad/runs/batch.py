@@ -13,8 +13,7 @@ import sys
 import time
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-
-from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
+from typing import TYPE_CHECKING
 
 from fingerpad.reduced.registry import find
 from fingerpad.results.files import below, lock_file, replace_json
@@ -25,6 +24,9 @@ from fingerpad.runs.processes import End, Pool, limit_processor_time, run
 from fingerpad.runs.solve import OF_THE_MACHINE, Summary, ended, gone_on, summary
 from fingerpad.scene import Scene, SceneError, from_data
 from fingerpad.scene.reading import DEFAULT_MODEL
+
+if TYPE_CHECKING:
+    from rich.progress import Progress
 
 _LIMIT = 900.0  # s of processor time for one scene
 
@@ -39,8 +41,16 @@ def result(scene: Scene, folder: Path) -> Summary | None:
     return ended(summary(folder / key(scene)))
 
 
-def progress(quiet: bool = False) -> Progress:
+def progress(quiet: bool = False) -> "Progress":
     """Return a bar of things done and time taken; nothing where the output is no terminal, or ``quiet`` is given."""
+    from rich.progress import (  # where it is shown
+        BarColumn,
+        MofNCompleteColumn,
+        Progress,
+        TextColumn,
+        TimeElapsedColumn,
+    )
+
     columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn())
     bar = Progress(*columns, TimeElapsedColumn(), transient=True)
     bar.disable = quiet or not watched()

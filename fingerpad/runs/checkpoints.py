@@ -16,10 +16,10 @@ from variational.snapshot import Snapshot
 from variational.solvers.outcome import Counts
 from variational.solvers.snapshot import SkinState, StateSnapshot
 from variational.solvers.target import Control, Progress
-from variational.state import ContactState, Errors, RidgeStates, Sites, Skin, StepRecord
+from variational.state import ContactState, Errors, RidgeStates, Sites, Skin, StepRecord, Stimuli
 
 _KEPT = (
-    *(ContactState, RidgeStates, Sites, StepRecord, Errors, Skin, Control, Counts, Progress),
+    *(ContactState, RidgeStates, Sites, Stimuli, StepRecord, Errors, Skin, Control, Counts, Progress),
     *(State, StateSnapshot, SkinState, View, Snapshot),
 )
 """Classes of what a checkpoint holds."""

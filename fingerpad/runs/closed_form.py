@@ -75,7 +75,7 @@ class ClosedForm:
         return at_indentation(finger, made, deepest(finger, made), scene.slices.count).totals["f_ext"]
 
     def _total(self, scene: Scene) -> Total:
-        found = traces.Reach(scene, partial(self._traced, scene.replace(force=None))).follow(STATE).total
+        found = traces.Reach(scene, partial(self._traced, scene.model_copy(update={"force": None}))).follow(STATE).total
         assert found is not None
         return found
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from fingerpad.results import terminal
+from fingerpad import launcher
 from fingerpad.results.folder import Folder, Serial
 from fingerpad.results.quantities import Output
 from fingerpad.scene import Scene
@@ -39,7 +39,7 @@ class RunContext:
         """Communicator of the run: of all ranks by default, and of this process alone where there is no MPI."""
         if self.comm is not None:
             return self.comm
-        if not terminal.launched():  # nor do the libraries of finite elements start
+        if not launcher.launched():  # nor do the libraries of finite elements start
             return Serial()
         try:
             from fingerpad.startup import MPI

@@ -82,7 +82,7 @@ def _run(scene: Scene, session: Session, kept: dict[str, Any] | None) -> Result:
         more = kept["both_halves"] and not model.options.both_halves
         options = model.options.with_both_halves() if more else model.options
         model = model.changed(mesh=MeshSize(**kept["mesh"]), options=options)
-        writer.log.info("goes on after step %d of an earlier run", len(kept["report"]["states"]))
+        writer.log.info("goes on after step %d of an earlier run", len(kept["states"].items))
         console.show(f"fingerpad: going on with a run of {kept['seconds'][0]:.0f} s; its steps are listed again")
     try:
         with session.interrupt:

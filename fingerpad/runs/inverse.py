@@ -218,7 +218,8 @@ class _Problem:
 
     def _root(self, search: Roots, place: float) -> Root:
         scene = self._at(place)
-        closed, value = self._form.result(scene), self._value(scene)
+        value = search.values[place] * (self._base(scene) if self._target.relative else 1.0)
+        closed = self._form.result(scene)
         share, margin = self._share(closed), math.nan
         if share is not None:
             margin = abs(share * search.values[place] / search.slope(place))

@@ -3,7 +3,7 @@
 One simulation has all traces (:mod:`fingerpad.runs.branches`), on the mesh of a run's path, whose elements are twice as
 large as the scene's. The state of each trace about at the centre of the finger, and one under a smaller force
 (:data:`fingerpad.runs.branches.KEPT`), are solved for again on the scene's own mesh, finest where their contact ends.
-These correct the traces (:mod:`fingerpad.slices.correction`).
+These correct the traces (:mod:`fingerpad.slices.correction`); the stability of those at the centre is examined there.
 
 Where full slip depends on its past, where an accuracy is asked for, or where a state is not found this way, the traces
 are runs of their own (:mod:`fingerpad.slices.traces`).
@@ -170,7 +170,8 @@ class _Newtons:
         }
         self._interrupt.stop_if_asked(self._steps)
         coarse = {words: state for words, (_, state) in anchors.items()}
-        fine = solve_again(model.changed(mesh=model.final), coarse, self._comm)
+        centre = {name: words for words, (name, _) in anchors.items()}  # the last of each
+        fine = solve_again(model.changed(mesh=model.final), coarse, self._comm, examined=centre.values())
         branches.counts.add(Counts(fine.newton, fine.factorisations))
         pairs: dict[str, list[Pair]] = {name: [] for name in branches.found}
         for words, (name, state) in anchors.items():

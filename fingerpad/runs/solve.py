@@ -9,10 +9,11 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from fingerpad import launcher
 from fingerpad.installed import needed_by, source, version
 from fingerpad.reduced.closure_band import with_band
 from fingerpad.reduced.registry import find
-from fingerpad.results import dataset, terminal
+from fingerpad.results import dataset
 from fingerpad.results.files import below, read_object, replace_json
 from fingerpad.results.folder import Serial, identity, on_rank_0
 from fingerpad.results.quantities import Output
@@ -78,7 +79,7 @@ def run(
     result = solved(scene, way, context)
     if result.interrupted:
         raise stopped(result)
-    if result.failure and terminal.rank() == 0:
+    if result.failure and launcher.rank() == 0:
         warnings.warn(result.failure, stacklevel=2)
     return result
 

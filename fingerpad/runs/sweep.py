@@ -11,10 +11,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from fingerpad import launcher
 from fingerpad.installed import source, version
 from fingerpad.reduced.registry import MODELS, find
 from fingerpad.report.write import attempt
-from fingerpad.results import terminal
 from fingerpad.results.files import below, check_folder, replace_json
 from fingerpad.results.quantities import Output
 from fingerpad.results.quantities import checked as checked_outputs
@@ -81,7 +81,7 @@ def sweep(
         raise SceneError(f"states is {show(states)}; it must be {' or '.join(map(repr, STATES))}")
     if states != STATES[0] and not way.path:
         raise SceneError(f"states is {states!r} and model {model!r}; full slip alone is of the model 'full'")
-    if terminal.ranks() > 1:
+    if launcher.ranks() > 1:
         raise SceneError("a sweep runs its points in processes of its own; start it without mpirun, and use jobs")
     if not isinstance(jobs, Integral) or jobs < 1:
         raise SceneError(f"jobs is {show(jobs)}; it must be a whole number, at least 1")

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fingerpad.reduced.closure_band import with_band
-from fingerpad.results import dataset
+from fingerpad.results import dataset, netcdf
 from fingerpad.results.closures import KNOWN
 from fingerpad.results.files import replace
 from fingerpad.results.quantities import FINGER, PER_LENGTH, Output
@@ -140,13 +140,17 @@ class Sweep:
             attributes are the parameters that all points share. Under a force on the whole finger there are
             sums over it alone.
         """
-        return _dataset(self)
+        import xarray  # brings pandas, which the file does not need
+
+        found, coordinates, attributes = _variables(self)
+        coords = {name: value for name, value in found.items() if name in coordinates}
+        data = {name: value for name, value in found.items() if name not in coordinates}
+        return xarray.Dataset(data, coords, attributes)
 
     def save(self) -> str:
         """Write ``sweep.nc`` into the folder; return why not in one sentence, empty where it was written."""
         assert self.folder is not None
-        content = self.to_xarray().to_netcdf(engine="scipy", format="NETCDF3_64BIT")
-        return dataset.write(self.folder / FILE, bytes(content))
+        return dataset.write(self.folder / FILE, netcdf.encoded(*_variables(self)))
 
     def to_csv(self, path: str | Path) -> None:
         """Write the rows as a table."""
@@ -200,10 +204,8 @@ def _alike(caution: str) -> str:
     return re.sub(r"[-+]?\d[\d.]*(e[-+]?\d+)?(, (?=\d))?", "", caution)
 
 
-def _dataset(sweep: Sweep) -> "xarray.Dataset":
-    """Return a sweep with at least one point as a dataset."""
-    import xarray
-
+def _variables(sweep: Sweep) -> tuple[dataset.Variables, tuple[str, ...], dict[str, Any]]:
+    """Return the variables of a sweep with at least one point, the names of its coordinates, and its attributes."""
     shape = [len(values) for values in sweep.axes.values()]
     axes = tuple(sweep.axes)
     points = [_of_point(result, sweep.whole) for result in sweep.results]
@@ -217,9 +219,7 @@ def _dataset(sweep: Sweep) -> "xarray.Dataset":
         meant = described(key)
         unit, words = ("1", key) if meant is None else (meant.unit or "1", meant.meaning)
         found[key] = (key,), _coordinate(along), {"units": unit, "long_name": words}
-    coords = {name: value for name, value in found.items() if name in (*axes, *dataset.COORDINATES)}
-    data = {name: value for name, value in found.items() if name not in coords}
-    return xarray.Dataset(data, coords, _shared(sweep))
+    return found, (*axes, *dataset.COORDINATES), _shared(sweep)
 
 
 def _stacked(points: Sequence[dataset.Variables], axes: tuple[str, ...], shape: Sequence[int]) -> dataset.Variables:

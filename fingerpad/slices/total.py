@@ -1,8 +1,9 @@
 """The finger along its axis, and the sum over its slices: forces in N and areas in m², at an indentation or a force."""
 
+import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from functools import cache, cached_property
+from functools import cache, cached_property, lru_cache
 from typing import Any
 
 import numpy as np
@@ -18,6 +19,8 @@ Array = NDArray[np.float64]
 Floats = NDArray[np.floating[Any]]
 _SEARCHED = 2001  # places along the finger between which ends of contact are looked for
 _SEARCHED_FOR_DEEPEST = 4001  # places along the finger among which the first to end its trace is looked for
+_DOUBLINGS = 6  # of the depth, from the least one tried to the end of the trace
+_TINY = 1e-300  # N, of a logarithm
 TOTALS = {
     "f_ext": "f_ext",
     "f_t": "f_t",
@@ -113,6 +116,7 @@ class Profile:
         return float(brentq(lambda z: delta - float(self.rise(z)), a, b, xtol=1e-15))
 
 
+@lru_cache(maxsize=64)
 def profile(slices: Slices) -> Profile:
     """Return the finger that a scene's table describes; tables are interpolated monotonically, by cubics."""
     places = None if slices.z is None else np.array(slices.z)
@@ -233,22 +237,30 @@ def at_force(profile: Profile, trace: Trace, force: float, count: int) -> Total:
         SceneError: the pad has no contact, or more of it than the finger has.
     """
     (_, touch), most = profile.lowest, deepest(profile, trace)
+    totals = dict[float, Total]()
 
-    def excess(delta: float) -> float:
-        return at_indentation(profile, trace, delta, count).totals["f_ext"] - force
+    def excess(x: float) -> float:
+        """Return the logarithm of the force over the one looked for, nearly a straight line over that of the depth."""
+        if x not in totals:
+            totals[x] = at_indentation(profile, trace, touch + math.exp(x), count)
+        return math.log(max(totals[x].totals["f_ext"], _TINY) / force)
 
-    low, high = touch, touch
-    while True:  # from the first touch, so that a force within the finger is found before its ends are reached
-        low, high = high, min(touch + 2 * max(high - touch, (most - touch) / 64), most)
-        if excess(high) >= 0:
-            break
-        if high >= most:
-            raise BeyondTrace(
-                f"the force is {force:.4g} N, and the trace of the cross-section to {trace.end[1]:.4g} N/m goes up to "
-                f"{excess(high) + force:.4g} N of the whole finger; give a trace to a larger force"
-            )
-    delta = brentq(excess, low, high, xtol=1e-16, rtol=1e-14)
-    return at_indentation(profile, trace, float(delta), count)
+    high = math.log(most - touch)
+    try:
+        above = excess(high)
+    except SceneError:  # the finger ends before its trace: from the first touch on, as far as there is a finger
+        high -= _DOUBLINGS * math.log(2)
+        while (above := excess(high)) < 0:
+            high += math.log(2)
+    if above < 0:
+        raise BeyondTrace(
+            f"the force is {force:.4g} N, and the trace of the cross-section to {trace.end[1]:.4g} N/m goes up to "
+            f"{totals[high].totals['f_ext']:.4g} N of the whole finger; give a trace to a larger force"
+        )
+    low = high - above  # the force grows with the depth at least, as a rule faster
+    while excess(low) > 0:
+        low -= math.log(2)
+    return totals[float(brentq(excess, low, high, xtol=1e-15, rtol=4 * np.finfo(float).eps))]
 
 
 def under_one_force(profile: Profile, traces: Mapping[str, Trace], count: int) -> dict[str, Total]:

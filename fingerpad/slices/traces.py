@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from fingerpad.results.answer import Cost
+from fingerpad.results.quantities import STABILITY
 from fingerpad.results.result import Result
 from fingerpad.results.states import WORDS
 from fingerpad.scene import Scene
@@ -237,6 +238,7 @@ def _section(traced: Traced, name: str, depth: float) -> ContactState:
         bone_height=-depth,
         ridges_in_contact=near.ridges_in_contact,
         mesh_contact=near.mesh_contact if end is None else end.mesh_contact,
+        **({} if end is None else {key: getattr(end, key) for key in STABILITY}),
         all_slip=name == "full_slip",
         slip_held=name == "full_slip",
         error=Errors(**known),

@@ -46,6 +46,7 @@ _ROUNDOFF = 2e-16  # relative
 _STEP = 1e-9  # of Newton's method, relative; the next one would be of its square
 _TOLERANCE = 1e-14  # of the pressure, relative
 _ITERATIONS = 100  # of a root, at most; bisection to roundoff takes 60
+_NO_EDGE = 1e-6  # relative difference of gap and reach behind which there is no root
 
 
 class NoEquilibriumError(ValueError):
@@ -153,7 +154,7 @@ class Cylinder:
             """Return the logarithm of the gap over the reach, and its derivative with respect to y = ln(m - 1)."""
             beyond = np.exp(y)
             m, root = 1 + beyond, np.sqrt(beyond * (2 + beyond))
-            angle, logarithm = np.arcsinh(root), np.log1p(beyond)
+            angle, logarithm = np.log1p(beyond + root), np.log1p(beyond)  # arcosh m, ln m
             round_part, pulled_part = m * root - angle, root * angle - m * logarithm
             a, slope = self._half_width(loads, beyond, sigma)
             bent, pulled = a / self.radius, 4 * sigma / (np.pi * loads.modulus)
@@ -164,9 +165,16 @@ class Cylinder:
 
         low, high, y = (np.full_like(sigma, np.log(end)) for end in (_LEAST, _LARGEST, 1.0))
         y = y if near is None else np.log(near)
-        none = np.zeros_like(sigma, dtype=bool) if near is not None else opening(high)[0] < 0
-        if near is None and loads.half is None:
-            none |= opening(low)[0] > 0
+        for _ in range(_ITERATIONS):
+            value, slope = opening(y)
+            low, high = np.where(value < 0, y, low), np.where(value < 0, high, y)
+            step = value / slope
+            inside = (y - step > low) & (y - step < high)
+            small = abs(step) <= _STEP + 4 * _ROUNDOFF * np.exp(-y)  # the gap is a difference, good to 1e-16 / (m - 1)
+            y = np.where(inside | small, y - step, (low + high) / 2)
+            if small.all():
+                return np.exp(y)
+        none = abs(opening(y)[0]) > _NO_EDGE
         if none.any():
             k = int(np.argmax(none))
             raise NoEquilibriumError(
@@ -176,15 +184,6 @@ class Cylinder:
                 else f"no contact bears {loads.f[k]:g} N/m under an attraction of {sigma[k]:.3g} Pa; "
                 "try a smaller voltage or another force"
             )
-        for _ in range(_ITERATIONS):
-            value, slope = opening(y)
-            low, high = np.where(value < 0, y, low), np.where(value < 0, high, y)
-            step = value / slope
-            inside = (y - step > low) & (y - step < high)
-            small = abs(step) <= _STEP + 4 * _ROUNDOFF * np.exp(-y)  # the gap is a difference, good to 1e-16 / (m - 1)
-            y = np.where(inside | small, y - step, (low + high) / 2)
-            if small.all():
-                break
         return np.exp(y)
 
     # -- the microscale --------------------------------------------------------------------------------
@@ -195,7 +194,7 @@ class Cylinder:
         loads = _Loads(f, np.broadcast_to(np.asarray(self.modulus, dtype=float), f.shape), half)
         count, every = len(f), len(_PRESSURES)
         grid = loads[np.tile(np.arange(count), every)]
-        values = self._excess(_PRESSURES, voltage, grid)[1].reshape(every, count)
+        beyond, values = (each.reshape(every, count) for each in self._excess(_PRESSURES, voltage, grid))
         crossed = np.sign(values[:-1]) != np.sign(values[1:])
         none = ~crossed.any(axis=0) | (values[-1] <= 0)
         if none.any():
@@ -204,7 +203,7 @@ class Cylinder:
                 f"ridge at {'a drive' if callable(voltage) else f'{voltage:g} V'}; try another force or length"
             )
         k, load = np.nonzero(crossed)
-        crossing, near = loads[load], None
+        crossing, near = loads[load], beyond[k, load]
 
         def excess(p_c: Array) -> Array:
             nonlocal near
@@ -212,12 +211,13 @@ class Cylinder:
             return found
 
         roots = _roots(excess, (_PRESSURES[k], values[k, load]), (_PRESSURES[k + 1], values[k + 1, load]))
-        found = [roots[load == n] for n in range(count)]  # of growing pressure
-        p_c = np.array([pressures[-1] for pressures in found])
-        a, beyond, sigma, d_eq = self._at(p_c, voltage, loads)
-        attraction = 2 * sigma * a * (1 + beyond)
-        columns: Any = np.array([2 * a, 2 * a * (1 + beyond), p_c, d_eq, f + attraction, attraction]).T.tolist()
-        others = (tuple(map(float, pressures[:-1])) for pressures in found)
+        found = [np.flatnonzero(load == n) for n in range(count)]  # places of growing pressure
+        last = np.array([places[-1] for places in found])
+        p_c = roots[last]
+        a, edge, sigma, d_eq = self._at(p_c, voltage, loads, near[last])
+        attraction = 2 * sigma * a * (1 + edge)
+        columns: Any = np.array([2 * a, 2 * a * (1 + edge), p_c, d_eq, f + attraction, attraction]).T.tolist()
+        others = (tuple(map(float, roots[places[:-1]])) for places in found)
         return [RidgeState(*(*each, more)) for each, more in zip(columns, others, strict=True)]
 
     def _at(

@@ -16,6 +16,7 @@ The elements behind the skin belong to it: the skin's nodes alone, with all othe
 move. A second row of elements saves no factorisation.
 """
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -43,13 +44,18 @@ _MARGIN = 2.0  # the same, when it is made anew
 
 
 class _Weak:
-    """A form of the problem, compiled and searched for its fields once, for all layers."""
+    """A form of the problem, compiled and searched for its fields once, for all layers.
+
+    ``fem.create_form`` searches the form for its fields each time, and reads nothing else of it. So it is given the
+    list of the fields in its place.
+    """
 
     def __init__(self, V: fem.FunctionSpace, form: ufl.Form) -> None:
-        self._compiled = fem.compile_form(V.mesh.comm, form, jit_options=jit.OPTIONS)
+        compiled = fem.compile_form(V.mesh.comm, form, jit_options=jit.OPTIONS)
         self._mesh, self._spaces = V.mesh, [V] * len(form.arguments())
         self._fields = {each: each for each in ufl.algorithms.extract_coefficients(form)}
         self._constants = {each: each for each in ufl.algorithms.analysis.extract_constants(form)}
+        self._compiled = replace(compiled, ufl_form=ufl.classes.ExprList(*self._fields, *self._constants))
 
     def over(self, domains: Domains) -> fem.Form:
         """Return the form over some of the cells and facets."""
