@@ -69,7 +69,7 @@ def test_estimate_says_where_its_error_is_not_known(capsys):
         ("estimate --plot mu.txt", "mu.txt cannot be a picture; its name must end with one of .png"),
         ("params zebra", "no key of a scene has zebra in its name"),
         ("mesh --out finger.stl", "finger.stl cannot be a mesh; its name must end with .msh"),
-        ("sweep --over model=full,cylinders", "model is varied and is no key of a scene; a sweep has one model for all"),
+        ("sweep --over model=full,cylinders", "model is varied and is no key of a scene; a sweep has one model"),
         ("sweep --over out=1,2 --model cylinders", "out is varied and is no key of a scene"),
         ("paper 7 --jobs=", "argument --jobs: an empty text is not allowed; it must be a whole"),
         ("compare --ridges 3", "one of --contact-length and --ridges is given without the other"),
