@@ -316,5 +316,5 @@ def _curves(table: Table) -> dict[str, Any]:
             found = [row.get(f"{column}{end}") for row in rows]
             curve[f"{place}{end}"] = [None if value is None else value * scales.get(column, 1.0) for value in found]
         curves.append(curve)
-    titles = {place: title for place, (_, title) in charts.items()}
-    return {"along": head_of(along, "title"), "curves": curves, "charts": titles}
+    titles = {place: html.typeset(title) for place, (_, title) in charts.items()}
+    return {"along": html.typeset(head_of(along, "title")), "curves": curves, "charts": titles}
