@@ -208,7 +208,8 @@ def _others() -> str:
     """Return how far the attraction is known over other screens and friction coefficients."""
     parts = [
         f"{100 * each.errors[cylinder_errors.WHOLE]['f_electrostatic']:.1f} % at friction coefficients of "
-        f"{each.ranges['friction'][0]:.2g} to {each.ranges['friction'][1]:.2g}"
+        f"{each.ranges['friction'][0]:.2g} to {each.ranges['friction'][1]:.2g} and an attraction of up to "
+        f"{each.ranges[cylinder_errors.PULL][1]:.2g} times the force"
         for each in cylinder_errors.REGIONS[1:]
     ]
     of = " Over other screens, and larger forces and voltages, it is known for the whole finger to"
