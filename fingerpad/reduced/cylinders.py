@@ -53,8 +53,8 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 _ELSE = (
-    "use the model 'full', as fingerpad run does, or the command compare with --contact-length and --ridges, or with "
-    "the --run of a folder"
+    "take the model 'full', fingerpad run, a minute or two; or give its contact to compare: --contact-length and "
+    "--ridges, or the --run of a folder"
 )
 
 
