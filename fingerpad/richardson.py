@@ -1,7 +1,8 @@
 r"""Discretisation error of states from their values on other meshes: on two, or one mesh parameter after the other.
 
 **Two meshes.** A run without an accuracy has its named states on two meshes, those of its path and of its results, with
-elements of 2 h and h. Their difference makes the error (:func:`of_two_meshes`).
+elements of 2 h and h. Their difference makes the error (:func:`of_two_meshes`). Of two whole paths it makes an error
+over time too (:func:`of_two_paths`).
 
 **An accuracy** is met on one mesh after the other. A mesh parameter is a set of element sizes, or the step size, that
 is halved at once. Parameters are halved one at a time and never two in one solve, so that each change of a quantity q
@@ -64,6 +65,9 @@ highest pressure, were chosen on the same scenes.
 ``docs/two_meshes.json`` has the values on the three meshes, ``benchmarks/two_meshes.py`` counts the cases for
 ``docs/two_meshes.md``, and ``tests/test_calibration.py`` holds the factors to it.
 """
+FEW_FACETS = 4
+"""Facets in contact on a ridge below which its length changes by accident with the mesh, and the effect of a rigid
+screen is doubtful: at two or three, a few Gauss points bear the contact, and their number changes."""
 ORDER = 0.75
 """In one over the stiffness, of what the penalty changes."""
 
@@ -122,6 +126,7 @@ def of_two_meshes(
     degree: int = 2,
     safety: float = TWO,
     sites: float = SITES,
+    short: bool = True,
 ) -> dict[str, float]:
     r"""Return the error of each quantity on the finer of two meshes, one with all elements twice as large, in its unit.
 
@@ -129,11 +134,13 @@ def of_two_meshes(
 
     Lengths in contact have the error of the facets where contact ends, of first order in these, and r is how much
     shorter they are. All else has that of all elements, r = 2, with p = 2 (1 with linear elements), and p = 3/2 for the
-    highest pressure, which means over facets give. The change of a single number may come out small by accident. So
-    the relative error at a site in the skin is at least a part of the median of all sites' of its state. Lengths and
-    friction are sums over ridges, whose changes are taken as independent: their root of squares counts where it is
-    larger. Of the highest pressure the changes of all ridges count that have half of it or more, by their root of mean
-    squares.
+    highest pressure, which means over facets give. Where facets are not shorter where contact ends, friction has the
+    order and the ratio of lengths, since attraction depends on the edge of contact.
+
+    The change of a single number may come out small by accident. So the relative error at a site in the skin is at
+    least a part of the median of all sites' of its state. Lengths and friction are sums over ridges, whose changes are
+    taken as independent: their root of squares counts where it is larger. Of the highest pressure the changes of all
+    ridges count that have half of it or more, by their root of mean squares.
 
     Args:
         coarse: values on the mesh with elements twice as large.
@@ -142,10 +149,11 @@ def of_two_meshes(
         degree: polynomial degree of the elements.
         safety: factor of safety s.
         sites: that part of the median.
+        short: whether facets are shorter where contact ends than elsewhere.
     """
-    found = {}
+    found, first_order = {}, ("contact_length", *(() if short else ("f_t", "mu_app")))
     for name in (name for name in fine if name in coarse):
-        of_ends = name.endswith("contact_length")
+        of_ends = name.endswith(first_order)
         state = next((prefix for prefix in facets if name.startswith(f"{prefix}_")), None)
         ratio = facets[state][0] / facets[state][1] if of_ends and state else 2.0
         order = 1 if of_ends else min(degree, 1.5 if name.endswith("p_max") else 2)
@@ -155,6 +163,21 @@ def of_two_meshes(
         relative = np.array([found[name] for name in names]) / np.where(values > 0, values, np.inf)
         found |= dict(zip(names, np.maximum(relative, sites * np.median(relative)) * values, strict=True))
     return {name: float(error) for name, error in found.items()}
+
+
+def of_two_paths(differences: Mapping[str, float], ratio: float) -> dict[str, float]:
+    r"""Return the error over time of the finer of two paths, one with all elements twice as large, in the unit given.
+
+    .. math:: E = s \frac{\max_t |q(2h) - q(h)|}{r - 1}
+
+    It is of first order: the largest difference belongs to the time and the site at which edges between nodes matter
+    most, of contact and of skin that sticks. The factor of safety s is :data:`TWO`.
+
+    Args:
+        differences: largest difference over time by quantity.
+        ratio: r, of the facets that can touch, coarse over fine.
+    """
+    return {name: TWO * difference / (ratio - 1) for name, difference in differences.items()}
 
 
 def _sites(names: Iterable[str]) -> list[list[str]]:

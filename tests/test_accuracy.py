@@ -9,7 +9,8 @@ import pytest
 from mpi4py import MPI
 
 from fingerpad.accuracy import solves
-from fingerpad.accuracy.refinement import Refinement, with_errors
+from fingerpad.accuracy.estimate import with_errors
+from fingerpad.accuracy.refinement import Refinement
 from fingerpad.accuracy.solves import Solves
 from fingerpad.accuracy.states import Solve, State
 from fingerpad.model.options import FingerModel, by_rule, plan

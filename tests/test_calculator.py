@@ -144,6 +144,7 @@ def test_whole_finger_is_that_of_python(tmp_path):
         for voltage in (0.0, 120.0, 200.0)
         for force in (0.03, 0.6)
     ]
+    scenes += [{"voltage": 120.0, "force": 0.6, "friction": friction} for friction in (0.15, 0.9)]
     scenes += [{"voltage": 200.0, "force": force, "friction": 0.25} for force in (1e-5, 50.0, 200.0)]
     default = in_si({key: field.value for key, field in FIELDS.items()})
     program = f"""console.log(JSON.stringify({json.dumps([default | scene for scene in scenes])}.map((p) => {{
@@ -155,7 +156,7 @@ def test_whole_finger_is_that_of_python(tmp_path):
       }}
     }})));"""
     answers = by_script(program, tmp_path)
-    assert [isinstance(found, str) for found in answers] == [False] * 7 + [True] * 2
+    assert [isinstance(found, str) for found in answers] == [False] * 9 + [True] * 2
     for scene, found in zip(scenes, answers, strict=True):
         if isinstance(found, str):
             with pytest.raises(SceneError):

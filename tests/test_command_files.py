@@ -148,6 +148,13 @@ def test_two_meshes_are_named_where_there_are_two(capsys, tmp_path, errors):
     assert (said in capsys.readouterr().out) == errors
 
 
+def test_whole_path_on_two_meshes_is_named(capsys, tmp_path):
+    """With viscous layers."""
+    words = [*COARSE, 'materials.dermis.viscosity={preset="fingerpad"}']
+    assert main(["check", "--out", str(tmp_path), *(word for text in words for word in ("--set", text))]) == 0
+    assert "the path on these, and once more on elements 2 times as large" in capsys.readouterr().out
+
+
 def test_mesh_beyond_the_memory_is_refused(capsys):
     """It is meshed, and passes the bound; the refusal has the number of its unknowns."""
     words = [word for text in (*COARSE, "numerics.memory=0.35e9") for word in ("--set", text)]

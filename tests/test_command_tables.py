@@ -10,7 +10,7 @@ from fingerpad.cli import main, ranges, roughness, sweep
 from fingerpad.reduced import cylinders
 from fingerpad.runs.sweep import sweep as run_sweep
 from fingerpad.scene import Scene, from_data, keys, load
-from tests.commands import refused
+from tests.commands import ROOT, refused
 from tests.measures import rows_of
 from variational.roughness.bam import BearingArea
 
@@ -175,6 +175,13 @@ def test_sweep_and_run_have_folders_of_their_own(tmp_path, capsys):
 
 
 # -- models side by side -----------------------------------------------------------------------------------
+def test_compare_says_why_a_model_has_no_values(capsys):
+    """In one sentence below a column of dashes."""
+    assert main(["compare", str(ROOT / "demos" / "scenes" / "small_finger.toml"), "--model", "cylinders"]) == 1
+    out = capsys.readouterr().out
+    assert "cylinders: no values, since geometry is not that of the default finger" in out
+
+
 def test_compare_takes_a_length_with_a_unit(capsys):
     printed = []
     for length in ("1.58 mm", "1.58e-3"):

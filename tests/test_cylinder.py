@@ -99,6 +99,18 @@ def test_voltage_widens_the_contact():
     assert lengths[0] < 1.02 * lengths[0] < lengths[1] < 1.02 * lengths[1] < lengths[2]
 
 
+@pytest.mark.parametrize("voltage", [0.0, 100.0, 200.0])
+def test_modulus_that_grows_with_pressure(voltage):
+    """The state is that of the constant modulus which it has at its own pressure."""
+    forces, growth = [0.1, 3.0], 4.0
+    grown = Cylinder(RADIUS, MODULUS, H_0, BearingArea(H_0), lambda p_c: growth * p_c)
+    for f, state in zip(forces, grown.under_loads(forces, voltage), strict=True):
+        modulus = MODULUS + growth * state.p_c
+        same = Cylinder(RADIUS, modulus, H_0, BearingArea(H_0)).under_loads([f], voltage)[0]
+        assert (state.length, state.p_c) == pytest.approx((same.length, same.p_c), rel=1e-9)
+        assert state.length < ridge().under_loads([f], voltage)[0].length
+
+
 def test_branch_in_contact_is_taken_and_the_others_are_named():
     """Near 0.05 kPa and 200 V a flat ridge has three states; the one in contact has the smallest air gap.
 

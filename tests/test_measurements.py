@@ -116,6 +116,33 @@ def test_no_column_is_guessed(grid, columns, words):
         fp.compare(frame, grid, columns)
 
 
+@pytest.mark.parametrize(
+    ("given", "words"),
+    [
+        ({"table": [[75, 0.3]]}, "table is of the type list; it must be a DataFrame of pandas, or the path"),
+        ({"result": None}, "result is of the type NoneType; it must be a result of fp.run, a sweep"),
+        ({"result": fp.Body(fp.geometry.block(1e-3, 1e-4, 1e-4), fp.NeoHooke(1e5, 0.4))}, "result is of the type Body"),
+        ({"result": [Scene()]}, "result is of the type Scene; it must be a result of fp.run, a sweep"),
+        ({"result": []}, "result is empty; it must be a result of fp.run, a sweep"),
+        ({"columns": ["friction"]}, "columns is of the type list; it must be names by heads, as {'CoF'"),
+        ({"columns": {"CoF": 3}}, "of columns, the name of 'CoF' is of the type int; it must be text"),
+        ({"state": 3}, "state is of the type int; it must be one of uncharged, charged, full slip"),
+    ],
+)
+def test_arguments_of_other_types(grid, given, words):
+    """In one sentence with the argument's name."""
+    frame = pd.DataFrame({"force (N/m)": [75.0], "voltage (V)": [100.0], "friction (1)": [0.3]})
+    with pytest.raises(SceneError, match=f"^{re.escape(words)}"):
+        fp.compare(**{"table": frame, "result": grid} | given)
+
+
+def test_named_index_is_columns(grid):
+    """As groupby and set_index make it; forces there are not taken for missing."""
+    frame = pd.DataFrame({"force (N/m)": [25.0, 75.0], "voltage (V)": [100.0, 200.0], "friction (1)": [0.3, 0.5]})
+    found = fp.compare(frame.set_index(["force (N/m)", "voltage (V)"]), grid)
+    pd.testing.assert_frame_equal(found, fp.compare(frame, grid))
+
+
 HEADS = "force (N/m), friction (1)\n"
 
 
@@ -205,6 +232,8 @@ def test_misfit_is_printed_and_drawn(folder, table, tmp_path, capsys):
 
 def test_numbers_are_written(folder, table, tmp_path, capsys):
     """In SI units and unrounded, a row for each row of every table; what is missing is empty."""
+    tmp_path = tmp_path / ("a" * 120)  # longer than what a message shows of a path
+    tmp_path.mkdir()
     first = table("force (N/mm), voltage (V), contact length (mm), spread (um)\n0.025, 100, 1, 20\n0.9, 0, 1,\n")
     second = first.rename(tmp_path / "first.csv"), table("force (N/m), voltage (V), friction (1)\n75, 100, 0.3\n")
     csv_file = tmp_path / "out.csv"
@@ -216,7 +245,7 @@ def test_numbers_are_written(folder, table, tmp_path, capsys):
         *[("contact length", "full slip", "m")] * 2,
         ("friction", "full slip", "1"),
     ]
-    assert rows[0]["table"].endswith("first.csv") and rows[0]["force_unit"] == "N/m"
+    assert rows[0]["table"] == str(tmp_path / "first.csv") and rows[0]["force_unit"] == "N/m"
     numbers = [float(rows[0][key]) for key in ("force", "voltage", "measured", "spread")]
     assert numbers == pytest.approx([25, 100, 1e-3, 2e-5], rel=1e-12)
     assert float(rows[0]["difference"]) == float(rows[0]["computed"]) - float(rows[0]["measured"])

@@ -37,11 +37,13 @@ for (let k = 0; k <= Number(slider.max); k++) {
   const about = document.getElementById("about").textContent.replaceAll("\u00a0", " ");
   seen.push([about, curve ? curve.getAttribute("d") : ""]);
 }
-const ridges = document.getElementById("ridge"), values = [];
+const ridges = document.getElementById("ridge"), values = [], beyond = [];
 for (const option of ridges.options) {
   ridges.value = option.value;
   ridges.dispatchEvent(new Event("change"));
   values.push(document.getElementById("under").textContent);
+  const map = document.getElementById("body"), colours = map.data[0], [left, right] = map._fullLayout.xaxis.range;
+  beyond.push(Math.max(colours.x0 - left, right - colours.x0 - colours.dx * (colours.z[0].length - 1)) / colours.dx);
 }
 const charts = [...document.querySelectorAll(".chart")].map((c) => [c.id, c.querySelectorAll("svg.main-svg").length]);
 const fetched = performance.getEntriesByType("resource").map((e) => e.name).filter((n) => !n.startsWith("data:"));
@@ -51,7 +53,7 @@ const gaps = ["y", "y2"].map((name) => {
   return Math.min(...left) - chart.querySelector(`.g-${name}title text`).getBoundingClientRect().right;
 });
 const root = document.documentElement;
-return { seen, values, gaps, charts, fetched, wide: root.scrollWidth, width: root.clientWidth };
+return { seen, values, beyond, gaps, charts, fetched, wide: root.scrollWidth, width: root.clientWidth };
 """
 FIRST = """
 const box = (element) => element.getBoundingClientRect();
@@ -111,6 +113,7 @@ def test_browser_opens_it_and_steps_through_the_states(page, tmp_path, size):
     assert states[-3:] == ["end of slide", "charged normal contact, final mesh", "full slip, final mesh"]
     assert all(curves) and curves[0] != curves[-1]
     assert any("air gap" in words for words in found["values"])
+    assert max(found["beyond"]) < 0.5, "the colours of the map end before its axis, by more than half a pixel of theirs"
     assert {name for name, drawn in found["charts"] if drawn} >= {"body", "skin", "one", "friction", "work"}
     assert all(drawn for _, drawn in found["charts"])
     assert all(gap > 5 for gap in found["gaps"]), "the title of an axis touches its numbers"
@@ -192,6 +195,16 @@ def test_size_of_the_error_is_told(folder, error, what, words):
     found = {each.what: each for each in trust.findings(replace(result, full_slip=state))}
     assert words in found[what].words
     assert found[what].verdict == (trust.GOOD if error < 0.02 else trust.CARE)
+
+
+@pytest.mark.parametrize(("error", "what"), [(0.019, "mesh over time"), (0.03, "the mesh is coarse over time")])
+def test_error_over_time_is_told(folder, error, what):
+    """Where paths on two meshes have one; by the same limits."""
+    result = Result.load(folder)
+    record = result.record | {"accuracy": {"over_time": {"f_t": {"difference": error / 2, "error": error}}}}
+    found = {each.what: each for each in trust.findings(replace(result, record=record))}
+    assert f"friction over time is at most {100 * error:.2g} % of its largest value" in found[what].words
+    assert not any("over time" in each.what for each in trust.findings(result))
 
 
 def test_full_slip_without_a_coefficient_has_its_force(folder):

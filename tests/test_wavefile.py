@@ -58,6 +58,17 @@ def test_text_of_wide_characters(tmp_path):
         fp.Scene(voltage={"waveform": "file", "file": str(file)})
 
 
+@pytest.mark.parametrize(
+    ("column", "factor"), [("CH1 (V)", 1.0), ("ch1", 1.0), ("CH1 (left) [kV]", -500.0), ("CH1 (left)", -500.0)]
+)
+def test_columns_are_named_as_written_with_their_units(column, factor, tmp_path, capsys):
+    """Brackets in a name belong to it; only the last ones have the unit. A command takes the same names."""
+    file = tmp_path / "scope.csv"
+    file.write_text("time (s),CH1 (V),CH1 (left) [kV]\n" + TWO, encoding="utf-8")
+    assert_allclose(table(str(file), column)["voltages"], factor * U, atol=1e-3)
+    assert main(["drive", "--file", str(file), "--column", column, "--frequency", "60"]) == 0
+
+
 def test_columns_are_chosen_by_name(tmp_path):
     """Without regard to capitals; one of two must be named."""
     file = write(tmp_path, "TIME,CH1,CH2\n" + TWO)

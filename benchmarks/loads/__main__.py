@@ -6,13 +6,15 @@ A scene is a force on the finger, a voltage, a friction coefficient and a coatin
 sequence in these five keys. Its full slip is followed over growing forces of the section, up to that at the centre of
 the finger. So a scene has errors of the section at several forces, and one of the sum over slices. States are solved
 for from neighbours, without a path. Writes docs/loads.json, docs/loads.md and its picture, and the known errors into
-fingerpad/reduced/cylinder_errors.json; prints the contact lengths that fingerpad/reduced/uncharged.py has of them.
+fingerpad/reduced/cylinder_errors.json; prints the contact lengths that fingerpad/reduced/uncharged.py has of them, and
+the number of shear of fingerpad/reduced/cylinders.py.
 """
 
 import argparse
+import itertools
 import json
 import sys
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -30,19 +32,23 @@ from benchmarks.loads.compared import (
     Compared,
     bands,
     both,
+    by_band,
     covered,
     fingers,
     fits,
-    region_of,
     regions,
     sections,
 )
 from benchmarks.loads.meshes import errors, without
 from benchmarks.loads.scenes import COUNT, LARGEST, MESHES, PULL, Data, scenes, section
+from benchmarks.loads.shear import Point, Spread, fitted, points
+from benchmarks.loads.shear import spread as errors_of
 from benchmarks.loads.states import pressed, solved
 from fingerpad.reduced import uncharged
 from fingerpad.reduced.cylinder_errors import REGIONS, WHOLE, find
+from fingerpad.reduced.cylinders import SHEAR
 from fingerpad.results.files import replace
+from fingerpad.scene import Scene
 
 _SHORT = ("f_ext", "f_t", "mu_app", "f_electrostatic", "contact_length", "ridges_in_contact", "bone_height",
           "factorisations", "failure")  # fmt: skip
@@ -67,7 +73,7 @@ def compute(args: argparse.Namespace) -> None:
     better = without(kept, errors(checked, harness.kept("models", args.docs).numbers["scenes"]))
     found = regions(bands(sections(better), fingers(better)))
     replace(REGIONS_FILE, json.dumps(found, indent=1) + "\n")
-    print(in_the_program(numbers))
+    print(f"{in_the_program(numbers)}\nSHEAR {fitted(points(better)):.2f}")
 
 
 def _pressed(folder: Path) -> list[Data]:
@@ -129,7 +135,7 @@ def draw(docs: Path) -> Path:
     mesh = errors(numbers["mesh"], harness.kept("models", docs).numbers["scenes"])
     better = without(numbers["scenes"], mesh)
     compared, whole = sections(better), fingers(better)
-    every = both(compared)
+    every, found, both_have = both(compared), bands(compared, whole), points(better)
     beyond = [each for each in every if not find(section(each.values, each.force), each.attraction / each.force)]
     states = [state for each in numbers["scenes"] for state in each["states"]]
     tried = [each for each in states if not each.get("failure", "").startswith("not tried")]
@@ -137,7 +143,9 @@ def draw(docs: Path) -> Path:
     names = {
         "every": every, "beyond": beyond, "whole": whole, "states": states, "tried": tried,
         "mesh": [(sizes["contact"], each) for sizes, some in zip(MESHES, mesh, strict=True) for each in some],
-        "regions": [judged(band, k) for k, band in enumerate(bands(compared, whole))],
+        "regions": [judged(*each) for each in zip(found, by_band(found), range(len(found)), strict=True)],
+        "shears": by_shear(both_have), "known_friction": Scene().friction, "kappa": fitted(both_have),
+        "ridges": most_ridges_fewer(both_have),
         "LEAST": LEAST, "MARGIN": MARGIN, "PART": PART, "PULL": PULL, "MESHES": MESHES,
         "WITHOUT": WITHOUT, "LARGEST": LARGEST,
         "known": [REGIONS[0].errors[key]["f_electrostatic"] for key in ("full_slip", WHOLE)],
@@ -168,9 +176,9 @@ class Judged(NamedTuple):
     fingers_inside: int | None
 
 
-def judged(band: Band, k: int) -> Judged:
-    """Return what the page has of a band."""
-    region, words = region_of(band), f"{BANDS[k]:g} to {BANDS[k + 1]:g}"
+def judged(band: Band, region: Mapping[str, Any] | None, k: int) -> Judged:
+    """Return what the page has of a band and its region."""
+    words = f"{BANDS[k]:g} to {BANDS[k + 1]:g}"
     tests = [each for each in band.whole if not fits(each)]
     places = [(each.force, each.values["voltage"], each.attraction / each.force) for each in band.some]
     limits = tuple(max(values) for values in zip(*places, strict=True))
@@ -181,6 +189,34 @@ def judged(band: Band, k: int) -> Judged:
     inside = [covered(some, error) for some, error in zip((band.tests, tests), errors, strict=True)]
     return Judged(words, limits, numbers[0], 100 * errors[0], numbers[1], inside[0], numbers[2], 100 * errors[1],
                   numbers[3], inside[1])  # fmt: skip
+
+
+def most_ridges_fewer(every: Iterable[Point]) -> int:
+    """Return by how many ridges at most a sheared finger has fewer in contact than the tables of the closed form."""
+    states = [each.state for each in every]
+    return max(int(uncharged.ridges(state["f_ext"], "full_slip")) - state["ridges_in_contact"] for state in states)
+
+
+class Sheared(NamedTuple):
+    """Points of a band of the friction coefficient, without and with shear."""
+
+    friction: str
+    role: str
+    points: int
+    without: Spread
+    own: Spread
+
+
+def by_shear(every: Sequence[Point]) -> list[Sheared]:
+    """Return what shear changes by band, of the points that make errors and of those that test them."""
+    found = []
+    for low, high in itertools.pairwise(BANDS):
+        band = [each for each in every if low <= each.values["friction"] <= high]
+        for role, test in (("make", False), ("test", True)):
+            some = [each for each in band if fits(each) != test]
+            parts = (errors_of(some, shear) for shear in (0.0, SHEAR))
+            found.append(Sheared(f"{low:g} to {high:g}", role, len(some), *parts))
+    return found
 
 
 def _paint(figure: Figure, every: Sequence[Compared]) -> None:

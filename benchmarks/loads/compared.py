@@ -3,7 +3,7 @@
 import itertools
 import math
 from collections.abc import Iterable, Mapping, Sequence
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,7 +21,7 @@ from variational.state import ContactState
 
 BANDS = (0.1, 0.35, 0.65, 1.0)
 """Friction coefficients, between which an error is found: it grows with the shear of the finger."""
-LEAST, MARGIN = 8, 1.25
+LEAST, MARGIN = 8, 1.5
 """Least number of states that make an error, and that test it; factor on what covers those that make it."""
 BLOCK = 2  # scenes of the sequence that make the error, or test it, in turn
 PART = 0.95  # of the states that the error is to cover
@@ -174,13 +174,20 @@ def _limits(some: Sequence[Compared], without: Sequence[Compared]) -> Array:
 
 
 def regions(every: Iterable[Band]) -> list[dict[str, Any]]:
-    """Return the regions in which the error is known, by band, as the program reads them.
+    """Return the regions in which the error is known, as the program reads them: those of :func:`by_band`."""
+    return [region for region in by_band(every) if region is not None]
 
-    One begins at the friction coefficient at which the one before ends; its error is the larger one.
+
+def by_band(every: Iterable[Band]) -> list[dict[str, Any] | None]:
+    """Return the region of each band in which the error is known; None where it has too few states.
+
+    One begins at the friction coefficient at which the one before ends, and its errors are no smaller.
     """
-    found = [region for band in every if (region := region_of(band)) is not None]
-    for last, region in itertools.pairwise(found):
+    found = [region_of(band) for band in every]
+    for last, region in itertools.pairwise(each for each in found if each is not None):
         region["ranges"]["friction"] = last["ranges"]["friction"][1], region["ranges"]["friction"][1]
+        for state, errors in region["errors"].items():
+            errors |= {key: max(error, last["errors"][state][key]) for key, error in errors.items()}
     return found
 
 
@@ -209,7 +216,15 @@ def _end(value: float) -> float:
     return float(f"{value:.3g}")
 
 
-def fits(one: Compared) -> bool:
+class OfScene(Protocol):
+    """What is of a scene of the sequence."""
+
+    @property
+    def scene(self) -> int:
+        """Place in the sequence."""
+
+
+def fits(one: OfScene) -> bool:
     """Return whether a scene is one that the error is made of; the others test it. :data:`BLOCK` scenes take turns."""
     return one.scene // BLOCK % 2 == 0
 

@@ -1,9 +1,9 @@
-"""What the coarse meshes add to the attraction, and states without it.
+"""What the coarse meshes change in attraction and contact length, and states without it.
 
-Beside full runs of docs/models.json the attraction on these meshes is too large, the more so the smaller the contact
-force is: facets are then long beside the contact of a ridge. The relative error is interpolated over the logarithm of
-the contact force between the loads that were checked, and held beyond them. The attraction of a state is divided by 1
-plus that error.
+Beside full runs of docs/models.json the attraction on these meshes is too large and the contact too short, the more so
+the smaller the contact force is: facets are then long beside the contact of a ridge. The relative errors are
+interpolated over the logarithm of the contact force between the loads that were checked, and held beyond them. A
+state's attraction and length are divided by 1 plus them.
 """
 
 from collections.abc import Iterable, Mapping, Sequence
@@ -27,6 +27,8 @@ class Checked(NamedTuple):
     """Relative error."""
     friction: float
     """Relative error of µ_app."""
+    length: float
+    """Relative error of the contact length."""
 
 
 def errors(states: Iterable[Data], full: Mapping[str, Any]) -> list[list[Checked]]:
@@ -41,20 +43,21 @@ def errors(states: Iterable[Data], full: Mapping[str, Any]) -> list[list[Checked
         of_mesh = []
         for f_ext, voltage in checked(which):
             run, state = full[name(f_ext, voltage)]["full"]["summary"], next(each)
-            f_el, mu_app = (state[key] / run[f"full_slip_{key}"] - 1 for key in ("f_electrostatic", "mu_app"))
-            of_mesh.append(Checked(f_ext, voltage, f_ext + state["f_electrostatic"], f_el, mu_app))
+            keys = ("f_electrostatic", "mu_app", "contact_length")
+            parts = (state[key] / run[f"full_slip_{key}"] - 1 for key in keys)
+            of_mesh.append(Checked(f_ext, voltage, f_ext + state["f_electrostatic"], *parts))
         found.append(sorted(of_mesh, key=lambda one: one.f_contact))
     return found
 
 
-def error(of_mesh: Sequence[Checked], f_contact: float) -> float:
-    """Return the relative error of the attraction at a contact force (N/m)."""
-    known, values = zip(*((each.f_contact, each.attraction) for each in of_mesh), strict=True)
+def error(of_mesh: Sequence[Checked], f_contact: float, of: str = "attraction") -> float:
+    """Return the relative error of the attraction, or of the ``length``, at a contact force (N/m)."""
+    known, values = zip(*((each.f_contact, getattr(each, of)) for each in of_mesh), strict=True)
     return float(np.interp(np.log(f_contact), np.log(known), values))
 
 
 def without(kept: Iterable[Data], known: Sequence[Sequence[Checked]]) -> list[Data]:
-    """Return kept scenes whose states have the attraction, and by it f_T and µ_app, without the error of their mesh."""
+    """Return kept scenes whose states have attraction, f_T, µ_app and length without the error of their mesh."""
     return [
         each | {"states": [_without(state, known[mesh_of(each["values"])]) for state in each["states"]]}
         for each in kept
@@ -67,4 +70,6 @@ def _without(state: Data, of_mesh: Sequence[Checked]) -> Data:
     f_ext, f_el = state["f_ext"], state["f_electrostatic"]
     better = f_el / (1 + error(of_mesh, f_ext + f_el))
     factor = (f_ext + better) / (f_ext + f_el)
-    return state | {"f_electrostatic": better, "f_t": factor * state["f_t"], "mu_app": factor * state["mu_app"]}
+    length = state["contact_length"] / (1 + error(of_mesh, f_ext + f_el, "length"))
+    found = {"f_electrostatic": better, "contact_length": length}
+    return state | found | {key: factor * state[key] for key in ("f_t", "mu_app")}

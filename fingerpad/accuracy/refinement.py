@@ -31,36 +31,28 @@ Not estimated: the effect on normal contact of a friction history that is the fi
 
 import math
 from collections.abc import Mapping
-from dataclasses import fields, replace
+from dataclasses import replace
 from typing import Any
 
+from fingerpad.accuracy.estimate import Estimate, of_key
 from fingerpad.accuracy.solves import Solves
-from fingerpad.accuracy.states import Solve, quantities, with_values
+from fingerpad.accuracy.states import Solve, quantities
 from fingerpad.model.simulation import RestartRequired
 from fingerpad.results.interrupt import Interrupted
-from fingerpad.results.quantities import QUANTITIES, Output
 from fingerpad.results.states import WORDS
-from fingerpad.richardson import TWO, MeshParameter, errors, of_two_meshes, plus_minus, rigid, to_refine
+from fingerpad.richardson import MeshParameter, errors, rigid, to_refine
 from geometry.profiles import GeometryError
-from variational.element import ELEMENTS
 from variational.solvers.continuation import StepFailed
-from variational.state import ContactState, Errors
 
 _SIZES = {"contact": ("contact",), "bulk": ("growth", "interface", "coarsest"), "receptor": ("receptor",)}
 _ROUNDS = 6  # of refinement
 
 
-class Refinement:
+class Refinement(Estimate):
     """Estimates errors of a path's states, and lowers them where an accuracy is asked for.
 
     Attributes:
-        model: with the mesh of the path.
-        base: the states in use.
         refinements: how often each mesh parameter was halved.
-        solves: all that was solved.
-        failure: why the accuracy asked for is not reached, else empty.
-        notes: remarks on the estimate.
-        penalty: change of each quantity by a rigid screen, where contact is a penalty.
         stiffer: the contact over a screen of twice the stiffness; None where the screen is rigid.
         to_come: solves that are still to come, the one that starts now among them; more where they are not enough.
     """
@@ -74,8 +66,8 @@ class Refinement:
         Raises:
             StepFailed: the path has no state in which a quantity asked for is known.
         """
-        self.solves, self._show, (path,) = solves, solves.show, solves.found
-        self.model = model = solves.model
+        super().__init__(solves)
+        path, model = self.base, self.model
         self.asked = model.asked
         for name in {"mu_app", "f_t"} & set(self.asked) if "full_slip" not in path.states else ():
             raise StepFailed(
@@ -91,17 +83,13 @@ class Refinement:
         if self.asked:
             path = replace(path, states={name: state for name, state in path.states.items() if name != "uncharged"})
         self.base = self._stepped = path
-        self.failure, self.notes = "", list[str]()
-        self._two: dict[str, float] = {}
         self._met = not self.asked
-        self.penalty: dict[str, float] = {}
         self.stiffer = model.contact.over_stiffer_screen()
         self.to_come = 1
         receptors = "sed" in self.asked or (not self.asked and model.options.receptors)
         keys = [key for key in _SIZES if key != "receptor" or receptors] if self.asked else []
         if model.options.friction and "charged" in path.states and {"contact_length", "sed"} & set(self.asked):
             keys.append("steps")
-        self.degree = ELEMENTS[model.numerics.element].degree
         self.parameters = {key: MeshParameter(degree=self.degree) for key in keys}
         self.refinements = dict.fromkeys(keys, 0)
 
@@ -157,10 +145,7 @@ class Refinement:
         if reason and model.mesh != final:
             return RestartRequired(f"{reason}; the path is followed on the final mesh", model.changed(mesh=final))
         coarser = model.coarser(final)
-        coarse = path if path.mesh == coarser else solves.on_mesh(coarser, path.states)
-        facets = {name: (coarse.states[name].facet, state.facet) for name, state in sharp.states.items()}
-        self._two = of_two_meshes(coarse.parts(), sharp.parts(), facets, self.degree)
-        self.base = sharp
+        self._compare(path if path.mesh == coarser else solves.on_mesh(coarser, path.states), sharp)
         return None
 
     def _penalty(self, solve: Solve) -> None:
@@ -173,13 +158,9 @@ class Refinement:
         listed = []
         for name, value in self.penalty.items():
             if "_sed_" not in name:
-                quantity, words = _named(name)
+                quantity, words = of_key(name)
                 listed.append(f"{words} by {value * quantity.scale:.2g} {quantity.unit}".rstrip())
         self._show(f"penalty: a rigid screen would change {', '.join(listed)}")
-
-    def _note(self, text: str) -> None:
-        self.notes.append(text)
-        self._show(text)
 
     def _refine(self) -> None:
         todo = list(self.parameters)
@@ -218,10 +199,20 @@ class Refinement:
     def estimates(self) -> dict[str, float]:
         """Return the estimated error of each quantity, in its unit; none before every parameter was changed."""
         if not self.asked:
-            return self._two
+            return super().estimates()
         if not all(parameter.changes for parameter in self.parameters.values()):
             return {}
         return errors(self.parameters, list(self.base.values()))
+
+    def summary(self) -> dict[str, Any]:
+        """Return how errors were found, ready for JSON; collective."""
+        step_scale = self._step_scale(self.refinements.get("steps", 0))
+        return super().summary() | {"reached": self._met and not self.failure, "step_scale": step_scale}
+
+    def _shares(self, name: str, error: float) -> dict[str, float]:
+        if not self.asked:
+            return super()._shares(name, error)
+        return {key: each.share(name) for key, each in self.parameters.items() if each.acts_on(name)}
 
     def _halve(self, key: str) -> None:
         """Halve a mesh parameter, record what that changes, and go on from there."""
@@ -255,72 +246,6 @@ class Refinement:
     def _step_scale(self, refinements: int) -> float:
         return self.model.numerics.step_scale * 0.5**refinements
 
-    def _report(self) -> None:
-        values, found, allowed = self.base.values(), self.estimates(), self.allowed()
-        for name, error in found.items():
-            if "_sed_" in name:
-                continue
-            quantity, words = _named(name)
-            limit = f", {allowed[name] * quantity.scale:.2g} allowed" if name in allowed else ""
-            number = f"{plus_minus(values[name] * quantity.scale, error * quantity.scale)} {quantity.unit}".rstrip()
-            self._show(f"{words}: {number} (estimated discretisation error){limit}")
-
-    def summary(self) -> dict[str, Any]:
-        """Return how errors were found, ready for JSON; collective."""
-        values, found, allowed = self.base.values(), self.estimates(), self.allowed()
-        shares = {name: {k: p.share(name) for k, p in self.parameters.items() if p.acts_on(name)} for name in found}
-        if not self.asked:
-            shares = {name: {"mesh": error / TWO} for name, error in found.items()}
-        quantities_ = {
-            name: {
-                "value": values[name],
-                "error": error,
-                "estimate": sum(shares[name].values()),
-                "penalty": self.penalty.get(name),
-                "allowed": allowed.get(name),
-                "shares": shares[name],
-            }
-            for name, error in found.items()
-        }
-        return {
-            "reached": self._met and not self.failure,
-            "mesh": self.base.mesh.model_dump(),
-            "step_scale": self._step_scale(self.refinements.get("steps", 0)),
-            "quantities": quantities_,
-            "notes": self.notes,
-            **self.solves.cost(),
-        }
-
-
-def with_errors(refinement: Refinement, path: Mapping[str, ContactState]) -> dict[str, ContactState]:
-    """Return the named states of a path with their results on the final mesh, their errors and the penalty's share.
-
-    Args:
-        refinement: of the path's states.
-        path: the states by name, as the path has them.
-    """
-    estimates, found = refinement.estimates(), dict(path)
-    for name, kept in refinement.base.states.items():
-        if name in found:
-            parts = (errors_of(name, estimates), errors_of(name, refinement.penalty))
-            found[name] = replace(with_values(found[name], kept), error=parts[0], penalty=parts[1])
-    if {"uncharged", "charged"} <= set(found) and path["uncharged"].step == path["charged"].step:  # at 0 V one state
-        found["uncharged"] = found["charged"]
-    return found
-
-
-def errors_of(name: str, changes: Mapping[str, float]) -> Errors:
-    """Return the changes of a named state's quantities, of those by key; densities at receptors are left out."""
-    known = {field.name for field in fields(Errors)}
-    return Errors(**{k: v for key, v in changes.items() if (k := key.removeprefix(f"{name}_")) in known and k != key})
-
 
 def _ridges(solve: Solve, name: str) -> int:
     return solve.states[name].state.ridges_in_contact
-
-
-def _named(key: str) -> tuple[Output, str]:
-    """Return the quantity of a key such as ``full_slip_mu_app``, and the key in words: quantity and state."""
-    state = next(name for name in WORDS if key.startswith(f"{name}_"))
-    quantity = QUANTITIES[key.removeprefix(f"{state}_")]
-    return quantity, f"{quantity.words} at {WORDS[state]}"

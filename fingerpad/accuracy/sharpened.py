@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 
 from mpi4py import MPI
 
-from fingerpad.accuracy.refinement import errors_of
+from fingerpad.accuracy.estimate import errors_of
 from fingerpad.accuracy.solves import solve_again
 from fingerpad.accuracy.states import Solve, StateRecorder, with_values
 from fingerpad.model.options import FingerModel

@@ -17,7 +17,7 @@ from fingerpad.model.simulation import RestartRequired, Simulation
 from fingerpad.results.states import SLIDE_ON, WORDS
 from fingerpad.scene import Load
 from geometry.parameters import MeshSize
-from geometry.profiles import Profiles
+from geometry.profiles import GeometryError, Profiles
 from variational.contact.formulation import Formulation
 from variational.solvers.continuation import StepFailed
 from variational.solvers.snapshot import StateSnapshot
@@ -89,6 +89,35 @@ class StateSolver(Simulation):
             raise StepFailed(f"{name}: {error}") from error
         if self._restart is not None:
             raise StepFailed(f"{name}: {self._restart.reason}")
+
+
+def follow(
+    model: FingerModel,
+    comm: MPI.Comm,
+    on_step: Callable[[Simulation, "Step", float], None] = lambda simulation, step, done: None,
+) -> Solve | RestartRequired:
+    """Return the named states of a model's path, or what must be added to the model; collective.
+
+    Args:
+        model: the finger and its loads.
+        comm: communicator of the mesh.
+        on_step: called after each accepted step with the path, the step and the part of the history that is done; may
+            raise to stop.
+
+    Raises:
+        GeometryError: the finger cannot be meshed.
+        StepFailed: a load could not be reached.
+    """
+
+    def record(step: "Step", done: float) -> None:
+        recorder.record(step)
+        on_step(simulation, step, done)
+
+    simulation = Simulation(model, comm, record)
+    recorder = StateRecorder(simulation)
+    restart = simulation.run()
+    simulation.finger.solver.iteration.free()
+    return recorder.solve() if restart is None else restart
 
 
 def solve_again(
@@ -238,20 +267,34 @@ class Solves:
         loads = loads_to_normal_contact(self.model.loads)
         model = self.model.changed(mesh=self.found[0].mesh, loads=loads, numerics=numerics)
         self._pause()
-        recorder: StateRecorder | None = None
+        found = follow(model, self._comm)
+        if isinstance(found, RestartRequired):
+            more = self.model.changed(mesh=found.model.mesh, options=found.model.options)
+            self.restart = replace(found, model=more)
+            raise StepFailed(found.reason)
+        return self._keep(found)
 
-        def on_step(step: "Step", done: float) -> None:
-            assert recorder is not None
-            recorder.record(step)
+    def on_coarser_path(self, on_step: Callable[["Simulation", "Step", float], None]) -> Solve:
+        """Return the named states of the whole path on elements twice as large; collective.
 
-        simulation = Simulation(model, self._comm, on_step)
-        recorder = StateRecorder(simulation)
-        restart = simulation.run()
-        if restart is not None:
-            more = self.model.changed(mesh=restart.model.mesh, options=restart.model.options)
-            self.restart = replace(restart, model=more)
-            raise StepFailed(restart.reason)
-        return self._keep(recorder.solve())
+        The loads are gone through again where more of the model turns out to matter on that mesh.
+
+        Args:
+            on_step: see :func:`follow`.
+
+        Raises:
+            GeometryError: there is no such mesh.
+            StepFailed: the path was lost, or ``on_step`` stopped it.
+        """
+        mesh = self.model.coarser(self.model.mesh)
+        if mesh.contact == self.model.mesh.contact:
+            raise GeometryError(f"the ridges have no larger elements than {mesh.contact * 1e6:.3g} µm")
+        found = follow(self.model.changed(mesh=mesh), self._comm, on_step)
+        while isinstance(found, RestartRequired):
+            self.show(f"on elements twice as large: {found.reason}; all loads again")
+            found = follow(found.model, self._comm, on_step)
+        self.found.append(found)
+        return found
 
     def _keep(self, solve: Solve) -> Solve:
         self.found.append(solve)

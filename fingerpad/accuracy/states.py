@@ -136,7 +136,10 @@ class StateRecorder:
 
     def resume(self, kept: Mapping[str, Any]) -> None:
         """Go on from what another process kept."""
-        self.states, self._begun = kept["states"], kept["begun"]
+        self.states, self._begun = dict(kept["states"]), kept["begun"]
+        pair = [self.states[name] for name in ("uncharged", "charged") if name in self.states]
+        if len(pair) == 2 and pair[0].state.step == pair[1].state.step:  # at 0 V one state
+            self.states["uncharged"] = pair[1]
 
     def keep(self, name: str, slips: bool | None = None) -> None:
         """Keep the present state; collective.

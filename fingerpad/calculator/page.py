@@ -126,6 +126,8 @@ def data() -> dict[str, Any]:
         "sc_thickness": scene.geometry.sc_thickness,
         "tip_radius": cylinders.tip_radius(scene.geometry),
         "skin_modulus": skin_modulus(scene),
+        "friction": scene.friction,
+        "shear": cylinders.SHEAR,
         "largest_gap": LARGEST_GAP,
         "forces": uncharged.FORCES,
         "lengths": uncharged.LENGTHS,

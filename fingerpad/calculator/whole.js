@@ -11,7 +11,8 @@
     const forces = geomspace(top * data.traces.light, top, data.traces.forces), columns = {};
     const add = (name, value) => (columns[name] = columns[name] || []).push(value);
     for (const f_ext of forces) {
-      const known = fitted(f_ext), n = known.ridges[kind], ridge = ridge_of({ f_ext, voltage }, known, kind, closure);
+      const known = fitted(f_ext), n = known.ridges[kind];
+      const ridge = ridge_of({ f_ext, voltage, friction: p.friction }, known, kind, closure);
       add("depth", interpolate(f_ext, data.indentations[kind]));
       add("f_ext", f_ext);
       add("f_electrostatic", n * ridge.f_attraction);

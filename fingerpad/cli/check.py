@@ -110,6 +110,8 @@ def _model(scene: Scene, needed: ModelOptions) -> Iterator[str]:
         yield f"elements of {', '.join(f'{value * 1e6:.4g} µm {where}' for where, value in sizes.items())}"
     if scene.accuracy is not None:
         yield "finer meshes follow, to the accuracy asked for"
+    elif needed.errors and needed.past:
+        yield f"the path on these, and once more on elements {COARSER:g} times as large, for the discretisation errors"
     elif needed.errors:
         yield (
             f"named states on these, with {scene.mesh.edge * 1e6:.3g} µm where their contact ends; the path on "

@@ -22,7 +22,7 @@ from fingerpad.results.states import WORDS, called
 from fingerpad.runs.context import RunContext
 from fingerpad.runs.solve import solved
 from fingerpad.scene import Scene
-from fingerpad.scene.messages import SceneError, clip
+from fingerpad.scene.messages import SceneError, clip, ends
 from variational.state import RESULTS
 
 if TYPE_CHECKING:
@@ -136,12 +136,17 @@ def table(results: Sequence[Result]) -> str:
     rows.append(["unknowns", *(str(result.cost.unknowns) for result in results)])
     widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
     lines = ["  ".join([row[0].ljust(widths[0]), *map(str.rjust, row[1:], widths[1:])]).rstrip() for row in rows]
-    said = [(result.model, (*result.notes, *result.cautions, result.failure)) for result in results]
+    said = [(result.model, (*result.notes, *result.cautions, _failure(result))) for result in results]
     shared = [note for note in said[0][1] if note and len(said) > 1 and all(note in each for _, each in said)]
     notes = [f"{model}: {note}" for model, each in said for note in each if note and note not in shared]
     if any(state.error.known() for result in results for state in result.named.values()):
         notes.insert(0, PLUS_MINUS)
     return "\n".join(lines + notes + shared)
+
+
+def _failure(result: Result) -> str:
+    """Return why a column ends early, or has no values; empty of a result that is whole."""
+    return result.failure if result.named or not result.failure else f"no values, since {result.failure}"
 
 
 # -- measurements --------------------------------------------------------------------------------------
@@ -207,7 +212,7 @@ def _lines(compared: "pd.DataFrame") -> Iterator[str]:
         *(Output(key, unit, words="±" if key == "error" else key, digits=4) for key in named),
         Output("relative_difference", "%", words="relative", digits=1),
     ]
-    yield f"{about['quantity']} at {WORDS[about['state']]}: {clip(about['source'], 200)}"
+    yield f"{about['quantity']} at {WORDS[about['state']]}: {ends(about['source'], 200)}"
     more = [f"{name} {about[name]}" for name in ("doi", "url", "people") if name in about]
     yield from [clip("; ".join(more), 200)] if more else []
     yield output.text(columns, _rows(compared))

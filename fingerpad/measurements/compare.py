@@ -66,7 +66,8 @@ def beside(table: Measured, known: Computed) -> pd.DataFrame:
         beyond = f", and {none} of them are not within the results" if none else ""
         raise SceneError(f"no {table.quantity} above 0 is computed in the {len(rows)} rows of {table.name}{beyond}")
     rows, found = fitted(rows, table.quantity, known.mu_0)
-    about: dict[str, Any] = {"source": table.name, **table.about, "table": table.name, "ignored": table.ignored}
+    file = table.path or table.name
+    about: dict[str, Any] = {"source": file, **table.about, "table": file, "ignored": table.ignored}
     about |= {"state": table.state, "quantity": table.quantity, "unit": table.unit, "force_unit": table.force_unit}
     about |= {"turned": table.turned, "mu_0": known.mu_0, "fits": found}
     used = rows[rows.voltage > 0] if found else rows

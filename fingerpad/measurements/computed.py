@@ -19,13 +19,14 @@ from fingerpad.results.result import Result
 from fingerpad.results.states import WORDS, before_sliding
 from fingerpad.runs.sweep_results import Sweep
 from fingerpad.scene import as_kept
-from fingerpad.scene.messages import SceneError, clip, ends, show
+from fingerpad.scene.messages import SceneError, clip, ends, refuse_type, show
 from fingerpad.scene.reading import flat
 from fingerpad.slices.finger import WholeFinger
 
 Array = NDArray[np.float64]
 Source = Result | Sweep | Table | str | Path
 """What values are taken from: a result, a sweep, or the folder of one."""
+_SOURCES = "a result of fp.run, a sweep of fp.sweep, a folder of either, or a list of these"
 CLOSE = 0.01
 """Relative distance of a force beyond the known ones up to which their end stands for it."""
 _CONDITION_TOLERANCE = 1e-6  # relative difference of conditions that count as the same
@@ -110,12 +111,18 @@ def computed(source: Source | Sequence[Source], table: Measured) -> Computed:
     """Return the quantity of a table in runs or in a sweep.
 
     Raises:
-        SceneError: it is not there, the runs differ in more than force and voltage, or two of them have other values at
-            the same force and voltage.
+        SceneError: the source is of another type, the quantity is not there, the runs differ in more than force and
+            voltage, or two of them have other values at the same force and voltage.
     """
     found = list[Result | Table]()
-    for each in [source] if isinstance(source, Result | Sweep | Table | str | Path) else source:
+    several: list[Any] = [source]
+    if isinstance(source, Sequence) and not isinstance(source, Sweep | str | bytes):
+        several = [*source]
+    for each in several:
+        refuse_type("result", each, Source, _SOURCES)
         found += each if isinstance(each, Sweep) else [content(Path(each)) if isinstance(each, str | Path) else each]
+    if not found:
+        raise SceneError(f"result is empty; it must be {_SOURCES}")
     runs = [each for each in found if isinstance(each, Result)]
     if sweep := next((each for each in found if isinstance(each, Table)), None):
         if len(found) > 1:
@@ -123,7 +130,7 @@ def computed(source: Source | Sequence[Source], table: Measured) -> Computed:
         points, mu_0 = _of_sweep(sweep, table), sweep.parameters.get("friction")
     else:
         refuse_mixed(runs)
-        points, mu_0 = _of_runs(runs, table), runs[0].scene.friction if runs else None
+        points, mu_0 = _of_runs(runs, table), runs[0].scene.friction
     if points.empty:
         raise SceneError(f"the run has no state {WORDS[table.state]}, of which {table.name} is; compare another run")
     if points.value.isna().all():
@@ -259,12 +266,17 @@ def _conditions(run: Result) -> dict[str, Any]:
     """Return the model of a run and every key of its scene, with the size of lists and tables."""
     kept = as_kept(run.record.get("parameters") or run.scene.parameters()).model_dump(mode="json")
     lists = {key: f"a list of {len(value)}" for key, value in kept.items() if isinstance(value, list)}
-    tables = {key: f"a table of {len(value)}" for key, value in kept.items() if isinstance(value, Mapping)}
+    tables = {key: _called(value) for key, value in kept.items() if isinstance(value, Mapping)}
     return {"model": run.model} | lists | flat(kept) | tables
 
 
+def _called(table: Mapping[str, Any]) -> str:
+    """Return a table for a message: the name of its law, or its size."""
+    return f"the law {table['law']}" if "law" in table else f"a table of {len(table)}"
+
+
 def _shown(value: Any) -> str:
-    """Return a value for a message; lists and tables by their size."""
+    """Return a value for a message; lists and tables by their size, laws by their name."""
     if value is None:
         return "not given"
-    return str(value) if str(value).startswith(("a list of", "a table of")) else clip(show(value), 40)
+    return str(value) if str(value).startswith(("a list of", "a table of", "the law")) else clip(show(value), 40)

@@ -25,7 +25,7 @@ from typing import NamedTuple
 import numpy as np
 import pandas as pd
 
-from fingerpad.scene.messages import SceneError, clip, ends
+from fingerpad.scene.messages import SceneError, clip, ends, refuse_type
 from geometry.units import to_si
 from variational import files
 
@@ -58,6 +58,7 @@ _PERCENT = ("%", "percent")
 _COMMENT = re.compile(r"#\s*(source|doi|url|people|state)\s*:(.*)", re.IGNORECASE)
 _HEAD = re.compile(r"\s*(.*?)\s*[(\[]\s*([^()\[\]]*?)\s*[)\]]\s*")
 _MAX_COLUMNS = 1000
+_MAX_PATH = 40_000  # characters: of the longest path that Linux has, with all of them escaped
 _MAX_HEAD = 200  # characters of a head with a unit
 
 
@@ -66,7 +67,7 @@ class Measured:
     """A table of measurements, in SI units."""
 
     name: str
-    """Its file."""
+    """Its file, shortened for messages."""
     about: dict[str, str]
     """Its comments by name: source, doi, url, people, state."""
     state: str
@@ -81,6 +82,8 @@ class Measured:
     """Heads of columns that are not read."""
     turned: int = 0
     """Rows with a friction below 0, of the other direction: their magnitude is in ``rows``."""
+    path: str = ""
+    """Its file as it was given; empty of a DataFrame."""
 
     @property
     def key(self) -> str:
@@ -118,7 +121,8 @@ def read(
     """Return the measurements in a file or a DataFrame.
 
     Args:
-        table: CSV separated by commas, semicolons or tabs, or a DataFrame, whose ``attrs`` stand for the comments.
+        table: CSV separated by commas, semicolons or tabs, or a DataFrame, whose ``attrs`` stand for the comments, and
+            the names of whose index are columns.
         columns: names of this program by heads of the table, with a unit where the head has none: ``{"Fn": "force
             (N)"}``; a column with an empty name is left out.
         state: ``"uncharged"``, ``"charged"`` or ``"full slip"``; by default that of the table, else full slip.
@@ -126,7 +130,12 @@ def read(
     Raises:
         SceneError: what is wrong in the table, with line and column.
     """
-    name, where, frame = ("the table", "row", table) if isinstance(table, pd.DataFrame) else _file(Path(table))
+    refuse_type("table", table, str | Path | pd.DataFrame, "a DataFrame of pandas, or the path of a CSV file")
+    refuse_type("state", state, str | None, f"one of {', '.join(STATES)}")
+    refuse_type("columns", columns, Mapping | None, "names by heads, as {'CoF': 'friction (1)'}")
+    for head, of in (columns or {}).items():
+        refuse_type(f"of columns, the name of {clip(repr(head))}", of, str | None, "text, as 'friction (1)'")
+    name, where, frame = ("the table", "row", _frame(table)) if isinstance(table, pd.DataFrame) else _file(Path(table))
     about = {key: str(value) for key, value in frame.attrs.items()}
     given = (state or about.get("state", "full slip")).lower().replace("_", " ")
     if given not in STATES:
@@ -167,7 +176,13 @@ def read(
             _refuse_overlooked(name, condition, ignored)
     measured = pd.DataFrame({"spread": np.nan} | rows | people, index=frame.index)
     measured, left = measured.rename(columns={quantity: "measured"}), tuple(column.head for column in ignored)
-    return Measured(name, about, STATES[given], quantity, whole, measured, left, turned)
+    path = "" if isinstance(table, pd.DataFrame) else ends(table, _MAX_PATH)
+    return Measured(name, about, STATES[given], quantity, whole, measured, left, turned, path)
+
+
+def _frame(table: pd.DataFrame) -> pd.DataFrame:
+    """Return a table whose index has no columns: of conditions, for example."""
+    return table.reset_index(allow_duplicates=True) if any(name is not None for name in table.index.names) else table
 
 
 def _file(file: Path) -> tuple[str, str, pd.DataFrame]:

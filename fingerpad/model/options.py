@@ -79,7 +79,9 @@ class ModelOptions:
     symmetric_start: bool
     """Loads before the bone first moves sideways are reached on one half, and the whole is its mirror image."""
     errors: bool
-    """Discretisation errors, from states solved again on other meshes."""
+    """Discretisation errors, from states on other meshes."""
+    past: bool
+    """Layers have a past, which is of their own mesh: states on another mesh are those of a path followed there."""
     omitted: tuple[Omission, ...]
 
     def with_both_halves(self) -> "ModelOptions":
@@ -89,7 +91,6 @@ class ModelOptions:
 
 
 _FILE = "the mesh is of a file"
-_PAST = "viscous layers carry the past of their own mesh, on which the whole path is followed"
 _HALF = Omission(
     "the half at x < 0, but in tables, pictures and fields",
     "no load moves the bone sideways, and the finger is its own mirror image",
@@ -107,11 +108,10 @@ def plan(scene: "Scene") -> ModelOptions:
         omitted.append(Omission("friction and its history", "the friction coefficient is 0"))
     if not receptors:
         omitted.append(Omission("receptor sites and their fine elements", "output.receptors is false"))
-    viscous = bool(viscous_layers(scene.materials))
-    wanted = scene.output.errors or scene.accuracy is not None
-    errors = wanted and not viscous
+    past = bool(viscous_layers(scene.materials))
+    errors = scene.output.errors or scene.accuracy is not None
     if not errors:
-        omitted.append(Omission("discretisation errors", _PAST if wanted else "output.errors is false"))
+        omitted.append(Omission("discretisation errors", "output.errors is false"))
     symmetric = all(solid.keeps_symmetry() for solid in scene.own_laws().values() if isinstance(solid, Material))
     both_halves = any(load.moves for load in scene.loads()) or not symmetric
     if scene.geometry.file is not None:  # the whole of it, and no other mesh of the same finger
@@ -119,11 +119,11 @@ def plan(scene: "Scene") -> ModelOptions:
             omitted.append(Omission("receptor sites", _FILE))
         if errors:
             omitted.append(Omission("discretisation errors", f"{_FILE} and cannot be refined"))
-        return ModelOptions(voltage, friction, False, True, False, False, tuple(omitted))
+        return ModelOptions(voltage, friction, False, True, False, False, past, tuple(omitted))
     symmetric_start = both_halves and symmetric and scene.contact.law.symmetric_start
     if not both_halves:
         omitted.append(_HALF)
-    return ModelOptions(voltage, friction, receptors, both_halves, symmetric_start, errors, tuple(omitted))
+    return ModelOptions(voltage, friction, receptors, both_halves, symmetric_start, errors, past, tuple(omitted))
 
 
 class FingerModel:
@@ -180,9 +180,10 @@ class FingerModel:
         """Return the model that is led along the loads: coarser, where the named states are solved again anyway.
 
         Full slip does not depend on the path where the same ridges touch, and a path on elements twice as large finds
-        them. The difference of the two meshes is then what the estimated error is made of.
+        them. The difference of the two meshes is then what the estimated error is made of. Where layers have a past,
+        states cannot be solved again, and the path is led on the final mesh.
         """
-        if self.asked or not self.options.errors:
+        if self.asked or self.options.past or not self.options.errors:
             return self
         return self.changed(mesh=self.coarser(self.mesh), final=self.mesh)
 

@@ -9,9 +9,20 @@ full slip:
 - :func:`fitted`: of the default finger *without* voltage, or of one similar to it
   (:mod:`fingerpad.reduced.similarity`), interpolated between full runs. The modulus E* of the
   cylinders is then the one with which Hertz's law gives that length, which includes finite strain, layers and
-  shear. The length under voltage follows from Maugis's equations.
+  shear. The length under voltage follows from Maugis's equations. More shear stress stiffens the ridges, see below.
 - :func:`given`: the length *at* the scene's voltage, from a user or a run. E* is the stratum corneum's,
   :math:`2 G_0 / (1 - \nu)`, and acts on the attraction beyond the contact's ends alone.
+
+**Shear.** The table's finger has a friction coefficient of 0.25. Stronger friction leans the finger and its ridges
+further; their trailing sides lift, and the contact is shorter, about in proportion to the shear stress (Forsbach et al.
+2023, Fig. 8). It shortens as if the ridges were stiffer, by the shear stress beyond that of the table at the same
+contact pressure:
+
+.. math:: E^*(p_c) = E^*_{0.25} + \kappa \max(t_{max}(p_c) - 0.25\,p_c,\, 0), \qquad \kappa = 10 .
+
+The one number :math:`\kappa` (:data:`SHEAR`) is fitted to the attraction of states of the full model, of seeded scenes
+over coatings, forces, voltages and friction coefficients. Other states test it, and so do all contact lengths
+(``docs/loads.md``). The number of ridges stays that of the table.
 
 The model leaves out that ridges in the middle bear more than those at the edge, and that ridges come and go with the
 voltage. ``docs/models.md`` has its errors.
@@ -41,7 +52,7 @@ from fingerpad.results.states import WORDS
 from fingerpad.scene import Scene, SceneError
 from fingerpad.scene.fingers import ADULT
 from fingerpad.scene.messages import show
-from fingerpad.scene.remarks import leakage, remarks, skin_modulus, used
+from fingerpad.scene.remarks import coefficient, leakage, remarks, skin_modulus, used
 from geometry.parameters import Fingertip
 from geometry.profiles import Profiles
 from variational.attraction.cylinder import Cylinder, NoEquilibriumError, RidgeState, hertz_modulus
@@ -52,6 +63,8 @@ if TYPE_CHECKING:
     from fingerpad.slices.finger import WholeFinger
 
 Array = NDArray[np.float64]
+SHEAR = 10.0
+"""What the modulus of a ridge gains, over the shear stress beyond that of the default friction coefficient."""
 _ELSE = (
     "take the model 'full', fingerpad run, a minute or two; or give its contact to compare: --contact-length and "
     "--ridges, or the --run of a folder"
@@ -72,7 +85,7 @@ def fitted(scene: Scene) -> Footprint:
         source = f"uncharged contact length extrapolated from full runs at {low:g} to {high:g} N/m"
     source += f", {scaled.words}" if scaled.words else ""
     if scene.friction != default.friction:
-        source += f"; that of full slip with a friction coefficient of {default.friction:g}"
+        source += f"; that of full slip with a friction coefficient of {default.friction:g}, and shorter by more shear"
     length = {state: scaled.length * float(uncharged.lengths(f_ext, state)) for state in STATES}
     return Footprint(length, {state: int(uncharged.ridges(f_ext, state)) for state in STATES}, False, source)
 
@@ -180,7 +193,12 @@ def solve(scene: Scene, footprint: Footprint | None = None) -> Result:
 
 
 def over_forces(
-    scene: Scene, f_ext: Sequence[float], state: str, press: Sequence[ContactState] = (), tips: float = 1.0
+    scene: Scene,
+    f_ext: Sequence[float],
+    state: str,
+    press: Sequence[ContactState] = (),
+    tips: float = 1.0,
+    shear: float = SHEAR,
 ) -> list[ContactState]:
     """Return a state of a scene under each of several external forces, computed together.
 
@@ -190,6 +208,7 @@ def over_forces(
         state: ``charged`` or ``full_slip``.
         press: states without voltage under these forces, whose contact it is; by default the default finger's.
         tips: radius of the ridges' tips over that of the scene; Hertz's length grows with its root.
+        shear: in place of :data:`SHEAR`.
 
     Raises:
         SceneError: as :func:`solve`, but for what is wrong with the other state alone.
@@ -202,7 +221,7 @@ def over_forces(
         scaled = _scaled(scene)
         of_default = np.array(f_ext) / scaled.force
         length, ridges = scaled.length * uncharged.lengths(of_default, state), uncharged.ridges(of_default, state)
-    return [found for found, _ in _solved(scene, f_ext, tips**0.5 * length, ridges, state, tips=tips)]
+    return [found for found, _ in _solved(scene, f_ext, tips**0.5 * length, ridges, state, tips=tips, shear=shear)]
 
 
 def _solved(
@@ -213,6 +232,7 @@ def _solved(
     state: str,
     charged: bool = False,
     tips: float = 1.0,
+    shear: float = SHEAR,
 ) -> list[tuple[ContactState, RidgeState]]:
     """Return a state of a scene under external forces (N/m), and that of its ridges.
 
@@ -224,6 +244,7 @@ def _solved(
         state: ``charged`` or ``full_slip``.
         charged: whether the lengths are those at the voltage.
         tips: radius of the ridges' tips over that of the scene.
+        shear: in place of :data:`SHEAR`.
     """
     radius, closure = tips * tip_radius(scene.geometry), scene.closure()
     forces, length = np.array(f_ext) / ridges, length / ridges
@@ -233,8 +254,8 @@ def _solved(
             cylinder = Cylinder(radius, skin_modulus(scene), scene.h_0, closure)
             found = [cylinder.over_length(*each, voltage) for each in zip(length, forces, strict=True)]
         else:
-            moduli = hertz_modulus(radius, forces, length)
-            found = Cylinder(radius, moduli, scene.h_0, closure).under_loads(forces, voltage)
+            moduli, stiffening = hertz_modulus(radius, forces, length), _stiffening(scene, state, shear)
+            found = Cylinder(radius, moduli, scene.h_0, closure, stiffening).under_loads(forces, voltage)
     except NoEquilibriumError as error:
         why = "; ".join(filter(None, (str(error), sticking(closure, scene.volts))))
         raise SceneError(f"{WORDS[state]} of the model 'cylinders': {why}") from None
@@ -250,6 +271,14 @@ def _solved(
         under = scene.model_copy(update={"f_ext": float(each)})
         states.append((reduced_state(under, contact, state == "full_slip"), ridge))
     return states
+
+
+def _stiffening(scene: Scene, state: str, shear: float) -> Callable[[Array], Array] | None:
+    """Return what the modulus of a ridge gains (Pa) at contact pressures (Pa); None where nothing shears it further."""
+    law, known = scene.friction_law(), coefficient(_default())
+    if state != "full_slip" or law is None or known is None or coefficient(scene) == known:
+        return None
+    return lambda p_c: shear * np.maximum(np.asarray(law.limit(p_c), dtype=float) - known * p_c, 0.0)
 
 
 def _pull(slip: ContactState) -> float:

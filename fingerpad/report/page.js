@@ -125,10 +125,12 @@
     const known = r.x.filter((v) => v !== null);
     return (Math.min(...known) + Math.max(...known)) / 2;
   };
-  // On a phone the ridge that was chosen and its neighbours, elsewhere all that touch.
+  // On a phone the ridge that was chosen and its neighbours, within the image; elsewhere all that touch.
   function along() {
-    const mine = current();
-    return narrow() && mine ? [middle(mine) - 1.2, middle(mine) + 1.2] : [view[0], view[1]];
+    const mine = current(), half = Math.min(1.2, (view[1] - view[0]) / 2);
+    if (!narrow() || !mine) return [view[0], view[1]];
+    const at = Math.min(Math.max(middle(mine), view[0] + half), view[1] - half);
+    return [at - half, at + half];
   }
   const current = () => frames[now].skin.find((r) => r.ridge === ridge);
   function joined(key) {

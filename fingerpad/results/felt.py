@@ -18,6 +18,7 @@ from fingerpad.afferents.afferent import Afferent, History
 from fingerpad.afferents.registry import DEFAULT, find
 from fingerpad.results.over_time import without_parts_of_jumps
 from fingerpad.results.spikes import Densities, Span, Spikes, Unit
+from fingerpad.results.terminal import about
 from fingerpad.scene.messages import SceneError, show
 from variational.state import ContactState
 
@@ -30,6 +31,13 @@ CHANGE = 0.01
 SITE_ERROR = 0.22
 """Largest known error of energy densities at three Merkel sites on the mesh of the default path, 20 µm in contact and
 at the sites (``again`` in docs/errors.json)."""
+_OVER_TIME = {
+    "f_t": "friction",
+    "merkel_stress": "stress at Merkel sites",
+    "meissner_stress": "at Meissner sites",
+    "pacinian_stress": "at Pacinian sites",
+    "surface_strain": "strain of the surface",
+}
 SAMPLE = 1e-4  # s, between two samples of a stimulus
 _SIDES = ("left", "right")
 _TIME_TOLERANCE = 1e-9  # of the length of a run: two times that are one
@@ -178,9 +186,17 @@ def _mesh(result: "Answer", states: Sequence[ContactState]) -> str:
     sizes = result.record.get("path_mesh") or {}
     contact = f"{1e6 * states[-1].mesh_contact:.3g} µm in contact"
     sites = f" and {1e6 * sizes['receptor']:.3g} µm at the Merkel sites" if "receptor" in sizes else ""
+    begins = f"Stimuli and spikes are of the mesh of the path, with elements of {contact}{sites}."
+    over_time = (result.record.get("accuracy") or {}).get("over_time", {})
+    known = {words: over_time[key]["error"] for key, words in _OVER_TIME.items() if key in over_time}
+    errors = [f"{words} {about(100 * error)} %" for words, error in known.items()]
+    if errors:
+        return (
+            f"{begins} Estimated discretisation errors over time, from the path on elements twice as large, are at "
+            f"most, of the largest value: {', '.join(errors)}. Those of spikes are not estimated."
+        )
     return (
-        f"Stimuli and spikes are of the mesh of the path, with elements of {contact}{sites}. Their discretisation "
-        "error is not estimated. On the path of the default scene, with 20 µm in both, energy densities at three "
-        f"Merkel sites are known to be off by up to {SITE_ERROR:.0%}, and stresses, whose square they go with, by "
-        "about half of that (docs/errors.json)."
+        f"{begins} Their discretisation error is not estimated. On the path of the default scene, with 20 µm in both, "
+        f"energy densities at three Merkel sites are known to be off by up to {SITE_ERROR:.0%}, and stresses, whose "
+        "square they go with, by about half of that (docs/errors.json)."
     )

@@ -5,9 +5,11 @@ from contextlib import suppress
 from dataclasses import asdict, dataclass, replace
 from typing import Any
 
-from fingerpad.accuracy.refinement import Refinement, with_errors
+from fingerpad.accuracy.estimate import Estimate, with_errors
+from fingerpad.accuracy.refinement import Refinement
 from fingerpad.accuracy.solves import Solves
 from fingerpad.accuracy.states import StateRecorder
+from fingerpad.accuracy.whole_path import WholePath
 from fingerpad.model import breakdown, cautions
 from fingerpad.model.adhesion import adhering
 from fingerpad.model.finger import Step, meshed
@@ -75,10 +77,10 @@ class Attempt:
         writer, console, clock = self._writer, self._console, self._clock
         self.report = Report(self.simulation, model.omitted, loads, writer, console, clock, self._outputs)
         self._recorder = StateRecorder(self.simulation) if model.options.errors else None
-        self._refinement: Refinement | None = None
+        self._estimate: Estimate | None = None
         self._ended: dict[str, str] = {}
         self._has_kept = False  # whether there is a checkpoint
-        self._solves = 0  # for the error estimate
+        self._solves, self._tenths = 0, -1  # for the error estimate: solves, and what is done of the coarser path
         self._steps, self._done = 0, 0.0  # accepted since the last checkpoint; part of the history that is done
 
     def _on_step(self, step: Step, done: float) -> None:
@@ -148,13 +150,22 @@ class Attempt:
         """Stop if asked to, or tell how far the error estimate is."""
         self._interrupt.stop_if_asked(self.simulation.finger.continuation.steps, self._kept())
         self._solves += 1
-        assert self._refinement is not None
         if self._model.asked:  # until it is met
-            number, least = self._refinement.to_come, self._refinement.solves.least()
+            assert isinstance(self._estimate, Refinement)
+            number, least = self._estimate.to_come, self._estimate.solves.least()
             text = f"states on other meshes, to the accuracy asked for: solve {self._solves}, {number} or more to come"
             self._console.phase(f"{text}; {in_words(number * least)} or more left" if least else text)
             return
         self._console.phase("named states on the final mesh, and their discretisation errors")
+
+    def _on_coarser(self, done: float) -> None:
+        """Stop if asked to, or tell how far the coarser path is, at each tenth."""
+        self._interrupt.stop_if_asked(self.simulation.finger.continuation.steps, self._kept())
+        tenths = int(10 * done)
+        if tenths != self._tenths:
+            begins, self._tenths = tenths < max(self._tenths, 1), tenths
+            words = f"path on elements twice as large, for the discretisation errors: {10 * tenths} % done"
+            self._console.phase(words, 0 if begins else done)
 
     def follow(self) -> RestartRequired | None:
         """Reach every load, and estimate or refine; return what must be added to the model, if anything; collective."""
@@ -165,8 +176,13 @@ class Attempt:
             if restart is not None or self._recorder is None:
                 return self._affordable(restart)
             path, show = self._recorder.solve(), self._console.show
-            self._refinement = Refinement(Solves(self._model, path, self._comm, show, self._before_solve))
-            return self._affordable(self._refinement.run())
+            solves = Solves(self._model, path, self._comm, show, self._before_solve)
+            if self._model.options.past:
+                self._estimate = whole = WholePath(solves, self.report.record.states, self._on_coarser)
+                whole.run()
+                return None
+            self._estimate = refinement = Refinement(solves)
+            return self._affordable(refinement.run())
         except StepFailed as error:
             tip = hint(error) if self._model.mesh_file is None else ""
             last, closure = self.report.record.states[-1:], self._model.closure
@@ -194,23 +210,23 @@ class Attempt:
             scene: as it was given.
             restarts: before this attempt.
         """
-        refinement, finger, record = self._refinement, self.simulation.finger, self.report.record
+        estimate, finger, record = self._estimate, self.simulation.finger, self.report.record
         self._writer.take()
-        final = {} if refinement is None else refinement.base.views
+        final = {} if estimate is None else estimate.base.views
         named = record.named(final, [load.name for load in scene.loads()])
         unknowns, notes, more = finger.unknowns, [*restarts.notes], dict[str, Any]()
         notes += [*leakage(scene), *([NOTE] if any(load.takes_time for load in scene.loads()) else [])]
-        if refinement is not None:
-            named = with_errors(refinement, named)
-            unknowns, more["accuracy"] = refinement.base.unknowns, refinement.summary()
-            notes += refinement.notes
+        if estimate is not None:
+            named = with_errors(estimate, named)
+            unknowns, more["accuracy"] = estimate.base.unknowns, estimate.summary()
+            notes += estimate.notes
             self.report.final(final)
         named = {name: valued(state, self._outputs) for name, state in named.items()}
         self.report.load_reached()
-        failure = self._ended.get("failure", "" if refinement is None else refinement.failure)
+        failure = self._ended.get("failure", "" if estimate is None else estimate.failure)
         mu_0 = coefficient(scene)
         with self._clock.phase("output"):
-            size = None if refinement is None else self._model.mesh.contact
+            size = self._model.mesh.contact if final else None
             drawing = record.drawing(mu_0, final, size, named)
             if drawing is not None and self._writer.folder is not None:
                 drawing.write(self._writer.folder, scene.output.each_load)

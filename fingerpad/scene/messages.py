@@ -48,6 +48,22 @@ class SceneError(ValueError):
         super().__init__(clip(message, MOST))
 
 
+def refuse_type(name: str, value: object, allowed: Any, words: str) -> None:
+    """Refuse an argument that is of none of the types allowed.
+
+    Args:
+        name: of the argument.
+        value: of it.
+        allowed: a type, or a union of types.
+        words: what is allowed.
+
+    Raises:
+        SceneError: it is of another type.
+    """
+    if not isinstance(value, allowed):
+        raise SceneError(f"{name} is of the type {type(value).__name__}; it must be {words}")
+
+
 # -- texts ---------------------------------------------------------------------------------------------
 def clip(text: str, most: int = _MAX_VALUE) -> str:
     """Return a text in one line of printable characters, at most so many of them."""

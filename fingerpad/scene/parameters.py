@@ -204,7 +204,8 @@ class Output(Table):
     errors: Switch = True
     """Whether discretisation errors are estimated; see :mod:`fingerpad.accuracy.refinement`. Then the loading path is
     followed on elements twice as large, and the named states are solved again on the mesh that is given, finest where
-    contact ends. With an accuracy errors are always estimated."""
+    contact ends. With viscous layers the path is followed on the mesh that is given, and once more on elements twice as
+    large. With an accuracy errors are always estimated."""
     each_load: Switch = True
     """Whether the finger and its skin are drawn at the end of each load. A load over time has one end."""
 

@@ -97,7 +97,7 @@ def remarks(scene: "Scene") -> list[str]:
 
     There is none on the roughness of a closure of one's own, or of a mesh of a file.
     """
-    found = [*offsets(scene), *nothing_ages(scene), *errors_of_viscous(scene), *name_without_effect(scene)]
+    found = [*offsets(scene), *nothing_ages(scene), *name_without_effect(scene)]
     if isinstance(scene.roughness, BearingArea | TabulatedClosure) and scene.geometry.file is None:
         found += ridges_as_roughness(scene.roughness.wavelength, scene.geometry.ridge_wavelength)
         found += missing_waves(scene.roughness.wavelength)
@@ -175,16 +175,6 @@ def nothing_ages(scene: "Scene") -> list[str]:
     if isinstance(law, Friction) and law.memory is not None:
         found.append(f"friction is {type(law).__name__} and {timeless} friction stays as it begins; {remedy}")
     return found
-
-
-def errors_of_viscous(scene: "Scene") -> list[str]:
-    """Return a remark on viscous layers where errors of the mesh are asked for, which are not estimated then."""
-    return [
-        f"{layer}.viscosity is given and errors of the mesh are not estimated: a viscous state has a past, which other "
-        "meshes do not have; compare with a run with another mesh.contact, as fingerpad sweep --over mesh.contact does"
-        for layer in viscous_layers(scene.materials)[:1]
-        if scene.output.errors
-    ]
 
 
 def finger_in_words(scene: "Scene") -> list[str]:

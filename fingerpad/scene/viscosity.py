@@ -95,8 +95,8 @@ def refuse_beside(layers: Sequence[str], given: Mapping[str, Any]) -> None:
     """
     reasons = {
         "force": "the sum of slices has no common time; give f_ext or a history",
-        "accuracy": "states cannot be solved again on another mesh without the past of their layers; leave it out, and "
-        "compare runs with other mesh sizes",
+        "accuracy": "states cannot be solved again on another mesh without the past of their layers; leave it out: "
+        "errors are estimated without it",
     }
     for name, value in given.items():
         if layers and value is not None:

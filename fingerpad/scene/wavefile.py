@@ -10,8 +10,9 @@ Files of more than :data:`POINTS` samples are averaged in groups, all of as many
 """
 
 import math
+import re
 from collections.abc import Sequence
-from typing import Annotated, Any
+from typing import Annotated, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -34,6 +35,7 @@ _TIMES = {*_WORDS, "s", "ms", "us", "µs", "μs", "ns", "sequence", "sample", "s
 """Of the first column in a line of units; some are none, and are refused."""
 _SIDE = {"s": "horizontal units", "V": "vertical units"}  # keys of a preamble beside the numbers
 Array = NDArray[np.float64]
+_HEAD = re.compile(r"(.*?)\s*[(\[]([^()\[\]]*)[)\]]")  # a name, and a unit in the last brackets behind it
 _Rows = list[tuple[int, list[str]]]  # number of a line, and its cells
 
 
@@ -47,8 +49,8 @@ def table(file: str, column: str | None = None, probe: float = 1.0) -> dict[str,
 
     Args:
         file: its path.
-        column: name of the voltages' column, or its number where it has no name, that of the times being 1; None where
-            there is one alone.
+        column: name of the voltages' column, with its unit as written there or without; its number where it has no
+            name, that of the times being 1; None where there is one alone.
         probe: factor on the voltages.
 
     Raises:
@@ -65,7 +67,7 @@ def table(file: str, column: str | None = None, probe: float = 1.0) -> dict[str,
     first = next(numbers)
     labels = _labels(rows, first, places)
     place = _chosen(name, labels, places, column)
-    factors = [_factor(name, *label, unit) for label, unit in zip((labels[0], labels[place]), ("s", "V"), strict=True)]
+    factors = [_factor(name, label, unit) for label, unit in zip((labels[0], labels[place]), ("s", "V"), strict=True)]
     for line, cells in rows[first:]:
         _refuse_line(name, line, cells, places)
     t, u = (np.array([float(cells[places[k]]) for _, cells in rows[first:]]) for k in (0, place))
@@ -126,36 +128,48 @@ def _refuse_line(name: str, line: int, cells: Sequence[str], places: Sequence[in
 
 
 # -- columns -----------------------------------------------------------------------------------------------------
-def _labels(rows: _Rows, first: int, places: Sequence[int]) -> list[tuple[str, str]]:
-    """Return name and unit of each column of numbers, empty where there is none."""
+class _Label(NamedTuple):
+    """What stands above a column of numbers; empty where there is nothing."""
+
+    name: str
+    unit: str
+    head: str
+    """Both as written."""
+
+
+def _labels(rows: _Rows, first: int, places: Sequence[int]) -> list[_Label]:
+    """Return the label of each column of numbers."""
     if places[0] > 0:
         beside = {cells[0].casefold(): cells[1] for _, cells in rows if len(cells) > 1 and cells[0]}
         units = [beside.get(_SIDE[unit], "") for unit in ("s", "V")]
         names = ["", *[beside.get("source", "")] * (len(places) - 1)]
-        return [(names[k], units[min(k, 1)]) for k in range(len(places))]
+        return [_Label(names[k], units[min(k, 1)], names[k]) for k in range(len(places))]
     above = [cells for _, cells in rows[max(first - 2, 0) : first] if all(k < len(cells) and cells[k] for k in places)]
     last = above[-1] if above else [""] * (places[-1] + 1)
     bare = [cell.strip("()[]") for cell in last]
     if len(above) > 1 and bare[0].casefold() in _TIMES:  # names, and a line of units
-        return [(above[0][k], bare[k]) for k in places]
-    parted = [last[k].rstrip(")]").replace("[", "(").partition("(") for k in places]
-    return [(words.strip(), unit.strip()) for words, _, unit in parted]
+        return [_Label(above[0][k], bare[k], above[0][k]) for k in places]
+    found = [(last[k], _HEAD.fullmatch(last[k])) for k in places]
+    return [_Label(match[1], match[2].strip(), head) if match else _Label(head, "", head) for head, match in found]
 
 
-def _chosen(name: str, labels: Sequence[tuple[str, str]], places: Sequence[int], column: str | None) -> int:
+def _chosen(name: str, labels: Sequence[_Label], places: Sequence[int], column: str | None) -> int:
     """Return which of the columns of numbers has the voltages."""
     if column is None and len(places) == 2:
         return 1
-    names = [label or str(place + 1) for (label, _), place in zip(labels, places, strict=True)]
-    same = [k for k in range(1, len(places)) if column is not None and names[k].casefold() == column.casefold()]
-    if same:
-        return same[0]
+    names = [label.name or str(place + 1) for label, place in zip(labels, places, strict=True)]
+    wanted = None if column is None else column.strip().casefold()
+    for known in ([label.head for label in labels], names):
+        same = [k for k in range(1, len(places)) if known[k].casefold() == wanted]
+        if same:
+            return same[0]
     given = "is not given" if column is None else f"is {show(column)}"
     raise ValueError(f"column {given} and {name}; it must be {' or '.join(map(show, names[1:]))}, as named there")
 
 
-def _factor(name: str, column: str, unit: str, si: str) -> float:
+def _factor(name: str, label: _Label, si: str) -> float:
     """Return the unit of a column over the SI unit."""
+    column, unit = label.name, label.unit
     if not unit:
         return 1.0
     try:

@@ -20,14 +20,15 @@ surfaces are under that pressure (Forsbach et al. 2023, Eqs. 3, 4 and 13):
 .. math:: 2 a p_c = f + 2 \sigma c, \qquad d_{eq} = d_{eq}(p_c).
 
 Without voltage this is Hertz's law. There are two ways to close the equations: a is given, and f is borne over it; or
-f is given, and a follows from the second equation. The gap at c grows with m then, which leaves one m at each p_c, and
+f is given, and a follows from the second equation. E* may grow with p_c, as in a ridge that friction shears. The gap
+at c grows with m then, which leaves one m at each p_c, and
 one equation in p_c. It can have several roots: that of the highest pressure is
 the branch in contact, on which the loop over the scales contracts; others are unstable, or states of a ridge that has
 not jumped on the screen yet. Where the highest root vanishes the ridge is past its pull-off fold and there is none.
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -99,6 +100,8 @@ class Cylinder:
     """Effective insulator thickness (m)."""
     closure: Closure
     """The microscale."""
+    stiffening: Callable[[Any], Array] | None = None
+    """What the modulus gains (Pa) at mean contact pressures (Pa); None where it is constant."""
 
     def under_loads(self, f: ArrayLike, voltage: Voltage) -> list[RidgeState]:
         """Return the state under each of several external forces.
@@ -228,7 +231,10 @@ class Cylinder:
             loads: of each ridge.
             near: values of m - 1 to start at.
         """
-        d_eq = np.repeat(np.asarray(self.closure(p_c).d_eq, dtype=float), len(loads.f) // len(p_c))
+        count = len(loads.f) // len(p_c)
+        d_eq = np.repeat(np.asarray(self.closure(p_c).d_eq, dtype=float), count)
+        if self.stiffening is not None:
+            loads = replace(loads, modulus=loads.modulus + np.repeat(self.stiffening(p_c), count))
         volts = voltage(d_eq) if callable(voltage) else voltage
         sigma = VACUUM_PERMITTIVITY * volts**2 / 2 / (self.h_0 + d_eq) ** 2
         beyond = self._edge(loads, sigma, self.h_0 + 2 * d_eq, near)

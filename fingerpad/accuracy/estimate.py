@@ -1,0 +1,141 @@
+"""Estimated discretisation errors of named states: what a result, a summary and a console have of them."""
+
+from collections.abc import Mapping
+from dataclasses import fields, replace
+from typing import TYPE_CHECKING, Any
+
+from fingerpad.accuracy.states import Solve, with_values
+from fingerpad.results.quantities import QUANTITIES, Output
+from fingerpad.results.states import WORDS
+from fingerpad.richardson import TWO, of_two_meshes, plus_minus
+from variational.element import ELEMENTS
+from variational.state import ContactState, Errors
+
+if TYPE_CHECKING:
+    from fingerpad.accuracy.solves import Solves
+
+_ROUNDOFF = 1e-9  # relative: friction without voltage does not depend on the mesh
+
+
+class Estimate:
+    """Errors of named states from those on two meshes (:func:`fingerpad.richardson.of_two_meshes`).
+
+    Attributes:
+        model: with the mesh of the path.
+        base: the states that the errors are of.
+        solves: all that was solved.
+        failure: why the accuracy asked for is not reached, else empty.
+        notes: remarks on the estimate.
+        penalty: change of each quantity by a rigid screen, where contact is a penalty and this is estimated.
+        degree: of the elements.
+    """
+
+    def __init__(self, solves: "Solves") -> None:
+        """Begin with the states of the path.
+
+        Args:
+            solves: the path's alone.
+        """
+        self.solves, self._show, self.model = solves, solves.show, solves.model
+        (self.base,) = solves.found
+        self.failure, self.notes = "", list[str]()
+        self.penalty: dict[str, float] = {}
+        self.degree = ELEMENTS[self.model.numerics.element].degree
+        self._two: dict[str, float] = {}
+
+    def estimates(self) -> dict[str, float]:
+        """Return the estimated error of each quantity, in its unit."""
+        return self._two
+
+    def allowed(self) -> dict[str, float]:
+        """Return the largest error allowed of each quantity that is asked for, in its unit."""
+        return {}
+
+    def summary(self) -> dict[str, Any]:
+        """Return how errors were found, ready for JSON; collective."""
+        values, found, allowed = self.base.values(), self.estimates(), self.allowed()
+        shares = {name: self._shares(name, error) for name, error in found.items()}
+        quantities = {
+            name: {
+                "value": values[name],
+                "error": error,
+                "estimate": sum(shares[name].values()),
+                "penalty": self.penalty.get(name),
+                "allowed": allowed.get(name),
+                "shares": shares[name],
+            }
+            for name, error in found.items()
+        }
+        return {
+            "reached": not self.failure,
+            "mesh": self.base.mesh.model_dump(),
+            "step_scale": self.model.numerics.step_scale,
+            "quantities": quantities,
+            "notes": self.notes,
+            **self.solves.cost(),
+        }
+
+    def _compare(self, coarse: Solve, fine: Solve, short: bool = True) -> None:
+        """Take the errors of states from two meshes, of which the coarser has elements twice as large.
+
+        Args:
+            coarse: states on the coarser mesh.
+            fine: states on the finer one.
+            short: whether its facets are shorter where their contact ends.
+        """
+        facets = {
+            name: (coarse.states[name].facet, state.facet)
+            for name, state in fine.states.items()
+            if name in coarse.states
+        }
+        self._two = of_two_meshes(coarse.parts(), fine.parts(), facets, self.degree, short=short)
+        self.base = fine
+
+    def _shares(self, name: str, error: float) -> dict[str, float]:
+        """Return the parts of a quantity's estimate, without factors of safety, by mesh parameter."""
+        return {"mesh": error / TWO}
+
+    def _note(self, text: str) -> None:
+        self.notes.append(text)
+        self._show(text)
+
+    def _report(self) -> None:
+        """Print the values of the states with their errors."""
+        values, found, allowed = self.base.values(), self.estimates(), self.allowed()
+        for name, error in found.items():
+            if "_sed_" in name or error <= _ROUNDOFF * abs(values[name]):
+                continue
+            quantity, words = of_key(name)
+            limit = f", {allowed[name] * quantity.scale:.2g} allowed" if name in allowed else ""
+            number = f"{plus_minus(values[name] * quantity.scale, error * quantity.scale)} {quantity.unit}".rstrip()
+            self._show(f"{words}: {number} (estimated discretisation error){limit}")
+
+
+def with_errors(estimate: Estimate, path: Mapping[str, ContactState]) -> dict[str, ContactState]:
+    """Return the named states of a path with their results on the final mesh, their errors and the penalty's share.
+
+    Args:
+        estimate: of the path's states.
+        path: the states by name, as the path has them.
+    """
+    estimates, found = estimate.estimates(), dict(path)
+    for name, kept in estimate.base.states.items():
+        if name in found:
+            parts = (errors_of(name, estimates), errors_of(name, estimate.penalty))
+            found[name] = replace(with_values(found[name], kept), error=parts[0], penalty=parts[1])
+    if {"uncharged", "charged"} <= set(found) and path["uncharged"].step == path["charged"].step:  # at 0 V one state
+        found["uncharged"] = found["charged"]
+    return found
+
+
+def errors_of(name: str, changes: Mapping[str, float]) -> Errors:
+    """Return the changes of a named state's quantities, of those by key; densities at receptors are left out."""
+    known = {field.name for field in fields(Errors)}
+    return Errors(**{k: v for key, v in changes.items() if (k := key.removeprefix(f"{name}_")) in known and k != key})
+
+
+def of_key(key: str) -> tuple[Output, str]:
+    """Return the quantity of a key such as ``full_slip_mu_app``, and the key in words: quantity and state."""
+    state = next(name for name in WORDS if key.startswith(f"{name}_"))
+    quantity = QUANTITIES[key.removeprefix(f"{state}_")]
+    return quantity, f"{quantity.words} at {WORDS[state]}"
