@@ -197,6 +197,16 @@ def test_size_of_the_error_is_told(folder, error, what, words):
     assert found[what].verdict == (trust.GOOD if error < 0.02 else trust.CARE)
 
 
+@pytest.mark.parametrize(("error", "what"), [(0.019, "mesh over time"), (0.03, "the mesh is coarse over time")])
+def test_error_over_time_is_told(folder, error, what):
+    """Where paths on two meshes have one; by the same limits."""
+    result = Result.load(folder)
+    record = result.record | {"accuracy": {"over_time": {"f_t": {"difference": error / 2, "error": error}}}}
+    found = {each.what: each for each in trust.findings(replace(result, record=record))}
+    assert f"friction over time is at most {100 * error:.2g} % of its largest value" in found[what].words
+    assert not any("over time" in each.what for each in trust.findings(result))
+
+
 def test_full_slip_without_a_coefficient_has_its_force(folder):
     """As of a finger that slides while nothing presses it: no number is nan, and errors are known."""
     result = Result.load(folder)

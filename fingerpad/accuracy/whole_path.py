@@ -10,7 +10,9 @@ In loads over time the two paths are compared over time as well (:mod:`fingerpad
 finer one is that of the largest difference (:func:`fingerpad.richardson.of_two_paths`).
 
 Not estimated: what the penalty changes, and the error of the time steps, which the two paths have in common. A path
-that is lost on the coarser mesh leaves the results without errors, with a note that says why.
+that is lost on the coarser mesh leaves the results without errors, with a note that says why. Where fewer than
+:data:`fingerpad.richardson.FEW_FACETS` facets of a ridge touch, its length changes by accident with the mesh, and the
+estimate may be too small: a note says so.
 """
 
 from collections.abc import Callable, Sequence
@@ -26,7 +28,7 @@ from fingerpad.model.stimuli import SiteStimuli
 from fingerpad.results.interrupt import Interrupted
 from fingerpad.results.states import WORDS
 from fingerpad.results.terminal import about
-from fingerpad.richardson import of_two_paths
+from fingerpad.richardson import FEW_FACETS, of_two_paths
 from geometry.profiles import GeometryError
 from variational.solvers.continuation import StepFailed
 from variational.state import ContactState
@@ -73,6 +75,7 @@ class WholePath(Estimate):
             self._note(f"discretisation errors could not be estimated: on elements twice as large, {error}")
             return
         self._compare(self._comparable(coarse), self.base, short=False)
+        self._few_facets()
         self._report()
         if self._states[-1].time > 0:
             self.over_time = differences(self._states, self._coarse)
@@ -122,3 +125,16 @@ class WholePath(Estimate):
                     "the estimated discretisation error includes this change"
                 )
         return replace(coarse, states=kept)
+
+    def _few_facets(self) -> None:
+        """Note that contacts are of few facets."""
+        facets = {
+            name: each.state.contact_length / max(each.state.ridges_in_contact, 1) / each.facet
+            for name, each in self.base.states.items()
+        }
+        fewest = min(facets, key=facets.__getitem__, default="")
+        if fewest and facets[fewest] < FEW_FACETS:
+            self._note(
+                f"a ridge touches with {facets[fewest]:.1f} facets in the mean at {WORDS[fewest]}: on so few the "
+                "estimated discretisation errors may be too small; a smaller mesh.contact resolves it"
+            )

@@ -11,6 +11,7 @@ from fingerpad.report.known import bars
 from fingerpad.report.page import BAD, CARE, GOOD
 from fingerpad.results.headline import missing_slip
 from fingerpad.results.states import called
+from fingerpad.richardson import FEW_FACETS
 from fingerpad.scene.remarks import coefficient
 from variational.state import ContactState
 
@@ -21,9 +22,6 @@ _SMALL, _LARGE = 0.02, 0.1
 """Relative errors below which an error is small, and above which the mesh is too coarse for more than a trend."""
 
 _NO_ERROR = "The run did not estimate the error of its mesh. It is not in any ±, nor in the band of what is known."
-_MIN_FACETS = 4
-"""Facets in contact on a ridge below which the effect of a rigid screen is doubtful: at two or three,
-a few Gauss points bear the contact, and their number changes with the stiffness."""
 
 
 class Finding(NamedTuple):
@@ -42,7 +40,7 @@ def findings(result: "Result") -> list[Finding]:
     if not follows_path(result.model):
         words = f"The model is {result.model!r}, a cheaper one; {in_words(result.record.get('model_error', {}))}."
         return [*found, Finding("model", CARE, words), *_cautions(result)]
-    for examined in (_cautions, _mesh, _balance, _stability, _jumps, _restarts):
+    for examined in (_cautions, _mesh, _over_time, _balance, _stability, _jumps, _restarts):
         found += examined(result)
     return found
 
@@ -98,12 +96,25 @@ def _mesh(result: "Result") -> Iterator[Finding]:
     yield from _facets(result, state)
     name = max(shares, key=lambda each: shares[each])
     share = shares[name]
-    words = f"The estimated discretisation error of {name} is {100 * share:.2g} % of its value."
+    yield _of_share(share, f"The estimated discretisation error of {name} is {100 * share:.2g} % of its value.")
+
+
+def _over_time(result: "Result") -> Iterator[Finding]:
+    """Judge the error of friction over time, where it is estimated."""
+    over_time = (result.record.get("accuracy") or {}).get("over_time", {})
+    if "f_t" in over_time:
+        share = over_time["f_t"]["error"]
+        error = f"{100 * share:.2g} % of its largest value"
+        words = f"The estimated discretisation error of friction over time is at most {error}."
+        yield _of_share(share, words, " over time")
+
+
+def _of_share(share: float, words: str, when: str = "") -> Finding:
+    """Return the finding on a relative error, whose sentence is given."""
     if share <= _SMALL:
-        yield Finding("mesh", GOOD, words)
-    else:
-        more = "good for trends" if share <= _LARGE else "too coarse for more than a trend"
-        yield Finding("the mesh is coarse", CARE, f"{words} The mesh is {more}; a smaller mesh.contact reduces it.")
+        return Finding(f"mesh{when}", GOOD, words)
+    more = "good for trends" if share <= _LARGE else "too coarse for more than a trend"
+    return Finding(f"the mesh is coarse{when}", CARE, f"{words} The mesh is {more}; a smaller mesh.contact reduces it.")
 
 
 def _shares(result: "Result", state: ContactState) -> dict[str, float]:
@@ -131,8 +142,8 @@ def _facets(result: "Result", state: ContactState) -> Iterator[Finding]:
     if not (springs and state.ridges_in_contact and state.mesh_contact):
         return
     facets = state.contact_length / state.ridges_in_contact / state.mesh_contact
-    if facets < _MIN_FACETS:
-        words = f"A ridge touches with {facets:.1f} facets in the mean, fewer than {_MIN_FACETS}."
+    if facets < FEW_FACETS:
+        words = f"A ridge touches with {facets:.1f} facets in the mean, fewer than {FEW_FACETS}."
         more = "What a rigid screen would change is not reliable there; a smaller mesh.contact resolves it."
         yield Finding("contacts of few facets", CARE, f"{words} {more}")
 

@@ -43,7 +43,8 @@ def result(scene: Scene, folder: Path) -> Summary | None:
 
 def progress(quiet: bool = False) -> "Progress":
     """Return a bar of things done and time taken; nothing where the output is no terminal, or ``quiet`` is given."""
-    from rich.progress import (  # where it is shown
+    from rich.console import Console  # where it is shown
+    from rich.progress import (
         BarColumn,
         MofNCompleteColumn,
         Progress,
@@ -52,9 +53,9 @@ def progress(quiet: bool = False) -> "Progress":
     )
 
     columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn())
-    bar = Progress(*columns, TimeElapsedColumn(), transient=True)
-    bar.disable = quiet or not watched()
-    return bar
+    hidden = quiet or not watched()  # a bar prints an empty line at its end, unless its console is quiet
+    console = Console(quiet=True) if hidden else None
+    return Progress(*columns, TimeElapsedColumn(), transient=True, disable=hidden, console=console)
 
 
 def times_left(took: Sequence[float], left: int, jobs: int) -> tuple[float, float]:
