@@ -95,7 +95,8 @@ def test_caution_names_the_end_of_the_widest_region():
     (found,) = cylinder_errors.outside(scene, 1.0)
     assert (found.key, found.value, found.known) == ("voltage", f"{scene.voltage:g} V", f"0 to {voltage:g} V")
     assert str(found) in cylinder_errors.cautions(scene, 1.0)[0] and not cylinder_errors.outside(Scene(), pull)
-    (found,) = cylinder_errors.outside(Scene(), pull + 0.1)
+    most = max(each.ranges[cylinder_errors.PULL][1] for each in cylinder_errors.REGIONS)
+    (found,) = cylinder_errors.outside(Scene(), most + 0.1)
     assert found.key == cylinder_errors.PULL and found.known == f"0 to {pull:g}"
 
 
