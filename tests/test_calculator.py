@@ -17,7 +17,7 @@ import fingerpad as fp
 from fingerpad.calculator import page as fields
 from fingerpad.calculator.page import page
 from fingerpad.cli import main
-from fingerpad.reduced import cylinder_errors, cylinders
+from fingerpad.reduced import closure_band, cylinder_errors, cylinders
 from fingerpad.scene import Scene, SceneError
 from fingerpad.scene.reading import put
 from tests.browser import asked
@@ -169,6 +169,34 @@ def test_whole_finger_is_that_of_python(tmp_path):
             {name: expected[name] for name in names}, rel=SAME
         )
         assert found["section"]["mu_app"] == pytest.approx(result.full_slip.mu_app, rel=SAME)
+
+
+@pytest.mark.parametrize("newtons", [True, False])
+def test_band_is_that_of_python(newtons, tmp_path):
+    """How far friction is known and its parts, to 1e-3: air gaps are interpolated between insulators."""
+    load = {"force": 0.5} if newtons else {"f_ext": 75.0}
+    others: list[dict[str, Any]] = [
+        {"voltage": 200.0},
+        {"voltage": 90.0, "electric.d_i": 5e-6, "roughness.h_rms": 2e-6},
+        {"voltage": 320.0, "friction": 0.7, "roughness.young": 3e6, "roughness.wavelength": 60e-6},
+    ]
+    default = in_si({key: field.value for key, field in FIELDS.items()}) | load
+    program = f"""console.log(JSON.stringify({json.dumps([default | each for each in others])}.map((p) => {{
+      p.newtons = {json.dumps(newtons)};
+      return knownBand.of(p, p.newtons ? closedForm.whole(p) : closedForm.solve(p));
+    }})));"""
+    for each, found in zip(others, by_script(program, tmp_path), strict=True):
+        data: dict[str, Any] = dict(load)
+        for key, value in each.items():
+            put(data, key, value)
+        scene = Scene(**data)
+        result = fp.run(scene, model="cylinders") if newtons else cylinders.solve(scene)
+        expected = closure_band.known(result, closure_band.band(result)["mu_app"])
+        parts = {part["name"]: (part["low"], part["high"]) for part in found["parts"]}
+        assert [*parts] == [part["name"] for part in expected["parts"]] and found["left_out"] == expected["left_out"]
+        for part in expected["parts"]:
+            assert parts[part["name"]] == pytest.approx((part["low"], part["high"]), rel=1e-3), (each, part)
+        assert (found["low"], found["high"]) == pytest.approx((expected["low"], expected["high"]), rel=1e-3)
 
 
 def test_numbers_are_those_of_python(whole, tmp_path):

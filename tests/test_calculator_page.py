@@ -24,6 +24,21 @@ def whole() -> str:
     return page()
 
 
+# -- how far it is known -------------------------------------------------------------------------------
+def test_bar_of_the_band_moves_with_the_fields(whole, tmp_path):
+    """Bars of what is solved and what is known; a larger voltage moves the band up; none without a voltage."""
+    program = f"""{SET}{FIND}
+    return [200, 320, 0].map((voltage) => {{
+      set({{ force: 0.5, voltage }});
+      const bar = find("known").querySelector(".known_to"), solved = find("known").querySelector(".solved_to");
+      return [bar && Number(bar.getAttribute("width")), Boolean(solved), text("caption_known"), text("always")];
+    }});"""
+    (width, solved, words, line), (_, _, wider, _), (none, _, nothing, still) = asked(whole, program, tmp_path)
+    low, high = fp.run(Scene(force=0.5), model="cylinders").known["low"], re.search(r"to about ([\d.]+) to", wider)[1]
+    assert width > 100 and solved and f"known to about {low:.2f} to " in words and f"known to about {low:.2f}" in line
+    assert float(high) > low and (none, nothing) == (None, "") and "known to" not in still
+
+
 # -- the map -------------------------------------------------------------------------------------------
 def test_map_is_that_of_the_command(tmp_path):
     """To 1e-9 of ``fingerpad estimate --over``, some of the places, and refused at the same ones."""
@@ -179,10 +194,12 @@ def test_nothing_is_cut_off(whole, tmp_path, width):
       (each) => each.getBoundingClientRect().right > innerWidth + 0.5 || each.scrollWidth > each.clientWidth + 1 &&
         ["P", "LABEL", "PRE", "TD", "TH", "FIGURE", "DIV"].includes(each.tagName) && each.clientWidth);
     return [document.documentElement.scrollWidth, beyond.map((each) => each.outerHTML.slice(0, 80)),
-      [...document.querySelectorAll("svg")].map((each) => each.getBoundingClientRect().width)];"""
-    whole_width, beyond, curves = asked(whole, program, tmp_path, width=width, height=800)
+      ["svg:not(#known svg)", "#known svg"].map(
+        (drawn) => [...document.querySelectorAll(drawn)].map((each) => each.clientWidth))];"""
+    whole_width, beyond, (curves, bars) = asked(whole, program, tmp_path, width=width, height=800)
     assert beyond == [] and whole_width <= width
     assert len(curves) == 6 and min(curves) > 0.8 * min(width, 800)
+    assert len(bars) == 1 and bars[0] > 0.8 * min(width, 700)
 
 
 def test_page_needs_no_network(whole):

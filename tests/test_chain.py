@@ -158,9 +158,12 @@ def test_point_not_found_from_its_neighbour_has_a_path(monkeypatch):
     skin = Skin()
     results, _ = followed(monkeypatch, skin, [100.0, 90.0, 75.0, 70.0])
     assert [r.full_slip.reached for r in results[1:3]] == ["full slip from voltage 100 V", "path"]
-    assert results[2].notes[-1] == "It was not found from its neighbour: not found."
+    assert "It was not found from its neighbour: not found." in results[2].notes
     assert results[3].full_slip.reached == "full slip from voltage 75 V"
-    assert results[3].notes[-1].endswith("it was reached by: full slip from voltage 75 V.")
+    assert results[3].notes[0].endswith("it was reached by: full slip from voltage 75 V.")
+    assert results[3].notes[-1].startswith("no newtons of the whole finger: full slip alone has no press"), (
+        "of nine ridges"
+    )
     assert skin.paths == 2
 
 

@@ -79,6 +79,15 @@ def test_one_run_at_a_time(scene, folder, finished):
         pass
 
 
+def test_folder_of_a_refused_scene_goes_again(tmp_path):
+    """One that the run has made; not one that was there, nor what is in it."""
+    other, new = from_data({"geometry": {"ridge_count": 9}}), tmp_path / "new"
+    for out in (new, tmp_path):
+        with pytest.raises(fp.SceneError, match="geometry is not that of the default finger"):
+            fp.run(other, model="cylinders", out=out)
+    assert not new.exists() and tmp_path.exists()
+
+
 @pytest.mark.mpi
 def test_refused_on_all_ranks(scene, folder):
     """The folder is a file: the first rank finds out, and all say so."""

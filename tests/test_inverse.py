@@ -28,6 +28,12 @@ def test_jump_is_no_root():
     assert search.find() == [] and search.jumps == pytest.approx([0.3], abs=1e-5)
 
 
+def test_coefficient_of_coulombs_law_is_searched_by_its_own_name():
+    """A scene keeps the law as this number, so that friction.mu_f and friction are one key with two names."""
+    one, other = (fp.solve(target="mu_app=0.5", over=key, between=(0.1, 0.4)) for key in ("friction.mu_f", "friction"))
+    assert one.values == other.values and 0.15 < one.values[0] < 0.3
+
+
 def test_range_ends_where_answers_end():
     """A root between the last grid point with an answer and the first without one is found."""
 

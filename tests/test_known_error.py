@@ -89,13 +89,14 @@ def test_ends_of_a_range_belong_to_it():
 def test_caution_names_the_end_of_the_widest_region():
     """Of those with the default friction coefficient, by its voltage and by the attraction that the result has."""
     fits = [each for each in cylinder_errors.REGIONS[1:] if cylinder_errors.within(0.25, each.ranges["friction"])]
-    (wide,) = fits or cylinder_errors.REGIONS[:1]
+    wide = max(fits or cylinder_errors.REGIONS[:1], key=lambda each: each.ranges[cylinder_errors.PULL][1])
     voltage, pull = wide.ranges["voltage"][1], wide.ranges[cylinder_errors.PULL][1]
     scene = from_data({"voltage": round(voltage) + 1})
     (found,) = cylinder_errors.outside(scene, 1.0)
     assert (found.key, found.value, found.known) == ("voltage", f"{scene.voltage:g} V", f"0 to {voltage:g} V")
     assert str(found) in cylinder_errors.cautions(scene, 1.0)[0] and not cylinder_errors.outside(Scene(), pull)
-    (found,) = cylinder_errors.outside(Scene(), pull + 0.1)
+    most = max(each.ranges[cylinder_errors.PULL][1] for each in cylinder_errors.REGIONS)
+    (found,) = cylinder_errors.outside(Scene(), most + 0.1)
     assert found.key == cylinder_errors.PULL and found.known == f"0 to {pull:g}"
 
 

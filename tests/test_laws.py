@@ -286,7 +286,7 @@ def test_names_of_the_laws():
     assert set(found) == {*LAYERS, "contact", "friction", "attraction", "closure"}
     assert found["dermis"] == "Mine(shear_modulus=2500, bulk=60000)"
     assert found["subcutis"] == "Ogden(shear_modulus=25000 Pa, alpha=5, poisson=0.48, convention='printed')"
-    assert found["nail"] == "SaintVenant(young=170000000 Pa, poisson=0.3)"
+    assert found["nail"] == "SaintVenant(young=1.7e+08 Pa, poisson=0.3)"
     assert found["friction"] == "Saturating(mu_f=0.4, t_most=20000)"
     assert found["closure"] == "Held(gap=2e-06)"
     assert found["contact"].startswith("Penalty(eps_n=")

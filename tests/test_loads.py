@@ -7,7 +7,7 @@ import pytest
 
 from benchmarks.loads import compared, meshes
 from benchmarks.loads.__main__ import REGIONS_FILE, far
-from benchmarks.loads.scenes import AXES, COUNT, PULL, checked, forces, scenes, section
+from benchmarks.loads.scenes import AXES, COUNT, checked, forces, scenes, section
 from fingerpad.reduced import cylinder_errors, cylinders, uncharged
 from fingerpad.runs.solve import run
 from fingerpad.scene import Scene, from_data
@@ -52,13 +52,12 @@ def test_scenes_are_the_seeded_ones(numbers):
 
 
 def test_regions_of_the_program_are_those_of_the_states(sections, fingers):
-    made = json.loads(json.dumps(compared.regions(compared.bands(sections, fingers))))
+    made = json.loads(json.dumps(compared.regions(compared.levels(sections, fingers))))
     assert json.loads(REGIONS_FILE.read_text(encoding="utf-8")) == made
     assert len(cylinder_errors.REGIONS) == 1 + len(made)
     errors = [region.errors["full_slip"]["f_electrostatic"] for region in cylinder_errors.REGIONS[1:]]
     assert errors == sorted(errors), "a region begins where the last one ends, and has to have the larger error"
     for region in cylinder_errors.REGIONS[1:]:
-        assert region.ranges[cylinder_errors.PULL][1] <= PULL
         for key, (low, high, _) in AXES.items():
             assert low <= region.ranges[key][0] or key == "voltage"
             assert region.ranges[key][1] <= high
@@ -96,9 +95,9 @@ def made_up(count: int) -> list[compared.Compared]:
 def test_band_with_enough_states_has_an_error(monkeypatch):
     """It covers the states that make it, and holds in their range alone: of friction, and of the attraction."""
     few = compared.LEAST - 1  # that make the error, and that test it
-    assert compared.regions(compared.bands(made_up(2 * few - 1), [])) == []
+    assert compared.regions(compared.levels(made_up(2 * few - 1), [])) == []
     some = made_up(40)
-    (found,) = compared.regions(compared.bands(some, []))
+    (found,) = compared.regions(compared.levels(some, []))
     error = found["errors"]["full_slip"]["f_electrostatic"]
     assert compared.covered(some, error) == len(some) and 0.02 < error < 0.02 * compared.MARGIN + 2e-3
     monkeypatch.setattr(cylinder_errors, "REGIONS", (cylinder_errors.REGIONS[0], cylinder_errors.Region(**found)))
@@ -111,6 +110,16 @@ def test_band_with_enough_states_has_an_error(monkeypatch):
     finger = {"force": 0.5, "voltage": 100.0, "friction": 0.5, "electric": {"d_i": 2e-6}}
     (outside,) = cylinder_errors.outside(from_data(finger))
     assert (outside.key, outside.known) == ("force", "sections alone")
+
+
+def test_strong_attraction_has_an_error_of_its_own():
+    """States with more than the limit's attraction over force, and larger errors, leave the others theirs."""
+    some = [each._replace(attraction=500.0, error=0.2) if k % 4 > 1 else each for k, each in enumerate(made_up(80))]
+    some = [each._replace(scene=k // 2) for k, each in enumerate(some)]
+    near, far = compared.regions(compared.levels(some, []))
+    errors = [each["errors"]["full_slip"]["f_electrostatic"] for each in (near, far)]
+    ends = [each["ranges"][cylinder_errors.PULL][1] for each in (near, far)]
+    assert errors[0] < 0.05 < 0.2 < errors[1] and ends[0] < compared.PULLED < ends[1]
 
 
 def test_region_ends_where_the_full_model_has_no_result():

@@ -1,6 +1,7 @@
 """A whole finger as a sum of slices: closed forms, conservation, convergence, tables and what is refused."""
 
 import json
+from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -9,11 +10,14 @@ import pint
 import pytest
 from numpy.testing import assert_allclose
 
+import fingerpad as fp
+from fingerpad.reduced.cylinders import indentation
 from fingerpad.results.finger_picture import footprint, ridges_along
 from fingerpad.results.solid_picture import _strips, solid
 from fingerpad.scene import Scene, SceneError
 from fingerpad.scene.parameters import Slices
 from fingerpad.slices.errors import MESH
+from fingerpad.slices.estimate import with_newtons
 from fingerpad.slices.finger import WholeFinger
 from fingerpad.slices.total import BeyondTrace, Profile, at_force, at_indentation, profile
 from fingerpad.slices.trace import Trace, TraceError, gross_width, trace
@@ -245,6 +249,36 @@ def test_finger_in_three_dimensions_has_the_ridges_of_its_slices(tmp_path):
     assert (pieces[:, :, 2] == 0).all() and ax.get_zlim()[0] <= 0 < ax.get_zlim()[1]
     assert np.asarray(ridges.get_array()).max() == values.max() == pytest.approx(1e-3 * total.pressure.max(), rel=0.01)
     assert "(kPa)" in bar.get_title() and (tmp_path / "solid.png").stat().st_size > 10_000
+
+
+def slip_alone(**changes: object) -> fp.Result:
+    """Full slip at the centre, as a point of a sweep of full slip alone has it."""
+    slip = fp.run(model="cylinders").full_slip
+    slip = replace(slip, bone_height=-indentation(slip.f_ext, "full_slip"))
+    return with_newtons(fp.Result(fp.Scene(**changes), "full", None, None, slip))
+
+
+def test_full_slip_alone_has_a_finger():
+    """By the press of the closed form. Of the closed form's own full slip it is the closed form's sum.
+
+    Tolerance: the error that the estimate states, since away from the centre full slip has the contact of the press.
+    """
+    found, own = slip_alone(), fp.run(model="cylinders")
+    assert list(found.finger.states) == ["full_slip"] and found.headline.quantity.name == "mu_app"
+    error = found.finger.error["full_slip"]
+    for name in ("f_t", "mu_app", "contact_area"):
+        mine, its = (each.finger.under(0.5).values("full_slip")[name] for each in (found, own))
+        assert mine == pytest.approx(its, abs=error[name]) and error[name] < 0.05 * mine, name
+    assert found.headline.of == "whole finger"
+
+
+def test_full_slip_alone_of_another_finger_has_a_note():
+    found = slip_alone(finger="child")
+    assert found.finger is None and found.headline.of == "middle section"
+    assert found.notes == (
+        "no newtons of the whole finger: full slip alone has no press, and the closed form has none of this finger; "
+        "states='all' has it",
+    )
 
 
 # -- refusals ------------------------------------------------------------------------------------------

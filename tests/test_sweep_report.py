@@ -98,6 +98,9 @@ def test_files_of_an_earlier_sweep_do_not_stay_beside_a_new_table(tmp_path, monk
 
 def test_sweep_without_its_scene_is_refused(tmp_path):
     sweep(Scene(), tmp_path, model="cylinders", voltage=[0, 100])
+    (tmp_path / "sweep.json").write_text("{}", encoding="utf-8")
+    with pytest.raises(SceneError, match=r"sweep.json in .* has no 'model'; give the command of the sweep again"):
+        write(tmp_path)
     (tmp_path / "sweep.json").unlink()
     with pytest.raises(SceneError, match=r"sweep.json in .* cannot be read"):
         write(tmp_path)

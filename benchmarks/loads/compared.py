@@ -23,9 +23,12 @@ BANDS = (0.1, 0.35, 0.65, 1.0)
 """Friction coefficients, between which an error is found: it grows with the shear of the finger."""
 LEAST, MARGIN = 8, 1.5
 """Least number of states that make an error, and that test it; factor on what covers those that make it."""
+PULLED = 8.0
+"""Attraction over force, above which errors are larger and made of other states."""
 BLOCK = 2  # scenes of the sequence that make the error, or test it, in turn
 PART = 0.95  # of the states that the error is to cover
 WITHOUT = 0.1  # of the states inside a region, at most, that the full model did not reach
+_ROUNDOFF = 1e-9  # of the largest force of a trace
 Array = NDArray[np.float64]
 
 
@@ -100,7 +103,7 @@ def fingers(kept: Iterable[Data]) -> list[Compared]:
         except TraceError:
             continue
         most = [at_indentation(finger, made, deepest(finger, made), count).totals["f_ext"] for made in traces]
-        force = min(data["force"], *most)
+        force = min(data["force"], *(each * (1 - _ROUNDOFF) for each in most))
         one, full = (at_force(finger, made, force, count).totals["f_electrostatic"] for made in traces)
         found.append(Compared(each["scene"], force, one, full / one - 1, data, True))
     return found
@@ -133,20 +136,23 @@ class Band(NamedTuple):
         return [each for each in self.some if not fits(each)]
 
 
-def bands(sections: Sequence[Compared], fingers: Sequence[Compared]) -> list[Band]:
+def bands(sections: Sequence[Compared], fingers: Sequence[Compared], pull: float = math.inf) -> list[Band]:
     """Return the scenes of each band of :data:`BANDS` in the limits that hold most sections, few without result.
 
     Args:
         sections: of which the full model may have no result.
         fingers: of them.
+        pull: largest attraction over force.
     """
     found = []
     for k in range(len(BANDS) - 1):
-        every, whole = _in_band(sections, k), _in_band(fingers, k)
+        parts = (_in_band((each for each in some if each.attraction <= pull * each.force), k)
+                 for some in (sections, fingers))  # fmt: skip
+        every, whole = parts
         some, without = both(every), [each for each in every if math.isnan(each.error)]
         limits = _limits(some, without)
-        parts = ([each for each in part if np.all(_place(each) <= limits)] for part in (some, whole, without))
-        found.append(Band(*parts))
+        inside = ([each for each in part if np.all(_place(each) <= limits)] for part in (some, whole, without))
+        found.append(Band(*inside))
     return found
 
 
@@ -173,9 +179,28 @@ def _limits(some: Sequence[Compared], without: Sequence[Compared]) -> Array:
     return best
 
 
-def regions(every: Iterable[Band]) -> list[dict[str, Any]]:
-    """Return the regions in which the error is known, as the program reads them: those of :func:`by_band`."""
-    return [region for region in by_band(every) if region is not None]
+class Level(NamedTuple):
+    """Bands of the friction coefficient up to an attraction over force."""
+
+    bands: list[Band]
+    regions: list[dict[str, Any] | None]
+    """By band; None where no error is known, or where the level before has it."""
+
+
+def levels(sections: Sequence[Compared], fingers: Sequence[Compared]) -> list[Level]:
+    """Return the bands with an attraction of :data:`PULLED` times the force at most, and those of all states."""
+    near, far = (bands(sections, fingers, pull) for pull in (PULLED, math.inf))
+    known = by_band(near)
+    beyond = [
+        None if one and other and other["ranges"][PULL][1] <= one["ranges"][PULL][1] else other
+        for one, other in zip(known, by_band(far), strict=True)
+    ]
+    return [Level(near, known), Level(far, beyond)]
+
+
+def regions(every: Iterable[Level]) -> list[dict[str, Any]]:
+    """Return the regions in which the error is known, as the program reads them."""
+    return [region for level in every for region in level.regions if region is not None]
 
 
 def by_band(every: Iterable[Band]) -> list[dict[str, Any] | None]:

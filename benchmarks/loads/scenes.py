@@ -19,8 +19,9 @@ AXES = {  # key: ends in SI, and whether the sequence is even in the logarithm
 STEP, LIGHT = 3.0, (4.0, 8.0)  # ratio of two forces of a trace, at most, and its least force (N/m) on each mesh
 BEYOND = 1.2  # largest force of a trace over the one expected at the centre
 LIMIT = 60.0  # N/m: up to it a trace has the first mesh
-MOST = 30  # factorisations for a state, from the nearest neighbour
-PULL, LARGEST = 8.0, 180.0  # attraction by the closed form, over force and in N/m, beyond which no state is looked for
+FIRST, MOST, WORK = 30, 110, 350  # factorisations: from the nearest neighbour, of a rung, before the last rung
+LARGEST = 180.0  # N/m, attraction by the closed form beyond which no state is looked for: it takes too long
+LOWEST, RISE, LEAST_RISE = 60.0, 1.15, 1.03  # V, first rung, and ratios of two rungs at first and at last
 _COARSE = {"receptor": 250e-6, "interface": 250e-6, "coarsest": 2e-3, "growth": 0.6}
 MESHES: tuple[dict[str, float], ...] = (
     {"contact": 14e-6, "touching_half_arc": 4.8e-3} | _COARSE,

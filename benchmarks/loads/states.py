@@ -1,4 +1,8 @@
-"""Full slip of the full model in many scenes on few meshes: each state is solved for from the nearest one before."""
+"""Full slip of the full model in many scenes on few meshes: each state is solved for from the nearest one before.
+
+Where that does not lead to it, the voltage of the scene rises from a small one, at the scene's force. Each rung is
+solved for from the nearest state in its turn. A rung that is not found is halved, and at last the state is given up.
+"""
 
 import json
 import time
@@ -12,12 +16,16 @@ import numpy as np
 from benchmarks.loads.scenes import (
     DEFAULT,
     FAR,
+    FIRST,
     LADDER,
     LARGEST,
+    LEAST_RISE,
     LIGHT,
+    LOWEST,
     MESHES,
     MOST,
-    PULL,
+    RISE,
+    WORK,
     Data,
     meshed,
     section,
@@ -26,12 +34,11 @@ from benchmarks.loads.scenes import (
 from fingerpad.reduced import cylinders
 from fingerpad.results.files import replace
 from fingerpad.scene import from_data
+from variational.solvers.outcome import NotConverged
 from variational.state import RESULTS, ContactState
 
 if TYPE_CHECKING:
     from fingerpad.model.full_slip import FullSlips, Solved
-
-_NONE = {"factorisations": 0}
 
 
 class _TooManyError(RuntimeError):
@@ -47,6 +54,8 @@ class Pool:
     solved: "list[Solved]"
     most: int = 0
     """Factorisations up to which the present state is looked for."""
+    why: str = ""
+    """It was not found at last."""
 
     @classmethod
     def begin(cls, which: int) -> "Pool":
@@ -79,36 +88,55 @@ class Pool:
 
         def begin(pseudo_transient: bool) -> None:
             if solver.counts.factorisations >= self.most:
-                raise _TooManyError(f"not found with {MOST} factorisations")
-            solve(pseudo_transient)
+                raise _TooManyError(f"too many factorisations: {self.why}")
+            try:
+                solve(pseudo_transient)
+            except NotConverged as failure:
+                self.why = str(failure)
+                raise
 
         snes.setConvergenceTest(judge)
         path.solve = begin
 
     def state(self, data: Data, f_ext: float) -> Data:
-        """Return full slip from the nearest state, ready for JSON; its ``failure`` where that does not lead to it."""
+        """Return full slip, ready for JSON; the ``failure`` and the largest voltage before it where there is none."""
+        counts, wanted = self.slips.finger.solver.counts, data["voltage"]
+        f_el = _attraction(data, f_ext)
+        if f_el > LARGEST:
+            return {"f_ext": f_ext, "failure": f"not tried: attraction is {f_el:.3g} N/m", "factorisations": 0}
+        before, last, ratio = counts.factorisations, 0.0, RISE
+        found = self._from_nearest(data, f_ext, FIRST)
+        while "failure" in found and counts.factorisations < before + WORK and ratio > LEAST_RISE:
+            at = min(max(LOWEST, ratio * last), wanted)
+            rung = self._from_nearest(data | {"voltage": at}, f_ext, MOST)
+            if "failure" not in rung:
+                last = at
+                found = rung if at == wanted else found
+            elif last:
+                found, ratio = rung, ratio**0.5
+            else:
+                break
+        reached = {"reached": last} if "failure" in found else {}
+        return found | reached | {"factorisations": counts.factorisations - before}
+
+    def _from_nearest(self, data: Data, f_ext: float, most: int) -> Data:
+        """Return full slip or its ``failure`` from the nearest state, with so many factorisations at most."""
         from fingerpad.model.full_slip import Conditions
         from variational.solvers.continuation import StepFailed
 
-        f_el = _attraction(data, f_ext)
-        if f_el > min(LARGEST, PULL * f_ext):
-            return {"f_ext": f_ext, "failure": f"not tried: attraction is {f_el:.3g} N/m"} | _NONE
-        counts = self.slips.finger.solver.counts
-        wanted, before = Conditions.of(_model(data, f_ext, self.which)), counts.factorisations
-        self.most = before + MOST
+        wanted = Conditions.of(_model(data, f_ext, self.which))
+        self.most, self.why = self.slips.finger.solver.counts.factorisations + most, ""
         start = min(self.solved, key=lambda each: _distance(each.conditions, wanted))
         try:
             self.solved.append(self.slips.solve(wanted, start))
-            kept = _kept(self.solved[-1].state, f_ext)
         except (StepFailed, _TooManyError) as error:
-            kept = {"f_ext": f_ext, "failure": str(error)}
-        return kept | {"factorisations": counts.factorisations - before}
+            return {"f_ext": f_ext, "failure": str(error)}
+        return _kept(self.solved[-1].state, f_ext)
 
 
 def _attraction(data: Data, f_ext: float) -> float:
     """Return the attraction (N/m) by the closed form."""
-    slip = cylinders.solve(section(data, f_ext)).full_slip
-    assert slip is not None
+    (slip,) = cylinders.over_forces(section(data, f_ext), [f_ext], "full_slip")
     return slip.f_electrostatic
 
 

@@ -10,8 +10,18 @@ const closedForm = (function () {
   class NoEquilibriumError extends Error {}
 
   // -- roughness: bam.py ---------------------------------------------------------------------------------
-  class BearingArea {
+  class Closure {
+    /** Return d_eq at a pressure of PRESSURES, each computed once. */
+    gap(k) {
+      this.gaps = this.gaps || [];
+      if (this.gaps[k] === undefined) this.gaps[k] = this.d_eq(PRESSURES[k]);
+      return this.gaps[k];
+    }
+  }
+
+  class BearingArea extends Closure {
     constructor(h_0, roughness) {
+      super();
       Object.assign(this, roughness, { h_0 });
       this.full_pressure = ((this.beta * 4) / 3) * this.young * ((2 * Math.PI) / this.wavelength) * this.h_rms;
     }
@@ -28,12 +38,6 @@ const closedForm = (function () {
     d_eq(p_c) { // Eq. 13, held below p_floor and above full_pressure
       const held = Math.min(Math.max(p_c, this.p_floor), this.full_pressure);
       return this.h_0 * (Math.sqrt(2 / this.twice_area(this.separation(held))) - 1);
-    }
-    /** Return d_eq at a pressure of PRESSURES, each computed once. */
-    gap(k) {
-      this.gaps = this.gaps || [];
-      if (this.gaps[k] === undefined) this.gaps[k] = this.d_eq(PRESSURES[k]);
-      return this.gaps[k];
     }
     state(p_c, voltage) {
       if (p_c < this.p_floor) return "below p_floor";
@@ -236,14 +240,15 @@ const closedForm = (function () {
     };
   }
 
-  function ridge_of(p, footprint, state, closure) {
-    const n = footprint.ridges[state], length = footprint.length[state], f = p.f_ext / n;
-    const radius = data.tip_radius, h_0 = closure.h_0;
+  /** Return a ridge in a state; tips: radius of its tip over the default's, whose root Hertz's length grows with. */
+  function ridge_of(p, footprint, state, closure, tips = 1) {
+    const n = footprint.ridges[state], length = Math.sqrt(tips) * footprint.length[state], f = p.f_ext / n;
+    const radius = tips * data.tip_radius, h_0 = closure.h_0;
     if (footprint.charged)
       return new Cylinder(radius, data.skin_modulus, h_0, closure).over_length(length / n, f, p.voltage);
     const sheared = state === "full_slip" ? data.shear * Math.max(p.friction - data.friction, 0) : 0;
     return new Cylinder(radius, hertz_modulus(radius, f, length / n), h_0, closure, sheared).under_load(f, p.voltage);
   }
 
-  return { NoEquilibriumError, solve, given, refuse, interpolate, fitted, closure_of, ridge_of };
+  return { NoEquilibriumError, Closure, solve, given, refuse, interpolate, fitted, closure_of, ridge_of };
 })();

@@ -7,17 +7,18 @@ its words, its unit and the ends of its slider, within its bounds.
 import html
 import json
 import re
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import asdict, dataclass, replace
 from importlib.resources import files
 from typing import Any
 
+import numpy as np
 from numpy.polynomial.legendre import leggauss
 
 from fingerpad.calculator import presets
 from fingerpad.installed import version
 from fingerpad.reduced import cylinder_errors, cylinders, uncharged
-from fingerpad.reduced.closure_band import with_band
+from fingerpad.reduced.closure_band import CHANGE, TIPS, closures, with_band
 from fingerpad.reduced.model import STATES
 from fingerpad.results.closures import KNOWN, known_in_words
 from fingerpad.results.quantities import PER_LENGTH, Output
@@ -27,16 +28,20 @@ from fingerpad.scene import Scene
 from fingerpad.scene.keys import every
 from fingerpad.scene.materials import BEARING_AREA, LARGEST_GAP
 from fingerpad.scene.remarks import LEAKAGE, skin_modulus
-from fingerpad.slices import traces
+from fingerpad.slices import errors, traces
 from geometry.units import Range
 from variational.attraction.circuit import LEAKS
 from variational.attraction.dielectric import TISSUES, VACUUM_PERMITTIVITY
+from variational.roughness.tabulated import TabulatedClosure
 
 SCRIPTS = (
-    "numerics.js", "closed_form.js", "whole.js", "errors.js", "drive.js", "state.js", "commands.js", "plot.js",
-    "heat.js", "files.js", "form.js", "drive_page.js", "page.js",
+    "numerics.js", "closed_form.js", "whole.js", "errors.js", "known_band.js", "drive.js", "state.js", "commands.js",
+    "plot.js", "bars.js", "heat.js", "files.js", "form.js", "drive_page.js", "page.js",
 )  # fmt: skip
 """In order; those before ``plot.js`` need no page."""
+_RATIOS = np.geomspace(0.01, 100.0, 17)
+"""Insulator thickness h_0 over h_rms, of the tables of air gaps."""
+_NODES = 28  # pressures of a table
 _TABLE = (0.1, 0.3, 0.5, 1.0, 2.0), (0.0, 50.0, 100.0, 150.0, 200.0)  # N, V
 
 
@@ -134,8 +139,32 @@ def data() -> dict[str, Any]:
         "words": {state: WORDS[state] for state in STATES},
         "circuits": circuits(),
         "presets": [*presets.data({field.key: field.per for field in shown})],
+        "band": band(),
         "known": {"regions": cylinder_errors.data(field.key for field in shown)},
     }
+
+
+def band() -> dict[str, Any]:
+    """Return what the band of friction over assumptions is made of: changes, known errors, other models of roughness.
+
+    Of a model: its pressures over E* q_0 h_rms, and the logarithm of its air gap over h_rms, by pressure and by h_0
+    over h_rms (:data:`_RATIOS`). One table serves every roughness, insulator and voltage.
+    """
+    own, laws = BEARING_AREA, []
+    unit = replace(own, h_0=own.h_rms).full_pressure / own.beta
+    for words, law in closures(replace(own, h_0=own.h_rms)).items():
+        if isinstance(law, TabulatedClosure):
+            low, high = replace(law, p_floor=1e-9 * unit).pressures
+            nodes = np.geomspace(low, high, _NODES)
+            gaps = [np.log(replace(law, h_0=x * law.h_rms)(nodes).d_eq / law.h_rms) for x in _RATIOS]
+            by_pressure = [_short(each) for each in np.transpose(gaps)]
+            laws.append({"words": words, "pressures": _short(nodes / unit), "gaps": by_pressure})
+    slices = [[force, list(ends)] for force, ends in errors.ONCE["f_t"]]
+    return {"change": CHANGE, "tips": TIPS, "ratios": _short(_RATIOS), "laws": laws, "slices": slices}
+
+
+def _short(values: Iterable[float]) -> list[float]:
+    return [float(f"{value:.6g}") for value in values]
 
 
 def circuits() -> dict[str, Any]:
@@ -208,7 +237,8 @@ def _others() -> str:
     """Return how far the attraction is known over other screens and friction coefficients."""
     parts = [
         f"{100 * each.errors[cylinder_errors.WHOLE]['f_electrostatic']:.1f} % at friction coefficients of "
-        f"{each.ranges['friction'][0]:.2g} to {each.ranges['friction'][1]:.2g}"
+        f"{each.ranges['friction'][0]:.2g} to {each.ranges['friction'][1]:.2g} and an attraction of up to "
+        f"{each.ranges[cylinder_errors.PULL][1]:.2g} times the force"
         for each in cylinder_errors.REGIONS[1:]
     ]
     of = " Over other screens, and larger forces and voltages, it is known for the whole finger to"

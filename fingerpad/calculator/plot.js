@@ -122,5 +122,5 @@ const plot = (function () {
     svg.style.cursor = "crosshair";
   }
 
-  return { draw, frame, element, colour, hover, ticks };
+  return { draw, frame, element, colour, hover, ticks, scale };
 })();

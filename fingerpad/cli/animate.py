@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from fingerpad.cli.arguments import Kind, Parser, echo, path
 from fingerpad.ctrl_c import raises
 from fingerpad.results.result import Result
+from fingerpad.results.terminal import watched
 from fingerpad.runs.batch import progress
 
 _EXAMPLES = """
@@ -26,7 +27,7 @@ def main(argv: Sequence[str]) -> int:
     from fingerpad.results.animation import animate  # Matplotlib
 
     try:
-        with raises(), progress() as bar:
+        with raises(), progress(quiet=not watched()) as bar:
             task = bar.add_task("frames drawn", total=None)
             animate(result, file, lambda done, count: bar.update(task, completed=done, total=count))
     except KeyboardInterrupt:

@@ -264,7 +264,9 @@ def path(text: str) -> Path:
 def positive(text: str) -> int:
     """Return a positive whole number."""
     if not re.fullmatch(r"0*[1-9]\d{0,17}", text):
-        raise argparse.ArgumentTypeError(f"{clip(text)} is not allowed; it must be a whole number greater than 0")
+        raise argparse.ArgumentTypeError(
+            f"{clip(text) or 'an empty text'} is not allowed; it must be a whole number greater than 0"
+        )
     return int(text)
 
 

@@ -46,9 +46,8 @@ def main(argv: Sequence[str]) -> int:
         raise SceneError(
             f"--plot is given and voltage is {scene.volts:g} V; it must be a drive to be drawn over a period"
         )
+    rows = table(scene, FREQUENCIES if args.frequency is None else _frequencies(args.frequency))
     found = _over_period(scene)
-    frequencies = FREQUENCIES if args.frequency is None else _frequencies(args.frequency)
-    rows = table(scene, frequencies)
     echo(f"\nVoltage at the threshold of detection, relative to a sine of {REFERENCE:g} Hz:\n")
     echo(output.text(_COLUMNS, rows))
     circuit = scene.electric.circuit(scene.geometry.sc_thickness)

@@ -1,5 +1,6 @@
 """``fingerpad sweep``: a scene over values of its keys, each run in a process of its own and kept on disk."""
 
+import inspect
 import re
 import sys
 from collections.abc import Sequence
@@ -41,6 +42,8 @@ def main(argv: Sequence[str]) -> int:
     check_folder(args.out)
     base, axes = study(args.scene, args.set, args.over)
     scene = from_data(base)
+    if own := next((key for key in axes if key in inspect.signature(sweep).parameters), None):
+        raise SceneError(f"{own} is varied and is no key of a scene; a sweep has one {own} for all of its points")
     try:
         with raises():
             found = sweep(

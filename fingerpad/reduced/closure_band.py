@@ -42,7 +42,8 @@ from variational.state import ContactState
 if TYPE_CHECKING:
     from fingerpad.results.result import Result
 
-_CHANGE, _TIPS = (0.8, 1.2), (2.0, 1 / 1.5)  # factors of a value, and of the radius of a tip
+CHANGE, TIPS = (0.8, 1.2), (2.0, 1 / 1.5)
+"""Factors of a value, and of the radius of a tip."""
 Part = tuple[str, list[float]]
 """Name of an assumption, and µ_app over that of the result with it changed."""
 OUTSIDE = "no field in contact"
@@ -172,10 +173,10 @@ def _parts(result: "Result", closures: dict[str, float | None]) -> Iterator[Part
         values = (friction(each, slip, law, press, tips) for each, law, tips in changed)
         return [value / here for value in values if value is not None]
 
-    yield "tips", ratios((scene, own, tips) for tips in _TIPS)
+    yield "tips", ratios((scene, own, tips) for tips in TIPS)
     if isinstance(own, BearingArea | TabulatedClosure):
-        yield "roughness", ratios((scene, replace(own, h_rms=factor * own.h_rms), 1.0) for factor in _CHANGE)
-        yield "coating", ratios((*_coated(scene, own, factor), 1.0) for factor in _CHANGE)
+        yield "roughness", ratios((scene, replace(own, h_rms=factor * own.h_rms), 1.0) for factor in CHANGE)
+        yield "coating", ratios((*_coated(scene, own, factor), 1.0) for factor in CHANGE)
     if result.finger is not None and "f_t" in (ends := known_at(result.finger.f_ext)):
         yield "slices", [1 / (1 + end) for end in ends["f_t"]]
 

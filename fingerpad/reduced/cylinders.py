@@ -66,8 +66,8 @@ Array = NDArray[np.float64]
 SHEAR = 10.0
 """What the modulus of a ridge gains, over the shear stress beyond that of the default friction coefficient."""
 _ELSE = (
-    "use the model 'full', as fingerpad run does, or the command compare with --contact-length and --ridges, or with "
-    "the --run of a folder"
+    "take the model 'full', fingerpad run, a minute or two; or give its contact to compare: --contact-length and "
+    "--ridges, or the --run of a folder"
 )
 
 

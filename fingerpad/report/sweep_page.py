@@ -122,7 +122,9 @@ def table_of(folder: Path) -> Table:
         cautions, notes = (tuple(map(str, asked.get(name, ()))) for name in ("cautions", "notes"))
         outputs = read_outputs(asked.get("outputs", ()))
         return Table(folder, axes, rows, dict(asked["parameters"]), *more, cautions, notes, outputs)
-    except (OSError, ValueError, KeyError, TypeError) as error:
+    except KeyError as missing:
+        raise SceneError(f"sweep.json in {name} has no {missing}; give the command of the sweep again") from None
+    except (OSError, ValueError, TypeError) as error:
         raise SceneError(f"sweep.json in {name} cannot be read: {error}") from None
 
 
@@ -314,5 +316,5 @@ def _curves(table: Table) -> dict[str, Any]:
             found = [row.get(f"{column}{end}") for row in rows]
             curve[f"{place}{end}"] = [None if value is None else value * scales.get(column, 1.0) for value in found]
         curves.append(curve)
-    titles = {place: title for place, (_, title) in charts.items()}
-    return {"along": head_of(along, "title"), "curves": curves, "charts": titles}
+    titles = {place: html.typeset(title) for place, (_, title) in charts.items()}
+    return {"along": html.typeset(head_of(along, "title")), "curves": curves, "charts": titles}

@@ -44,6 +44,7 @@ LEFT = (
     *("history.png", "time.png", "field.png", "footprint.png", "solid.png", "report.html", "report.html*.part"),
     *("spikes.csv", "spikes.nc", "raster.png", "motion.npz", "animation.webp"),
 )
+_LOCK = ".lock"
 T = TypeVar("T")
 _NO_LOCKS = (errno.ENOLCK, errno.ENOSYS, errno.ENOTSUP)  # some network file systems
 
@@ -110,6 +111,7 @@ class Folder:
         if model != DEFAULT_MODEL:
             self._parameters["model"] = model
         self._lock: BinaryIO | None = None
+        self._new = False
 
     def __enter__(self) -> "Folder":
         """Lock the folder; collective.
@@ -132,13 +134,19 @@ class Folder:
         return self
 
     def __exit__(self, *error: object) -> None:
-        """Unlock the folder."""
-        if self._lock is not None:
-            self._lock.close()
+        """Unlock the folder; one that was made for nothing goes again."""
+        if self._lock is None:
+            return
+        with contextlib.suppress(OSError):
+            if self._new and [file.name for file in self.folder.iterdir()] == [_LOCK]:
+                remove(self.folder / _LOCK)
+                self.folder.rmdir()
+        self._lock.close()
 
     def _open(self) -> None:
+        self._new = not self.folder.exists()
         self.folder.mkdir(parents=True, exist_ok=True)
-        self._lock = lock_file(self.folder / ".lock")
+        self._lock = lock_file(self.folder / _LOCK)
         try:
             fcntl.flock(self._lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except BlockingIOError:

@@ -74,6 +74,8 @@ class Headline:
         error, missing = self.quantity.shown(self.value, self.error).partition(" ± ")[2], ""
         if not math.isnan(self.value) and not any(part.startswith((MESH, MODEL)) for part in self.parts):
             missing = f"{SECTION}, whose error is not estimated"
+        if not error and MODEL in self.parts and not math.isnan(self.value):
+            return f"solved to an error that is not known here ({MODEL})"
         if not error:
             return "solved to an error that is not estimated" if missing else ""
         return f"solved to ± {error} ({', '.join(self.parts)}{missing and '; not in it: '}{missing})"

@@ -42,8 +42,12 @@ def result(scene: Scene, folder: Path) -> Summary | None:
 
 
 def progress(quiet: bool = False) -> "Progress":
-    """Return a bar of things done and time taken; nothing where the output is no terminal, or ``quiet`` is given."""
-    from rich.progress import (  # where it is shown
+    """Return a bar of things done and time taken; nothing of it where the output is no terminal, or ``quiet`` is given.
+
+    A quiet one has no console either, to which others print their lines.
+    """
+    from rich.console import Console  # where it is shown
+    from rich.progress import (
         BarColumn,
         MofNCompleteColumn,
         Progress,
@@ -52,9 +56,8 @@ def progress(quiet: bool = False) -> "Progress":
     )
 
     columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn())
-    bar = Progress(*columns, TimeElapsedColumn(), transient=True)
-    bar.disable = quiet or not watched()
-    return bar
+    console = Console(quiet=True) if quiet else None  # else a bar that is not shown prints an empty line at its end
+    return Progress(*columns, TimeElapsedColumn(), transient=True, disable=quiet or not watched(), console=console)
 
 
 def times_left(took: Sequence[float], left: int, jobs: int) -> tuple[float, float]:

@@ -35,6 +35,7 @@ _ITERATIONS, _SAME = 50, 1e-9  # of the air gap at an instant, relative
 _NOTHING = 1e-9  # of the mean: an amplitude that is roundoff
 _COMPONENTS = 5  # largest of the spectrum that are printed
 _QUASI_STATIC = 100.0  # Hz, above which inertia begins to matter
+_FREQUENCY = (1e-3, 1e6)  # Hz, least and largest: those of a drive of a scene
 FREQUENCIES = (15.0, 30.0, 60.0, 120.0, 240.0, 480.0)
 """Frequencies (Hz) of the table of relative thresholds."""
 
@@ -154,8 +155,11 @@ def thresholds(scene: Scene, frequencies: Sequence[float] = FREQUENCIES) -> list
         frequencies: of the drives (Hz).
 
     Raises:
-        SceneError: a frequency that is not greater than 0, or at which the tissue is not known.
+        SceneError: a frequency that a drive of a scene cannot have, or at which the tissue is not known.
     """
+    for f in frequencies:
+        if not _FREQUENCY[0] <= f <= _FREQUENCY[1]:
+            raise SceneError(f"frequency is {f:g} Hz; it must be from {_FREQUENCY[0]:g} to {_FREQUENCY[1]:g} Hz")
     electric, d_sc = scene.electric, scene.geometry.sc_thickness
     circuit, layers = electric.circuit(d_sc), (REFERENCE, electric.d_i, electric.eps_i, d_sc)
     try:

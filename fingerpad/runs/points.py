@@ -10,6 +10,7 @@ from fingerpad.runs.context import RunContext
 from fingerpad.runs.sweep_columns import OTHER
 from fingerpad.scene import Scene
 from fingerpad.scene.reading import DEFAULT_MODEL
+from fingerpad.slices.estimate import with_newtons
 from variational.state import PATH, ContactState
 
 if TYPE_CHECKING:
@@ -36,7 +37,7 @@ class Point:
     """The state on the scene's own mesh, where that is another one."""
 
     def result(self, cost: Cost, before: "Counts", notes: Sequence[str]) -> Result:
-        """Return the result.
+        """Return the result, with its whole finger where the closed form knows a press of it.
 
         Args:
             cost: of all states on the mesh of the chain so far.
@@ -62,7 +63,7 @@ class Point:
             record = {"path_mesh": finger.size.model_dump(), "accuracy": {"mesh": solve.mesh.model_dump()}}
         record |= {"reached": state.reached, "force_error": finger.force_error, "provenance": provenance()}
         formulation = finger.problem.interface.formulation
-        return Result(
+        found = Result(
             self.scene,
             DEFAULT_MODEL,
             None,
@@ -79,6 +80,7 @@ class Point:
             ),
             record=record,
         )
+        return with_newtons(found)
 
     def _differences(self) -> list[str]:
         """Return a caution where other ridges touch on the two meshes."""
@@ -103,7 +105,7 @@ def of_run(scene: Scene, why: str, clock: "Clock", comm: "MPI.Comm") -> Result:
     found = run(scene, RunContext(comm=comm, bar=False, report=False))
     note = f"This is full slip of a run of its own, since it was not found from a state on larger elements: {why}."
     counts = Counts(found.cost.newton_iterations, found.cost.factorisations)
-    return Result(
+    point = Result(
         scene,
         DEFAULT_MODEL,
         None,
@@ -115,6 +117,7 @@ def of_run(scene: Scene, why: str, clock: "Clock", comm: "MPI.Comm") -> Result:
         cautions=found.cautions,
         record={key: found.record[key] for key in _OF_RUN if key in found.record} | {"reached": PATH},
     )
+    return with_newtons(point)
 
 
 def one(a: ContactState, b: ContactState) -> bool:

@@ -25,5 +25,7 @@ def value_of(scene: Scene, key: str) -> Any:
     for part, place in re.findall(r"(\w+)|\[(\d+)\]", key):
         if part == "law" and not hasattr(value, "law"):
             return law_name(value)
+        if part == "mu_f" and isinstance(value, float):  # of Coulomb's law, which a scene keeps as this number
+            return value
         value = getattr(value, part) if part else value[int(place)]
     return value

@@ -36,6 +36,7 @@ LEAKAGE = (
 """Note on every result with a constant voltage."""
 _MEAN = 0.01  # of the peak: mean of a waveform that is none
 _OF_SCENE = {"h_0": "m"}  # units of what laws take from the rest of a scene
+_LARGE = 1e6  # SI, from which on a number of a law has a power of ten
 _LONGEST = 100e-6  # m, lambda_0 of the paper (Table 3), and the default
 
 
@@ -84,6 +85,9 @@ def _words(law: Any) -> str:
 
 
 def _shown(value: Any) -> str:
+    """Return a value of a law; a number has at most four digits, and ``scene.json`` all of them."""
+    if isinstance(value, float) and (abs(value) >= _LARGE or float(f"{value:.4g}") != value):
+        return f"{value:.4g}"
     return show(value) if isinstance(value, int | float | str | None) else clip(str(value))
 
 

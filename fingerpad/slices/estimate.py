@@ -3,8 +3,10 @@
 A run of press, charge and slide has the cross-section's whole press without voltage, and one charged state and one full
 slip, at the scene's force. The slices away from the centre bear less. Their attraction and contact length are those
 of the model "cylinders" (:mod:`fingerpad.reduced.cylinders`) over the contact lengths of the run's own press, scaled to
-the run's own state at the centre; their indentation is that of the press, scaled to its own. ``docs/newtons.md`` has
-the error of this estimate beside traces of the full model. A scene with a ``force`` computes the traces.
+the run's own state at the centre; their indentation is that of the press, scaled to its own. Full slip alone, as in a
+sweep of it, has no press; then it is the closed form's, of the default finger or of one similar to it.
+``docs/newtons.md`` has the error of this estimate beside traces of the full model. A scene with a ``force`` computes
+the traces.
 """
 
 from collections.abc import Mapping, Sequence
@@ -21,11 +23,13 @@ from fingerpad.slices import errors
 from fingerpad.slices.finger import WholeFinger, in_order
 from fingerpad.slices.total import profile, under_one_force
 from fingerpad.slices.trace import LEAST, Trace, TraceError, columns, trace
+from fingerpad.slices.traces import LIGHT
 from variational.state import ContactState
 
 if TYPE_CHECKING:
     from fingerpad.results.result import Result
 
+OF_SLIP = "estimated from full slip at its centre by charged cylinders; a force in newtons computes traces"
 SOURCE = "estimated from the run's press and its centre by charged cylinders; a force in newtons computes traces"
 _MAX_POINTS = 12  # of the trace
 
@@ -40,7 +44,8 @@ def with_newtons(result: "Result") -> "Result":
         return result
     try:
         states = [state for state in result.steps if state.load == "press"]
-        return replace(result, finger=estimate(result.scene, states, result.named))
+        finger = estimate(result.scene, states or _closed_form(result.scene), result.named)
+        return replace(result, finger=finger if states else replace(finger, source=OF_SLIP))
     except (SceneError, TraceError) as error:
         return replace(result, notes=(*result.notes, f"no newtons of the whole finger: {error}"))
 
@@ -69,6 +74,22 @@ def estimate(scene: Scene, press: Sequence[ContactState], named: Mapping[str, Co
         carried[name] = {errors.MESH: errors.discretisation(named[name])}
         carried[name] |= {errors.ESTIMATED: errors.estimate(name, total)} if estimated else {}
     return WholeFinger(in_order(found), SOURCE, carried, traces, scene.slices)
+
+
+def _closed_form(scene: Scene) -> list[ContactState]:
+    """Return a press without voltage by the closed form.
+
+    Raises:
+        TraceError: its contact is not known.
+    """
+    still = scene.model_copy(update={"voltage": 0.0})
+    forces = [float(each) for each in np.geomspace(scene.f_ext * LIGHT, scene.f_ext, _MAX_POINTS)]
+    try:
+        return cylinders.Cylinders().over_forces(still, forces, "charged", cylinders.solve)
+    except SceneError:
+        raise TraceError(
+            "full slip alone has no press, and the closed form has none of this finger; states='all' has it"
+        ) from None
 
 
 def _thinned(press: Sequence[ContactState]) -> list[ContactState]:
