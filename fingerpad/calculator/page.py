@@ -183,7 +183,7 @@ def page() -> str:
     """Return the page."""
     values = {
         "finding": _finding(),
-        "error": html.escape(f"{_error(cylinder_errors.REGIONS[0])}{_others()} Elsewhere its error is not known."),
+        "regions": _regions(),
         "known": _band(),
         "leakage": html.escape(LEAKAGE),
         "table": _table(),
@@ -224,25 +224,21 @@ def _finding() -> str:
     )
 
 
-def _error(region: cylinder_errors.Region) -> str:
-    """Return what is known of the error in a region."""
-    section, whole = (100 * region.errors[key]["f_electrostatic"] for key in ("full_slip", cylinder_errors.WHOLE))
-    return (
-        f"The attraction is known to {whole:.1f} % for the whole finger, and to {section:.1f} % for its section, at "
-        f"{cylinder_errors.where(region)}. µ_app has the share of this error that attraction has of contact force."
-    )
-
-
-def _others() -> str:
-    """Return how far the attraction is known over other screens and friction coefficients."""
-    parts = [
-        f"{100 * each.errors[cylinder_errors.WHOLE]['f_electrostatic']:.1f} % at friction coefficients of "
-        f"{each.ranges['friction'][0]:.2g} to {each.ranges['friction'][1]:.2g} and an attraction of up to "
-        f"{each.ranges[cylinder_errors.PULL][1]:.2g} times the force"
-        for each in cylinder_errors.REGIONS[1:]
-    ]
-    of = " Over other screens, and larger forces and voltages, it is known for the whole finger to"
-    return f"{of} {', '.join(parts)}; notes below name the limits." if parts else ""
+def _regions() -> str:
+    """Return the table of where the closed form's error is known, the default screen's first."""
+    head = ("", "µ_0", "attraction over force up to", "whole finger (%)", "its section (%)")
+    rows = []
+    for region in cylinder_errors.REGIONS:
+        low, high = region.ranges.get("friction", (Scene().friction,) * 2)
+        kind = "default screen" if region is cylinder_errors.REGIONS[0] else "other screens"
+        section, whole = (100 * region.errors[key]["f_electrostatic"] for key in ("full_slip", cylinder_errors.WHOLE))
+        friction = f"{low:.2g}" if low == high else f"{low:.2g} to {high:.2g}"
+        cells = (friction, f"{region.ranges[cylinder_errors.PULL][1]:.2g}", f"{whole:.1f}", f"{section:.1f}")
+        rows.append(f'<tr><th scope="row">{kind}</th>{"".join(f"<td>{each}</td>" for each in cells)}</tr>')
+    caption = "<caption>Known error of the attraction of the closed form, beside full runs</caption>"
+    top = "".join(f'<th scope="col">{each}</th>' if each else "<td></td>" for each in head)
+    body = "\n".join(rows)
+    return f'<table id="regions">{caption}\n<thead><tr>{top}</tr></thead>\n<tbody>\n{body}\n</tbody></table>'
 
 
 def _band() -> str:
