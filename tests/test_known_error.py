@@ -178,3 +178,13 @@ def test_kept_answers_are_those_of_the_program():
     known = harness.kept("models").numbers["scenes"][models.name(75.0, 200.0)]["cylinders"]["summary"]
     found = models.answer(cylinders.solve(from_data({"f_ext": 75.0, "voltage": 200.0})).to_dict())["summary"]
     assert found == pytest.approx(known, rel=1e-9)
+
+
+def test_a_value_beyond_all_ranges_is_told_the_nearest_one():
+    """Of regions that it leaves by one key alone: that whose end is nearest by ratio, whichever is the widest."""
+    ends = [region.ranges["friction"] for region in cylinder_errors.REGIONS[1:]]
+    for friction, end in ((0.05, min(low for low, _ in ends)), (1.5, max(high for _, high in ends))):
+        (outside,) = cylinder_errors.outside(Scene(friction=friction, voltage=150.0))
+        assert outside.key == "friction"
+        assert f"{end:g}" in outside.known.split(" to ")
+    assert cylinder_errors.find(Scene(friction=0.1, voltage=150.0)) is not None

@@ -122,6 +122,16 @@ def test_strong_attraction_has_an_error_of_its_own():
     assert errors[0] < 0.05 < 0.2 < errors[1] and ends[0] < compared.PULLED < ends[1]
 
 
+def test_ranges_end_with_the_states_or_close_by_with_the_sequence():
+    """The sequence of 64 scenes has coatings from 0.1 to 10 µm, a ratio of 1.07 apart in the mean."""
+    thin, thick = made_up(1)
+    thin.values["electric.d_i"], thick.values["electric.d_i"] = 0.105e-6, 8e-6
+    assert compared.hull([thin, thick], [])["electric.d_i"] == (0.1e-6, 8e-6)
+    thin.values["electric.d_i"], thick.values["electric.d_i"] = 0.11e-6, 9.5e-6
+    assert compared.hull([thin, thick], [])["electric.d_i"] == (0.11e-6, 10e-6)
+    assert compared.hull([thin, thick], [])["friction"] == (0.4, 0.6)
+
+
 def test_region_ends_where_the_full_model_has_no_result():
     """Of sections over force every second one above 60 N/m is not reached: the region ends with a tenth of those."""
     some = [each._replace(force=5.0 + 2.5 * k, attraction=2.0 + k) for k, each in enumerate(made_up(40))]

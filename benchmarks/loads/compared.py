@@ -8,7 +8,7 @@ from typing import Any, NamedTuple, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from benchmarks.loads.scenes import Data, section
+from benchmarks.loads.scenes import AXES, COUNT, Data, section
 from fingerpad.reduced.cylinder_errors import PULL, WHOLE
 from fingerpad.reduced.cylinders import Cylinders
 from fingerpad.runs.closed_form import ClosedForm
@@ -228,17 +228,23 @@ def region_of(band: Band) -> dict[str, Any] | None:
 def hull(some: Sequence[Compared], whole: Sequence[Compared]) -> dict[str, tuple[float, float]]:
     """Return the range by key of sections and fingers in which the error is known; without voltage it is nothing.
 
-    Without fingers it has no force, and the program then claims an error of sections alone.
+    A range ends with its states, or where the sequence's does if that is no farther than its scenes are apart in the
+    mean. Without fingers it has no force, and the program then claims an error of sections alone.
     """
     found = {"force": [each.force for each in whole], "f_ext": [each.force for each in some]}
     found |= {key: [each.values[key] for each in some] for key in some[0].values if key != "force"}
     found |= {PULL: [each.attraction / each.force for each in (*some, *whole)]}
     least = {key: 0.0 if key in ("voltage", PULL) else min(values, default=0.0) for key, values in found.items()}
-    return {key: (_end(least[key]), _end(max(values))) for key, values in found.items() if values}
+    return {key: _ends(key, least[key], max(values)) for key, values in found.items() if values}
 
 
-def _end(value: float) -> float:
-    return float(f"{value:.3g}")
+def _ends(key: str, low: float, high: float) -> tuple[float, float]:
+    """Return the ends of the range of a key between its least and its largest value, three digits each."""
+    first, last, even = AXES.get(key, (low, high, False))
+    size = (math.log(last / first) if even else last - first) / COUNT
+    gaps = (math.log(low / first), math.log(last / high)) if even else (low - first, last - high)
+    low, high = first if gaps[0] <= size else low, last if gaps[1] <= size else high
+    return float(f"{low:.3g}"), float(f"{high:.3g}")
 
 
 class OfScene(Protocol):

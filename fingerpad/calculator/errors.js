@@ -11,13 +11,20 @@ const modelErrors = (() => {
   /** Return the attraction of an answer over the external force. */
   const pull_of = (values, answer) => answer.f_electrostatic / (values.newtons ? values.force : values.f_ext);
 
-  /** Return the keys of values that are outside of a region, with its ranges: [{key, low, high}]. */
+  /** Return the logarithm of the ratio of a value and the nearest end of a range; 0 where one of them is 0. */
+  function ratio(value, [low, high]) {
+    const end = Math.min(Math.max(value, low), high);
+    return value > 0 && end > 0 ? Math.abs(Math.log(value / end)) : 0;
+  }
+
+  /** Return the keys of values that are outside of a region, with its ranges: [{key, low, high, far}]. */
   function beyond(region, values, answer) {
     const load = values.newtons ? "force" : "f_ext", other = values.newtons ? "f_ext" : "force", found = [];
     const given = { ...values, "attraction over force": answer ? pull_of(values, answer) : 0 };
-    if (!region.ranges[load]) found.push({ key: load, low: NaN, high: NaN });
+    if (!region.ranges[load]) found.push({ key: load, low: NaN, high: NaN, far: 0 });
     for (const [key, ends] of Object.entries(region.ranges))
-      if (key !== other && !within(given[key], ends)) found.push({ key, low: ends[0], high: ends[1] });
+      if (key !== other && !within(given[key], ends))
+        found.push({ key, low: ends[0], high: ends[1], far: ratio(Math.abs(given[key]), ends) });
     return found;
   }
 
@@ -33,9 +40,13 @@ const modelErrors = (() => {
     return { ...known, mu_app: friction, f_t: friction };
   }
 
-  /** Return the keys for which the error is not known, by the nearest region, the widest of these; empty if known. */
-  const outside = (values, answer) => regions.map((region) => beyond(region, values, answer))
-    .reduce((least, keys) => (keys.length <= least.length ? keys : least));
+  const distance = (keys) => keys.reduce((sum, each) => sum + each.far, 0);
+
+  /** Return the keys for which the error is not known, as the function of this name in cylinder_errors.py. */
+  const outside = (values, answer) => regions.map((region) => beyond(region, values, answer)).reduce((least, keys) => {
+    const more = keys.length - least.length || distance(keys) - distance(least);
+    return more <= 0 ? keys : least;
+  });
 
   return { of, outside };
 })();

@@ -13,6 +13,7 @@ It vanishes without voltage. :func:`data` is the same table for the calculator, 
 """
 
 import json
+import math
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass
@@ -57,6 +58,8 @@ class Outside(NamedTuple):
     """In words, as the range."""
     known: str
     """The range in which it is."""
+    far: float = 0.0
+    """Logarithm of the ratio of the value and the nearest end of the range."""
 
     def __str__(self) -> str:
         """Return the sentence."""
@@ -120,11 +123,13 @@ def find(scene: Scene, pull: float = 0.0) -> Region | None:
 def outside(scene: Scene, pull: float = 0.0) -> list[Outside]:
     """Return the keys for which the error is not known, by the nearest region; empty where it is known.
 
-    That is the one with the fewest such keys, and of these the widest. Arguments are those of :func:`find`.
+    That is the one with the fewest such keys, then that whose ranges are the nearest by ratio, then the widest.
+    Arguments are those of :func:`find`.
     """
     given = _given(scene, pull)
     changed = _changed(given)
-    return min(([*_outside(given, changed, region)] for region in reversed(REGIONS)), key=len)
+    found = ([*_outside(given, changed, region)] for region in reversed(REGIONS))
+    return min(found, key=lambda keys: (len(keys), sum(each.far for each in keys)))
 
 
 def cautions(scene: Scene, pull: float = 0.0) -> list[str]:
@@ -168,20 +173,30 @@ def _outside(given: Mapping[str, Any], changed: Mapping[str, Sequence[str]], reg
         if not isinstance(value, int | float):
             yield Outside(key, "a law", _span(ends, units[key]))
         elif not within(value, ends):
-            yield Outside(key, _span((value, value), units[key]), _span(ends, units[key]))
+            yield Outside(key, _span((value, value), units[key]), _span(ends, units[key]), _far(value, ends))
     for table, others in changed.items():
         keys = [key for key in others if key not in region.ranges]
         if any(given.get(key) is None or default.get(key) is None for key in keys):  # another law has other keys
             yield Outside(table, "of another law", "that of the default scene")
         else:
-            yield from (
-                Outside(key, *(_shown(each[key], units.get(key, "")) for each in (given, default))) for key in keys
-            )
+            for key in keys:
+                value, known, unit = given[key], default[key], units.get(key, "")
+                far = _far(value, (known, known)) if _number(value) and _number(known) else 0.0
+                yield Outside(key, _shown(value, unit), _shown(known, unit), far)
+
+
+def _far(value: float, ends: tuple[float, float]) -> float:
+    """Return the logarithm of the ratio of a value and the nearest end of a range; 0 where one is not positive."""
+    end = min(max(abs(value), ends[0]), ends[1])
+    return abs(math.log(abs(value) / end)) if value and end > 0 else 0.0
+
+
+def _number(value: Any) -> bool:
+    return isinstance(value, int | float) and not isinstance(value, bool)
 
 
 def _shown(value: Any, unit: str) -> str:
-    number = isinstance(value, int | float) and not isinstance(value, bool)
-    return _span((value, value), unit) if number else show(value)
+    return _span((value, value), unit) if _number(value) else show(value)
 
 
 @cache
