@@ -58,6 +58,15 @@ def test_chains_share_a_mesh_and_a_law():
     assert list(chains(every, 2)) == [["0", "1", "2", "3", "4"], ["5"], ["6"]]
 
 
+def test_closures_are_no_neighbours():
+    """Numbers of one closure are; another closure, or another field in contact, is far away."""
+    law = {"law": "BoundaryElements"}
+    one = [law, law | {"shortest_wave": 3e-6}, law | {"hurst": 0.8}]
+    other = [{}, {"law": "Persson"}, law | {"field_in_contact": False}]
+    every = {str(k): from_data(SCENE | {"roughness": each}) for k, each in enumerate([*one, *other])}
+    assert list(chains(every, 1)) == [["0", "1", "2"], ["3"], ["4"], ["5"]]
+
+
 def test_long_chains_are_shared_among_the_jobs():
     every = scenes(voltage=[float(v) for v in range(20)])
     assert [len(names) for names in chains(every, 2)] == [10, 10]

@@ -138,6 +138,16 @@ def test_flat_surface():
         press(HeightMap(np.ones((4, 4)), (1.0, 1.0)), 1.0, 1.0)
 
 
+@pytest.mark.parametrize("pixels", [3, 4, 6, 8])
+def test_few_pixels(pixels):
+    """One pixel alone may be in contact on the way, which leaves no direction; the load is borne all the same."""
+    for seed in range(5):
+        surface = HeightMap(np.random.default_rng(seed).normal(size=(pixels, pixels)), (1.0, 1.0))
+        for mean in (1e-3, 0.1, 1.0, 20.0):
+            found = press(surface, mean, 1.0)
+            assert found.pressure.mean() == pytest.approx(mean) and found.fraction > 0
+
+
 def test_no_contact_within_the_iterations(rough, monkeypatch):
     monkeypatch.setattr("variational.roughness.halfspace._ITERATIONS", 2)
     with pytest.raises(NoContactError, match="no contact under 0.05 Pa was found in 2 iterations on 128 x 128 pixels"):
