@@ -9,6 +9,7 @@ import pytest
 import ufl
 from mpi4py import MPI
 
+from fingerpad.accuracy import edges
 from fingerpad.model import options
 from fingerpad.model.finger import mirrored
 from fingerpad.model.options import plan
@@ -27,6 +28,7 @@ from variational.resultants import RidgeLoads
 from variational.roughness.bam import BearingArea
 from variational.snapshot import Snapshot
 from variational.solvers.continuation import Target
+from variational.solvers.snapshot import take_snapshot
 from variational.solvers.stability import StabilityCheck
 
 pytestmark = pytest.mark.slow
@@ -124,6 +126,23 @@ def test_half_block_bears_and_sinks_as_the_whole(blocks):
     assert half.solver.bone[1] == pytest.approx(whole.solver.bone[1], rel=CLOSE)
     assert half.solver.reaction == pytest.approx([0.0, FORCE], rel=CLOSE)
     assert half.path.coupling.d_eq == pytest.approx(whole.path.coupling.d_eq, rel=CLOSE)
+
+
+def test_contact_of_half_a_block_ends_where_the_whole_s_does(blocks):
+    """Not on the line of symmetry, at which a mesh would be finest for nothing; and nothing in its history does.
+
+    Tolerance: of the states, by the largest of each field.
+    """
+    half, whole = (take_snapshot(block.path.coupling, block.path.surface_state) for block in blocks)
+    both = half.skin[0], whole.skin[0]
+    ends = [edges.ends(state, lambda places: places[:, 0], 10e-6) for state in (half, whole)]
+    assert len(ends[0]) == 2
+    np.testing.assert_allclose(*ends, rtol=CLOSE)
+    orders = [np.argsort(skin.reference[:, 0]) for skin in both]
+    for name in ("anchor", "pressure"):
+        mine, other = (skin.history[name][order] for skin, order in zip(both, orders, strict=True))
+        assert (name == "anchor") == (abs(mine + mine[::-1]).max() < CLOSE * abs(mine).max()), "odd, or even"
+        np.testing.assert_allclose(mine, other, rtol=0, atol=CLOSE * abs(other).max(), err_msg=name)
 
 
 @pytest.mark.parametrize("name", ["stored", "external", "voltage", "air_gap", "dissipation"])

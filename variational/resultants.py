@@ -49,16 +49,20 @@ class RidgeLoads:
 
 
 class Observer:
-    """Evaluates the surface of a problem."""
+    """Evaluates the surface of a problem.
+
+    Attributes:
+        mirrored: whether it is that of the half of a body whose other half is the mirror image.
+    """
 
     def __init__(self, problem: "Problem", mirrored: bool = False) -> None:
         """Take the problem.
 
         Args:
             problem: whose surface is evaluated.
-            mirrored: it is that of the half of a body whose other half is the mirror image.
+            mirrored: see the attribute.
         """
-        self.problem, self.surface, self._mirrored = problem, problem.surface, mirrored
+        self.problem, self.surface, self.mirrored = problem, problem.surface, mirrored
         c, area = problem.contact, problem.area
         self._evaluated = [problem.x, problem.y, problem.opening, c.new_anchor, c.p_n, c.t_t, problem.p_el, *area]
         self._rules: dict[str, int] = {}  # of history: place among what is compiled
@@ -113,7 +117,7 @@ class Observer:
         if total[0] == 0:
             return 0.0, False
         one_way = total[0] in (total[1], total[2])
-        if self._mirrored:  # what slips forth here slips back there
+        if self.mirrored:  # what slips forth here slips back there
             one_way = total[0] == total[1] == total[2]
         return float(total[3] / total[0]), bool(one_way)
 
@@ -128,7 +132,7 @@ class Observer:
         mine = force, width, closed, surface.ends(), surface.ridge
         ranks = self.problem.mesh.comm.allgather(mine)
         force, width, closed, ends, ridge = (np.concatenate(each) for each in zip(*ranks, strict=True))
-        if self._mirrored:
+        if self.mirrored:
             force, width, closed, ridge = (np.concatenate([each, each]) for each in (force, width, closed, ridge))
             ends = np.concatenate([ends, ends * [-1.0, 1.0]])
         of = (ridge == k for k in range(len(surface.ridge_numbers)))

@@ -16,12 +16,16 @@ if TYPE_CHECKING:
     from variational.solvers.coupling import Coupling
 
 Array = NDArray[np.float64]
+_IMAGE = np.array([-1.0, 1.0, -1.0, 1.0, 1.0])  # of x, y, current x and y and gap in the mirror image
 _TURNS_BACK = 1.5  # way of the skin along an axis over its extent: 1 where it goes one way, 2 there and back
 
 
 @dataclass(frozen=True)
 class SkinState:
-    """History of one ridge's skin, sorted along its chord; shape (points,) each."""
+    """History of one ridge's skin, sorted along its chord; shape (points,) each.
+
+    Of half a body, ridge 0 is here whole: the line of symmetry is no end of its contact, and friction is odd across it.
+    """
 
     origin: Array
     """A point of the chord (m), shape (2,)."""
@@ -79,7 +83,11 @@ def take_snapshot(coupling: "Coupling", state: "SurfaceState") -> StateSnapshot:
     here = np.stack([*reference_of_points(problem, state), state.x, state.y, state.gap, *relative.values()])
     points, ridge = _all(mesh.comm, here, 1), _all(mesh.comm, surface.ridge, 0)
     names, on_facet = list(relative), here.shape[2]
-    skin = {j: _ridge(points[:, ridge == k].reshape(len(here), -1), on_facet, names) for k, j in enumerate(numbers)}
+    of_ridges = {j: points[:, ridge == k].reshape(len(here), -1) for k, j in enumerate(numbers)}
+    if coupling.observer.mirrored:
+        odd = [-1.0 if field.follows is not None else 1.0 for field in history.skin]  # places and displacements
+        of_ridges[0] = np.concatenate([of_ridges[0], of_ridges[0] * np.append(_IMAGE, odd)[:, None]], axis=1)
+    skin = {j: _ridge(each, on_facet, names) for j, each in of_ridges.items()}
     return StateSnapshot(
         _all(mesh.comm, x, 0),
         _all(mesh.comm, u, 0),
