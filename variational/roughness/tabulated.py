@@ -16,7 +16,7 @@ import scipy  # its parts are imported where they are used first: to read a scen
 from numpy.typing import ArrayLike, NDArray
 
 from variational.coefficients import OF_SCENE, parameter, refuse_not_positive
-from variational.roughness.closure import AirGap, Closure, Progress
+from variational.roughness.closure import PAST_THE_FOLD, AirGap, Closure, Progress
 from variational.roughness.gaps import GapTable
 from variational.roughness.statistics import Slopes, Statistics, breaking_gaps
 
@@ -224,7 +224,7 @@ class TabulatedClosure(Closure):
         d_eq, slope = self(p_c)
         assert slope is not None
         grows = -_EPS_0 * voltage**2 / (self.h_0 + float(d_eq)) ** 3 * float(slope)
-        return "past the fold" if grows > 1 else ""
+        return PAST_THE_FOLD if grows > 1 else ""
 
     def sticking_voltage(self, stress: float = _STICKING) -> float:
         """Return the voltage (V) from which a flat ridge adheres without a load, by a pull-off stress ``stress`` (Pa).
