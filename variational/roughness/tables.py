@@ -29,7 +29,7 @@ HURSTS = (0.6, 0.75, 0.9)
 RATIOS = (8.0, 16.0, 32.0, 64.0)
 """Ratios of the longest to the shortest wave of these tables."""
 _FIELDS = ("pressure", "area", "weight", "mean", "deviation")
-_METHOD = "1"  # of a measured map's table; another one makes other files
+_METHOD = "2"  # of a measured map's table; another one makes other files
 _SHOWN = 16  # digits of a hash
 _ROUNDOFF = 1e-6
 
