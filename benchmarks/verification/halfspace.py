@@ -76,10 +76,8 @@ def sphere(small: bool) -> list[Row]:
     pixels, (tolerance, why) = ((64, 128), _COARSE) if small else ((64, 128, 256, 512), _ASKED)
     found = np.array([[hertz(n, a) for a in _RADII] for n in pixels])
     radius, most, pressure = np.abs(found - [1.0, 1.0, 0.0]).mean(axis=1).T
-    observed, mesh = (
-        order(pressure, pixels),
-        f"{pixels[-1]} × {pixels[-1]} pixels, {0.05 * pixels[-1]:.1f} to the radius",
-    )
+    mesh = f"{pixels[-1]} × {pixels[-1]} pixels, {0.05 * pixels[-1]:.1f} to the radius"
+    observed = order(pressure, pixels)
     return [
         Row("relative error of the contact radius", radius[-1], 0.0, tolerance, why, mesh, absolute=True),
         Row("relative error of the largest pressure", most[-1], 0.0, tolerance, why, mesh, absolute=True),
