@@ -15,7 +15,7 @@ four times as many, the area in contact is 11 % larger at a tenth of the unit of
 h_0 = h_rms / 6, and the mean gap the same (``benchmarks/verification/halfspace.py``).
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import NamedTuple
 
 import numpy as np
@@ -57,6 +57,8 @@ class GapTable:
     """Mean gap of each bin, of the same shape."""
     deviation: Array
     """Standard deviation of the gaps of each bin, of the same shape."""
+    waves: float = field(default=4.0, kw_only=True)
+    """Longest waves in the side of a realisation, whose number of patches decides its scatter."""
 
     def mean_gap(self) -> Array:
         """Return the mean gap, shape (realisations, pressures)."""
