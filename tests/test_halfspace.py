@@ -108,12 +108,12 @@ def test_tail_of_the_pressure_of_a_point():
 @pytest.mark.slow
 @pytest.mark.parametrize("mean", [0.02, 0.1, 0.4])
 def test_same_as_contact_mechanics(rough, mean):
-    """Area, mean gap and pressures of another program on the same map (MIT licence), where it is installed.
+    """Area, mean gap and pressures of another program on the same map (MIT licence): ``make test-contact``.
 
     Both are solved to 1e-9 of the height; the tolerance of 1e-6 is what the contact's edge amplifies.
     """
-    other = pytest.importorskip("ContactMechanics")
-    topography = pytest.importorskip("SurfaceTopography")
+    other = pytest.importorskip("ContactMechanics", reason="make test-contact")
+    topography = pytest.importorskip("SurfaceTopography", reason="make test-contact")
     n, length = len(rough.heights), rough.size[0]
     substrate = other.PeriodicFFTElasticHalfSpace((n, n), 1.0, rough.size)
     system = other.make_system(
