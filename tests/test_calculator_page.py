@@ -26,17 +26,27 @@ def whole() -> str:
 
 # -- how far it is known -------------------------------------------------------------------------------
 def test_bar_of_the_band_moves_with_the_fields(whole, tmp_path):
-    """Bars of what is solved and what is known; a larger voltage moves the band up; none without a voltage."""
+    """Bars of what is solved and what is known; a larger voltage moves the band up; none without a voltage.
+
+    At 200 V and more ridges of two closures adhere: the band has an open end and arrows.
+    """
     program = f"""{SET}{FIND}
-    return [200, 320, 0].map((voltage) => {{
+    return [100, 150, 200, 0].map((voltage) => {{
       set({{ force: 0.5, voltage }});
       const bar = find("known").querySelector(".known_to"), solved = find("known").querySelector(".solved_to");
-      return [bar && Number(bar.getAttribute("width")), Boolean(solved), text("caption_known"), text("always")];
+      return [bar && Number(bar.getAttribute("width")), Boolean(solved), text("caption_known"), text("always"),
+        find("known").querySelectorAll(".open").length];
     }});"""
-    (width, solved, words, line), (_, _, wider, _), (none, _, nothing, still) = asked(whole, program, tmp_path)
-    low, high = fp.run(Scene(force=0.5), model="cylinders").known["low"], re.search(r"to about ([\d.]+) to", wider)[1]
-    assert width > 100 and solved and f"known to about {low:.2f} to " in words and f"known to about {low:.2f}" in line
-    assert float(high) > low and (none, nothing) == (None, "") and "known to" not in still
+    first, second, open_one, (none, _, nothing, still, _) = asked(whole, program, tmp_path)
+    low, low_open = (fp.run(Scene(force=0.5, voltage=u), model="cylinders").known["low"] for u in (100.0, 200.0))
+    width, solved, words, line, arrows = first
+    assert width > 100 and solved and f"known to about {low:.2f} to " in words and f"about {low:.2f} to" in line
+    assert "by boundary elements, is an upper bound: attraction balances" in words and arrows == 0
+    high, larger = (float(re.search(r"to about [\d.]+ to ([\d.]+)", each[2])[1]) for each in (first, second))
+    assert larger > high and (none, nothing) == (None, "") and "known to" not in still
+    width, _, words, line, arrows = open_one
+    assert all(f"known to about {low_open:.2f} and more" in each for each in (words, line))
+    assert width > 100 and arrows == 2 and "theory ridges adhere at 200 V: no number" in words
 
 
 # -- the map -------------------------------------------------------------------------------------------

@@ -64,6 +64,7 @@ def test_text_and_files_have_the_band(result):
     text = str(result)
     ends = "0.28 (bearing area) to 0.41 (boundary elements)"
     assert f"Models of roughness: µ_app of the middle section {ends} at full slip" in text
+    assert "; the largest number, by boundary elements, is an upper bound: attraction balances 24 % of" in text
     again = fp.Result.from_dict(result.to_dict())
     assert again.closures == result.closures != {}
 
@@ -73,10 +74,14 @@ def test_verdict_is_of_what_was_examined():
     assert kind == GOOD and words.endswith("What the finger and the model assume is not in it.")
 
 
-def test_closure_without_an_equilibrium():
-    """It is named in the words, and not in the numbers."""
-    words = in_words({"mu_app": {"bearing area": 0.5, "boundary elements": None, "Persson's theory": 0.9}})
-    assert "0.50 (bearing area) to 0.90 (Persson's theory)" in words and "no equilibrium by boundary elements" in words
+def test_closure_beyond_its_table_has_no_number():
+    """At 200 V ridges adhere by the closures with a field in contact; they are named, and the end is open."""
+    found = fp.run(fp.Scene(voltage=200.0), model="cylinders")
+    none = ["boundary elements", "Persson's theory"]
+    assert [words for words, value in found.closures.items() if value is None] == none
+    text, largest = str(found), max(filter(None, found.closures.values()))
+    assert f"to {largest:.2f} (Persson's theory, no field in contact) and more" in text
+    assert f"(docs/microscale.md); by {' and '.join(none)} ridges adhere at 200 V: no number." in text
     assert in_words({}) == ""
 
 

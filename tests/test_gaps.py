@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from variational.roughness import contacts, gaps, tables
+from variational.roughness.boundary_elements import BoundaryElements
 from variational.roughness.contacts import gap_table, measured_table
 from variational.roughness.gaps import GapTable, bins
 from variational.roughness.halfspace import press
@@ -189,7 +190,7 @@ def test_pixels_of_a_measured_map_count_once():
 
 
 def test_map_that_is_not_there(cache):
-    with pytest.raises(ValueError, match="surface is 'abc', and .* has no table of that name .*; give the height map"):
+    with pytest.raises(ValueError, match="surface is 'abc', and .* has no table of that name .*; compute it again by"):
         tables.of_map("abc")
 
 
@@ -200,6 +201,38 @@ def test_file_that_is_no_table(cache):
 
 
 X = np.linspace(-1, 1, 32)
+WAVES = HeightMap(np.cos(7 * X)[:, None] * np.cos(5 * X) * 1e-6, (1e-4, 1e-4))
+
+
+@pytest.mark.parametrize("content", [b"", b"nothing", b"PK\x03\x04 a zip file that was cut", None], ids=str)
+def test_damaged_table_is_computed_again(cache, content):
+    """Where a computer stopped while it was written, or a disk was full: by its name it is refused, by its map made."""
+    name = tables.keep(WAVES)[0]
+    file = cache / f"gaps_{name}.npz"
+    file.write_bytes(file.read_bytes()[:2000] if content is None else content)
+    with pytest.raises(ValueError, match=rf"surface is '{name}', and .*{file.name} holds no table of gaps"):
+        tables.of_map(name)
+    done: list[int] = []
+    assert tables.keep(WAVES, lambda *each: done.append(each[0]))[0] == name and done
+    assert len(tables.of_map(name)) == 1 and sorted(cache.iterdir()) == [file]
+
+
+def test_cache_that_takes_no_files_is_refused_before_contacts_are_solved(tmp_path, monkeypatch):
+    """A file in the place of the folder, as a folder without the right to write in it."""
+    file = tmp_path / "file"
+    file.write_text("")
+    monkeypatch.setenv("FINGERPAD_CACHE", str(file))
+    done: list[int] = []
+    with pytest.raises(ValueError, match="table .* cannot be kept in .*file .File exists.; name another folder"):
+        tables.keep(WAVES, lambda *each: done.append(each[0]))
+    assert not done
+
+
+def test_flat_map_with_a_mean_is_flat(cache):
+    """What is left of it is roundoff, of which no table is made."""
+    with pytest.raises(ValueError, match="all heights of the map are the same"):
+        BoundaryElements.of_map(HeightMap(2e-6 + np.zeros((64, 48)), (1e-4, 0.75e-4)))
+    assert not list(cache.iterdir())
 
 
 @pytest.mark.parametrize(
@@ -208,6 +241,7 @@ X = np.linspace(-1, 1, 32)
         (np.ones((32, 32)), (1.0, 1.0), "all heights of the map are the same"),
         (X[:, None] + np.zeros(32), (1.0, 1.0), "a tilt makes 1e.02 % .* at most 5 % is allowed; remove it first"),
         (np.cos(7 * X)[:, None] * np.cos(5 * X), (1.0, 1.1), "pixels of the map are .* needs square ones, so resample"),
+        (np.random.default_rng(0).normal(size=(32, 32)), (1.0, 1.0), "waves shorter than 4 pixels .* filter the map"),
     ],
 )
 def test_bad_maps(cache, heights, size, words):

@@ -139,12 +139,12 @@ def test_tail_of_the_pressure_of_a_point():
 @pytest.mark.slow
 @pytest.mark.parametrize("mean", [0.02, 0.1, 0.4])
 def test_same_as_contact_mechanics(rough, mean):
-    """Area, mean gap and pressures of another program on the same map (MIT licence), where it is installed.
+    """Area, mean gap and pressures of another program on the same map (MIT licence): ``make test-contact``.
 
     Both are solved to 1e-9 of the height; the tolerance of 1e-6 is what the contact's edge amplifies.
     """
-    other = pytest.importorskip("ContactMechanics")
-    topography = pytest.importorskip("SurfaceTopography")
+    other = pytest.importorskip("ContactMechanics", reason="make test-contact")
+    topography = pytest.importorskip("SurfaceTopography", reason="make test-contact")
     n, length = len(rough.heights), rough.size[0]
     substrate = other.PeriodicFFTElasticHalfSpace((n, n), 1.0, rough.size)
     system = other.make_system(
@@ -167,6 +167,16 @@ def test_bad_numbers(rough, pressure, modulus, words):
 def test_flat_surface():
     with pytest.raises(ValueError, match="no roughness"):
         press(HeightMap(np.ones((4, 4)), (1.0, 1.0)), 1.0, 1.0)
+
+
+@pytest.mark.parametrize("pixels", [3, 4, 6, 8])
+def test_few_pixels(pixels):
+    """One pixel alone may be in contact on the way, which leaves no direction; the load is borne all the same."""
+    for seed in range(5):
+        surface = HeightMap(np.random.default_rng(seed).normal(size=(pixels, pixels)), (1.0, 1.0))
+        for mean in (1e-3, 0.1, 1.0, 20.0):
+            found = press(surface, mean, 1.0)
+            assert found.pressure.mean() == pytest.approx(mean) and found.fraction > 0
 
 
 def test_no_contact_within_the_iterations(rough, monkeypatch):

@@ -1,12 +1,13 @@
-"""How far friction is known: parts by assumption, their sum, words and the picture of a report."""
+"""How far friction is known: parts by assumption, their sum, open ends, words and the picture of a report."""
 
+import json
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
 import fingerpad as fp
-from fingerpad.reduced.closure_band import known
+from fingerpad.reduced.closure_band import Slip, friction, known
 from fingerpad.report.known import bars
 from fingerpad.results.closures import KNOWN, known_in_words
 from tests.test_closure_band import Held
@@ -86,11 +87,66 @@ def test_law_of_ones_own(result):
     assert [part["name"] for part in found["parts"]] == ["tips", "slices"]
 
 
-def test_closure_without_an_equilibrium_is_named(result):
-    """The band leaves it out, and the sentence says so."""
-    found = known(result, {"bearing area": result.full_slip.mu_app, "Persson's theory": None})
-    assert known_in_words(found).endswith("; not in it: Persson's theory, without an equilibrium")
-    assert "not in it" not in known_in_words(found | {"left_out": []})
+@pytest.fixture(scope="module")
+def adhering():
+    """At 200 V ridges of closures with a field in contact adhere, beyond their tables of gaps."""
+    return fp.run(fp.Scene(voltage=200.0), model="cylinders")
+
+
+def test_adhering_closures_open_the_upper_end(adhering):
+    """Band and part have none in files either; the part keeps the largest number of the others, that of a run."""
+    found, (closure, *others) = json.loads(json.dumps(adhering.known)), adhering.known["parts"]
+    assert (found["high"], closure["high"]) == (None, None) and all(part["high"] for part in others)
+    assert list(closure["no_number"]) == ["boundary elements", "Persson's theory"]
+    law = fp.Persson(adhering.scene.h_0, field_in_contact=False)
+    largest = fp.run(adhering.scene.replace(roughness=law), model="cylinders").full_slip.mu_app
+    ratio = adhering.known["mu_app"] / adhering.full_slip.mu_app
+    assert closure["at_least"] == pytest.approx(ratio * largest, rel=1e-9)
+
+
+def test_open_end_in_words_and_picture(adhering):
+    kept, picture = adhering.known, bars(adhering)
+    ends = f"closure {kept['mu_app']:.2f} to {kept['parts'][0]['at_least']:.2f} and more"
+    why = "by boundary elements and Persson's theory ridges adhere at 200 V: no number"
+    text = f"known to about {kept['low']:.2f} and more, by the cheaper model of charged cylinders"
+    assert adhering.headline.known.startswith(text) and f"{ends} ({why})" in adhering.headline.known
+    assert f">{kept['low']:.2f} and more<" in picture and picture.count("<path") == 2, "arrows of band and closure"
+    assert "An arrow is an open end. By boundary elements and Persson&#x27;s theory ridges adhere" in picture
+
+
+def test_largest_number_that_is_an_upper_bound(result):
+    """At 100 V it is that of boundary elements, by which attraction balances more than a tenth of the pressure."""
+    closure = next(part for part in result.known["parts"] if part["name"] == "closure")
+    law = fp.BoundaryElements(result.scene.h_0)
+    run = fp.run(result.scene.replace(roughness=law), model="cylinders")
+    share = float(law.balanced(run.record["full_slip_p_c"], 100.0))
+    assert closure["upper_bounds"] == {"boundary elements": pytest.approx(share, rel=1e-9)} and share > 0.1
+    words = f"the largest number, by boundary elements, is an upper bound: attraction balances {100 * share:.0f} %"
+    assert words in known_in_words(result.known) and words[1:] in bars(result)
+
+
+def test_result_whose_own_closure_has_no_number(adhering):
+    """Nothing is known of it, and no ratio to other closures is given."""
+    own = fp.run(adhering.scene.replace(roughness={"law": "BoundaryElements"}), model="cylinders")
+    assert (own.known["low"], own.known["high"], own.known["parts"]) == (None, None, []) and own.closures == {}
+    assert own.headline.known == "not known: by the result's own closure ridges adhere at 200 V" and bars(own) == ""
+
+
+def test_changed_coating_beyond_the_table():
+    """A part of the result's own closure can be open as well."""
+    found = fp.run(fp.Scene(voltage=150.0, roughness={"law": "BoundaryElements"}), model="cylinders").known
+    coating = next(part for part in found["parts"] if part["name"] == "coating")
+    assert coating["no_number"] == {"changed coating": "ridges adhere at 150 V"} and found["high"] is None
+
+
+@pytest.mark.parametrize(
+    ("voltage", "why"), [(50.0, "the ridges' pressure is beyond the table"), (5e3, "ridges adhere at 5000 V")]
+)
+def test_reason_of_no_number(result, voltage, why):
+    """A table can end under the load alone; under a huge voltage charged cylinders have no equilibrium."""
+    law = fp.BoundaryElements(result.scene.h_0)
+    slip = replace(result.full_slip, voltage=voltage, f_ext=5000.0)
+    assert friction(result.scene, slip, law, None) == Slip(np.inf, why)
 
 
 def test_none_without_voltage_or_friction():

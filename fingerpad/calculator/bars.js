@@ -1,7 +1,7 @@
 /* Bars of how far friction is solved and known, below the answer; those of a report (fingerpad/report/known.py). */
 const bars = (function () {
   const { element, colour, ticks, scale } = plot;
-  const LEFT = 84, RIGHT = 112, ROW = 22, LEAST = 3; // px; the shortest bar
+  const LEFT = 84, RIGHT = 112, ROW = 22, LEAST = 3, TIP = 10; // px; the shortest bar, the arrow of an open one
 
   /** Draw the bars of a band, see knownBand.of; error: relative, of the closed form beside full runs, null if not known. */
   function draw(box, band, error, of) {
@@ -9,11 +9,12 @@ const bars = (function () {
     const { mu_app: mu, low, high, parts } = band, rows = [["solved to", mu, mu, "line"]];
     if (error !== null) rows.push(["full model", mu * (1 - error), mu * (1 + error), "line"]);
     rows.push(["known to", low, high, "goal"], ...parts.map((part) => [part.name, part.low, part.high, "other"]));
-    const least = Math.log(Math.min(...rows.map((row) => row[1]))), most = Math.log(Math.max(...rows.map((row) => row[2])));
+    const every = [...rows.flatMap((row) => row.slice(1, 3)), ...parts.map((part) => part.at_least)].filter(Number.isFinite);
+    const least = Math.log(Math.min(...every)), most = Math.log(Math.max(...every));
     const margin = 0.05 * (most - least) || 0.05, axis = { low: Math.exp(least - margin), high: Math.exp(most + margin), log: true };
     const width = Math.min(Math.max(box.clientWidth, 300), 640), end = ROW * rows.length + 4, right = width - RIGHT, { at } = scale(axis, LEFT, right);
     const svg = element("svg", { width, height: end + 40, viewBox: `0 0 ${width} ${end + 40}`, role: "img", fill: colour("ink"),
-      "aria-label": `µ_app of the ${of}: solved exactly, known to about ${low.toFixed(2)} to ${high.toFixed(2)}` });
+      "aria-label": `µ_app of the ${of}: solved exactly, known to about ${span({ low, high })}` });
     const text = (x, y, anchor, words) => svg.append(element("text", { x, y, "text-anchor": anchor }, words));
     const rule = (x, name) => svg.append(element("line", { x1: x, x2: x, y1: 0, y2: end, stroke: colour(name) }));
     const marks = ticks({ ...axis }, 6);
@@ -23,20 +24,36 @@ const bars = (function () {
     }
     rule(at(mu), "ink");
     rows.forEach(([name, from, to, fill], k) => {
-      const y = ROW * k + 4, size = Math.max(at(to) - at(from), LEAST), x = at(from) - (to > from ? 0 : LEAST / 2);
+      const y = ROW * k + 4, open = to === Infinity, end_x = open ? right : at(to), size = Math.max(end_x - at(from), LEAST), x = at(from) - (to > from ? 0 : LEAST / 2);
+      const shape = { x, y, width: open ? Math.max(size - TIP, 0) : size, height: ROW - 8, fill: colour(fill), class: name.replace(" ", "_") };
       text(LEFT - 8, y + 12, "end", name);
-      svg.append(element("rect", { x, y, width: size, height: ROW - 8, fill: colour(fill), class: name.replace(" ", "_") }));
-      text(right + 8, y + 12, "start", to > from ? `${from.toFixed(2)} to ${to.toFixed(2)}` : "exact, no mesh");
+      svg.append(element("rect", shape));
+      if (open) svg.append(element("path", { d: `M ${right - TIP} ${y - 3} L ${right} ${y + ROW / 2 - 4} L ${right - TIP} ${y + ROW - 5} Z`, fill: colour(fill), class: "open" }));
+      text(right + 8, y + 12, "start", to > from ? span({ low: from, high: to }) : "exact, no mesh");
     });
     text((LEFT + right) / 2, end + 33, "middle", `µ_app of the ${of}`);
     box.replaceChildren(svg);
   }
 
-  /** Return the bars in words, for their caption. */
-  const words = ({ low, high, left_out }, error) => `µ_app is solved exactly, since a closed form has no mesh. It is known to about ${low.toFixed(2)} to ` +
-    `${high.toFixed(2)}: each grey bar has one assumption changed, and the band takes these parts as independent.` +
-    (error === null ? " Its error beside the full model is not known here." : " The bar “full model” is its known error beside full runs.") +
-    (left_out.length ? ` Without an equilibrium, and not in it: ${left_out.join("; ")}.` : "");
+  /** Return the ends of a band or of a part: "and more" where the upper one is open. */
+  const span = ({ low, high }) => (high === Infinity ? `${low.toFixed(2)} and more` : `${low.toFixed(2)} to ${high.toFixed(2)}`);
 
-  return { draw, words };
+  /** Return which changes of a part have no number, and which number is an upper bound: fingerpad/results/closures.py. */
+  function notes({ no_number, upper_bounds }) {
+    const reasons = new Map();
+    for (const [words, why] of no_number) reasons.set(why, [...new Set([...(reasons.get(why) || []), words])]);
+    return [...[...reasons].map(([why, those]) => `by ${those.join(" and ")} ${why}: no number`),
+      ...upper_bounds.map(([words, share]) => `the largest number, by ${words}, is an upper bound: attraction balances ${(100 * Math.min(share, 1)).toFixed(0)} % of the pressure in contact`)];
+  }
+
+  const sentence = (words) => ` ${words[0].toUpperCase()}${words.slice(1)}.`;
+
+  /** Return the bars in words, for their caption. */
+  const words = (band, error) => `µ_app is solved exactly, since a closed form has no mesh. It is known to about ${span(band)}: ` +
+    "each grey bar has one assumption changed, and the band takes these parts as independent." + (band.high === Infinity ? " An arrow is an open end." : "") +
+    band.parts.flatMap(notes).map(sentence).join("") +
+    (error === null ? " Its error beside the full model is not known here." : " The bar “full model” is its known error beside full runs.") +
+    (band.left_out.length ? ` Not in it, for want of a table of such an insulator: ${band.left_out.join("; ")}.` : "");
+
+  return { draw, span, words };
 })();

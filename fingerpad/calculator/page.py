@@ -17,6 +17,7 @@ from numpy.polynomial.legendre import leggauss
 
 from fingerpad.calculator import presets
 from fingerpad.installed import version
+from fingerpad.model.cautions import BALANCED
 from fingerpad.reduced import cylinder_errors, cylinders, uncharged
 from fingerpad.reduced.closure_band import CHANGE, TIPS, closures, with_band
 from fingerpad.reduced.model import STATES
@@ -147,20 +148,23 @@ def data() -> dict[str, Any]:
 def band() -> dict[str, Any]:
     """Return what the band of friction over assumptions is made of: changes, known errors, other models of roughness.
 
-    Of a model: its pressures over E* q_0 h_rms, and the logarithm of its air gap over h_rms, by pressure and by h_0
-    over h_rms (:data:`_RATIOS`). One table serves every roughness, insulator and voltage.
+    Of a model: its pressures over E* q_0 h_rms; the logarithm of its air gap over h_rms, by pressure and by h_0 over
+    h_rms (:data:`_RATIOS`); and that of its area in contact where the field acts there. One table serves every
+    roughness, insulator and voltage.
     """
     own, laws = BEARING_AREA, []
     unit = replace(own, h_0=own.h_rms).full_pressure / own.beta
     for words, law in closures(replace(own, h_0=own.h_rms)).items():
         if isinstance(law, TabulatedClosure):
-            low, high = replace(law, p_floor=1e-9 * unit).pressures
-            nodes = np.geomspace(low, high, _NODES)
+            law = replace(law, p_floor=1e-9 * unit)
+            nodes = np.geomspace(*law.pressures, _NODES)
             gaps = [np.log(replace(law, h_0=x * law.h_rms)(nodes).d_eq / law.h_rms) for x in _RATIOS]
             by_pressure = [_short(each) for each in np.transpose(gaps)]
-            laws.append({"words": words, "pressures": _short(nodes / unit), "gaps": by_pressure})
+            areas = _short(np.log(law.statistics(nodes).area)) if law.field_in_contact else None
+            laws.append({"words": words, "pressures": _short(nodes / unit), "gaps": by_pressure, "areas": areas})
     slices = [[force, list(ends)] for force, ends in errors.ONCE["f_t"]]
-    return {"change": CHANGE, "tips": TIPS, "ratios": _short(_RATIOS), "laws": laws, "slices": slices}
+    changes = {"change": CHANGE, "tips": TIPS, "share": BALANCED}
+    return changes | {"ratios": _short(_RATIOS), "laws": laws, "slices": slices}
 
 
 def _short(values: Iterable[float]) -> list[float]:

@@ -15,8 +15,9 @@ from variational.roughness.tabulated import TabulatedClosure
 from variational.state import ContactState
 
 Array = NDArray[np.float64]
+BALANCED = 0.1
+"""Part of the pressure in contact from which its attraction is overestimated by some 8 %."""
 _SHARE = 0.1  # of the contact force, from which ridges outside of the closure's range are mentioned
-_BALANCED = 0.1  # of the pressure in contact, from which its attraction is overestimated by some 8 %
 _MADE = 1e-6  # of the largest dissipation of a branch at a point: roundoff of the others'
 _DEEP = 0.1  # of the air gap: largest penetration that is of no matter
 
@@ -65,7 +66,7 @@ def _undeformed(closure: Closure, points: Sequence[tuple[ArrayLike, ArrayLike, f
     if not isinstance(closure, TabulatedClosure):
         return []
     shares = [float(closure.balanced(p_c, voltage).max(initial=0.0)) for p_c, _, voltage in points]
-    count = sum(share >= _BALANCED for share in shares)
+    count = sum(share >= BALANCED for share in shares)
     if not count:
         return []
     return [

@@ -18,15 +18,19 @@ The band is that of the result's headline: of the whole finger wherever slices a
 section are taken for it.
 
 The changes are conventions, those of docs/assumptions.md. The parts are taken as independent: the band is the root of
-the sum of their squares, in the logarithm of µ_app and to either side. A closure without an equilibrium is not in it.
+the sum of their squares, in the logarithm of µ_app and to either side. A closure whose ridges adhere, beyond its table
+of gaps, has no number: the upper end of the band is then open.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from fingerpad.model.adhesion import sticking
+from fingerpad.model.cautions import BALANCED
 from fingerpad.reduced.cylinders import over_forces
 from fingerpad.results.closures import KNOWN, RECORD
 from fingerpad.scene import Scene
@@ -44,9 +48,7 @@ if TYPE_CHECKING:
 
 CHANGE, TIPS = (0.8, 1.2), (2.0, 1 / 1.5)
 """Factors of a value, and of the radius of a tip."""
-Part = tuple[str, list[float]]
-"""Name of an assumption, and µ_app over that of the result with it changed."""
-OUTSIDE = "no field in contact"
+OUTSIDE, OWN = "no field in contact", "the result's own closure"
 _SHARED = ("h_0", "h_rms", "wavelength", "young", "p_floor")
 
 
@@ -78,32 +80,51 @@ def _is_there(law: Closure) -> bool:
     return True
 
 
+class Slip(NamedTuple):
+    """Full slip of the charged cylinders."""
+
+    mu_app: float
+    """µ_app; infinite where it has no number."""
+    why: str = ""
+    """Reason why it has none, else empty."""
+    balanced: float = 0.0
+    """Part of the pressure in contact that attraction balances, where µ_app is an upper bound by it; else 0."""
+
+
 def band(result: "Result") -> dict[str, Any]:
     """Return µ_app at full slip by each closure, ready for JSON; empty without voltage, friction or full slip.
 
-    A closure without an equilibrium at this load is None: its ridges adhere, or the cylinders have no such contact.
+    A closure without a number is None, and ``no_number`` has the reason. ``upper_bounds`` has what a closure balances
+    whose attraction is an upper bound (:meth:`.TabulatedClosure.balanced`). Empty too where the result's own closure
+    has no number, since there is no ratio then.
     """
     scene, slip = result.scene, result.full_slip
     if slip is None or not slip.voltage or not slip.mu_app > 0 or scene.history is not None:
         return {}
     try:
-        laws, own = closures(scene.closure()), scene.closure()
-        here = friction(scene, slip, own, result.uncharged)
+        laws, here = closures(scene.closure()), _solved(scene, slip, scene.closure(), result.uncharged)
     except SceneError:
         return {}
-    if not laws or here is None:
+    if not laws or here.why:
         return {}
-    found = {}
-    for words, law in laws.items():
-        there = friction(scene, slip, law, result.uncharged)
-        found[words] = None if there is None else slip.mu_app * there / here
-    return {"mu_app": found, "model": "cylinders"}
+    found = {words: friction(scene, slip, law, result.uncharged) for words, law in laws.items()}
+    return {
+        "mu_app": {words: _finite(slip.mu_app * each.mu_app / here.mu_app) for words, each in found.items()},
+        "no_number": {words: each.why for words, each in found.items() if each.why},
+        "upper_bounds": {words: each.balanced for words, each in found.items() if each.balanced},
+        "model": "cylinders",
+    }
 
 
-def friction(
-    scene: Scene, slip: ContactState, law: Closure, press: ContactState | None, tips: float = 1.0
-) -> float | None:
-    """Return µ_app of the charged cylinders by a closure at the load of a state, None without an equilibrium.
+def _finite(value: float) -> float | None:
+    return value if np.isfinite(value) else None
+
+
+def friction(scene: Scene, slip: ContactState, law: Closure, press: ContactState | None, tips: float = 1.0) -> Slip:
+    """Return full slip of the charged cylinders by a closure at the load of a state.
+
+    This is where a closure has a number or none. It has none without an equilibrium, and beyond its table of gaps:
+    there nearly all of a ridge touches, and the table's last air gap says nothing of it.
 
     Args:
         scene: of the state.
@@ -112,73 +133,121 @@ def friction(
         press: the same without voltage, whose contact it is; by default the default finger's.
         tips: radius of the ridges' tips over that of the scene.
     """
+    try:
+        return _solved(scene, slip, law, press, tips)
+    except SceneError:
+        return Slip(np.inf, _adhere(law, slip.voltage) or "there is no equilibrium")
+
+
+def _solved(scene: Scene, slip: ContactState, law: Closure, press: ContactState | None, tips: float = 1.0) -> Slip:
+    """Return :func:`friction`; raise SceneError without an equilibrium, and for a finger that is none of cylinders."""
     given = {"roughness": law, "f_ext": slip.f_ext, "voltage": slip.voltage, "force": None}
     known = [replace(press, f_ext=slip.f_ext)] if press is not None and press.contact_length > 0 else []
-    try:
-        (found,) = over_forces(scene.model_copy(update=given), [slip.f_ext], "full_slip", known, tips)
-    except SceneError:
-        return None
-    return found.mu_app
+    (found,) = over_forces(scene.model_copy(update=given), [slip.f_ext], "full_slip", known, tips)
+    if not isinstance(law, TabulatedClosure):
+        return Slip(found.mu_app)
+    p_c = found.f_contact / found.contact_length
+    if p_c > law.pressures[1]:
+        return Slip(np.inf, _adhere(law, slip.voltage) or "the ridges' pressure is beyond the table")
+    balanced = float(law.balanced(p_c, slip.voltage))
+    return Slip(found.mu_app, balanced=balanced if balanced >= BALANCED else 0.0)
+
+
+def _adhere(law: Closure, voltage: float) -> str:
+    return f"ridges adhere at {voltage:.4g} V" if sticking(law, voltage) else ""
 
 
 # -- all assumptions ---------------------------------------------------------------------------------------
 def with_band(result: "Result") -> "Result":
     """Return a result with its bands in its record, where it has some: over closures, and over all assumptions."""
     found = band(result)
-    all_parts = known(result, found.get("mu_app", {}))
+    all_parts = known(result, found)
     more = ({RECORD: found} if found else {}) | ({KNOWN: all_parts} if all_parts else {})
     return replace(result, record=result.record | more) if more else result
 
 
-def known(result: "Result", closures: dict[str, float | None]) -> dict[str, Any]:
+class Part(NamedTuple):
+    """One assumption, and µ_app over that of the result with it changed."""
+
+    name: str
+    ratios: list[float]
+    """Of the changes that have a number."""
+    no_number: Mapping[str, str] = MappingProxyType({})
+    """Reasons of those that have none, by words; the upper end is open then."""
+    upper_bounds: Mapping[str, float] = MappingProxyType({})
+    """Of the change with the largest number, see :func:`band`."""
+
+    @property
+    def ends(self) -> tuple[float, float]:
+        """The least and the largest ratio; infinite where the upper end is open."""
+        return min([1.0, *self.ratios]), np.inf if self.no_number else max([1.0, *self.ratios])
+
+    def kept(self, mu: float) -> dict[str, Any]:
+        """Return the part of a friction coefficient ``mu``, ready for JSON."""
+        low, high = (_finite(mu * end) for end in self.ends)
+        found: dict[str, Any] = {"name": self.name, "low": low, "high": high}
+        if self.no_number:
+            found |= {"at_least": mu * max([1.0, *self.ratios]), "no_number": dict(self.no_number)}
+        return found | ({"upper_bounds": dict(self.upper_bounds)} if self.upper_bounds else {})
+
+
+def known(result: "Result", closures: Mapping[str, Any]) -> dict[str, Any]:
     """Return the band of µ_app at full slip and its parts, the largest first, ready for JSON; empty without a band.
+
+    The upper end is None where it is open: of a part with a change that has no number, and then of the band. Such a
+    part has ``at_least``, its largest number, and ``no_number``, the reasons. Both ends of the band are None where the
+    result's own closure has no number.
 
     Args:
         result: with full slip under a voltage.
-        closures: µ_app of its section by each model of roughness; empty where there is none.
+        closures: what :func:`band` returns for it.
     """
-    slip = result.full_slip
+    slip, finger = result.full_slip, result.finger
     if slip is None or not slip.voltage or not slip.mu_app > 0 or result.scene.history is not None:
         return {}
-    finger = result.finger if result.finger is not None and "full_slip" in result.finger.states else None
-    mu = slip.mu_app if finger is None else finger.states["full_slip"].mu_app
+    whole = finger is not None and "full_slip" in finger.states
+    mu = finger.states["full_slip"].mu_app if finger is not None and whole else slip.mu_app
     try:
-        parts = [*_parts(result, closures)]
+        here = _solved(result.scene, slip, result.scene.closure(), result.uncharged)
     except SceneError:
         return {}
-    ends = [(name, min(1.0, *ratios), max(1.0, *ratios)) for name, ratios in parts if ratios]
-    if not ends:
+    unknown = ["slices"] if finger is not None and whole and "f_t" not in known_at(finger.f_ext) else []
+    found: dict[str, Any] = {"mu_app": mu, "low": None, "high": None, "whole": whole, "parts": [], "not_known": unknown}
+    if here.why:
+        return found | {"no_number": {OWN: here.why}}
+    parts = [_of_closures(closures, slip.mu_app), *_parts(result, slip, here.mu_app)]
+    parts = [part for part in parts if part.ratios or part.no_number]
+    if not parts:
         return {}
-    ends.sort(key=lambda each: -np.log(each[2] / each[1]))
-    below, above = (float(np.sqrt(sum(np.log(each[k]) ** 2 for each in ends))) for k in (1, 2))
-    return {
-        "mu_app": mu, "low": mu * float(np.exp(-below)), "high": mu * float(np.exp(above)), "whole": finger is not None,
-        "parts": [{"name": name, "low": mu * low, "high": mu * high} for name, low, high in ends],
-        "left_out": [words for words, value in closures.items() if value is None],
-        "not_known": ["slices"] if finger is not None and "f_t" not in known_at(finger.f_ext) else [],
-    }  # fmt: skip
+    parts.sort(key=lambda part: -np.log(part.ends[1] / part.ends[0]))
+    below, above = np.sqrt(np.sum(np.log([part.ends for part in parts]) ** 2, axis=0))
+    ends = {"low": mu * float(np.exp(-below)), "high": _finite(mu * float(np.exp(above)))}
+    return found | ends | {"parts": [part.kept(mu) for part in parts]}
 
 
-def _parts(result: "Result", closures: dict[str, float | None]) -> Iterator[Part]:
-    scene, slip, press = result.scene, result.full_slip, result.uncharged
-    assert slip is not None
-    own = scene.closure()
-    found = [value / slip.mu_app for value in closures.values() if value is not None]
-    yield "closure", found
-    here = friction(scene, slip, own, press)
-    if here is None:
-        return
+def _of_closures(closures: Mapping[str, Any], mu: float) -> Part:
+    """Return the part of the other models of roughness, of what :func:`band` returns for a friction coefficient."""
+    values = {words: value for words, value in closures.get("mu_app", {}).items() if value is not None}
+    largest = max(values, key=lambda words: values[words], default="")
+    bounds = {words: share for words, share in closures.get("upper_bounds", {}).items() if words == largest}
+    return Part("closure", [value / mu for value in values.values()], closures.get("no_number", {}), bounds)
 
-    def ratios(changed: Iterator[tuple[Scene, Closure, float]]) -> list[float]:
-        values = (friction(each, slip, law, press, tips) for each, law, tips in changed)
-        return [value / here for value in values if value is not None]
 
-    yield "tips", ratios((scene, own, tips) for tips in TIPS)
+def _parts(result: "Result", slip: ContactState, here: float) -> Iterator[Part]:
+    """Yield the other parts; ``here`` is µ_app of the charged cylinders at full slip."""
+    scene, own = result.scene, result.scene.closure()
+
+    def part(name: str, changed: Iterable[tuple[Scene, Closure, float]]) -> Part:
+        found = [friction(each, slip, law, result.uncharged, tips) for each, law, tips in changed]
+        why = {f"changed {name}": each.why for each in found if each.why}
+        return Part(name, [each.mu_app / here for each in found if not each.why], why)
+
+    yield part("tips", ((scene, own, tips) for tips in TIPS))
     if isinstance(own, BearingArea | TabulatedClosure):
-        yield "roughness", ratios((scene, replace(own, h_rms=factor * own.h_rms), 1.0) for factor in CHANGE)
-        yield "coating", ratios((*_coated(scene, own, factor), 1.0) for factor in CHANGE)
+        yield part("roughness", ((scene, replace(own, h_rms=factor * own.h_rms), 1.0) for factor in CHANGE))
+        yield part("coating", ((*_coated(scene, own, factor), 1.0) for factor in CHANGE))
     if result.finger is not None and "f_t" in (ends := known_at(result.finger.f_ext)):
-        yield "slices", [1 / (1 + end) for end in ends["f_t"]]
+        yield Part("slices", [1 / (1 + end) for end in ends["f_t"]])
 
 
 def _coated(scene: Scene, own: BearingArea | TabulatedClosure, factor: float) -> tuple[Scene, Closure]:

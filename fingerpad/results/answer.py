@@ -92,9 +92,10 @@ class Answer:
 
     @property
     def closures(self) -> dict[str, float | None]:
-        """µ_app at full slip by each model of roughness, by the ratio of charged cylinders; None without equilibrium.
+        """µ_app at full slip by each model of roughness, by the ratio of charged cylinders; None without a number.
 
-        Empty without voltage, friction or full slip, for a history, and for a closure of one's own.
+        It has none without an equilibrium, and where ridges adhere beyond its table of gaps. Empty without voltage,
+        friction or full slip, for a history, and for a closure of one's own.
         """
         return dict(self.record.get(RECORD, {}).get("mu_app", {}))
 
@@ -102,7 +103,8 @@ class Answer:
     def known(self) -> dict[str, Any]:
         """Band of µ_app at full slip over the scene's assumptions: ``low``, ``high`` and ``parts``, the largest first.
 
-        Each part has ``name``, ``low`` and ``high``. Empty where the result has no friction under a voltage.
+        Each part has ``name``, ``low`` and ``high``. ``high`` is None where the upper end is open: a closure has no
+        number there; ``low`` too where it is the result's own one. Empty without friction under a voltage.
         """
         return dict(self.record.get(KNOWN, {}))
 

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from variational.roughness.closure import Progress
 from variational.roughness.gaps import FULL, PRESSURES, Bins, GapTable, bins
 from variational.roughness.halfspace import press
+from variational.roughness.spectrum import power_spectrum
 from variational.roughness.topography import HeightMap, polynomials
 
 Array = NDArray[np.float64]
@@ -15,6 +16,7 @@ FEWEST_PIXELS = 20
 """In contact, below which a contact is not resolved."""
 _FEWEST_PRESSURES = 6
 _SQUARE, _LEVEL = 0.01, 0.05  # differences of pixels' sides; part of the mean square that a tilt may be
+_WAVE, _UNRESOLVED = 4.0, 0.5  # pixels of a wave that is resolved; part of the mean square that shorter waves may be
 
 
 def over_pressure(surface: HeightMap, wavelength: float, pressures: Sequence[float]) -> Iterable[tuple[float, Bins]]:
@@ -114,7 +116,8 @@ def refuse_map(measured: HeightMap) -> None:
     """Refuse a height map whose contact would not be that of its roughness.
 
     Raises:
-        ValueError: a flat map, one with a tilt or with pixels that are not square; in one sentence.
+        ValueError: a flat map, one with a tilt, with pixels that are not square, or with most of its height in waves
+            of a few pixels; in one sentence.
     """
     (a, b), h = measured.pixel, measured.heights - measured.heights.mean()
     if not h.any():
@@ -129,4 +132,12 @@ def refuse_map(measured: HeightMap) -> None:
         raise ValueError(
             f"a tilt makes {100 * tilt:.2g} % of the map's mean square height, at most {100 * _LEVEL:g} % is allowed; "
             "remove it first, by detrended('tilt') or detrended('curvature')"
+        )
+    waves = power_spectrum(measured, window="hann")
+    short = float(waves.psd[waves.q > 2 * np.pi / (_WAVE * max(a, b))].sum() / waves.psd.sum())
+    if short > _UNRESOLVED:
+        raise ValueError(
+            f"waves shorter than {_WAVE:g} pixels have {100 * short:.2g} % of the map's mean square height, at most "
+            f"{100 * _UNRESOLVED:g} % is allowed: pixels of {max(a, b):.3g} m do not resolve it, or it is noise; "
+            "measure with smaller pixels, or filter the map"
         )

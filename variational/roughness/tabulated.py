@@ -17,7 +17,7 @@ import numpy as np
 import scipy  # its parts are imported where they are used first: to read a scene needs none
 from numpy.typing import ArrayLike, NDArray
 
-from variational.coefficients import OF_SCENE, parameter
+from variational.coefficients import OF_SCENE, parameter, refuse_not_positive
 from variational.roughness.closure import AirGap, Closure, Progress
 from variational.roughness.gaps import GapTable
 from variational.roughness.statistics import Slopes, Statistics, breaking_gaps
@@ -41,7 +41,7 @@ class Curve:
 
     def __call__(self, x: Array) -> tuple[Array, Array]:
         """Return values and derivatives at abscissas inside the range, of any shape."""
-        k = np.minimum(((x - self._low) / self._step).astype(np.int64), self._last)
+        k = np.fmin(np.fmax((x - self._low) / self._step, 0), self._last).astype(np.int64)
         t = x - (self._low + k * self._step)
         a, b, c, d = self._c.take(k, axis=1)
         return ((a * t + b) * t + c) * t + d, (3 * a * t + 2 * b) * t + c
@@ -69,6 +69,14 @@ class TabulatedClosure(Closure):
     """Mean contact pressure (Pa) below which the air gap is held constant (*assumption*)."""
     hurst: float = parameter(0.05, 0.99, default=0.75)
     """Hurst exponent of the roughness; tables of boundary elements are for 0.6 to 0.9."""
+
+    def __post_init__(self) -> None:
+        """Refuse numbers that are no lengths and pressures.
+
+        Raises:
+            ValueError: one that is not finite and greater than 0; in one sentence.
+        """
+        refuse_not_positive(self)
 
     @abstractmethod
     def tables(self) -> list[tuple[float, GapTable]]:
@@ -153,7 +161,7 @@ class TabulatedClosure(Closure):
             ValueError: a pressure outside of the table; in one sentence.
         """
         p_c, (low, high) = np.asarray(p_c, dtype=float), self.pressures
-        if (out := (p_c < low * (1 - 1e-9)) | (p_c > high * (1 + 1e-9))).any():
+        if (out := ~((p_c >= low * (1 - 1e-9)) & (p_c <= high * (1 + 1e-9)))).any():
             raise ValueError(
                 f"the contact pressure is {p_c[out].flat[0]:g} Pa; {type(self).__name__} has {low:.4g} to {high:.4g} Pa"
             )
