@@ -248,6 +248,14 @@ def test_point_not_found_on_the_scenes_mesh_is_a_run(monkeypatch):
         ({"accuracy": {"mu_app": 0.01}}, "accuracy is given"),
         ({"force": 0.1}, "force is 0.1"),
         ({"history": [{"name": "press", "f_ext": 1.0}]}, "history is given"),
+        (
+            {"materials": {"dermis": {"viscosity": {"preset": "fingerpad"}}}},
+            "materials.dermis.viscosity is given, and a state needs the past of its layers; with states='full_slip' it",
+        ),
+        (
+            {"friction": {"law": "Occlusion", "mu_dry": 0.2, "mu_wet": 0.8, "time": 0.5}},
+            "friction has the law 'Occlusion', on whose memory full slip depends; with states='full_slip' it must have",
+        ),
     ],
 )
 def test_other_scenes_are_refused(changes, message, tmp_path):

@@ -93,8 +93,8 @@ def _scatter(closure: BearingArea | TabulatedClosure, pressures: Sequence[float]
         return
     shares = 100 * closure.spread(pressures) / closure(pressures).d_eq
     if shares.any():
-        ends = dict.fromkeys(f"{share:.2g}" for share in (shares.min(), shares.max()))
-        yield f"From one surface to the next the air gap scatters by {' to '.join(ends)} % (rms)."
+        ends = " to ".join(dict.fromkeys(f"{share:.2g}" for share in (shares.min(), shares.max())))
+        yield f"From one surface of four by four largest waves to the next the air gap scatters by {ends} % (rms)."
 
 
 def _sticking(closure: BearingArea | TabulatedClosure) -> str:

@@ -12,19 +12,21 @@ from fingerpad.results.files import lock_file, replace_json
 from fingerpad.runs import batch
 from fingerpad.runs.processes import End, Pool, run
 from fingerpad.runs.solve import Summary
-from fingerpad.scene import Scene, SceneError
+from fingerpad.scene import Scene, SceneError, law_name
 from fingerpad.scene.law_keys import parameters
 from fingerpad.scene.messages import show
+from fingerpad.scene.viscosity import viscous_layers
 
 _FREE = ("f_ext", "voltage", "friction", "roughness", "electric", "slide_length")
 """Keys in which neighbours may differ by numbers: they change neither the mesh nor the layers."""
 _SHORTEST = 8  # points of a chain, of which the first takes the time of some fifteen others
 _LIMIT = 4 * 3600.0  # s of processor time for a chain
+_LEFT_OUT = "with states='full_slip' it must be left out, or give states='all'"
 _LOOK = 1.0  # s between two looks for points that are finished
 
 
 def refuse_others(scene: Scene) -> None:
-    """Refuse a scene of which full slip is not that of press, charge and slide under a force per length.
+    """Refuse a scene of which full slip is not that of press, charge and slide under a force per length, or has a past.
 
     Raises:
         SceneError: in one sentence.
@@ -32,7 +34,15 @@ def refuse_others(scene: Scene) -> None:
     for key in ("history", "force", "accuracy"):
         if (value := getattr(scene, key)) is not None:
             given = show(value) if key == "force" else "given"
-            raise SceneError(f"{key} is {given}; with states='full_slip' it must be left out, or give states='all'")
+            raise SceneError(f"{key} is {given}; {_LEFT_OUT}")
+    for layer in viscous_layers(scene.materials):
+        raise SceneError(f"{layer}.viscosity is given, and a state needs the past of its layers; {_LEFT_OUT}")
+    law = scene.friction_law()
+    if law is not None and law.memory is not None:
+        raise SceneError(
+            f"friction has the law {show(law_name(law))}, on whose memory full slip depends; with states='full_slip' "
+            "it must have none, or give states='all'"
+        )
 
 
 def sweep(scenes: Mapping[str, Scene], folder: Path, jobs: int, quiet: bool) -> dict[str, Summary]:
