@@ -11,13 +11,14 @@ import argparse
 import sys
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from matplotlib.figure import Figure
 
 from benchmarks import harness
 from benchmarks.microscale import contacts
+from fingerpad.model.cautions import BALANCED
 from fingerpad.reduced import cylinders
 from fingerpad.results import style
 from fingerpad.scene import Scene, load
@@ -40,7 +41,8 @@ CIRCUIT = {
 }
 """Drives of a sine of 1 kHz over screen, leaking gap and skin, the electric table below."""
 ELECTRIC = {"tissue": "dry", "leak": "sliding dry"}
-PAPER, NEAR = 0.55, 0.1  # µ_app at 75 N/m; what counts as equal to it
+LOAD, PAPER, NEAR = "75", 0.55, 0.1  # N/m; µ_app there; what counts as equal to it
+SHEAR = 13e6  # Pa, in the computed real contact of dry wrist skin on glass (doi 10.3762/bjnano.5.147, abstract)
 GAPS = (1.5e-6, 2.5e-6)  # m, published equivalent air gaps
 _FINE = 100e-6 / 64
 HURST, HELD = (0.6, 0.675, 0.75, 0.825, 0.9), 20e3  # exponents of a table, and its pressure (Pa)
@@ -116,12 +118,14 @@ def friction(law: Law, f_ext: float, voltage: float | Mapping[str, Any]) -> dict
         return None
     slip = found.full_slip
     assert slip is not None
-    p_c = found.record["full_slip_p_c"]
+    p_c, d_eq = (found.record[f"full_slip_{name}"] for name in ("p_c", "d_eq"))
+    effective = slip.voltage if scene.supply is None else float(scene.supply.effective(np.array(d_eq)))
     inside = law.statistics(np.clip(p_c, *law.pressures))
-    length = slip.contact_length
+    tabulated = isinstance(law, TabulatedClosure)
     return {
-        "mu_app": slip.mu_app, "p_c": p_c, "d_eq": found.record["full_slip_d_eq"], "area": float(inside.area),
-        "length": length, "beyond": float(not law.pressures[0] <= p_c <= law.pressures[1]),
+        "mu_app": slip.mu_app, "p_c": p_c, "d_eq": d_eq, "area": float(inside.area),
+        "beyond": float(tabulated and p_c > law.pressures[1]),
+        "balanced": float(law.balanced(p_c, effective)) if tabulated else 0.0,
     }  # fmt: skip
 
 
@@ -152,7 +156,9 @@ def compute(args: argparse.Namespace) -> None:
     found = {
         "closures": {words: over_pressure(law) for words, law in closures.items()},
         "read": {
-            words: {reading: friction(law, 75.0, given) for reading, given in _given().items()}
+            words: {
+                reading: {f"{f:g}": friction(law, f, given) for f in FORCES} for reading, given in _given().items()
+            }
             for words, law in closures.items()
         },
         "curves": {
@@ -167,7 +173,7 @@ def compute(args: argparse.Namespace) -> None:
 
 
 def _mu(found: Mapping[str, float] | None) -> float | None:
-    return None if found is None else found["mu_app"]
+    return None if found is None or found["beyond"] else found["mu_app"]
 
 
 # -- page ----------------------------------------------------------------------------------------------------
@@ -175,21 +181,48 @@ FULL_OF = {words: (words.rpartition(", ")[0], words.rpartition(", ")[2]) for wor
 """Closure and reading of each full run."""
 
 
-def _agrees(found: Mapping[str, float] | None) -> dict[str, bool]:
-    """Return whether air gap and friction are those that were published."""
-    if found is None:
-        return {"gap": False, "friction": False}
-    gap = GAPS[0] <= found["d_eq"] <= GAPS[1]
-    return {"gap": gap, "friction": abs(found["mu_app"] / PAPER - 1) <= NEAR}
+class Read(NamedTuple):
+    """Full slip of a closure by one reading of the voltage."""
+
+    words: str
+    reading: str
+    states: Mapping[str, Mapping[str, float] | None]
+    """By force; None without a number: no equilibrium, or ridges that adhere beyond the table of gaps."""
+
+    @property
+    def gaps(self) -> list[str]:
+        """Forces at which the air gap is within the published ones."""
+        return [f for f, found in self.states.items() if found and GAPS[0] <= found["d_eq"] <= GAPS[1]]
+
+    @property
+    def friction(self) -> bool:
+        """Whether µ_app is the paper's, at the paper's force."""
+        found = self.states[LOAD]
+        return found is not None and abs(found["mu_app"] / PAPER - 1) <= NEAR
+
+    def cells(self) -> str:
+        """Return µ_app at the forces, and pressure, air gap and area in contact at the paper's, as cells."""
+        bound = ("≤ " if found and found["balanced"] >= BALANCED else "" for found in self.states.values())
+        mu = (f"{found['mu_app']:.2f}" if found else "" for found in self.states.values())
+        at = self.states[LOAD]
+        rest = at and [f"{at['p_c'] * 1e-3:.0f}", f"{at['d_eq'] * 1e6:.2f}", f"{100 * at['area']:.0f}"]
+        return harness.cells(*(f"{a}{b}" or "adheres" for a, b in zip(bound, mu, strict=True)), *(rest or 3 * [None]))
 
 
-def _line(found: Mapping[str, float] | None) -> str:
-    """Return friction, pressure, air gap and area of a state as cells."""
-    if found is None:
-        return harness.cells(None, None, None, None)
-    more = ">" * bool(found["beyond"])
-    area = f"{100 * found['area']:.0f}"
-    return f"{more}{found['mu_app']:.2f} | {found['p_c'] * 1e-3:.0f} | {found['d_eq'] * 1e6:.2f} | {more}{area}"
+def _read(numbers: Mapping[str, Any]) -> list[Read]:
+    """Return the states by closures and readings."""
+    return [
+        Read(words, reading, {f: None if found is None or found["beyond"] else found for f, found in states.items()})
+        for words, row in numbers["read"].items()
+        for reading, states in row.items()
+    ]
+
+
+def _span(read: list[Read], reading: str) -> dict[str, Any]:
+    """Return least and largest µ_app by one reading at the paper's force, and how many closures have no number."""
+    found = [each.states[LOAD] for each in read if each.reading == reading]
+    values = [each["mu_app"] for each in found if each]
+    return {"low": min(values), "high": max(values), "none": len(found) - len(values), "of": len(found)}
 
 
 def _reaches(values: list[float | None]) -> float | None:
@@ -221,12 +254,8 @@ def draw(docs: Path) -> Path:
     """Draw the page and its picture from the kept numbers."""
     numbers = harness.kept("microscale", docs).numbers
     harness.picture(docs / "microscale.png", (10, 5), lambda figure: _paint(figure, numbers))
-    read = [
-        (words, reading, found, _agrees(found))
-        for words, row in numbers["read"].items()
-        for reading, found in row.items()
-    ]
-    solved = [found for words, _, found, _ in read if words != "bearing area" and found]
+    read = _read(numbers)
+    solved = [found for each in read if each.words != "bearing area" for found in each.states.values() if found]
     rows, inside = _compared(numbers)
     needed = [_reaches(curves["75"]) for words, curves in numbers["curves"].items() if words != "bearing area"]
     deformed = [row for row in numbers["adhesive"] if row["in_contact"] and row["voltage"] >= 70]
@@ -234,16 +263,17 @@ def draw(docs: Path) -> Path:
     gaps = [mean for mean, _ in numbers["direct"]["wide"][3]]
     names = {
         "read": read,
-        "both": [f"{words} ({reading})" for words, reading, _, agrees in read if all(agrees.values())],
-        "friction_only": [f"{w} ({r})" for w, r, _, agrees in read if agrees["friction"] and not agrees["gap"]],
+        "both": [f"{each.words} ({each.reading})" for each in read if each.friction and LOAD in each.gaps],
+        "friction_only": [f"{each.words} ({each.reading})" for each in read if each.friction and LOAD not in each.gaps],
+        "with_gaps": [each.words for each in read if each.words != "bearing area" and each.gaps],
         "exact": [found["d_eq"] * 1e6 for found in solved],
         "loads": [found["p_c"] * 1e-3 for found in solved],
-        "others": lambda reading: _ends(
-            [row[reading]["mu_app"] for words, row in numbers["read"].items() if words != "bearing area"]
-        ),
-        "mu": lambda words, reading: numbers["read"][words][reading]["mu_app"],
+        "span": lambda reading: _span(read, reading),
+        "others": lambda reading: _span([each for each in read if each.words != "bearing area"], reading),
+        "mu": lambda words, reading: numbers["read"][words][reading][LOAD]["mu_app"],
+        "pressed": numbers["read"]["bearing area"]["rms"][LOAD]["p_c"] * 1e-3,
         "gap": lambda found, k: _gap(found["d_eq"][k] * 1e6, found["spread"][k] * 1e6),
-        "line": _line, "reaches": _reaches, "compared": rows, "inside": sum(inside), "known_pairs": inside,
+        "reaches": _reaches, "compared": rows, "inside": sum(inside), "known_pairs": inside,
         "least_voltage": min(u for u in needed if u), "most_voltage": max(u for u in needed if u),
         "small": numbers["small"],
         "broken": [part for found in numbers["closures"].values() for part in found["broken"]],
@@ -251,10 +281,6 @@ def draw(docs: Path) -> Path:
         "gap_span": f"{max(gaps):.2f} to {min(gaps):.2f} µm; other code has 5.60 to 1.37 µm", "kPa": 1e-3,
     }  # fmt: skip
     return harness.page(docs, "microscale", "python3 -m benchmarks.microscale", globals() | names)
-
-
-def _ends(values: list[float]) -> tuple[float, float]:
-    return min(values), max(values)
 
 
 def _gap(value: float, spread: float) -> str:
