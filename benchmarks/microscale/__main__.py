@@ -11,14 +11,15 @@ import argparse
 import sys
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from matplotlib.figure import Figure
 
 from benchmarks import harness
-from benchmarks.microscale import contacts
-from fingerpad.model.cautions import BALANCED
+from benchmarks.measured.rules import EXPONENT
+from benchmarks.microscale import contacts, readings
+from benchmarks.microscale.readings import GAPS, LOAD, PAPER
 from fingerpad.reduced import cylinders
 from fingerpad.results import style
 from fingerpad.scene import Scene, load
@@ -41,9 +42,9 @@ CIRCUIT = {
 }
 """Drives of a sine of 1 kHz over screen, leaking gap and skin, the electric table below."""
 ELECTRIC = {"tissue": "dry", "leak": "sliding dry"}
-LOAD, PAPER, NEAR = "75", 0.55, 0.1  # N/m; µ_app there; what counts as equal to it
 SHEAR = 13e6  # Pa, in the computed real contact of dry wrist skin on glass (doi 10.3762/bjnano.5.147, abstract)
-GAPS = (1.5e-6, 2.5e-6)  # m, published equivalent air gaps
+RISES = {"sine": (75.0 / 2**0.5, 150.0 / 2**0.5), "constant": (75.0, 150.0)}
+"""Effective voltages (V) of amplitudes of 75 and 150 V, between which the real contact rises as U²."""
 _FINE = 100e-6 / 64
 HURST, HELD = (0.6, 0.675, 0.75, 0.825, 0.9), 20e3  # exponents of a table, and its pressure (Pa)
 Law = BearingArea | TabulatedClosure
@@ -124,6 +125,7 @@ def friction(law: Law, f_ext: float, voltage: float | Mapping[str, Any]) -> dict
     tabulated = isinstance(law, TabulatedClosure)
     return {
         "mu_app": slip.mu_app, "p_c": p_c, "d_eq": d_eq, "area": float(inside.area),
+        "real": slip.contact_length * float(inside.area),
         "beyond": float(tabulated and p_c > law.pressures[1]),
         "balanced": float(law.balanced(p_c, effective)) if tabulated else 0.0,
     }  # fmt: skip
@@ -132,6 +134,15 @@ def friction(law: Law, f_ext: float, voltage: float | Mapping[str, Any]) -> dict
 def _given() -> dict[str, float | Mapping[str, Any]]:
     """Return the effective voltage (V) or the drive of each reading of the paper's number."""
     return {**{name: NUMBER * part for name, part in READINGS.items()}, **CIRCUIT}
+
+
+def exponent(law: Law, f_ext: float, voltages: tuple[float, float]) -> float | None:
+    """Return the exponent of the rise of the real contact from 0 V on, between two voltages (V); None without it."""
+    found = [friction(law, f_ext, voltage) for voltage in (0.0, *voltages)]
+    if any(each is None or each["beyond"] for each in found):
+        return None
+    none, low, high = (each["real"] for each in found if each)
+    return float(np.log((high - none) / (low - none)) / np.log(voltages[1] / voltages[0]))
 
 
 def over_hurst() -> list[dict[str, Any]]:
@@ -156,13 +167,15 @@ def compute(args: argparse.Namespace) -> None:
     found = {
         "closures": {words: over_pressure(law) for words, law in closures.items()},
         "read": {
-            words: {
-                reading: {f"{f:g}": friction(law, f, given) for f in FORCES} for reading, given in _given().items()
-            }
+            words: {reading: {f"{f:g}": friction(law, f, given) for f in FORCES} for reading, given in _given().items()}
             for words, law in closures.items()
         },
         "curves": {
             words: {f"{f:g}": [_mu(friction(law, f, u)) for u in VOLTAGES] for f in FORCES}
+            for words, law in closures.items()
+        },
+        "rises": {
+            words: {of: {f"{f:g}": exponent(law, f, voltages) for f in FORCES} for of, voltages in RISES.items()}
             for words, law in closures.items()
         },
         "hurst": over_hurst(),
@@ -181,48 +194,10 @@ FULL_OF = {words: (words.rpartition(", ")[0], words.rpartition(", ")[2]) for wor
 """Closure and reading of each full run."""
 
 
-class Read(NamedTuple):
-    """Full slip of a closure by one reading of the voltage."""
-
-    words: str
-    reading: str
-    states: Mapping[str, Mapping[str, float] | None]
-    """By force; None without a number: no equilibrium, or ridges that adhere beyond the table of gaps."""
-
-    @property
-    def gaps(self) -> list[str]:
-        """Forces at which the air gap is within the published ones."""
-        return [f for f, found in self.states.items() if found and GAPS[0] <= found["d_eq"] <= GAPS[1]]
-
-    @property
-    def friction(self) -> bool:
-        """Whether µ_app is the paper's, at the paper's force."""
-        found = self.states[LOAD]
-        return found is not None and abs(found["mu_app"] / PAPER - 1) <= NEAR
-
-    def cells(self) -> str:
-        """Return µ_app at the forces, and pressure, air gap and area in contact at the paper's, as cells."""
-        bound = ("≤ " if found and found["balanced"] >= BALANCED else "" for found in self.states.values())
-        mu = (f"{found['mu_app']:.2f}" if found else "" for found in self.states.values())
-        at = self.states[LOAD]
-        rest = at and [f"{at['p_c'] * 1e-3:.0f}", f"{at['d_eq'] * 1e6:.2f}", f"{100 * at['area']:.0f}"]
-        return harness.cells(*(f"{a}{b}" or "adheres" for a, b in zip(bound, mu, strict=True)), *(rest or 3 * [None]))
-
-
-def _read(numbers: Mapping[str, Any]) -> list[Read]:
-    """Return the states by closures and readings."""
-    return [
-        Read(words, reading, {f: None if found is None or found["beyond"] else found for f, found in states.items()})
-        for words, row in numbers["read"].items()
-        for reading, states in row.items()
-    ]
-
-
-def _span(read: list[Read], reading: str) -> dict[str, Any]:
-    """Return least and largest µ_app by one reading at the paper's force, and how many closures have no number."""
-    found = [each.states[LOAD] for each in read if each.reading == reading]
-    values = [each["mu_app"] for each in found if each]
-    return {"low": min(values), "high": max(values), "none": len(found) - len(values), "of": len(found)}
+def _as_measured(rises: Mapping[str, float | None]) -> bool:
+    """Return whether the real contact rises as U² at the paper's force, as measured: to the margin of measured.md."""
+    found = rises[LOAD]
+    return found is not None and abs(found - 2) <= EXPONENT
 
 
 def _reaches(values: list[float | None]) -> float | None:
@@ -254,7 +229,7 @@ def draw(docs: Path) -> Path:
     """Draw the page and its picture from the kept numbers."""
     numbers = harness.kept("microscale", docs).numbers
     harness.picture(docs / "microscale.png", (10, 5), lambda figure: _paint(figure, numbers))
-    read = _read(numbers)
+    read = readings.read(numbers)
     solved = [found for each in read if each.words != "bearing area" for found in each.states.values() if found]
     rows, inside = _compared(numbers)
     needed = [_reaches(curves["75"]) for words, curves in numbers["curves"].items() if words != "bearing area"]
@@ -268,8 +243,11 @@ def draw(docs: Path) -> Path:
         "with_gaps": [each.words for each in read if each.words != "bearing area" and each.gaps],
         "exact": [found["d_eq"] * 1e6 for found in solved],
         "loads": [found["p_c"] * 1e-3 for found in solved],
-        "span": lambda reading: _span(read, reading),
-        "others": lambda reading: _span([each for each in read if each.words != "bearing area"], reading),
+        "rising": [words for words, of in numbers["rises"].items() if _as_measured(of["sine"])],
+        "touching": [v for words, of in numbers["rises"].items() if _touches(words) for v in of["sine"].values() if v],
+        "apart": [v for words, of in numbers["rises"].items() if not _touches(words) for v in of["sine"].values() if v],
+        "span": lambda reading: readings.span(read, reading),
+        "others": lambda reading: readings.span([each for each in read if each.words != "bearing area"], reading),
         "mu": lambda words, reading: numbers["read"][words][reading][LOAD]["mu_app"],
         "pressed": numbers["read"]["bearing area"]["rms"][LOAD]["p_c"] * 1e-3,
         "gap": lambda found, k: _gap(found["d_eq"][k] * 1e6, found["spread"][k] * 1e6),
@@ -281,6 +259,11 @@ def draw(docs: Path) -> Path:
         "gap_span": f"{max(gaps):.2f} to {min(gaps):.2f} µm; other code has 5.60 to 1.37 µm", "kPa": 1e-3,
     }  # fmt: skip
     return harness.page(docs, "microscale", "python3 -m benchmarks.microscale", globals() | names)
+
+
+def _touches(words: str) -> bool:
+    """Return whether a closure solves the contact and has the field act where surfaces touch."""
+    return words != "bearing area" and "no field" not in words
 
 
 def _gap(value: float, spread: float) -> str:
