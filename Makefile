@@ -3,6 +3,7 @@
 # make check  tests of every module that run no whole finger
 # make lint   style, layout and types: ruff and mypy, half a minute
 # make test-pip  the same digits with dolfinx from PyPI, in a Python from 3.12 on: make test-pip PYTHON=python3.13
+# make test-contact  rough contact beside the programs ContactMechanics and Adhesion of PyPI, in a venv; a minute
 # make test-order  all tests with other rounding: cells numbered the other way round, other kernels of OpenBLAS
 # make fuzz   10 000 scenes and command lines and as many files, each read or refused in one sentence; an hour
 # make pages  every generated page and picture of docs/ from the numbers kept there; seconds, no run
@@ -23,11 +24,11 @@
 # make chart  error over work, one numerical setting after the other; docs/errors.md and chart.md, half an hour or more
 #
 # With SUITE=sid in Debian unstable, that is with a newer dolfinx: make test SUITE=sid
-# All but test-pip need nothing but Debian 12, root, apt and PyPI: environment/run finds or makes what they run in.
+# All but test-pip and test-contact need nothing but Debian 12, root, apt and PyPI: environment/run finds or makes what they run in.
 
 run := environment/run
 
-.PHONY: help demo lint test check test-pip test-order fuzz docs notebook pages stale verify paper measured drive fingers viscosity loads feel calibration chart performance
+.PHONY: help demo lint test check test-pip test-contact test-order fuzz docs notebook pages stale verify paper measured drive fingers viscosity loads feel calibration chart performance
 
 help:
 	@sed -n 's/^# make/make/p' Makefile
@@ -50,6 +51,14 @@ check:
 
 test-pip:
 	SUITE=pip PYTHON="$(PYTHON)" $(run) python3 -m pytest -q --color=no tests/test_digits.py
+
+# Debian's NumPy is too old for them, and these tests need no dolfinx.
+test-contact:
+	$(or $(PYTHON),python3) -m venv build/contact
+	build/contact/bin/python -m pip install --quiet contactmechanics==1.8.3 adhesion==0.93 pytest
+	build/contact/bin/python -c "import Adhesion.System"  # else its tests are skipped
+	PYTHONPATH=. build/contact/bin/python -m pytest -q --color=no --noconftest -c /dev/null --rootdir . -W ignore \
+		-k same_as tests/test_halfspace.py tests/test_adhesive_contact.py
 
 test-order:
 	environment/wheels

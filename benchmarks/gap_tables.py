@@ -15,13 +15,14 @@ from itertools import product
 
 import numpy as np
 
+from variational.roughness import tables
 from variational.roughness.contacts import gap_table
 from variational.roughness.gaps import GapTable
 from variational.roughness.spectrum import SelfAffine
 from variational.roughness.tables import HURSTS, RATIOS, save, shipped_file
 from variational.roughness.topography import HeightMap
 
-PIXELS, LEAST, WIDE = 4, 256, 512  # pixels to the shortest wave; in a side, least and most
+PIXELS, LEAST = 4, 256  # pixels to the shortest wave; in a side, least
 
 
 def surfaces(
@@ -36,8 +37,8 @@ def surfaces(
         pixels: to a shortest wave, at least.
         hurst: Hurst exponent.
     """
-    narrow = 4 * ratio * pixels > WIDE
-    waves, count = waves or (2 if narrow else 4), count or (12 if narrow and hurst == 0.75 else 6)
+    waves = waves or tables.waves(ratio)
+    count = count or (12 if ratio == RATIOS[-1] and hurst == 0.75 else 6)
     longest, n = 2 * np.pi, max(round(waves * ratio * pixels), LEAST)
     spectrum = SelfAffine(1.0, hurst, longest, plateau=False, shortest=longest / ratio)
     return [spectrum.surface((n, n), (waves * longest, waves * longest), seed) for seed in range(count)]

@@ -55,12 +55,12 @@ def test_no_rest(rough, monkeypatch):
 
 @pytest.mark.parametrize("voltage", [20.0, 30.0, 50.0, 100.0])
 def test_same_as_adhesion(voltage):
-    """Pressure, attraction, contact and gap of another program on the same map (MIT licence), where it is installed.
+    """Pressure, attraction, contact and gap of another program on the same map (MIT licence): ``make test-contact``.
 
     It minimises the energy at a held approach, here in kPa and um; its Coulomb potential repels, and is negated. The
     tolerance is ten times that of the iteration here.
     """
-    adhesion = pytest.importorskip("Adhesion.System")
+    adhesion = pytest.importorskip("Adhesion.System", reason="make test-contact")
     interactions = pytest.importorskip("Adhesion.Interactions")
     mechanics, topography = pytest.importorskip("ContactMechanics"), pytest.importorskip("SurfaceTopography")
 

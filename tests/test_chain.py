@@ -58,6 +58,15 @@ def test_chains_share_a_mesh_and_a_law():
     assert list(chains(every, 2)) == [["0", "1", "2", "3", "4"], ["5"], ["6"]]
 
 
+def test_closures_are_no_neighbours():
+    """Numbers of one closure are; another closure, or another field in contact, is far away."""
+    law = {"law": "BoundaryElements"}
+    one = [law, law | {"shortest_wave": 3e-6}, law | {"hurst": 0.8}]
+    other = [{}, {"law": "Persson"}, law | {"field_in_contact": False}]
+    every = {str(k): from_data(SCENE | {"roughness": each}) for k, each in enumerate([*one, *other])}
+    assert list(chains(every, 1)) == [["0", "1", "2"], ["3"], ["4"], ["5"]]
+
+
 def test_long_chains_are_shared_among_the_jobs():
     every = scenes(voltage=[float(v) for v in range(20)])
     assert [len(names) for names in chains(every, 2)] == [10, 10]
@@ -239,6 +248,14 @@ def test_point_not_found_on_the_scenes_mesh_is_a_run(monkeypatch):
         ({"accuracy": {"mu_app": 0.01}}, "accuracy is given"),
         ({"force": 0.1}, "force is 0.1"),
         ({"history": [{"name": "press", "f_ext": 1.0}]}, "history is given"),
+        (
+            {"materials": {"dermis": {"viscosity": {"preset": "fingerpad"}}}},
+            "materials.dermis.viscosity is given, and a state needs the past of its layers; with states='full_slip' it",
+        ),
+        (
+            {"friction": {"law": "Occlusion", "mu_dry": 0.2, "mu_wet": 0.8, "time": 0.5}},
+            "friction has the law 'Occlusion', on whose memory full slip depends; with states='full_slip' it must have",
+        ),
     ],
 )
 def test_other_scenes_are_refused(changes, message, tmp_path):

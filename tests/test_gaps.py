@@ -4,11 +4,13 @@ import numpy as np
 import pytest
 
 from variational.roughness import contacts, gaps, tables
+from variational.roughness.boundary_elements import BoundaryElements
 from variational.roughness.contacts import gap_table, measured_table
 from variational.roughness.gaps import GapTable, bins
 from variational.roughness.halfspace import press
 from variational.roughness.spectrum import SelfAffine
 from variational.roughness.tables import HURSTS, ratios
+from variational.roughness.tabulated import Curve
 from variational.roughness.topography import HeightMap
 
 RATIO, WIDTH = 8.0, 8 * np.pi
@@ -84,11 +86,11 @@ def test_table_of_the_package_is_made_again():
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("hurst", "ratio"), [(0.65, 16.0), (0.85, 8.0)])
+@pytest.mark.parametrize(("hurst", "ratio"), [(0.65, 16.0), (0.85, 8.0), (0.75, 11.0), (0.7, 12.0)])
 def test_between_tables_is_the_contact_itself(hurst, ratio):
-    """A surface of an exponent between two tables, beside the same random numbers in both.
+    """A surface of an exponent or a ratio between the tables', beside the same random numbers in all of them.
 
-    Linear interpolation of Persson's theory is off by half of these tolerances at pressures up to a tenth of the unit.
+    Persson's theory between exponents is off by less than half of it; a shorter wave has fewer pixels, besides.
     """
     from benchmarks.gap_tables import surfaces
 
@@ -97,12 +99,27 @@ def test_between_tables_is_the_contact_itself(hurst, ratio):
     for pressure in between[0][1].pressure[[8, 14]]:
         ((_, found),) = contacts.over_pressure(first, 2 * np.pi, [pressure])
         alone = GapTable(np.array([pressure]), *(np.array(each)[None, None] for each in found))
-        for name, arguments, tolerance in (("mean_gap", (), 0.01), ("inverse_square", (h_0, True), 0.02)):
+        for name, arguments, tolerance in (("mean_gap", (), 0.01), ("inverse_square", (h_0, True), 0.03)):
             expected = 0.0
             for part, table in between:
                 (k,) = np.flatnonzero(np.isclose(table.pressure, pressure))
                 expected += part * getattr(table, name)(*arguments)[0, k]
             assert getattr(alone, name)(*arguments)[0, 0] == pytest.approx(expected, rel=tolerance)
+
+
+@pytest.mark.slow
+def test_between_pressures_is_the_contact_itself():
+    """Half way between nodes the curve has the air gap of that contact: to 0.3 %, without field in contact to 1.5 %."""
+    from benchmarks.gap_tables import surfaces
+
+    kept, (first,), h_0 = tables.of_spectrum(0.75, 16.0)[0][1], surfaces(16.0, 1), 0.166
+    half = np.sqrt(kept.pressure[1:] * kept.pressure[:-1])[[4, 10, 16, 22]]
+    for pressure, found in contacts.over_pressure(first, 2 * np.pi, list(half)):
+        alone = GapTable(np.array([pressure]), *(np.array(each)[None, None] for each in found))
+        for touching, tolerance in ((True, 3e-3), (False, 1.5e-2)):
+            nodes = kept.inverse_square(h_0, touching)[0] ** -0.5 - h_0
+            between = np.exp(Curve(np.log(kept.pressure), np.log(nodes))(np.log(pressure))[0])
+            assert between == pytest.approx(alone.inverse_square(h_0, touching)[0, 0] ** -0.5 - h_0, rel=tolerance)
 
 
 def test_between_ratios_and_exponents():
@@ -145,8 +162,35 @@ def test_measured_map_is_computed_once(cache, surface):
     assert h_rms == measured.h_rms
 
 
+@pytest.mark.slow
+@pytest.mark.parametrize(("waves", "low", "high"), [(1, 0.03, 0.13), (2, 0.0, 0.05)])
+def test_size_of_what_mirror_images_change(waves, low, high):
+    """Maps cut out of a larger surface have a smaller air gap than it, by what the docstring has, or some of that.
+
+    All cuts of one surface: chance differs by 2 % at most from one surface to the next.
+    """
+    spectrum = SelfAffine(1.0, 0.75, 2 * np.pi, plateau=False, shortest=2 * np.pi / RATIO)
+    whole, n, h_0 = spectrum.surface((256, 256), (2 * WIDTH, 2 * WIDTH), 0), 32 * waves, 0.166
+    cuts = [whole.cut((i, j), (n, n)).detrended("curvature") for i in range(0, 256, n) for j in range(0, 256, n)]
+
+    def air_gap(maps: list[HeightMap], pressure: float) -> float:
+        square = [((h_0 + press(each, pressure, 1.0).gap) ** -2).mean() for each in maps]
+        return float(np.mean(square) ** -0.5) - h_0
+
+    for pressure in (0.07, 0.3):
+        part = air_gap([contacts.mirrored(cut) for cut in cuts], pressure) / air_gap([whole], pressure)
+        assert low < 1 - part < high
+
+
+def test_pixels_of_a_measured_map_count_once():
+    """At the lowest pressure of the table 20 of the map's own pixels touch, or 80 of its mirror images."""
+    measured = SelfAffine(1.0, 0.8, 40.0, shortest=12.0).surface((48, 48), (100.0, 100.0), 1).detrended("curvature")
+    found = measured_table(measured)[0]
+    assert found.area[0, 0] * measured.heights.size >= contacts.FEWEST_PIXELS
+
+
 def test_map_that_is_not_there(cache):
-    with pytest.raises(ValueError, match="surface is 'abc', and .* has no table of that name .*; give the height map"):
+    with pytest.raises(ValueError, match="surface is 'abc', and .* has no table of that name .*; compute it again by"):
         tables.of_map("abc")
 
 
@@ -157,6 +201,38 @@ def test_file_that_is_no_table(cache):
 
 
 X = np.linspace(-1, 1, 32)
+WAVES = HeightMap(np.cos(7 * X)[:, None] * np.cos(5 * X) * 1e-6, (1e-4, 1e-4))
+
+
+@pytest.mark.parametrize("content", [b"", b"nothing", b"PK\x03\x04 a zip file that was cut", None], ids=str)
+def test_damaged_table_is_computed_again(cache, content):
+    """Where a computer stopped while it was written, or a disk was full: by its name it is refused, by its map made."""
+    name = tables.keep(WAVES)[0]
+    file = cache / f"gaps_{name}.npz"
+    file.write_bytes(file.read_bytes()[:2000] if content is None else content)
+    with pytest.raises(ValueError, match=rf"surface is '{name}', and .*{file.name} holds no table of gaps"):
+        tables.of_map(name)
+    done: list[int] = []
+    assert tables.keep(WAVES, lambda *each: done.append(each[0]))[0] == name and done
+    assert len(tables.of_map(name)) == 1 and sorted(cache.iterdir()) == [file]
+
+
+def test_cache_that_takes_no_files_is_refused_before_contacts_are_solved(tmp_path, monkeypatch):
+    """A file in the place of the folder, as a folder without the right to write in it."""
+    file = tmp_path / "file"
+    file.write_text("")
+    monkeypatch.setenv("FINGERPAD_CACHE", str(file))
+    done: list[int] = []
+    with pytest.raises(ValueError, match="table .* cannot be kept in .*file .File exists.; name another folder"):
+        tables.keep(WAVES, lambda *each: done.append(each[0]))
+    assert not done
+
+
+def test_flat_map_with_a_mean_is_flat(cache):
+    """What is left of it is roundoff, of which no table is made."""
+    with pytest.raises(ValueError, match="all heights of the map are the same"):
+        BoundaryElements.of_map(HeightMap(2e-6 + np.zeros((64, 48)), (1e-4, 0.75e-4)))
+    assert not list(cache.iterdir())
 
 
 @pytest.mark.parametrize(
@@ -165,6 +241,7 @@ X = np.linspace(-1, 1, 32)
         (np.ones((32, 32)), (1.0, 1.0), "all heights of the map are the same"),
         (X[:, None] + np.zeros(32), (1.0, 1.0), "a tilt makes 1e.02 % .* at most 5 % is allowed; remove it first"),
         (np.cos(7 * X)[:, None] * np.cos(5 * X), (1.0, 1.1), "pixels of the map are .* needs square ones, so resample"),
+        (np.random.default_rng(0).normal(size=(32, 32)), (1.0, 1.0), "waves shorter than 4 pixels .* filter the map"),
     ],
 )
 def test_bad_maps(cache, heights, size, words):

@@ -2,9 +2,10 @@
 
 What is compared is the quantity that was measured. The apparent area is the gross area of the whole finger, a sum of
 slices (:mod:`benchmarks.measured.fingers`). The real area is the contact length of the ridges, of the paper's page
-(docs/paper.json: default mesh); over the voltage it is the area of asperities of whole fingers. Attraction is of docs/models.json, at a
-contact size of 10 µm. The stated error is the difference of the two meshes. Whole fingers of the finer mesh have its
-contact lengths and counts of ridges, over the indentations of the coarser one. Of trends the other mesh has a count.
+(docs/paper.json: default mesh); over the voltage it is the area of asperities of whole fingers. Attraction is of
+docs/models.json, at a contact size of 10 µm. The stated error is the difference of the two meshes. Whole fingers of the
+finer mesh have its contact lengths and counts of ridges, over the indentations of the coarser one. Of trends the other
+mesh has a count.
 """
 
 from collections.abc import Callable, Mapping

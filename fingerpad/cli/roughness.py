@@ -92,7 +92,8 @@ def _scatter(closure: BearingArea | TabulatedClosure, pressures: Sequence[float]
         return
     shares = 100 * closure.spread(pressures) / closure(pressures).d_eq
     if shares.any():
-        yield f"From one surface to the next the air gap scatters by {shares.min():.2g} to {shares.max():.2g} % (rms)."
+        scatter = f"{shares.min():.2g} to {shares.max():.2g} % (rms)"
+        yield f"From one surface of four by four largest waves to the next the air gap scatters by {scatter}."
 
 
 def _sticking(closure: BearingArea | TabulatedClosure) -> str:

@@ -6,23 +6,27 @@ import json
 import threading
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
+from typing import Any
 
 from fingerpad.results.files import lock_file, replace_json
 from fingerpad.runs import batch
 from fingerpad.runs.processes import End, Pool, run
 from fingerpad.runs.solve import Summary
-from fingerpad.scene import Scene, SceneError
+from fingerpad.scene import Scene, SceneError, law_name
+from fingerpad.scene.law_keys import parameters
 from fingerpad.scene.messages import show
+from fingerpad.scene.viscosity import viscous_layers
 
 _FREE = ("f_ext", "voltage", "friction", "roughness", "electric", "slide_length")
-"""Keys in which neighbours may differ: they change neither the mesh nor the layers."""
+"""Keys in which neighbours may differ by numbers: they change neither the mesh nor the layers."""
 _SHORTEST = 8  # points of a chain, of which the first takes the time of some fifteen others
 _LIMIT = 4 * 3600.0  # s of processor time for a chain
+_LEFT_OUT = "with states='full_slip' it must be left out, or give states='all'"
 _LOOK = 1.0  # s between two looks for points that are finished
 
 
 def refuse_others(scene: Scene) -> None:
-    """Refuse a scene of which full slip is not that of press, charge and slide under a force per length.
+    """Refuse a scene of which full slip is not that of press, charge and slide under a force per length, or has a past.
 
     Raises:
         SceneError: in one sentence.
@@ -30,7 +34,15 @@ def refuse_others(scene: Scene) -> None:
     for key in ("history", "force", "accuracy"):
         if (value := getattr(scene, key)) is not None:
             given = show(value) if key == "force" else "given"
-            raise SceneError(f"{key} is {given}; with states='full_slip' it must be left out, or give states='all'")
+            raise SceneError(f"{key} is {given}; {_LEFT_OUT}")
+    for layer in viscous_layers(scene.materials):
+        raise SceneError(f"{layer}.viscosity is given, and a state needs the past of its layers; {_LEFT_OUT}")
+    law = scene.friction_law()
+    if law is not None and law.memory is not None:
+        raise SceneError(
+            f"friction has the law {show(law_name(law))}, on whose memory full slip depends; with states='full_slip' "
+            "it must have none, or give states='all'"
+        )
 
 
 def sweep(scenes: Mapping[str, Scene], folder: Path, jobs: int, quiet: bool) -> dict[str, Summary]:
@@ -56,16 +68,25 @@ def sweep(scenes: Mapping[str, Scene], folder: Path, jobs: int, quiet: bool) -> 
 
 
 def chains(scenes: Mapping[str, Scene], jobs: int) -> Iterator[list[str]]:
-    """Yield the names of the scenes of each chain: those that share a mesh, in as many parts as there are jobs."""
+    """Yield the names of the scenes of each chain: those of one mesh and laws, in as many parts as there are jobs.
+
+    Scenes of two closures, or with and without a field in contact, are no neighbours: their states are far apart,
+    and from there full slip may be another one than by a path.
+    """
     groups = dict[str, list[str]]()
     for name, scene in scenes.items():
         fixed = {key: value for key, value in scene.parameters().items() if key not in _FREE}
-        law = type(scene.friction_law()).__name__
-        groups.setdefault(json.dumps([fixed, law], sort_keys=True), []).append(name)
+        laws = [_kind(law) for law in (scene.friction_law(), scene.closure())]
+        groups.setdefault(json.dumps([fixed, laws], sort_keys=True), []).append(name)
     for names in groups.values():
         parts = max(1, min(jobs, len(names) // _SHORTEST))
         ends = [len(names) * k // parts for k in range(parts + 1)]
         yield from (names[a:b] for a, b in itertools.pairwise(ends))
+
+
+def _kind(law: Any) -> tuple[str, dict[str, Any]]:
+    """Return a law's name and its parameters that are no numbers."""
+    return type(law).__name__, {name: value for name, value in parameters(law).items() if isinstance(value, bool | str)}
 
 
 def _followed(

@@ -6,6 +6,7 @@ the scene reference, ``docs/scene.md``.
 
 import re
 import sys
+import time
 from collections.abc import Mapping
 from numbers import Real
 from typing import Annotated, Any, Literal
@@ -14,7 +15,7 @@ import numpy as np
 from pydantic import BaseModel, ConfigDict, ValidationError, ValidationInfo
 
 from fingerpad.scene.electric import Electric
-from fingerpad.scene.law_keys import Kept, Kind, LawKey, fail, inside, keys_of, whole
+from fingerpad.scene.law_keys import Kept, Kind, LawKey, fail, inside, keys_of, range_of, reading_results, whole
 from fingerpad.scene.messages import show
 from fingerpad.scene.viscosity import Viscosity
 from geometry import tags
@@ -47,6 +48,7 @@ LAYERS = {name.replace(" ", "_"): tag for name, tag in tags.LAYERS.items()}
 """Tag of each layer by its key in the scene."""
 
 _MAX_DIFFERENCE = 1e-6  # relative difference of thicknesses that are the same
+_SILENT = 30.0  # s between two lines of progress in a file
 LARGEST_GAP = 1.0  # m, with which the attraction is as good as none
 
 
@@ -155,17 +157,37 @@ class Topography(Table):
         from variational.roughness.heightfile import scan
 
         try:
-            return law.of_map(scan(**dict(self)).map, _solved if sys.stderr.isatty() else None)
+            found = law.of_map(scan(**dict(self)).map, _Solved())
         except OSError as error:
             raise ValueError(f"topography.file is {show(self.file)}: {error.strerror or error}") from None
         except (ValueError, ImportError) as error:
             text = re.sub(r"'(unit|size|pixel|missing)'", r"topography.\1", str(error))
             raise ValueError(f"topography: {text}") from None
+        for name in law.measured:
+            limits = range_of(keys_of(law)[name]) if name in found else None
+            if limits is not None and found[name] not in limits:
+                raise ValueError(
+                    f"topography has {name} = {found[name]:.4g} {limits.unit}; it must be from {limits.low:g} to "
+                    f"{limits.high:g} {limits.unit}: is the unit of the heights or the size right?"
+                )
+        return found
 
 
-def _solved(done: int, of: int) -> None:
-    """Print how many contacts of a height map are solved, in one line of a terminal."""
-    sys.stderr.write(f"\rcontacts of the height map: {done} of {of}" + "\n" * (done == of))
+class _Solved:
+    """Prints how many contacts of a height map are solved: in one line of a terminal, elsewhere twice a minute."""
+
+    def __init__(self) -> None:
+        self._live, self._last = sys.stderr.isatty(), time.monotonic()
+
+    def __call__(self, done: int, of: int) -> None:
+        """Print the number of contacts that are solved and of all."""
+        text = f"contacts of the height map: {done} of {of}"
+        if self._live:
+            sys.stderr.write(f"\r{text}" + "\n" * (done == of))
+        elif time.monotonic() - self._last > _SILENT:
+            self._last = time.monotonic()
+            sys.stderr.write(f"{text}\n")
+        sys.stderr.flush()
 
 
 class RoughnessKey(LawKey):
@@ -179,7 +201,7 @@ class RoughnessKey(LawKey):
         """Return a table of parameters with those of its height map."""
         topography = table.pop("topography", None) if self.tables(law) else None
         if topography is not None:
-            for name in ("h_rms", "wavelength"):
+            for name in law.measured:  # type: ignore[attr-defined]
                 if name in table:
                     raise fail(
                         f"is {show(table[name])} and roughness.topography is given too, which has it; give one", name
@@ -195,8 +217,8 @@ class RoughnessKey(LawKey):
     def check(self, law: Any) -> None:
         """Refuse a floor of the pressure that is no floor, or holds the gap of an unloaded ridge at over a metre."""
         super().check(law)
-        if not isinstance(law, BearingArea | TabulatedClosure):
-            return
+        if reading_results() or not isinstance(law, BearingArea | TabulatedClosure):
+            return  # results are read where a measured map's table is not
         most, where = (
             (law.full_pressure, "at zero separation")
             if isinstance(law, BearingArea)

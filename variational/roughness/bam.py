@@ -17,7 +17,7 @@ import numpy as np
 import scipy  # its parts are imported where they are used first: to read a scene needs none
 from numpy.typing import ArrayLike, NDArray
 
-from variational.coefficients import OF_SCENE, parameter
+from variational.coefficients import OF_SCENE, parameter, refuse_not_positive
 from variational.roughness.closure import AirGap, Closure, Progress
 from variational.roughness.statistics import Slopes, Statistics, breaking_gaps
 
@@ -53,6 +53,14 @@ class BearingArea(Closure):
     p_floor: float = parameter(1e-3, 1e9, "Pa", default=1e3)
     """Mean contact pressure (Pa) below which the air gap is held constant (*assumption*): a ridge that is let go does
     not follow d_eq to infinity. It must be below the pressure at zero separation."""
+
+    def __post_init__(self) -> None:
+        """Refuse numbers that are no lengths and pressures.
+
+        Raises:
+            ValueError: one that is not finite and greater than 0; in one sentence.
+        """
+        refuse_not_positive(self)
 
     @property
     def full_pressure(self) -> float:
@@ -122,7 +130,7 @@ class BearingArea(Closure):
             ValueError: a pressure outside of p_floor to full_pressure; in one sentence.
         """
         p_c = np.asarray(p_c, dtype=float)
-        if (out := (p_c < self.p_floor * (1 - 1e-9)) | (p_c > self.full_pressure * (1 + 1e-9))).any():
+        if (out := ~((p_c >= self.p_floor * (1 - 1e-9)) & (p_c <= self.full_pressure * (1 + 1e-9)))).any():
             raise ValueError(
                 f"the contact pressure is {p_c[out].flat[0]:g} Pa; {type(self).__name__} has {self.p_floor:.4g} to "
                 f"{self.full_pressure:.4g} Pa"

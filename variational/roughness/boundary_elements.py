@@ -8,7 +8,7 @@ map has its own.
 """
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from variational.roughness import tables
 from variational.roughness.closure import Progress
@@ -26,6 +26,7 @@ class BoundaryElements(TabulatedClosure):
     surface: str = ""
     """Name of a measured map's table, which ``topography`` computes; empty for the package's Gaussian surfaces. With
     it ``shortest_wave`` and ``hurst`` are those of the map, and the keys are not read."""
+    measured: ClassVar[tuple[str, ...]] = (*TabulatedClosure.measured, "surface", "shortest_wave", "hurst")
 
     def tables(self) -> list[tuple[float, GapTable]]:
         """Return the tables of the spectrum, or that of the measured map.

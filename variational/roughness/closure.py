@@ -12,7 +12,7 @@ Your own closure is one class, here a gap that no pressure changes::
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable
-from typing import NamedTuple
+from typing import ClassVar, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -34,6 +34,9 @@ class AirGap(NamedTuple):
 
 class Closure(ABC):
     """A microscale model: mean contact pressure in, equivalent air gap out."""
+
+    measured: ClassVar[tuple[str, ...]] = ("h_rms", "wavelength")
+    """Parameters that a measured height map has, which are not given beside it; of closures with an ``of_map``."""
 
     @abstractmethod
     def __call__(self, p_c: ArrayLike) -> AirGap:

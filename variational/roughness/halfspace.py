@@ -109,7 +109,9 @@ def press(
         before = square
         change = displacement(direction, modes)
         change -= change[contact].mean()
-        step = float(np.vdot(inside, direction)) / float(np.vdot(change, direction))
+        curvature = float(np.vdot(change, direction))
+        # One pixel alone in contact has no direction: others come in by the steepest descent's safe step.
+        step = float(np.vdot(inside, direction)) / curvature if curvature > 0 else 1 / float(modes.max())
         p = np.maximum(p - step * direction, 0.0)
         overlap = (p == 0) & (gap < 0)
         conjugate = not overlap.any()

@@ -51,8 +51,11 @@ class Persson(TabulatedClosure):
         """Return the table of the spectrum.
 
         Raises:
-            ValueError: the shortest wave is no shorter than the largest; in one sentence.
+            ValueError: an exponent of 1 or more, or a shortest wave that is no shorter than the largest; in one
+                sentence.
         """
+        if not self.hurst < 1:
+            raise ValueError(f"hurst is {self.hurst:g}; a self-affine surface has an exponent below 1")
         ratio = self.wavelength / self.shortest_wave
         if not ratio > 1.5:
             raise ValueError(

@@ -38,7 +38,6 @@ Window = Literal["none", "hann"]
 HURST = (0.01, 2.0)
 """Range in which the Hurst exponent is searched; above 1 a surface is not self-affine, which the fitted value shows."""
 _END = 1e-3  # distance of an exponent from an end of that range at which it is the end's
-_FLAT = 1e-12  # rms height over the largest height, at which what is left of a map is roundoff
 _SIGNIFICANT = 2.0  # gain in log-likelihood, two standard deviations, that tells a roll-off from none
 
 
@@ -317,7 +316,7 @@ def roughness_table(*spots: HeightMap) -> dict[str, float]:
     flat = [spot.detrended("curvature") for spot in spots]
     spectrum = power_spectrum(*flat, window="hann")
     h_rms = float(np.sqrt(np.mean([m.h_rms**2 for m in flat])))
-    if h_rms <= _FLAT * max(float(np.abs(spot.heights).max()) for spot in spots):
+    if h_rms == 0:
         raise ValueError("without its curvature the map is flat; there is no roughness to describe")
     fit = spectrum.fit()
     return {"h_rms": h_rms, "wavelength": fit.wavelength if fit.resolved else min(spectrum.size)}

@@ -3,14 +3,20 @@
 The files in ``data/`` are made by ``python3 -m benchmarks.gap_tables``: self-affine Gaussian surfaces without roll-off.
 Between two Hurst exponents, and between the logarithms of two ratios of the longest to the shortest wave, means are
 interpolated linearly. Of Persson's theory this changes the air gap by less than 1 % at contacts of up to a third of the
-area, half way between two exponents, and by up to 4 % near full contact. A measured map's table is kept in a folder of
-the user's, under a hash of heights, size and method; ``FINGERPAD_CACHE`` names another folder.
+area, half way between two exponents, and by up to 4 % near full contact. Contacts themselves of exponents and ratios
+between the tables have a mean attraction within 3 % of it (``tests/test_gaps.py``). A measured map's table is kept in a
+folder of the user's, under a hash of heights, size and method; ``FINGERPAD_CACHE`` names another folder.
 """
 
 import hashlib
 import io
 import os
-from collections.abc import Sequence
+import tempfile
+import zipfile
+import zlib
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import replace
 from functools import lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -28,8 +34,9 @@ HURSTS = (0.6, 0.75, 0.9)
 """Hurst exponents of the tables that come with the package; 0.75 is the paper's."""
 RATIOS = (8.0, 16.0, 32.0, 64.0)
 """Ratios of the longest to the shortest wave of these tables."""
+_WIDE, _NARROW, _MOST = 4, 2, 32.0  # longest waves in the side of a surface, and the ratio up to which it is wide
 _FIELDS = ("pressure", "area", "weight", "mean", "deviation")
-_METHOD = "1"  # of a measured map's table; another one makes other files
+_METHOD = "2"  # of a measured map's table; another one makes other files
 _SHOWN = 16  # digits of a hash
 _ROUNDOFF = 1e-6
 
@@ -58,16 +65,22 @@ def read(path: Path) -> GapTable:
         OSError: the file cannot be opened.
         ValueError: it holds no table.
     """
+    content = io.BytesIO(files.read(path))
     try:
-        with np.load(io.BytesIO(files.read(path)), allow_pickle=False) as found:
+        with np.load(content, allow_pickle=False) as found:
             return GapTable(*(found[name].astype(float) for name in _FIELDS))
-    except (KeyError, EOFError) as error:
-        raise ValueError(f"{path} holds no table of gaps: {error}") from None
+    except (KeyError, EOFError, ValueError, zipfile.BadZipFile, zlib.error):
+        raise ValueError(f"{path.name} holds no table of gaps") from None
 
 
 @lru_cache(maxsize=len(HURSTS) * len(RATIOS))
 def _shipped(hurst: float, ratio: float) -> GapTable:
-    return read(shipped_file(hurst, ratio))
+    return replace(read(shipped_file(hurst, ratio)), waves=waves(ratio))
+
+
+def waves(ratio: float) -> int:
+    """Return the longest waves in the side of each surface of a table of the package, by the ratio of its waves."""
+    return _WIDE if ratio <= _MOST else _NARROW
 
 
 def ratios(hurst: float) -> list[float]:
@@ -129,16 +142,39 @@ def keep(measured: "HeightMap", progress: Progress | None = None) -> tuple[str, 
         progress: is told of each contact of a table that is computed.
 
     Raises:
-        ValueError: as :func:`variational.roughness.contacts.measured_table`.
+        ValueError: as :func:`variational.roughness.contacts.measured_table`, or a folder that takes no files.
     """
     from variational.roughness.contacts import measured_table, refuse_map
 
     refuse_map(measured)
     content = np.ascontiguousarray(measured.heights).tobytes() + repr((measured.size, _METHOD)).encode()
     name = hashlib.sha256(content).hexdigest()[:_SHOWN]
-    if not _file(name).exists():
-        save(_file(name), measured_table(measured, progress)[0])
+    try:
+        of_map(name)
+    except ValueError:  # none yet, or a damaged one
+        with _kept_in():
+            tempfile.TemporaryFile(dir=cache()).close()  # before minutes of contacts
+        table = measured_table(measured, progress)[0]
+        with _kept_in():
+            save(_file(name), table)
     return name, measured.h_rms, min(measured.size)
+
+
+@contextmanager
+def _kept_in() -> Iterator[None]:
+    """Name the folder of tables where it takes no files.
+
+    Raises:
+        ValueError: it does not; in one sentence.
+    """
+    try:
+        cache().mkdir(parents=True, exist_ok=True)
+        yield
+    except OSError as error:
+        raise ValueError(
+            f"the table of the height map cannot be kept in {cache()} ({error.strerror or error}); name another folder "
+            "by FINGERPAD_CACHE"
+        ) from None
 
 
 def of_map(name: str) -> list[tuple[float, GapTable]]:
@@ -152,8 +188,8 @@ def of_map(name: str) -> list[tuple[float, GapTable]]:
     except (OSError, ValueError) as error:
         reason = error.strerror if isinstance(error, OSError) else error
         raise ValueError(
-            f"surface is {name!r}, and {cache()} has no table of that name ({reason}); give the height map again, as "
-            "topography"
+            f"surface is {name!r}, and {cache()} has no table of that name ({reason}); compute it again by fingerpad "
+            "microscale from a scene with roughness.topography, or name another folder by FINGERPAD_CACHE"
         ) from None
 
 

@@ -2,8 +2,10 @@ r"""A closure by the gaps of one kind of surface: values at the pressures of a t
 
 The logarithms of air gap, mean separation and contact area are piecewise cubic in the logarithm of the pressure, with
 the slopes of Fritsch and Butland (1984, doi:10.1137/0905021), which make no oscillation between the table's pressures:
-each is monotone where the table is. Of several realisations the attractions are averaged, as over the many patches of a
-ridge; :meth:`TabulatedClosure.spread` has the scatter from one to the next.
+each is monotone where the table is. Half way between two nodes the air gap is that of the contact itself to 0.3 %, and
+without field in contact to 1.5 %, by ``tests/test_gaps.py``. Without it the air gap widens again beyond some 0.7 of the
+unit of pressure: the area beside the contact vanishes. Of several realisations the attractions are averaged, as over
+the many patches of a ridge; :meth:`TabulatedClosure.spread` has the scatter from one to the next.
 """
 
 from abc import abstractmethod
@@ -15,7 +17,7 @@ import numpy as np
 import scipy  # its parts are imported where they are used first: to read a scene needs none
 from numpy.typing import ArrayLike, NDArray
 
-from variational.coefficients import OF_SCENE, parameter
+from variational.coefficients import OF_SCENE, parameter, refuse_not_positive
 from variational.roughness.closure import AirGap, Closure, Progress
 from variational.roughness.gaps import GapTable
 from variational.roughness.statistics import Slopes, Statistics, breaking_gaps
@@ -26,6 +28,7 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 _EPS_0 = 8.854e-12  # F/m, Table 3
 _STICKING = 1e3
+_SIDE = 4.0  # largest waves in the side of the surface whose scatter is meant
 
 
 class Curve:
@@ -38,7 +41,7 @@ class Curve:
 
     def __call__(self, x: Array) -> tuple[Array, Array]:
         """Return values and derivatives at abscissas inside the range, of any shape."""
-        k = np.minimum(((x - self._low) / self._step).astype(np.int64), self._last)
+        k = np.fmin(np.fmax((x - self._low) / self._step, 0), self._last).astype(np.int64)
         t = x - (self._low + k * self._step)
         a, b, c, d = self._c.take(k, axis=1)
         return ((a * t + b) * t + c) * t + d, (3 * a * t + 2 * b) * t + c
@@ -66,6 +69,14 @@ class TabulatedClosure(Closure):
     """Mean contact pressure (Pa) below which the air gap is held constant (*assumption*)."""
     hurst: float = parameter(0.05, 0.99, default=0.75)
     """Hurst exponent of the roughness; tables of boundary elements are for 0.6 to 0.9."""
+
+    def __post_init__(self) -> None:
+        """Refuse numbers that are no lengths and pressures.
+
+        Raises:
+            ValueError: one that is not finite and greater than 0; in one sentence.
+        """
+        refuse_not_positive(self)
 
     @abstractmethod
     def tables(self) -> list[tuple[float, GapTable]]:
@@ -150,7 +161,7 @@ class TabulatedClosure(Closure):
             ValueError: a pressure outside of the table; in one sentence.
         """
         p_c, (low, high) = np.asarray(p_c, dtype=float), self.pressures
-        if (out := (p_c < low * (1 - 1e-9)) | (p_c > high * (1 + 1e-9))).any():
+        if (out := ~((p_c >= low * (1 - 1e-9)) & (p_c <= high * (1 + 1e-9)))).any():
             raise ValueError(
                 f"the contact pressure is {p_c[out].flat[0]:g} Pa; {type(self).__name__} has {low:.4g} to {high:.4g} Pa"
             )
@@ -172,7 +183,10 @@ class TabulatedClosure(Closure):
         return np.clip(Curve(np.log(self._nodes), found)(x)[0], 0.0, 1.0)
 
     def spread(self, p_c: ArrayLike) -> Array:
-        """Return the standard deviation of d_eq (m) from one realisation to the next; zero of one surface alone.
+        """Return the standard deviation of d_eq (m) from one surface to the next; zero of one surface alone.
+
+        Surfaces are four largest waves long and wide. That of realisations of another size is scaled by their side, as
+        that of a mean over independent patches.
 
         Args:
             p_c: mean contact pressures (Pa), held as in a call.
@@ -182,7 +196,7 @@ class TabulatedClosure(Closure):
             same = np.isclose(table.pressure[:, None] * self.unit_pressure, self._nodes).any(axis=1)
             square = table.inverse_square(self.h_0 / self.h_rms, self.field_in_contact)[:, same] / self.h_rms**2
             gaps = square**-0.5 - self.h_0
-            found += part * (gaps.std(axis=0, ddof=1) if len(gaps) > 1 else 0.0)
+            found += part * table.waves / _SIDE * (gaps.std(axis=0, ddof=1) if len(gaps) > 1 else 0.0)
         held = np.clip(np.asarray(p_c, dtype=float), *self.pressures)
         return Curve(np.log(self._nodes), found)(np.log(held))[0]
 
@@ -191,10 +205,11 @@ class TabulatedClosure(Closure):
         return np.asarray(_EPS_0 * voltage**2 / 2 / (self.h_0 + self(p_c).d_eq) ** 2)
 
     def balanced(self, p_c: ArrayLike, voltage: float) -> Array:
-        """Return the part of the contact pressure that attraction balances where asperities touch; 0 to about 1.
+        """Return the part of the contact pressure that attraction balances where asperities touch, 0 or more.
 
         There both act on one spot, and press nothing else together. The closure takes the whole pressure as the load
-        that deforms, so this part is a measure of what it overestimates; zero without a field in contact.
+        that deforms, so this part is a measure of what it overestimates; zero without a field in contact. It is at most
+        1 in equilibrium where nothing pulls from outside: the attraction is then no larger than the contact pressure.
 
         Args:
             p_c: mean contact pressures (Pa), held as in a call.

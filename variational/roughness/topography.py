@@ -36,6 +36,7 @@ Array = NDArray[np.float64]
 Trend = Literal["mean", "tilt", "curvature"]
 _DEGREE: dict[Trend, int] = {"mean": 0, "tilt": 1, "curvature": 2}
 MOST = 0.25  # of a map that may be missing
+_FLAT = 1e-12  # rms height over the largest height, at which what is left of a map is roundoff
 _FAR = 20.0  # interquartile ranges without a height
 
 
@@ -75,10 +76,16 @@ class HeightMap:
         return float(self.heights.std())
 
     def detrended(self, trend: Trend) -> "HeightMap":
-        """Return the map without the polynomials up to the degree that ``trend`` names (0, 1, 2)."""
+        """Return the map without the polynomials up to the degree that ``trend`` names (0, 1, 2).
+
+        Heights that are such a polynomial leave zeros, and not their roundoff.
+        """
         basis = polynomials(self.heights.shape, _DEGREE[trend])
         h = self.heights.ravel()
-        return HeightMap((h - basis @ (basis.T @ h)).reshape(self.heights.shape), self.size)
+        left = h - basis @ (basis.T @ h)
+        if left.std() <= _FLAT * np.abs(h).max():
+            left = np.zeros_like(left)
+        return HeightMap(left.reshape(self.heights.shape), self.size)
 
     def cut(self, corner: tuple[int, int], shape: tuple[int, int]) -> "HeightMap":
         """Return the part of ``shape`` pixels that begins at pixel ``corner``.
