@@ -7,6 +7,7 @@ import numpy as np
 
 from benchmarks.gap_tables import surfaces
 from benchmarks.microscale.adhesive import pressed
+from benchmarks.verification.halfspace import finer
 from fingerpad.scene import Scene
 from variational.roughness.halfspace import Contact, NoContactError, press
 from variational.roughness.topography import HeightMap
@@ -69,12 +70,10 @@ def direct() -> dict[str, Any]:
 def grids() -> list[dict[str, Any]]:
     """Return the numbers of one surface on its pixels and on those of half their size."""
     rough, rows = scaled(surfaces(16.0, 1)[0]), []
-    n = len(rough.heights)
-    modes = np.fft.fftshift(np.fft.fft2(rough.heights))
     for k in (1, 2):
-        fine = np.fft.ifft2(np.fft.ifftshift(np.pad(modes, n * (k - 1) // 2))).real * k**2
+        fine = finer(rough, k)
         rows += [
-            {"pixels": n * k, "p_c": p, "values": values(press(HeightMap(fine, rough.size), p, MODULUS))}
+            {"pixels": len(fine.heights), "p_c": p, "values": values(press(fine, p, MODULUS))}
             for p in (5e3, 20e3, 100e3)
         ]
     return rows
