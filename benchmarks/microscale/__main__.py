@@ -122,12 +122,13 @@ def friction(law: Law, f_ext: float, voltage: float | Mapping[str, Any]) -> dict
     p_c, d_eq = (found.record[f"full_slip_{name}"] for name in ("p_c", "d_eq"))
     effective = slip.voltage if scene.supply is None else float(scene.supply.effective(np.array(d_eq)))
     inside = law.statistics(np.clip(p_c, *law.pressures))
-    tabulated = isinstance(law, TabulatedClosure)
+    beyond, balanced = False, 0.0
+    if isinstance(law, TabulatedClosure):
+        beyond, balanced = p_c > law.pressures[1], float(law.balanced(p_c, effective))
     return {
         "mu_app": slip.mu_app, "p_c": p_c, "d_eq": d_eq, "area": float(inside.area),
         "real": slip.contact_length * float(inside.area),
-        "beyond": float(tabulated and p_c > law.pressures[1]),
-        "balanced": float(law.balanced(p_c, effective)) if tabulated else 0.0,
+        "beyond": float(beyond), "balanced": balanced,
     }  # fmt: skip
 
 
