@@ -46,6 +46,10 @@ class StateSolver(Simulation):
         again = f"{name}, solved again with a contact size of {self.finger.contact_size:g} m"
         closure = self.model.closure
         try:
+            restore(state.snapshot, self.finger.coupling, state.direction * SLIDE_ON)
+        except ValueError as error:  # meshes so coarse that one does not have the shape of the other
+            raise StepFailed(f"{again}: {error}") from error
+        try:
             attempt = self._restored(state, name, again)
         except StepFailed as error:
             raise StepFailed(lost(error, state.state, closure)) from error
@@ -54,11 +58,7 @@ class StateSolver(Simulation):
             self.doubts.append(f"{again}: {_JUMPED}: {adheres}")
 
     def _restored(self, state: State, name: str, again: str) -> Attempt:
-        """Return how the state was solved for."""
-        try:
-            restore(state.snapshot, self.finger.coupling, state.direction * SLIDE_ON)
-        except ValueError as error:  # meshes so coarse that one does not have the shape of the other
-            raise StepFailed(f"{again}: {error}") from error
+        """Return how a state that was put in was solved for."""
         attempt = self._balance(name)
         try:
             steady = not state.direction or self._slip.slides_on(name, state.direction)
