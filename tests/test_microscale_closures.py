@@ -342,6 +342,16 @@ def test_microscale_prints_the_scatter(capsys):
         assert ("to the next the air gap scatters by" in capsys.readouterr().out) == said
 
 
+def test_sweep_over_closures_is_of_one_surface():
+    """Roughness that the scene gives stays, as when a run is given both; keys of another law alone go."""
+    scene = fp.Scene(roughness={"h_rms": 1e-6, "gamma": 0.45}, voltage=50.0)
+    laws = ["BoundaryElements", "Persson"]
+    curve = fp.sweep(scene, model="cylinders", **{"roughness.law": laws})
+    for law, found in zip(laws, curve, strict=True):
+        alone = fp.run(scene.replace(roughness={"law": law, "h_rms": 1e-6}), model="cylinders")
+        assert found.full_slip.mu_app == pytest.approx(alone.full_slip.mu_app, rel=1e-12)
+
+
 def test_sweep_over_closures():
     """Cylinders, 75 N/m at 70.7 V: more attraction by boundary elements, least without a field where it touches."""
     curve = fp.sweep(

@@ -12,8 +12,10 @@ from fingerpad.results.folder import full_scene
 from fingerpad.results.states import WORDS
 from fingerpad.runs import newtons
 from fingerpad.runs.branches import Branches
+from fingerpad.runs.context import RunContext
 from fingerpad.scene import Load, SceneError, from_data
 from fingerpad.slices import traces
+from fingerpad.slices.total import BeyondTrace
 from tests.runs import path_of, tables_alone
 from tests.small_finger import NINE, small
 
@@ -162,6 +164,17 @@ def test_profile_that_does_not_fit_is_refused_at_once(monkeypatch):
 def test_accuracy_takes_runs_of_their_own():
     with pytest.raises(newtons.Unsuited, match="an accuracy is asked for"):
         newtons.run(scene(accuracy={"mu_app": 0.05}), None)
+
+
+def test_corrected_trace_that_is_too_short_takes_runs_of_their_own(monkeypatch):
+    """As where other ridges touch on the scene's own mesh: what the traces cost is not lost by a refusal."""
+
+    def short(*given):
+        raise BeyondTrace("of a test; give a trace to a larger force")
+
+    monkeypatch.setattr(newtons, "at_force", short)
+    with pytest.raises(newtons.Unsuited, match="of a test"):
+        newtons.run(from_data(COARSE), RunContext())
 
 
 @pytest.mark.mpi

@@ -52,7 +52,7 @@ def _pressed(size: float, more: dict[str, Any]) -> Scene:
 Array = NDArray[np.float64]
 NEWTONS = (0.05, 0.1, 0.2, 0.3, 0.5, 0.75, 1.0, 1.2)  # N; the traces end at some 1.3 N
 HIGH = 200.0  # V
-STATES = (("charged", 0.0), ("charged", HIGH), ("full_slip", 0.0), ("full_slip", HIGH))
+STATES = (("charged", 0.0), ("charged", HIGH), *(("full_slip", voltage) for voltage in VOLTAGES))
 Sums = Mapping[str, Array]
 """``gross_area``, ``contact_area``, ``exact_area``, ``bearing_area`` (m²) and ``depth`` (m) at :data:`NEWTONS`, as
 ``charged_0_gross_area``: gross contact, that of the ridges, and that of asperities on them by two closures."""

@@ -2,9 +2,10 @@
 
 What is compared is the quantity that was measured. The apparent area is the gross area of the whole finger, a sum of
 slices (:mod:`benchmarks.measured.fingers`). The real area is the contact length of the ridges, of the paper's page
-(docs/paper.json: default mesh); over the voltage it is the area of asperities. Attraction is of docs/models.json, at a
-contact size of 10 µm. The stated error is the difference of the two meshes. Whole fingers of the finer mesh have its
-contact lengths and counts of ridges, over the indentations of the coarser one. Of trends the other mesh has a count.
+(docs/paper.json: default mesh); over the voltage it is the area of asperities of whole fingers. Attraction is of
+docs/models.json, at a contact size of 10 µm. The stated error is the difference of the two meshes. Whole fingers of the
+finer mesh have its contact lengths and counts of ridges, over the indentations of the coarser one. Of trends the other
+mesh has a count.
 """
 
 from collections.abc import Callable, Mapping
@@ -36,6 +37,8 @@ Row = tuple[Numbers, str]
 """Numbers of a row by name, and its verdict."""
 AMPLITUDES = ((100.0, 150.0), (50.0, 100.0))
 """Voltages (V) within an amplitude of 75 to 150 V: as a constant voltage, and as that of a sine's mean square."""
+
+SHOWN = 0.5  # N, of the areas of asperities in mm²
 
 
 class Grid(NamedTuple):
@@ -91,21 +94,22 @@ def _power(g: Grid, name: str, *ranges: tuple[float, ...]) -> Row:
 
 
 def _real_area(g: Grid) -> Row:
-    """Judge the area of asperities at full slip, by exact contact.
+    """Judge the area of asperities of whole fingers at full slip, by exact contact.
 
-    The numbers also have that of whole fingers in mm², and the exponents of the ridges' contact length.
+    The numbers also have this area in mm², by both closures, and the exponents of the ridges' contact length.
     """
 
-    def lengths(a: Mapping[str, Array]) -> Mapping[str, Array]:
-        force = a["full_slip_f_t"] / (coefficient(Scene()) or 1.0)
-        return {"real": fingers.asperities("exact", a["full_slip_contact_length"], force)}
+    def areas(of: fingers.Sums, closure: str) -> Mapping[str, Array]:
+        return {"real": np.array([of[f"full_slip_{u:g}_{closure}_area"] for u in VOLTAGES]).T}
 
-    numbers, verdict = _power(g._replace(fine=lengths(g.fine), coarse=lengths(g.coarse)), "real", *AMPLITUDES)
+    fine, coarse = (areas(of, "exact") for of in (g.fine_finger, g.full_finger))
+    numbers, verdict = _power(g._replace(fine=fine, coarse=coarse), "real", *AMPLITUDES)
     for name in fingers.CLOSURES:
-        area = 1e6 * g.full_finger[f"full_slip_200_{name}_area"]
-        numbers |= {f"{name}_least": float(area.min()), f"{name}_most": float(area.max())}
+        area = 1e6 * areas(g.full_finger, name)["real"][fingers.NEWTONS.index(SHOWN)]
+        numbers |= {f"{name}_{u:g}": float(value) for u, value in zip(VOLTAGES, area, strict=True)}
     length, _ = _power(g, "full_slip_contact_length", *AMPLITUDES)
-    numbers |= {"length_low": min(length["low"], length["other_low"]), "length_holds": length["holds"]}
+    numbers |= {f"length_{key}": length[key] for key in ("holds", "loads")}
+    numbers |= {"length_low": min(length["low"], length["other_low"])}
     return numbers | {"length_high": max(length["high"], length["other_high"])}, verdict
 
 

@@ -17,7 +17,9 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from benchmarks import harness
-from benchmarks.microscale import contacts
+from benchmarks.measured.rules import EXPONENT
+from benchmarks.microscale import contacts, readings
+from benchmarks.microscale.readings import GAPS, LOAD, PAPER
 from fingerpad.reduced import cylinders
 from fingerpad.results import style
 from fingerpad.scene import Scene, load
@@ -40,8 +42,9 @@ CIRCUIT = {
 }
 """Drives of a sine of 1 kHz over screen, leaking gap and skin, the electric table below."""
 ELECTRIC = {"tissue": "dry", "leak": "sliding dry"}
-PAPER, NEAR = 0.55, 0.1  # µ_app at 75 N/m; what counts as equal to it
-GAPS = (1.5e-6, 2.5e-6)  # m, published equivalent air gaps
+SHEAR = 13e6  # Pa, in the computed real contact of dry wrist skin on glass (doi 10.3762/bjnano.5.147, abstract)
+RISES = {"sine": (75.0 / 2**0.5, 150.0 / 2**0.5), "constant": (75.0, 150.0)}
+"""Effective voltages (V) of amplitudes of 75 and 150 V, between which the real contact rises as U²."""
 _FINE = 100e-6 / 64
 HURST, HELD = (0.6, 0.675, 0.75, 0.825, 0.9), 20e3  # exponents of a table, and its pressure (Pa)
 Law = BearingArea | TabulatedClosure
@@ -116,18 +119,31 @@ def friction(law: Law, f_ext: float, voltage: float | Mapping[str, Any]) -> dict
         return None
     slip = found.full_slip
     assert slip is not None
-    p_c = found.record["full_slip_p_c"]
+    p_c, d_eq = (found.record[f"full_slip_{name}"] for name in ("p_c", "d_eq"))
+    effective = slip.voltage if scene.supply is None else float(scene.supply.effective(np.array(d_eq)))
     inside = law.statistics(np.clip(p_c, *law.pressures))
-    length = slip.contact_length
+    beyond, balanced = False, 0.0
+    if isinstance(law, TabulatedClosure):
+        beyond, balanced = p_c > law.pressures[1], float(law.balanced(p_c, effective))
     return {
-        "mu_app": slip.mu_app, "p_c": p_c, "d_eq": found.record["full_slip_d_eq"], "area": float(inside.area),
-        "length": length, "beyond": float(not law.pressures[0] <= p_c <= law.pressures[1]),
+        "mu_app": slip.mu_app, "p_c": p_c, "d_eq": d_eq, "area": float(inside.area),
+        "real": slip.contact_length * float(inside.area),
+        "beyond": float(beyond), "balanced": balanced,
     }  # fmt: skip
 
 
 def _given() -> dict[str, float | Mapping[str, Any]]:
     """Return the effective voltage (V) or the drive of each reading of the paper's number."""
     return {**{name: NUMBER * part for name, part in READINGS.items()}, **CIRCUIT}
+
+
+def exponent(law: Law, f_ext: float, voltages: tuple[float, float]) -> float | None:
+    """Return the exponent of the rise of the real contact from 0 V on, between two voltages (V); None without it."""
+    found = [friction(law, f_ext, voltage) for voltage in (0.0, *voltages)]
+    if any(each is None or each["beyond"] for each in found):
+        return None
+    none, low, high = (each["real"] for each in found if each)
+    return float(np.log((high - none) / (low - none)) / np.log(voltages[1] / voltages[0]))
 
 
 def over_hurst() -> list[dict[str, Any]]:
@@ -152,11 +168,15 @@ def compute(args: argparse.Namespace) -> None:
     found = {
         "closures": {words: over_pressure(law) for words, law in closures.items()},
         "read": {
-            words: {reading: friction(law, 75.0, given) for reading, given in _given().items()}
+            words: {reading: {f"{f:g}": friction(law, f, given) for f in FORCES} for reading, given in _given().items()}
             for words, law in closures.items()
         },
         "curves": {
             words: {f"{f:g}": [_mu(friction(law, f, u)) for u in VOLTAGES] for f in FORCES}
+            for words, law in closures.items()
+        },
+        "rises": {
+            words: {of: {f"{f:g}": exponent(law, f, voltages) for f in FORCES} for of, voltages in RISES.items()}
             for words, law in closures.items()
         },
         "hurst": over_hurst(),
@@ -167,7 +187,7 @@ def compute(args: argparse.Namespace) -> None:
 
 
 def _mu(found: Mapping[str, float] | None) -> float | None:
-    return None if found is None else found["mu_app"]
+    return None if found is None or found["beyond"] else found["mu_app"]
 
 
 # -- page ----------------------------------------------------------------------------------------------------
@@ -175,21 +195,10 @@ FULL_OF = {words: (words.rpartition(", ")[0], words.rpartition(", ")[2]) for wor
 """Closure and reading of each full run."""
 
 
-def _agrees(found: Mapping[str, float] | None) -> dict[str, bool]:
-    """Return whether air gap and friction are those that were published."""
-    if found is None:
-        return {"gap": False, "friction": False}
-    gap = GAPS[0] <= found["d_eq"] <= GAPS[1]
-    return {"gap": gap, "friction": abs(found["mu_app"] / PAPER - 1) <= NEAR}
-
-
-def _line(found: Mapping[str, float] | None) -> str:
-    """Return friction, pressure, air gap and area of a state as cells."""
-    if found is None:
-        return harness.cells(None, None, None, None)
-    more = ">" * bool(found["beyond"])
-    area = f"{100 * found['area']:.0f}"
-    return f"{more}{found['mu_app']:.2f} | {found['p_c'] * 1e-3:.0f} | {found['d_eq'] * 1e6:.2f} | {more}{area}"
+def _as_measured(rises: Mapping[str, float | None]) -> bool:
+    """Return whether the real contact rises as U² at the paper's force, as measured: to the margin of measured.md."""
+    found = rises[LOAD]
+    return found is not None and abs(found - 2) <= EXPONENT
 
 
 def _reaches(values: list[float | None]) -> float | None:
@@ -221,12 +230,8 @@ def draw(docs: Path) -> Path:
     """Draw the page and its picture from the kept numbers."""
     numbers = harness.kept("microscale", docs).numbers
     harness.picture(docs / "microscale.png", (10, 5), lambda figure: _paint(figure, numbers))
-    read = [
-        (words, reading, found, _agrees(found))
-        for words, row in numbers["read"].items()
-        for reading, found in row.items()
-    ]
-    solved = [found for words, _, found, _ in read if words != "bearing area" and found]
+    read = readings.read(numbers)
+    solved = [found for each in read if each.words != "bearing area" for found in each.states.values() if found]
     rows, inside = _compared(numbers)
     needed = [_reaches(curves["75"]) for words, curves in numbers["curves"].items() if words != "bearing area"]
     deformed = [row for row in numbers["adhesive"] if row["in_contact"] and row["voltage"] >= 70]
@@ -234,16 +239,20 @@ def draw(docs: Path) -> Path:
     gaps = [mean for mean, _ in numbers["direct"]["wide"][3]]
     names = {
         "read": read,
-        "both": [f"{words} ({reading})" for words, reading, _, agrees in read if all(agrees.values())],
-        "friction_only": [f"{w} ({r})" for w, r, _, agrees in read if agrees["friction"] and not agrees["gap"]],
+        "both": [f"{each.words} ({each.reading})" for each in read if each.friction and LOAD in each.gaps],
+        "friction_only": [f"{each.words} ({each.reading})" for each in read if each.friction and LOAD not in each.gaps],
+        "with_gaps": [each.words for each in read if each.words != "bearing area" and each.gaps],
         "exact": [found["d_eq"] * 1e6 for found in solved],
         "loads": [found["p_c"] * 1e-3 for found in solved],
-        "others": lambda reading: _ends(
-            [row[reading]["mu_app"] for words, row in numbers["read"].items() if words != "bearing area"]
-        ),
-        "mu": lambda words, reading: numbers["read"][words][reading]["mu_app"],
+        "rising": [words for words, of in numbers["rises"].items() if _as_measured(of["sine"])],
+        "touching": [v for words, of in numbers["rises"].items() if _touches(words) for v in of["sine"].values() if v],
+        "apart": [v for words, of in numbers["rises"].items() if not _touches(words) for v in of["sine"].values() if v],
+        "span": lambda reading: readings.span(read, reading),
+        "others": lambda reading: readings.span([each for each in read if each.words != "bearing area"], reading),
+        "mu": lambda words, reading: numbers["read"][words][reading][LOAD]["mu_app"],
+        "pressed": numbers["read"]["bearing area"]["rms"][LOAD]["p_c"] * 1e-3,
         "gap": lambda found, k: _gap(found["d_eq"][k] * 1e6, found["spread"][k] * 1e6),
-        "line": _line, "reaches": _reaches, "compared": rows, "inside": sum(inside), "known_pairs": inside,
+        "reaches": _reaches, "compared": rows, "inside": sum(inside), "known_pairs": inside,
         "least_voltage": min(u for u in needed if u), "most_voltage": max(u for u in needed if u),
         "small": numbers["small"],
         "broken": [part for found in numbers["closures"].values() for part in found["broken"]],
@@ -253,8 +262,9 @@ def draw(docs: Path) -> Path:
     return harness.page(docs, "microscale", "python3 -m benchmarks.microscale", globals() | names)
 
 
-def _ends(values: list[float]) -> tuple[float, float]:
-    return min(values), max(values)
+def _touches(words: str) -> bool:
+    """Return whether a closure solves the contact and has the field act where surfaces touch."""
+    return words != "bearing area" and "no field" not in words
 
 
 def _gap(value: float, spread: float) -> str:

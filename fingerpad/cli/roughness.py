@@ -69,7 +69,8 @@ def microscale(argv: Sequence[str]) -> int:
     echo("with; separation: mean, of skin and screen; air gap: equivalent one; real area: of the nominal area.")
     low, high = (p * 1e-3 for p in closure.pressures)
     end = "the pressure at zero separation" if isinstance(closure, BearingArea) else "the end of the table of gaps"
-    echo(f"The air gap stays constant below {low:.4g} kPa (roughness.p_floor) and above {high:.4g} kPa, {end}.")
+    begin = "roughness.p_floor" if low == closure.p_floor * 1e-3 else "the begin of the table of gaps"
+    echo(f"The air gap stays constant below {low:.4g} kPa ({begin}) and above {high:.4g} kPa, {end}.")
     echo("\n".join([*_scatter(closure, [row["p_c"] for row in rows]), _sticking(closure)]))
     for text in remarks(scene):
         echo(f"{text}.")
@@ -92,8 +93,8 @@ def _scatter(closure: BearingArea | TabulatedClosure, pressures: Sequence[float]
         return
     shares = 100 * closure.spread(pressures) / closure(pressures).d_eq
     if shares.any():
-        scatter = f"{shares.min():.2g} to {shares.max():.2g} % (rms)"
-        yield f"From one surface of four by four largest waves to the next the air gap scatters by {scatter}."
+        ends = " to ".join(dict.fromkeys(f"{share:.2g}" for share in (shares.min(), shares.max())))
+        yield f"From one surface of four by four largest waves to the next the air gap scatters by {ends} % (rms)."
 
 
 def _sticking(closure: BearingArea | TabulatedClosure) -> str:

@@ -9,6 +9,7 @@ from collections.abc import Iterable, Sequence
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from fingerpad.model.adhesion import without_load
 from variational.contact.formulation import Formulation
 from variational.roughness.closure import Closure, air_gaps
 from variational.roughness.tabulated import TabulatedClosure
@@ -38,7 +39,8 @@ def on_states(
     if closure is None or not touching:
         return viscous
     charged = [(*_pressures(state), state.voltage) for state in touching if state.voltage]
-    return [*on_closure(closure, charged, "states"), *_deep(touching, closure, formulation), *viscous]
+    held = without_load(touching, closure)
+    return [*held, *on_closure(closure, charged, "states"), *_deep(touching, closure, formulation), *viscous]
 
 
 def on_closure(closure: Closure, points: Sequence[tuple[ArrayLike, ArrayLike, float]], noun: str) -> list[str]:

@@ -35,7 +35,7 @@ from fingerpad.scene.reading import DEFAULT_MODEL
 from fingerpad.scene.remarks import coefficient, leakage, remarks, used
 from fingerpad.slices import errors, traces
 from fingerpad.slices.correction import Pair, corrected, correction_errors, mesh_errors
-from fingerpad.slices.total import at_force, profile
+from fingerpad.slices.total import BeyondTrace, at_force, profile
 from fingerpad.slices.traces import Traced
 from fingerpad.startup import MPI
 from geometry.profiles import GeometryError
@@ -80,6 +80,8 @@ def run(scene: Scene, context: RunContext) -> Result:
             failure = f"{str(stopped).partition(';')[0]} of the {made.doing}; the same command goes on with it"
             bare = Result(scene, DEFAULT_MODEL, None, None, None, failure=failure, interrupted=stopped.signal.name)
             return replace(bare, cost=made.clock.cost(made.branches.counts, 0))
+        except BeyondTrace as error:  # of the corrected trace, which other ridges can make too short
+            raise Unsuited(str(error)) from error
         except (SceneError, LawError):  # a run of its own would be refused as well
             raise
         except (StepFailed, GeometryError, ValueError) as error:

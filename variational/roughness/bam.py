@@ -18,7 +18,7 @@ import scipy  # its parts are imported where they are used first: to read a scen
 from numpy.typing import ArrayLike, NDArray
 
 from variational.coefficients import OF_SCENE, parameter, refuse_not_positive
-from variational.roughness.closure import AirGap, Closure, Progress
+from variational.roughness.closure import PAST_THE_FOLD, AirGap, Closure, Progress
 from variational.roughness.statistics import Slopes, Statistics, breaking_gaps
 
 if TYPE_CHECKING:
@@ -168,7 +168,7 @@ class BearingArea(Closure):
             return "beyond zero separation"
         fold = self.pull_off_fold(voltage)
         if fold is not None and p_c < self.contact_pressure(fold):
-            return "past the fold"
+            return PAST_THE_FOLD
         widens = self.separation(p_c) < self.h_0 / 2
         return "where d_eq rises with pressure, since the insulators are thick for this roughness" if widens else ""
 

@@ -20,6 +20,8 @@ from numpy.typing import ArrayLike, NDArray
 Array = NDArray[np.float64]
 Progress = Callable[[int, int], None]
 """Called with the number of contacts that are solved and of all."""
+PAST_THE_FOLD = "past the fold"
+"""State of a ridge whose attraction grows faster than its contact pressure: alone, it comes down or lets go at once."""
 _PRESSURES = np.array([0.0, 1.0, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7])  # Pa, at which a closure is examined
 
 

@@ -18,7 +18,7 @@ import scipy  # its parts are imported where they are used first: to read a scen
 from numpy.typing import ArrayLike, NDArray
 
 from variational.coefficients import OF_SCENE, parameter, refuse_not_positive
-from variational.roughness.closure import AirGap, Closure, Progress
+from variational.roughness.closure import PAST_THE_FOLD, AirGap, Closure, Progress
 from variational.roughness.gaps import GapTable
 from variational.roughness.statistics import Slopes, Statistics, breaking_gaps
 
@@ -32,19 +32,24 @@ _SIDE = 4.0  # largest waves in the side of the surface whose scatter is meant
 
 
 class Curve:
-    """A piecewise cubic through values at equal steps of an abscissa; flat beyond its ends."""
+    """A piecewise cubic through values at equal steps of an abscissa."""
 
     def __init__(self, x: Array, y: Array) -> None:
         """Take abscissas, shape (n,) and increasing by equal steps, and values of the same shape."""
-        self._low, self._step, self._last = float(x[0]), float((x[-1] - x[0]) / (len(x) - 1)), len(x) - 2
-        self._c = scipy.interpolate.PchipInterpolator(x, y).c
+        a, b, c, d = scipy.interpolate.PchipInterpolator(x, y).c
+        self._begin = x[0] + float((x[-1] - x[0]) / (len(x) - 1)) * np.arange(len(x) - 1)
+        self._inner = self._begin[1:]
+        self._c = np.array([[a, np.zeros_like(a)], [b, 3 * a], [c, 2 * b], [d, c]])  # of values and of derivatives
 
-    def __call__(self, x: Array) -> tuple[Array, Array]:
-        """Return values and derivatives at abscissas inside the range, of any shape."""
-        k = np.fmin(np.fmax((x - self._low) / self._step, 0), self._last).astype(np.int64)
-        t = x - (self._low + k * self._step)
-        a, b, c, d = self._c.take(k, axis=1)
-        return ((a * t + b) * t + c) * t + d, (3 * a * t + 2 * b) * t + c
+    def __call__(self, x: Array) -> Array:
+        """Return values and derivatives at abscissas inside the range, shape (2, ...) before that of the abscissas."""
+        k = self._inner.searchsorted(x, "right")  # of not-a-number the last: it stays one
+        t = x - self._begin.take(k)
+        found, second, third, last = self._c.take(k, axis=-1)
+        for each in (second, third, last):  # Horner's rule for both at once
+            found *= t
+            found += each
+        return found
 
 
 @dataclass(frozen=True)
@@ -231,7 +236,7 @@ class TabulatedClosure(Closure):
         d_eq, slope = self(p_c)
         assert slope is not None
         grows = -_EPS_0 * voltage**2 / (self.h_0 + float(d_eq)) ** 3 * float(slope)
-        return "past the fold" if grows > 1 else ""
+        return PAST_THE_FOLD if grows > 1 else ""
 
     def sticking_voltage(self, stress: float = _STICKING) -> float:
         """Return the voltage (V) from which a flat ridge adheres without a load, by a pull-off stress ``stress`` (Pa).
