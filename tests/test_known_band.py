@@ -8,6 +8,7 @@ import pytest
 
 import fingerpad as fp
 from fingerpad.reduced.closure_band import Slip, friction, known
+from fingerpad.report import trust
 from fingerpad.report.known import bars
 from fingerpad.results.closures import KNOWN, known_in_words
 from tests.test_closure_band import Held
@@ -129,7 +130,14 @@ def test_result_whose_own_closure_has_no_number(adhering):
     """Nothing is known of it, and no ratio to other closures is given."""
     own = fp.run(adhering.scene.replace(roughness={"law": "BoundaryElements"}), model="cylinders")
     assert (own.known["low"], own.known["high"], own.known["parts"]) == (None, None, []) and own.closures == {}
-    assert own.headline.known == "not known: by the result's own closure ridges adhere at 200 V" and bars(own) == ""
+    why = "by the result's own closure ridges adhere at 200 V"
+    sentence = f"Friction at full slip, {own.finger.f_ext:.4g} N and 200 V, is not known: {why}."
+    assert str(own.headline) == sentence and np.isnan(own.headline.value) and bars(own) == ""
+    kind, words = trust.verdict(trust.findings(own))
+    assert (kind, words) == (trust.BAD, f"Do not use these numbers as they are: friction is not known. B{why[1:]}.")
+    assert not [each for each in trust.findings(adhering) if each.verdict == trust.BAD]
+    cautions = replace(adhering, cautions=("one", "another"))
+    assert trust.verdict(trust.findings(cautions))[1].startswith("Use with care: model and limit of validity. The")
 
 
 def test_changed_coating_beyond_the_table():
