@@ -62,9 +62,10 @@ def test_fold_below_the_voltage_of_sticking():
 def test_states_that_attraction_holds_are_counted():
     """Without a force or pulled, under a voltage, in contact: the last of them and its ridge are named."""
     pressed, pulled = state(150.0, [3.0, 2.0, 1.5]), replace(state(150.0, [3.0, 2.0, 0.9]), f_ext=-0.1)
-    (text,) = on_states([pressed, pulled], EXACT)[:1]
+    free, lifted = replace(pressed, f_ext=1e-9), replace(pulled, contact_length=0.0)
+    (text,) = on_states([pressed, free, pulled, lifted], EXACT)[:1]
     assert text == (
-        "in 1 of 2 charged states the finger adheres without a load, most by ridge 1, at -0.1 N/m and 150 V; by "
+        "in 2 of 3 charged states the finger adheres without a load, most by ridge 1, at -0.1 N/m and 150 V; by "
         "the closure BoundaryElements ridges adhere without a load from 90.5 V on"
     )
     assert without_load([pressed, replace(pulled, voltage=0.0)], EXACT) == []

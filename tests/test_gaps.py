@@ -217,13 +217,13 @@ def test_damaged_table_is_computed_again(cache, content):
     assert len(tables.of_map(name)) == 1 and sorted(cache.iterdir()) == [file]
 
 
-def test_cache_that_takes_no_files_is_refused_before_contacts_are_solved(tmp_path, monkeypatch):
-    """A file in the place of the folder, as a folder without the right to write in it."""
-    file = tmp_path / "file"
-    file.write_text("")
-    monkeypatch.setenv("FINGERPAD_CACHE", str(file))
+@pytest.mark.parametrize(("place", "why"), [("file", "File exists"), ("/proc", "No such file or directory")])
+def test_cache_that_takes_no_files_is_refused_before_contacts_are_solved(tmp_path, monkeypatch, place, why):
+    """A file in the place of the folder, and a folder in which nobody can write."""
+    (tmp_path / "file").write_text("")
+    monkeypatch.setenv("FINGERPAD_CACHE", str(tmp_path / place))
     done: list[int] = []
-    with pytest.raises(ValueError, match="table .* cannot be kept in .*file .File exists.; name another folder"):
+    with pytest.raises(ValueError, match=rf"table .* cannot be kept in .*{place} .{why}.; name another folder"):
         tables.keep(WAVES, lambda *each: done.append(each[0]))
     assert not done
 

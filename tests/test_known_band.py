@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 
 import fingerpad as fp
-from fingerpad.reduced.closure_band import Slip, friction, known
+from fingerpad.reduced.closure_band import Slip, friction, known, with_band
+from fingerpad.report import trust
 from fingerpad.report.known import bars
 from fingerpad.results.closures import KNOWN, known_in_words
 from tests.test_closure_band import Held
@@ -81,6 +82,13 @@ def test_section_alone_has_its_band():
     assert "µ_app of the middle section by closure" in found.headline.known
 
 
+def test_band_of_a_section_beside_a_finger_without_full_slip(result):
+    """The sum of slices can end before full slip; headline and band are then of the middle section."""
+    states = {name: state for name, state in result.finger.states.items() if name != "full_slip"}
+    found = with_band(replace(result, finger=replace(result.finger, states=states)))
+    assert found.known["mu_app"] == found.headline.value == found.full_slip.mu_app and not found.known["whole"]
+
+
 def test_law_of_ones_own(result):
     """It has no roughness and no insulator to change, and no other closures."""
     found = known(replace(result, scene=result.scene.replace(roughness=Held())), {})
@@ -123,13 +131,22 @@ def test_largest_number_that_is_an_upper_bound(result):
     assert closure["upper_bounds"] == {"boundary elements": pytest.approx(share, rel=1e-9)} and share > 0.1
     words = f"the largest number, by boundary elements, is an upper bound: attraction balances {100 * share:.0f} %"
     assert words in known_in_words(result.known) and words[1:] in bars(result)
+    small = fp.run(result.scene.replace(voltage=20.0), model="cylinders")  # which balances less than a tenth
+    assert small.known["parts"][0]["name"] == "closure" and "upper_bounds" not in small.known["parts"][0]
 
 
 def test_result_whose_own_closure_has_no_number(adhering):
     """Nothing is known of it, and no ratio to other closures is given."""
     own = fp.run(adhering.scene.replace(roughness={"law": "BoundaryElements"}), model="cylinders")
     assert (own.known["low"], own.known["high"], own.known["parts"]) == (None, None, []) and own.closures == {}
-    assert own.headline.known == "not known: by the result's own closure ridges adhere at 200 V" and bars(own) == ""
+    why = "by the result's own closure ridges adhere at 200 V"
+    sentence = f"Friction at full slip, {own.finger.f_ext:.4g} N and 200 V, is not known: {why}."
+    assert str(own.headline) == sentence and np.isnan(own.headline.value) and bars(own) == ""
+    kind, words = trust.verdict(trust.findings(own))
+    assert (kind, words) == (trust.BAD, f"Do not use these numbers as they are: friction is not known. B{why[1:]}.")
+    assert not [each for each in trust.findings(adhering) if each.verdict == trust.BAD]
+    cautions = replace(adhering, cautions=("one", "another"))
+    assert trust.verdict(trust.findings(cautions))[1].startswith("Use with care: model and limit of validity. The")
 
 
 def test_changed_coating_beyond_the_table():

@@ -10,6 +10,7 @@ from scipy.special import erf
 import fingerpad as fp
 from fingerpad.cli import main
 from fingerpad.cli import roughness as microscale
+from fingerpad.scene.dotted import with_values
 from variational.roughness import persson, tables
 from variational.roughness.spectrum import SelfAffine
 from variational.roughness.statistics import breakdown_voltage, breaking_gaps
@@ -335,11 +336,35 @@ def test_microscale_table(law):
         assert row["p_ext"] == pytest.approx(row["p_c"] - row["p_el"])
 
 
-def test_microscale_prints_the_scatter(capsys):
-    """Of boundary elements some per cent; theory and bearing area have none."""
-    for law, said in (("BoundaryElements", True), ("Persson", False), ("BearingArea", False)):
-        assert main(["microscale", "--set", f"roughness.law={law}", "--p", "5e3,1e5"]) == 0
-        assert ("to the next the air gap scatters by" in capsys.readouterr().out) == said
+@pytest.mark.parametrize(
+    ("name", "pressures", "ends"),
+    [("boundary elements", "5e3,1e5", 2), ("boundary elements", "1e4", 1), ("persson", "1e4", 0)],
+)
+def test_microscale_prints_the_scatter(capsys, name, pressures, ends):
+    """Of boundary elements some per cent, one number where there is one alone; theory has none."""
+    closure = CLOSURES[name]
+    assert main(["microscale", "--set", f"roughness.law={type(closure).__name__}", "--p", pressures]) == 0
+    found = re.findall(r"to the next the air gap scatters by (.*) % \(rms\)", capsys.readouterr().out)
+    p = np.array([float(each) for each in pressures.split(",")])
+    known = sorted(100 * closure.spread(p) / closure(p).d_eq)
+    assert found == ([" to ".join(f"{share:.2g}" for share in known)] if ends else []) and len(known) >= ends
+
+
+@pytest.mark.parametrize(
+    ("changes", "begin"),
+    [
+        ({}, "1 kPa (roughness.p_floor)"),
+        ({"law": "BoundaryElements"}, "1 kPa (roughness.p_floor)"),
+        ({"law": "BoundaryElements", "p_floor": 1.0}, " kPa (the beginning of the table of gaps)"),
+    ],
+)
+def test_microscale_prints_where_the_air_gap_begins_to_follow(capsys, changes, begin):
+    """At the larger one of p_floor and the least pressure of the table."""
+    settings = [part for key, value in changes.items() for part in ("--set", f"roughness.{key}={value}")]
+    assert main(["microscale", *settings, "--p", "1e4"]) == 0
+    (line,) = re.findall("The air gap stays constant below .*", capsys.readouterr().out)
+    closure = microscale.microscopic(fp.Scene(roughness=changes))
+    assert f"{closure.pressures[0] * 1e-3:.4g} kPa (" in line and begin in line
 
 
 def test_sweep_over_closures_is_of_one_surface():
@@ -350,6 +375,13 @@ def test_sweep_over_closures_is_of_one_surface():
     for law, found in zip(laws, curve, strict=True):
         alone = fp.run(scene.replace(roughness={"law": law, "h_rms": 1e-6}), model="cylinders")
         assert found.full_slip.mu_app == pytest.approx(alone.full_slip.mu_app, rel=1e-12)
+
+
+def test_sweep_over_laws_of_friction_keeps_a_coefficient_that_is_a_number():
+    """It stands for Coulomb's mu_f, which Derjaguin's law has too."""
+    scene = fp.Scene(friction=0.3)
+    assert with_values(scene, {"friction.law": "Coulomb"}).friction == 0.3
+    assert with_values(scene, {"friction.law": "Derjaguin", "friction.tau_0": 5e3}).friction.mu_f == 0.3
 
 
 def test_sweep_over_closures():

@@ -14,6 +14,7 @@ import argparse
 import itertools
 import json
 import sys
+from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -41,7 +42,7 @@ from benchmarks.loads.compared import (
     sections,
 )
 from benchmarks.loads.meshes import errors, without
-from benchmarks.loads.scenes import COUNT, FIRST, LARGEST, LOWEST, MESHES, WORK, Data, scenes, section
+from benchmarks.loads.scenes import COUNT, FIRST, LOWEST, MESHES, WORK, Data, scenes, section
 from benchmarks.loads.shear import Point, Spread, fitted, points
 from benchmarks.loads.shear import spread as errors_of
 from benchmarks.loads.states import pressed, solved
@@ -55,6 +56,13 @@ _SHORT = ("f_ext", "f_t", "mu_app", "f_electrostatic", "contact_length", "ridges
           "factorisations", "failure", "reached")  # fmt: skip
 REGIONS_FILE = harness.ROOT / "fingerpad" / "reduced" / "cylinder_errors.json"
 _MINUTES = 20.0
+_WHY = {
+    "too many factorisations": "needed more work",
+    "is not stable": "ended in full slip that is not stable",
+    "meshed to touch": "ended where a ridge touches that is meshed too coarsely",
+    "": "found no equilibrium on the way",
+}
+"""Parts of a failure, and what they say of a state."""
 _LAST = 150.0  # N/m, largest force of a full run in the tables of fingerpad/reduced
 
 
@@ -139,9 +147,6 @@ def draw(docs: Path) -> Path:
     every, both_have = both(compared), points(better)
     beyond = [each for each in every if not find(section(each.values, each.force), each.attraction / each.force)]
     states = [state for each in numbers["scenes"] for state in each["states"]]
-    tried = [each for each in states if not not_tried(each)]
-    left = {(each["scene"], state["f_ext"]) for each in better for state in each["states"] if not_tried(state)}
-    least = min(each.attraction for each in compared if (each.scene, each.force) in left)
     parts = [
         state["reached"] / each["values"]["voltage"]
         for each in better
@@ -150,42 +155,33 @@ def draw(docs: Path) -> Path:
     ]
     harness.picture(docs / "loads.png", (9.5, 4.2), lambda figure: _paint(figure, every))
     names = {
-        "every": every, "beyond": beyond, "whole": whole, "states": states, "tried": tried,
+        "every": every, "beyond": beyond, "whole": whole, "states": states,
         "mesh": [(sizes["contact"], each) for sizes, some in zip(MESHES, mesh, strict=True) for each in some],
-        "regions": [*judged_levels(levels(compared, whole))],
+        "regions": (rows := [*judged_levels(levels(compared, whole))]),
+        "known_all": [each.error for each in rows if each.error is not None],
+        "near": [each.error for each in rows if each.error is not None and each.pull == PULLED[0]],
         "shears": by_shear(both_have), "known_friction": Scene().friction, "kappa": fitted(both_have),
         "ridges": most_ridges_fewer(both_have),
         "LEAST": LEAST, "MARGIN": MARGIN, "PART": PART, "MESHES": MESHES,
-        "WITHOUT": WITHOUT, "PULLED": PULLED, "LARGEST": LARGEST, "LOWEST": LOWEST, "FIRST": FIRST, "WORK": WORK,
+        "WITHOUT": WITHOUT, "PULLED": PULLED, "LOWEST": LOWEST, "FIRST": FIRST, "WORK": WORK,
         "known": [REGIONS[0].errors[key]["f_electrostatic"] for key in ("full_slip", WHOLE)],
-        "lost": [each for each in tried if "failure" in each], "least": least, "parts": parts,
+        "lost": [each for each in states if "failure" in each], "parts": parts,
     }  # fmt: skip
     return harness.page(docs, "loads", "python3 -m benchmarks.loads", globals() | names, "models")
 
 
-def not_tried(state: Data) -> bool:
-    """Return whether a state was not looked for."""
-    return bool(state.get("failure", "").startswith("not tried"))
-
-
-def also(regions: Iterable["Judged"]) -> str:
-    """Return a sentence on the errors beyond :data:`benchmarks.loads.compared.PULLED`; empty where none is known."""
-    parts = [
-        f"± {each.error:.1f} % with a coefficient of {each.friction}"
-        for each in regions
-        if not each.near and each.error is not None
-    ]
-    return f" With an attraction of more than {PULLED:g} times the force it is known to {', '.join(parts)}." * bool(
-        parts
-    )
+def lost_words(lost: Iterable[Data]) -> str:
+    """Return why states were not found, by :data:`_WHY`."""
+    counts = Counter(next(words for part, words in _WHY.items() if part in state["failure"]) for state in lost)
+    return ", ".join(f"{count} {words}" for words, count in counts.most_common())
 
 
 class Judged(NamedTuple):
     """A band of the friction coefficient on the page."""
 
     friction: str
-    near: bool
-    """Whether its attraction is at most :data:`benchmarks.loads.compared.PULLED` times the force."""
+    pull: float
+    """Of :data:`benchmarks.loads.compared.PULLED`: that of its level."""
     limits: tuple[float, ...]
     """Largest force of a section (N/m), voltage (V) and attraction over force."""
     made: int
@@ -205,24 +201,24 @@ class Judged(NamedTuple):
 
 
 def judged_levels(every: Sequence[Level]) -> Iterator[Judged]:
-    """Yield the bands of the first level, and those of the second that have a region of their own."""
+    """Yield the bands of the first level, and those of the others that have a region of their own."""
     for level in every:
         for k, (band, region) in enumerate(zip(level.bands, level.regions, strict=True)):
             if level is every[0] or region is not None:
-                yield judged(band, region, f"{BANDS[k]:g} to {BANDS[k + 1]:g}", level is every[0])
+                yield judged(band, region, f"{BANDS[k]:g} to {BANDS[k + 1]:g}", level.pull)
 
 
-def judged(band: Band, region: Mapping[str, Any] | None, words: str, near: bool) -> Judged:
+def judged(band: Band, region: Mapping[str, Any] | None, words: str, pull: float) -> Judged:
     """Return what the page has of a band and its region."""
     tests = [each for each in band.whole if not fits(each)]
     places = [(each.force, each.values["voltage"], each.attraction / each.force) for each in band.some]
     limits = tuple(max(values) for values in zip(*places, strict=True))
     numbers = len(band.made), len(band.tests), len(band.without), len(tests)
     if region is None:
-        return Judged(words, near, limits, numbers[0], None, numbers[1], None, numbers[2], None, numbers[3], None)
+        return Judged(words, pull, limits, numbers[0], None, numbers[1], None, numbers[2], None, numbers[3], None)
     errors = [region["errors"][state]["f_electrostatic"] for state in ("full_slip", WHOLE)]
     inside = [covered(some, error) for some, error in zip((band.tests, tests), errors, strict=True)]
-    return Judged(words, near, limits, numbers[0], 100 * errors[0], numbers[1], inside[0], numbers[2], 100 * errors[1],
+    return Judged(words, pull, limits, numbers[0], 100 * errors[0], numbers[1], inside[0], numbers[2], 100 * errors[1],
                   numbers[3], inside[1])  # fmt: skip
 
 

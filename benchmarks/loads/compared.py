@@ -23,8 +23,8 @@ BANDS = (0.1, 0.35, 0.65, 1.0)
 """Friction coefficients, between which an error is found: it grows with the shear of the finger."""
 LEAST, MARGIN = 8, 1.5
 """Least number of states that make an error, and that test it; factor on what covers those that make it."""
-PULLED = 8.0
-"""Attraction over force, above which errors are larger and made of other states."""
+PULLED = (4.0, 8.0, math.inf)
+"""Attraction over force, up to which a level has its states: under a stronger attraction errors are larger."""
 BLOCK = 2  # scenes of the sequence that make the error, or test it, in turn
 PART = 0.95  # of the states that the error is to cover
 WITHOUT = 0.1  # of the states inside a region, at most, that the full model did not reach
@@ -182,20 +182,24 @@ def _limits(some: Sequence[Compared], without: Sequence[Compared]) -> Array:
 class Level(NamedTuple):
     """Bands of the friction coefficient up to an attraction over force."""
 
+    pull: float
     bands: list[Band]
     regions: list[dict[str, Any] | None]
-    """By band; None where no error is known, or where the level before has it."""
+    """By band; None where no error is known, or where a level before reaches as far."""
 
 
 def levels(sections: Sequence[Compared], fingers: Sequence[Compared]) -> list[Level]:
-    """Return the bands with an attraction of :data:`PULLED` times the force at most, and those of all states."""
-    near, far = (bands(sections, fingers, pull) for pull in (PULLED, math.inf))
-    known = by_band(near)
-    beyond = [
-        None if one and other and other["ranges"][PULL][1] <= one["ranges"][PULL][1] else other
-        for one, other in zip(known, by_band(far), strict=True)
-    ]
-    return [Level(near, known), Level(far, beyond)]
+    """Return the bands up to each attraction over force of :data:`PULLED`."""
+    found: list[Level] = []
+    farthest = [0.0] * (len(BANDS) - 1)
+    for pull in PULLED:
+        some = bands(sections, fingers, pull)
+        known = by_band(some)
+        ends = [region["ranges"][PULL][1] if region else 0.0 for region in known]
+        own = [region if end > far else None for region, end, far in zip(known, ends, farthest, strict=True)]
+        farthest = [max(both_ends) for both_ends in zip(ends, farthest, strict=True)]
+        found.append(Level(pull, some, own))
+    return found
 
 
 def regions(every: Iterable[Level]) -> list[dict[str, Any]]:

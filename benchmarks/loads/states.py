@@ -18,7 +18,6 @@ from benchmarks.loads.scenes import (
     FAR,
     FIRST,
     LADDER,
-    LARGEST,
     LEAST_RISE,
     LIGHT,
     LOWEST,
@@ -28,10 +27,8 @@ from benchmarks.loads.scenes import (
     WORK,
     Data,
     meshed,
-    section,
     tasks,
 )
-from fingerpad.reduced import cylinders
 from fingerpad.results.files import replace
 from fingerpad.scene import from_data
 from variational.solvers.outcome import NotConverged
@@ -101,9 +98,6 @@ class Pool:
     def state(self, data: Data, f_ext: float) -> Data:
         """Return full slip, ready for JSON; the ``failure`` and the largest voltage before it where there is none."""
         counts, wanted = self.slips.finger.solver.counts, data["voltage"]
-        f_el = _attraction(data, f_ext)
-        if f_el > LARGEST:
-            return {"f_ext": f_ext, "failure": f"not tried: attraction is {f_el:.3g} N/m", "factorisations": 0}
         before, last, ratio = counts.factorisations, 0.0, RISE
         found = self._from_nearest(data, f_ext, FIRST)
         while "failure" in found and counts.factorisations < before + WORK and ratio > LEAST_RISE:
@@ -132,12 +126,6 @@ class Pool:
         except (StepFailed, _TooManyError) as error:
             return {"f_ext": f_ext, "failure": str(error)}
         return _kept(self.solved[-1].state, f_ext)
-
-
-def _attraction(data: Data, f_ext: float) -> float:
-    """Return the attraction (N/m) by the closed form."""
-    (slip,) = cylinders.over_forces(section(data, f_ext), [f_ext], "full_slip")
-    return slip.f_electrostatic
 
 
 def _model(data: Data, f_ext: float, which: int) -> Any:

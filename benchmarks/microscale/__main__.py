@@ -236,7 +236,7 @@ def draw(docs: Path) -> Path:
     needed = [_reaches(curves["75"]) for words, curves in numbers["curves"].items() if words != "bearing area"]
     deformed = [row for row in numbers["adhesive"] if row["in_contact"] and row["voltage"] >= 70]
     areas = {row["pixels"]: row["values"][2] for row in numbers["grids"] if row["p_c"] == PRESSURES[1]}
-    gaps = [mean for mean, _ in numbers["direct"]["wide"][3]]
+    gaps, known = numbers["direct"]["wide"][3], [mean for mean, _ in contacts.KNOWN["wide"][3]]
     names = {
         "read": read,
         "both": [f"{each.words} ({each.reading})" for each in read if each.friction and LOAD in each.gaps],
@@ -248,16 +248,20 @@ def draw(docs: Path) -> Path:
         "touching": [v for words, of in numbers["rises"].items() if _touches(words) for v in of["sine"].values() if v],
         "apart": [v for words, of in numbers["rises"].items() if not _touches(words) for v in of["sine"].values() if v],
         "span": lambda reading: readings.span(read, reading),
+        "shown": lambda reading: readings.shown(read, reading),
         "others": lambda reading: readings.span([each for each in read if each.words != "bearing area"], reading),
         "mu": lambda words, reading: numbers["read"][words][reading][LOAD]["mu_app"],
         "pressed": numbers["read"]["bearing area"]["rms"][LOAD]["p_c"] * 1e-3,
         "gap": lambda found, k: _gap(found["d_eq"][k] * 1e6, found["spread"][k] * 1e6),
+        "pull": _pull, "area_scatter": [scatter / mean for mean, scatter in numbers["direct"]["wide"][2]],
         "reaches": _reaches, "compared": rows, "inside": sum(inside), "known_pairs": inside,
         "least_voltage": min(u for u in needed if u), "most_voltage": max(u for u in needed if u),
         "small": numbers["small"],
+        "flat": lambda found: Scene().friction * (1 + found["attraction"] / contacts.P_EXT),
         "broken": [part for found in numbers["closures"].values() for part in found["broken"]],
         "first_off": deformed[0], "area_error": areas[min(areas)] / areas[max(areas)],
-        "gap_span": f"{max(gaps):.2f} to {min(gaps):.2f} µm; other code has 5.60 to 1.37 µm", "kPa": 1e-3,
+        "gap_span": f"{gaps[0][0]:.2f} to {gaps[-1][0]:.2f} µm; other code has {known[0]:.2f} to {known[-1]:.2f} µm",
+        "kPa": 1e-3,
     }  # fmt: skip
     return harness.page(docs, "microscale", "python3 -m benchmarks.microscale", globals() | names)
 
@@ -271,6 +275,13 @@ def _gap(value: float, spread: float) -> str:
     return f"{value:.2f}" + (f" ± {spread:.2f}" if spread else "")
 
 
+def _pull(found: Mapping[str, list[float]], k: int) -> str:
+    """Return the attraction (kPa) at 100 V and a pressure of the page, ± 2 / (h_0 + d_eq) times the scatter of d_eq."""
+    value = found["pull"][k] * 1e4 * 1e-3
+    spread = 2 * value * found["spread"][k] / (Scene().h_0 + found["d_eq"][k])
+    return f"{value:.1f}" + (f" ± {spread:.1f}" if spread else "")
+
+
 def _paint(figure: Figure, numbers: Mapping[str, Any]) -> None:
     gap, area, mu = figure.subplots(1, 3)
     p = np.array(PRESSURES) * 1e-3
@@ -279,9 +290,10 @@ def _paint(figure: Figure, numbers: Mapping[str, Any]) -> None:
         d_eq, spread = (np.array(found[name]) * 1e6 for name in ("d_eq", "spread"))
         gap.plot(p, d_eq, label=words, **look)
         gap.fill_between(p, d_eq - spread, d_eq + spread, color=look["color"], alpha=0.25, lw=0)
-        area.plot(p, 100 * np.array(found["area"]), **look)
+        if "no field" not in words:  # the area does not depend on the field
+            area.plot(p, 100 * np.array(found["area"]), **look)
         values = [np.nan if value is None else value for value in numbers["curves"][words]["75"]]
-        mu.plot(VOLTAGES, values, color=look["color"])
+        mu.plot(VOLTAGES, values, markevery=2, **look)
     gap.axhspan(GAPS[0] * 1e6, GAPS[1] * 1e6, color="0.85", zorder=0)
     gap.set(xscale="log", yscale="log", ylabel="equivalent air gap (µm)", title="A  grey: published gaps")
     area.set(xscale="log", yscale="log", ylabel="area in contact (% of the ridge's)", title="B")

@@ -69,7 +69,7 @@ def microscale(argv: Sequence[str]) -> int:
     echo("with; separation: mean, of skin and screen; air gap: equivalent one; real area: of the nominal area.")
     low, high = (p * 1e-3 for p in closure.pressures)
     end = "the pressure at zero separation" if isinstance(closure, BearingArea) else "the end of the table of gaps"
-    begin = "roughness.p_floor" if low == closure.p_floor * 1e-3 else "the begin of the table of gaps"
+    begin = "roughness.p_floor" if low == closure.p_floor * 1e-3 else "the beginning of the table of gaps"
     echo(f"The air gap stays constant below {low:.4g} kPa ({begin}) and above {high:.4g} kPa, {end}.")
     echo("\n".join([*_scatter(closure, [row["p_c"] for row in rows]), _sticking(closure)]))
     for text in remarks(scene):

@@ -71,10 +71,10 @@ def without_load(states: Iterable[ContactState], closure: Closure | None) -> lis
     """Return in how many charged states attraction alone holds the finger, and the ridge that adheres most.
 
     Args:
-        states: in any order.
+        states: in contact, in any order.
         closure: see :func:`sticking`.
     """
-    charged = [state for state in states if state.voltage and state.contact_length > 0]
+    charged = [state for state in states if state.voltage]
     held = [state for state in charged if state.f_ext <= _NO_LOAD * state.f_contact]
     if not held:
         return []

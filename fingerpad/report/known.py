@@ -10,7 +10,7 @@ from fingerpad.results.palette import BLUE, GREY, VERMILION
 if TYPE_CHECKING:
     from fingerpad.results.result import Result
 
-_LEFT, _RIGHT, _WIDTH, _ROW = 92.0, 122.0, 480.0, 26.0  # px
+_LEFT, _RIGHT, _WIDTH, _ROW = 92.0, 134.0, 480.0, 26.0  # px
 _LEAST, _APART = 3.0, 34.0  # px, of the shortest bar, and between two ticks
 _TICKS = (0.02, 0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.8, 1, 1.5, 2, 3, 5, 10, 20, 50, 100)
 _SYMBOL = 'µ<tspan dy="4" font-size="12">app</tspan><tspan dy="-4">&#8203;</tspan>'  # typeset, as SVG has it
@@ -22,7 +22,7 @@ _OPEN = "An arrow is an open end."
 def bars(result: "Result") -> str:
     """Return the figure of a result's band, HTML; empty without one. Its axis is logarithmic."""
     kept, found = result.record.get(KNOWN, {}), result.headline
-    if not found.known or kept["low"] is None:
+    if not found.known:
         return ""
     mu, error = kept["mu_app"], found.error
     solved = {"name": "solved to", "low": mu - error, "high": mu + error}

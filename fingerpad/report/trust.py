@@ -9,6 +9,7 @@ from fingerpad.reduced.registry import follows_path
 from fingerpad.report import page as html
 from fingerpad.report.known import bars
 from fingerpad.report.page import BAD, CARE, GOOD
+from fingerpad.results.closures import KNOWN, why_not_known
 from fingerpad.results.headline import missing_slip
 from fingerpad.results.states import called
 from fingerpad.richardson import FEW_FACETS
@@ -35,8 +36,7 @@ class Finding(NamedTuple):
 
 def findings(result: "Result") -> list[Finding]:
     """Return what was looked at, in the order in which a reader needs it."""
-    found = [_end(result)]
-    found += _full_slip(result)
+    found = [_end(result), *_full_slip(result), *_not_known(result)]
     if not follows_path(result.model):
         words = f"The model is {result.model!r}, a cheaper one; {in_words(result.record.get('model_error', {}))}."
         return [*found, Finding("model", CARE, words), *_cautions(result)]
@@ -54,7 +54,7 @@ def verdict(found: list[Finding]) -> tuple[str, str]:
     bad, care = ([each for each in found if each.verdict == kind] for kind in (BAD, CARE))
     for kind, worst, first in ((BAD, bad, "Do not use these numbers as they are"), (CARE, care, "Use with care")):
         if worst:
-            return kind, f"{first}: {' and '.join(each.what for each in worst)}. {worst[0].words}"
+            return kind, f"{first}: {' and '.join(dict.fromkeys(each.what for each in worst))}. {worst[0].words}"
     holds = "All that was examined holds: the equations are solved."
     return GOOD, f"{holds} What the finger and the model assume is not in it."
 
@@ -82,6 +82,11 @@ def _full_slip(result: "Result") -> Iterator[Finding]:
     for load in result.loads:
         if load.full_slip_part == 0 and load.rubs(result.record.get("force_error") or 0.0):
             yield Finding("no full slip under a waveform", CARE, f"In the load {load.name} {load.sticking}.")
+
+
+def _not_known(result: "Result") -> Iterator[Finding]:
+    if why := why_not_known(result.record.get(KNOWN, {})):
+        yield Finding("friction is not known", BAD, f"{why[0].upper()}{why[1:]}.")
 
 
 def _mesh(result: "Result") -> Iterator[Finding]:

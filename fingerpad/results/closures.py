@@ -29,15 +29,20 @@ def in_words(kept: Mapping[str, Any]) -> str:
 
 def known_in_words(kept: Mapping[str, Any]) -> str:
     """Return a kept band over all assumptions as a sentence, the largest part first; empty without one."""
-    if not kept:
+    if not kept or kept["low"] is None:
         return ""
-    if kept["low"] is None:
-        return "not known: " + "; ".join(f"by {words} {why}" for words, why in kept["no_number"].items())
     parts = ", ".join(f"{part['name']} {_with_notes(part)}" for part in kept["parts"])
     of = "whole finger" if kept["whole"] else "middle section"
     words = f"known to about {span(kept)}, by the cheaper model of charged cylinders: µ_app of the {of} by {parts}"
     lacks = ", ".join(kept["not_known"])
     return words + (f"; not in it: {lacks}, whose error is not known at this force" if lacks else "")
+
+
+def why_not_known(kept: Mapping[str, Any]) -> str:
+    """Return why the result's own closure has no number, of a kept band over all assumptions; empty where it has."""
+    if not kept or kept["low"] is not None:
+        return ""
+    return "; ".join(f"by {words} {why}" for words, why in kept["no_number"].items())
 
 
 def span(part: Mapping[str, Any]) -> str:

@@ -6,6 +6,8 @@ It is the headline where there is no sum: of a history, of a finger from a file,
 
 Without attraction, friction at full slip is :math:`\mu_0 F` by Coulomb's law, whatever the finger. Under another law
 it would be a result of its own, so that the sentence has the friction force alone.
+
+Where the result's own closure has no number (:mod:`fingerpad.reduced.closure_band`), the headline has none either.
 """
 
 import math
@@ -13,7 +15,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from fingerpad.results.closures import KNOWN, known_in_words
+from fingerpad.results.closures import KNOWN, known_in_words, why_not_known
 from fingerpad.results.quantities import FINGER, QUANTITIES, Output
 from fingerpad.results.states import LoadResult, called
 
@@ -101,10 +103,13 @@ def headline(result: "Answer") -> Headline:
     if (load := _timed(result)) is not None:
         return _over_time(load, slip)
     if finger is not None and (slip is None or "full_slip" in finger.states):
-        return _of_finger(result, finger)
-    if slip is not None:
-        return _of_slip(result, slip)
-    return _of_contact(result)
+        found = _of_finger(result, finger)
+    else:
+        found = _of_contact(result) if slip is None else _of_slip(result, slip)
+    if slip is not None and (why := why_not_known(result.record.get(KNOWN, {}))):
+        sentence = f"Friction {found.at}, is not known: {why}."
+        return Headline(sentence, found.of, found.quantity, math.nan, found.at)
+    return found
 
 
 def missing_slip(result: "Answer") -> str:

@@ -9,6 +9,7 @@ from fingerpad.scene import Scene, law_name
 from fingerpad.scene.law_keys import keys_of, parameters
 from fingerpad.scene.materials import CLOSURES, FRICTION_LAWS, MATERIALS
 from fingerpad.scene.reading import plain, put
+from variational.contact.friction import Coulomb
 
 
 def with_values(scene: Scene, changes: Mapping[str, Any]) -> Scene:
@@ -20,8 +21,7 @@ def with_values(scene: Scene, changes: Mapping[str, Any]) -> Scene:
     data: dict[str, Any] = {}
     for key, value in changes.items():
         if key.endswith(".law"):
-            shared = _shared(scene, key.removesuffix(".law"), value)
-            changes = {name: each for name, each in shared.items() if name not in changes} | dict(changes)
+            changes = _shared(scene, key.removesuffix(".law"), value) | dict(changes)
     for key, value in sorted(changes.items(), key=lambda change: "[" not in change[0]):  # whole lists first
         table = re.split(r"[.\[]", key, maxsplit=1)[0]
         if "[" in key and table not in data:  # an entry of a list, of which the others stay
@@ -36,6 +36,8 @@ def _shared(scene: Scene, key: str, name: Any) -> dict[str, Any]:
         present = value_of(scene, key)
     except (AttributeError, IndexError, TypeError):  # no such key, which the scene refuses
         return {}
+    if key == "friction" and isinstance(present, float):
+        present = Coulomb(present)
     kind = next((kind for kind in (MATERIALS, FRICTION_LAWS, CLOSURES) if isinstance(present, kind.base)), None)
     if kind is None or not is_dataclass(present):
         return {}

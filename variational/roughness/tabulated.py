@@ -32,19 +32,24 @@ _SIDE = 4.0  # largest waves in the side of the surface whose scatter is meant
 
 
 class Curve:
-    """A piecewise cubic through values at equal steps of an abscissa; flat beyond its ends."""
+    """A piecewise cubic through values at equal steps of an abscissa."""
 
     def __init__(self, x: Array, y: Array) -> None:
         """Take abscissas, shape (n,) and increasing by equal steps, and values of the same shape."""
-        self._low, self._step, self._last = float(x[0]), float((x[-1] - x[0]) / (len(x) - 1)), len(x) - 2
-        self._c = scipy.interpolate.PchipInterpolator(x, y).c
+        a, b, c, d = scipy.interpolate.PchipInterpolator(x, y).c
+        self._begin = x[0] + float((x[-1] - x[0]) / (len(x) - 1)) * np.arange(len(x) - 1)
+        self._inner = self._begin[1:]
+        self._c = np.array([[a, np.zeros_like(a)], [b, 3 * a], [c, 2 * b], [d, c]])  # of values and of derivatives
 
-    def __call__(self, x: Array) -> tuple[Array, Array]:
-        """Return values and derivatives at abscissas inside the range, of any shape."""
-        k = np.fmin(np.fmax((x - self._low) / self._step, 0), self._last).astype(np.int64)
-        t = x - (self._low + k * self._step)
-        a, b, c, d = self._c.take(k, axis=1)
-        return ((a * t + b) * t + c) * t + d, (3 * a * t + 2 * b) * t + c
+    def __call__(self, x: Array) -> Array:
+        """Return values and derivatives at abscissas inside the range, shape (2, ...) before that of the abscissas."""
+        k = self._inner.searchsorted(x, "right")  # of not-a-number the last: it stays one
+        t = x - self._begin.take(k)
+        found, second, third, last = self._c.take(k, axis=-1)
+        for each in (second, third, last):  # Horner's rule for both at once
+            found *= t
+            found += each
+        return found
 
 
 @dataclass(frozen=True)
