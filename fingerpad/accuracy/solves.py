@@ -1,6 +1,6 @@
 """The states of a path solved for again: on other meshes, with other steps, over a stiffer screen; and their cost."""
 
-from collections.abc import Callable, Collection, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
@@ -9,22 +9,114 @@ from mpi4py import MPI
 from numpy.typing import NDArray
 
 from fingerpad.accuracy import edges
-from fingerpad.accuracy.state_solver import StateSolver
-from fingerpad.accuracy.states import Solve, State, StateRecorder
+from fingerpad.accuracy.states import Solve, State, StateRecorder, together
+from fingerpad.model.adhesion import adhering, lost
+from fingerpad.model.checks import FingerExceeded
 from fingerpad.model.options import FingerModel
 from fingerpad.model.record import Viewer
+from fingerpad.model.schedule import loads_to_normal_contact
 from fingerpad.model.simulation import RestartRequired, Simulation
-from fingerpad.results.states import WORDS
-from fingerpad.scene import Load
+from fingerpad.results.states import SLIDE_ON, WORDS
 from geometry.parameters import MeshSize
 from geometry.profiles import GeometryError, Profiles
 from variational.contact.formulation import Formulation
-from variational.solvers.continuation import StepFailed
+from variational.solvers.continuation import Attempt, StepFailed
+from variational.solvers.transfer import restore
 
 if TYPE_CHECKING:
     from fingerpad.model.finger import Step
 
 Array = NDArray[np.float64]
+_JUMPED = "skin jumped on the way, and roundoff (the number of ranks) may have chosen this state among others"
+
+
+class StateSolver(Simulation):
+    """A finger on a mesh of its own, on which states from elsewhere are solved for, without a path.
+
+    Where ridges adhere without a load, or nearly do, a mesh can have several states, which differ in the facets in
+    contact at the end of a ridge. If skin jumps as one is solved for, roundoff can decide to which of them.
+
+    Attributes:
+        doubts: states that roundoff may have chosen among others, in words.
+    """
+
+    def __init__(self, model: FingerModel, comm: MPI.Comm) -> None:
+        """Mesh the finger and set the solver up; collective."""
+        super().__init__(model, comm)
+        self.doubts: list[str] = []
+
+    def re_equilibrate(self, state: State, name: str) -> None:
+        """Solve again for a state that was reached on another mesh of the same finger; collective.
+
+        Args:
+            state: as it was found there.
+            name: what it is called in a failure.
+
+        Raises:
+            StepFailed: no equilibrium was found from there, or it is none (forces out of balance, skin where it was not
+                expected to touch), or full slip is no longer full or not steady. It names a ridge that adheres.
+        """
+        again = f"{name}, solved again with a contact size of {self.finger.contact_size:g} m"
+        closure = self.model.closure
+        try:
+            restore(state.snapshot, self.finger.coupling, state.direction * SLIDE_ON)
+        except ValueError as error:  # meshes so coarse that one does not have the shape of the other
+            raise StepFailed(f"{again}: {error}") from error
+        try:
+            attempt = self._restored(state, name, again)
+        except StepFailed as error:
+            raise StepFailed(lost(error, state.state, closure)) from error
+        adheres = adhering(self.states[-1], closure)
+        if attempt.jump and adheres:
+            self.doubts.append(f"{again}: {_JUMPED}: {adheres}")
+
+    def _restored(self, state: State, name: str, again: str) -> Attempt:
+        """Return how a state that was put in was solved for."""
+        attempt = self._balance(name)
+        try:
+            steady = not state.direction or self._slip.slides_on(name, state.direction)
+        except FingerExceeded as error:
+            raise StepFailed(f"{again}: {error}") from error
+        if self._restart is not None:
+            raise StepFailed(f"{again}: {self._restart.reason}")
+        if not steady:
+            raise StepFailed(f"{again}, is not steady")
+        return attempt
+
+    def over_stiffer_screen(self, formulation: Formulation, name: str, direction: int = 0) -> None:
+        """Solve the present state again over springs of twice the stiffness, which bear the same friction; collective.
+
+        Args:
+            formulation: the contact over that screen.
+            name: of the state.
+            direction: 1 or -1 for a state of full slip, the way the bone slides; zero for another.
+
+        Raises:
+            StepFailed: no equilibrium was found from there.
+        """
+        problem = self.finger.problem
+        place = problem.history.followed(self.finger.continuation.surface_state.history)["anchor"]
+        elastic = problem.history.accepted["anchor"] - place
+        problem.history.accept({"anchor": place + elastic / 2 - direction * SLIDE_ON})
+        problem.set_formulation(formulation)
+        self._balance(name)
+
+    def _balance(self, name: str) -> Attempt:
+        """Solve for an equilibrium from the present fields, and accept it; return how it was solved for."""
+        finger = self.finger
+        self._load = name
+        attempt = finger.continuation.re_equilibrate(name)
+        self.energy = finger.book()  # what was dissipated on the way is not known
+        loads = finger.ridge_loads()
+        finger.check_balance(loads, name)
+        self.states.append(self._slip.placed(self.states, self.present(loads).state, probe=False))
+        try:
+            self._restart = self._zone_exceeded(loads)
+        except FingerExceeded as error:
+            raise StepFailed(f"{name}: {error}") from error
+        if self._restart is not None:
+            raise StepFailed(f"{name}: {self._restart.reason}")
+        return attempt
 
 
 def follow(
@@ -120,26 +212,6 @@ def _solve(
     simulation.checks.free()
     stiff = over.solve() if over.states and not soft else None
     return replace(recorder.solve(), stiffer=stiff, soft=soft, doubts=tuple(simulation.doubts))
-
-
-def together(solves: Sequence[Solve]) -> Solve:
-    """Return the states of solves on meshes of the same sizes as those of one."""
-    first, *others = solves
-    if not others:
-        return first
-    over = [solve.stiffer for solve in solves if solve.stiffer is not None]
-    return replace(
-        first,
-        states={name: state for solve in solves for name, state in solve.states.items()},
-        views={name: view for solve in solves for name, view in solve.views.items()},
-        unknowns=max(solve.unknowns for solve in solves),
-        factorisations=sum(solve.factorisations for solve in solves),
-        processor_seconds=sum(solve.processor_seconds for solve in solves),
-        newton=sum(solve.newton for solve in solves),
-        stiffer=together(over) if len(over) == len(solves) else None,
-        soft=next((solve.soft for solve in solves if solve.soft), ""),
-        doubts=tuple(each for solve in solves for each in solve.doubts),
-    )
 
 
 class Solves:
@@ -268,17 +340,3 @@ class Solves:
             "unknowns_times_factorisations": sum(s.unknowns * s.factorisations for s in self.found),
             "processor_seconds": sum(seconds),
         }
-
-
-def loads_to_normal_contact(loads: tuple[Load, ...]) -> tuple[Load, ...]:
-    """Return the loads before the bone first moves sideways with the finger pressed."""
-    pressed, place = False, 0.0
-    for k, load in enumerate(loads):
-        to = load.place(place)
-        x = place if to is None else to
-        if load.f_ext is not None or load.bone_height is not None:
-            pressed = (load.f_ext or 0.0) > 0 or (load.bone_height or 0.0) < 0
-        if pressed and x != place:
-            return loads[:k]
-        place = x
-    return loads

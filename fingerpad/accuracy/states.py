@@ -2,7 +2,7 @@
 
 import math
 import time
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
@@ -189,3 +189,23 @@ class StateRecorder:
         states = {name: state for name, state in self.states.items() if name != "uncharged" or not alike}
         counts = f.solver.counts
         return Solve(states, f.size, f.unknowns, counts.factorisations, seconds, counts.newton, views=self.views)
+
+
+def together(solves: Sequence[Solve]) -> Solve:
+    """Return the states of solves on meshes of the same sizes as those of one."""
+    first, *others = solves
+    if not others:
+        return first
+    over = [solve.stiffer for solve in solves if solve.stiffer is not None]
+    return replace(
+        first,
+        states={name: state for solve in solves for name, state in solve.states.items()},
+        views={name: view for solve in solves for name, view in solve.views.items()},
+        unknowns=max(solve.unknowns for solve in solves),
+        factorisations=sum(solve.factorisations for solve in solves),
+        processor_seconds=sum(solve.processor_seconds for solve in solves),
+        newton=sum(solve.newton for solve in solves),
+        stiffer=together(over) if len(over) == len(solves) else None,
+        soft=next((solve.soft for solve in solves if solve.soft), ""),
+        doubts=tuple(each for solve in solves for each in solve.doubts),
+    )

@@ -1,4 +1,4 @@
-"""The targets of a load: one, or those between the samples of a voltage over time."""
+"""The targets of a load: one, or those between the samples of a voltage over time; and the loads to normal contact."""
 
 from dataclasses import replace
 from functools import partial
@@ -46,3 +46,17 @@ def targets(load: "Load", x: float, step_scale: float) -> list[Target]:
 def _voltage(wave: Waveform, before: Sample, after: Sample, part: float) -> float:
     """Return the voltage (V) at a part of the time between two samples."""
     return wave.between(before, after, before[0] + part * (after[0] - before[0]))
+
+
+def loads_to_normal_contact(loads: tuple["Load", ...]) -> tuple["Load", ...]:
+    """Return the loads before the bone first moves sideways with the finger pressed."""
+    pressed, place = False, 0.0
+    for k, load in enumerate(loads):
+        to = load.place(place)
+        x = place if to is None else to
+        if load.f_ext is not None or load.bone_height is not None:
+            pressed = (load.f_ext or 0.0) > 0 or (load.bone_height or 0.0) < 0
+        if pressed and x != place:
+            return loads[:k]
+        place = x
+    return loads

@@ -3,8 +3,8 @@
 import pytest
 
 import fingerpad as fp
-from fingerpad.accuracy import state_solver
-from fingerpad.accuracy.state_solver import StateSolver
+from fingerpad.accuracy import solves
+from fingerpad.accuracy.solves import StateSolver
 from fingerpad.model.simulation import Simulation
 from fingerpad.scene import from_data, load
 from tests.small_finger import NINE, SMALL
@@ -53,7 +53,7 @@ def test_meshes_too_coarse_to_be_of_one_shape_are_noted(monkeypatch):
     def refused(*_):
         raise ValueError("a node lies 1.08 triangles outside the state's mesh; it is of another body")
 
-    monkeypatch.setattr(state_solver, "restore", refused)
+    monkeypatch.setattr(solves, "restore", refused)
     output = {"receptors": False, "each_load": False}
     result = fp.run(from_data(NINE | {"f_ext": 1.0, "voltage": 100.0, "output": output}))
     assert result.full_slip.f_t > 0 and not result.failure
