@@ -38,10 +38,12 @@ def test_ridge_that_adheres_is_named():
     assert words.startswith("ridge 1 adheres without a load at 150 V: by the closure BoundaryElements ridges adhere")
 
 
-def test_ridges_under_a_load_are_not_named():
+def test_ridge_under_the_least_load_is_the_nearest():
     """A ridge that lifted off, with a contact force of zero, is none that adheres."""
     words = adhering(state(150.0, [30.0, 20.0, 0.0]), EXACT)
-    assert words.startswith("at 150 V by the closure") and words.endswith("another roughness.law")
+    assert words.startswith("ridge 0 is nearest to adhering without a load at 150 V: by the closure BoundaryElements")
+    assert words.endswith("another roughness.law")
+    assert adhering(state(150.0, [0.0, 0.0, 0.0]), EXACT).startswith("at 150 V by the closure")
     assert adhering(state(50.0, [3.0, 2.0, 0.9]), EXACT) == adhering(None, EXACT) == ""
 
 

@@ -8,6 +8,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from fingerpad import launcher
 from fingerpad.cli import main
 from fingerpad.reduced import cylinders
 from fingerpad.scene import from_data, load, materials
@@ -151,10 +152,14 @@ def test_values_that_a_scene_refuses_are_told(tmp_path, capsys):
     assert line.endswith("e-06?); is the unit of the heights right?")
 
 
-@pytest.mark.parametrize("terminal", [True, False])
-def test_progress_of_a_maps_table(tmp_path, monkeypatch, capsys, terminal):
-    """In a terminal one line that is written over; elsewhere, by a clock of 12 s a contact, each third contact's."""
+@pytest.mark.parametrize(("terminal", "rank"), [(True, 0), (False, 0), (False, 1)])
+def test_progress_of_a_maps_table(tmp_path, monkeypatch, capsys, terminal, rank):
+    """In a terminal one line that is written over; elsewhere, by a clock of 12 s a contact, each third contact's.
+
+    Of several processes the first alone has it.
+    """
     monkeypatch.setenv("FINGERPAD_CACHE", str(tmp_path))
+    monkeypatch.setattr(launcher, "rank", lambda: rank)
     clock = itertools.count(step=12.0)
     monkeypatch.setattr(materials, "time", SimpleNamespace(monotonic=lambda: next(clock)))
     monkeypatch.setattr(sys.stderr, "isatty", lambda: terminal)
@@ -163,6 +168,9 @@ def test_progress_of_a_maps_table(tmp_path, monkeypatch, capsys, terminal):
     given = {"file": str(tmp_path / "skin.npy"), "unit": "um", "size": ["100 um", "100 um"]}
     from_data({"roughness": {"law": "BoundaryElements", "topography": given}})
     text = capsys.readouterr().err
+    if rank:
+        assert text == ""
+        return
     (of,) = {int(number) for number in re.findall(r"of the height map: \d+ of (\d+)", text)}
     lines = [f"contacts of the height map: {k} of {of}" for k in range(1, of + 1)]
     assert text == (

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import fingerpad as fp
-from fingerpad.reduced.closure_band import Slip, friction, known
+from fingerpad.reduced.closure_band import Slip, friction, known, with_band
 from fingerpad.report import trust
 from fingerpad.report.known import bars
 from fingerpad.results.closures import KNOWN, known_in_words
@@ -82,6 +82,13 @@ def test_section_alone_has_its_band():
     assert "µ_app of the middle section by closure" in found.headline.known
 
 
+def test_band_of_a_section_beside_a_finger_without_full_slip(result):
+    """The sum of slices can end before full slip; headline and band are then of the middle section."""
+    states = {name: state for name, state in result.finger.states.items() if name != "full_slip"}
+    found = with_band(replace(result, finger=replace(result.finger, states=states)))
+    assert found.known["mu_app"] == found.headline.value == found.full_slip.mu_app and not found.known["whole"]
+
+
 def test_law_of_ones_own(result):
     """It has no roughness and no insulator to change, and no other closures."""
     found = known(replace(result, scene=result.scene.replace(roughness=Held())), {})
@@ -124,6 +131,8 @@ def test_largest_number_that_is_an_upper_bound(result):
     assert closure["upper_bounds"] == {"boundary elements": pytest.approx(share, rel=1e-9)} and share > 0.1
     words = f"the largest number, by boundary elements, is an upper bound: attraction balances {100 * share:.0f} %"
     assert words in known_in_words(result.known) and words[1:] in bars(result)
+    small = fp.run(result.scene.replace(voltage=20.0), model="cylinders")  # which balances less than a tenth
+    assert small.known["parts"][0]["name"] == "closure" and "upper_bounds" not in small.known["parts"][0]
 
 
 def test_result_whose_own_closure_has_no_number(adhering):

@@ -29,6 +29,6 @@ def test_upper_bound_of_a_band():
 
 
 def test_agreement_with_published_numbers():
-    found = read(both=state(0.55, 2e-6), friction=state(0.6, 1e-6), gap=state(0.7, 2.4e-6))
+    found = read(both=state(0.55, 2e-6), friction=state(0.6, 1e-6), gap=state(0.7, 2.4e-6), none=state(0.4, 2.6e-6))
     agree = {words: (each.friction, bool(each.gaps)) for words, each in found.items()}
-    assert agree == {"both": (True, True), "friction": (True, False), "gap": (False, True)}
+    assert agree == {"both": (True, True), "friction": (True, False), "gap": (False, True), "none": (False, False)}

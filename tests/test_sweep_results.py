@@ -257,12 +257,14 @@ def test_cautions_of_points_are_the_sweep_s(tmp_path):
     start = "the error of this model is not known here: "
     unknown = [text for text in cautions if text.startswith(start)]
     low, high = cylinder_errors.REGIONS[1].ranges["electric.d_i"]
-    ours = f"{start}electric.d_i is 0.0001 m, and it is known for {low:g} to {high:g} m (2 of 6 points)"
+    ours = f"{start}electric.d_i is 0.0001 m, and it is known for {low:g} to {high:g} m (2 of 6 points"
+    ours += ", numbers of the first)"
     assert unknown[0] == ours, "of two thicknesses at 200 V"
-    assert [re.search(r"\((\d) of 6 points\)$", text)[1] for text in unknown] == ["2", "1", "2"], "others at 400 V"
+    assert [re.search(r"\((\d) of 6 points", text)[1] for text in unknown] == ["2", "1", "2"], "others at 400 V"
+    assert [text.endswith(", numbers of the first)") for text in unknown] == [True, False, True]
     places = [text for text in cautions if "the closure is out of its range" in text and "d_eq rises" in text]
     count = sum(any("the closure is out of its range" in text for text in each.cautions) for each in found)
-    assert len(places) == 1 and places[0].endswith(f"({count} of 6 points)") and 1 < count < 6
+    assert len(places) == 1 and f"({count} of 6 points" in places[0] and 1 < count < 6
     assert f"! {ours}" in str(found).splitlines()
     page = (tmp_path / "report.html").read_text(encoding="utf-8").replace("\u00a0", " ")
     assert "Limits of validity are reached: " in page and all(html.escape(text) in page for text in unknown)

@@ -253,6 +253,7 @@ def draw(docs: Path) -> Path:
         "mu": lambda words, reading: numbers["read"][words][reading][LOAD]["mu_app"],
         "pressed": numbers["read"]["bearing area"]["rms"][LOAD]["p_c"] * 1e-3,
         "gap": lambda found, k: _gap(found["d_eq"][k] * 1e6, found["spread"][k] * 1e6),
+        "pull": _pull, "area_scatter": [scatter / mean for mean, scatter in numbers["direct"]["wide"][2]],
         "reaches": _reaches, "compared": rows, "inside": sum(inside), "known_pairs": inside,
         "least_voltage": min(u for u in needed if u), "most_voltage": max(u for u in needed if u),
         "small": numbers["small"],
@@ -272,6 +273,13 @@ def _touches(words: str) -> bool:
 
 def _gap(value: float, spread: float) -> str:
     return f"{value:.2f}" + (f" ± {spread:.2f}" if spread else "")
+
+
+def _pull(found: Mapping[str, list[float]], k: int) -> str:
+    """Return the attraction (kPa) at 100 V and a pressure of the page, ± 2 / (h_0 + d_eq) times the scatter of d_eq."""
+    value = found["pull"][k] * 1e4 * 1e-3
+    spread = 2 * value * found["spread"][k] / (Scene().h_0 + found["d_eq"][k])
+    return f"{value:.1f}" + (f" ± {spread:.1f}" if spread else "")
 
 
 def _paint(figure: Figure, numbers: Mapping[str, Any]) -> None:

@@ -51,6 +51,10 @@ class Estimate:
         """Return the largest error allowed of each quantity that is asked for, in its unit."""
         return {}
 
+    def cautions(self) -> list[str]:
+        """Return which states roundoff may have chosen among others."""
+        return [each for solve in self.solves.found for each in solve.doubts]
+
     def summary(self) -> dict[str, Any]:
         """Return how errors were found, ready for JSON; collective."""
         values, found, allowed = self.base.values(), self.estimates(), self.allowed()

@@ -37,6 +37,7 @@ from typing import Any
 from fingerpad.accuracy.estimate import Estimate, of_key
 from fingerpad.accuracy.solves import Solves
 from fingerpad.accuracy.states import Solve, quantities
+from fingerpad.model.adhesion import lost
 from fingerpad.model.simulation import RestartRequired
 from fingerpad.results.interrupt import Interrupted
 from fingerpad.results.states import WORDS
@@ -137,7 +138,7 @@ class Refinement(Estimate):
                 reason = (
                     f"{_ridges(sharp, name)} ridges touch at {WORDS[name]} on the final mesh, and on that of the path "
                 )
-                reason += f"{_ridges(path, name)}"
+                reason = lost(f"{reason}{_ridges(path, name)}", sharp.states[name].state, model.closure)
         except StepFailed as error:
             if model.mesh == final or isinstance(error, Interrupted):
                 raise

@@ -9,86 +9,22 @@ from mpi4py import MPI
 from numpy.typing import NDArray
 
 from fingerpad.accuracy import edges
+from fingerpad.accuracy.state_solver import StateSolver
 from fingerpad.accuracy.states import Solve, State, StateRecorder
-from fingerpad.model.checks import FingerExceeded
 from fingerpad.model.options import FingerModel
 from fingerpad.model.record import Viewer
 from fingerpad.model.simulation import RestartRequired, Simulation
-from fingerpad.results.states import SLIDE_ON, WORDS
+from fingerpad.results.states import WORDS
 from fingerpad.scene import Load
 from geometry.parameters import MeshSize
 from geometry.profiles import GeometryError, Profiles
 from variational.contact.formulation import Formulation
 from variational.solvers.continuation import StepFailed
-from variational.solvers.snapshot import StateSnapshot
-from variational.solvers.transfer import restore
 
 if TYPE_CHECKING:
     from fingerpad.model.finger import Step
 
 Array = NDArray[np.float64]
-
-
-class StateSolver(Simulation):
-    """A finger on a mesh of its own, on which states from elsewhere are solved for, without a path."""
-
-    def re_equilibrate(self, snapshot: StateSnapshot, name: str, direction: int = 0) -> None:
-        """Solve again for a state that was reached on another mesh of the same finger; collective.
-
-        Args:
-            snapshot: the state.
-            name: what it is called in a failure.
-            direction: 1 or -1 for a state of full slip, the way the bone slides; zero for another.
-
-        Raises:
-            StepFailed: no equilibrium was found from there, or it is none (forces out of balance, skin where it was not
-                expected to touch), or full slip is no longer full or not steady.
-        """
-        restore(snapshot, self.finger.coupling, direction * SLIDE_ON)
-        self._balance(name)
-        again = f"{name}, solved again with a contact size of {self.finger.contact_size:g} m"
-        try:
-            steady = not direction or self._slip.slides_on(name, direction)
-        except FingerExceeded as error:
-            raise StepFailed(f"{again}: {error}") from error
-        if self._restart is not None:
-            raise StepFailed(f"{again}: {self._restart.reason}")
-        if not steady:
-            raise StepFailed(f"{again}, is not steady")
-
-    def over_stiffer_screen(self, formulation: Formulation, name: str, direction: int = 0) -> None:
-        """Solve the present state again over springs of twice the stiffness, which bear the same friction; collective.
-
-        Args:
-            formulation: the contact over that screen.
-            name: of the state.
-            direction: as in :meth:`re_equilibrate`.
-
-        Raises:
-            StepFailed: no equilibrium was found from there.
-        """
-        problem = self.finger.problem
-        place = problem.history.followed(self.finger.continuation.surface_state.history)["anchor"]
-        elastic = problem.history.accepted["anchor"] - place
-        problem.history.accept({"anchor": place + elastic / 2 - direction * SLIDE_ON})
-        problem.set_formulation(formulation)
-        self._balance(name)
-
-    def _balance(self, name: str) -> None:
-        """Solve for an equilibrium from the present fields, and accept it."""
-        finger = self.finger
-        self._load = name
-        finger.continuation.re_equilibrate(name)
-        self.energy = finger.book()  # what was dissipated on the way is not known
-        loads = finger.ridge_loads()
-        finger.check_balance(loads, name)
-        self.states.append(self._slip.placed(self.states, self.present(loads).state, probe=False))
-        try:
-            self._restart = self._zone_exceeded(loads)
-        except FingerExceeded as error:
-            raise StepFailed(f"{name}: {error}") from error
-        if self._restart is not None:
-            raise StepFailed(f"{name}: {self._restart.reason}")
 
 
 def follow(
@@ -167,7 +103,7 @@ def _solve(
     recorder, over, finger = StateRecorder(simulation), StateRecorder(simulation), simulation.finger
     springs, soft, viewer = finger.problem.interface.formulation, "", Viewer(finger) if views else None
     for name, state in states.items():
-        simulation.re_equilibrate(state.snapshot, WORDS.get(name, name), state.direction)
+        simulation.re_equilibrate(state, WORDS.get(name, name))
         recorder.keep(name, state.direction != 0)
         if name in examined:
             recorder.examine(name)
@@ -182,7 +118,8 @@ def _solve(
             finger.problem.set_formulation(springs)
     finger.solver.iteration.free()
     simulation.checks.free()
-    return replace(recorder.solve(), stiffer=over.solve() if over.states and not soft else None, soft=soft)
+    stiff = over.solve() if over.states and not soft else None
+    return replace(recorder.solve(), stiffer=stiff, soft=soft, doubts=tuple(simulation.doubts))
 
 
 def together(solves: Sequence[Solve]) -> Solve:
@@ -201,6 +138,7 @@ def together(solves: Sequence[Solve]) -> Solve:
         newton=sum(solve.newton for solve in solves),
         stiffer=together(over) if len(over) == len(solves) else None,
         soft=next((solve.soft for solve in solves if solve.soft), ""),
+        doubts=tuple(each for solve in solves for each in solve.doubts),
     )
 
 

@@ -61,6 +61,8 @@ class Solve:
     """The states over a screen of twice the stiffness, on the same mesh."""
     soft: str = ""
     """Why they were not found, where they were wanted."""
+    doubts: tuple[str, ...] = ()
+    """States that roundoff may have chosen among others, in words."""
     views: dict[str, View] = field(default_factory=dict)
     """What tables and pictures show of states that were solved again, by name."""
 

@@ -52,7 +52,19 @@ def adhering(state: ContactState | None, closure: Closure | None) -> str:
         name = type(closure).__name__
         by = f": {words}" if words else f" of the closure {name}, where it comes down or lets go at once"
         return f"ridge {ridges.number[k]} is past the fold {at}{by}; take a smaller voltage or another roughness.law"
-    return f"{at} {words}; take a smaller voltage or another roughness.law"
+    nearest = at if most is None else f"ridge {most[0]} is nearest to adhering without a load {at}:"
+    return f"{nearest} {words}; take a smaller voltage or another roughness.law"
+
+
+def lost(error: Exception | str, state: ContactState | None, closure: Closure | None) -> str:
+    """Return why a state was not found: the words of a failure, and the ridge of a state before it that adheres.
+
+    Args:
+        error: the failure.
+        state: see :func:`adhering`.
+        closure: see :func:`sticking`.
+    """
+    return "; ".join(filter(None, (str(error), adhering(state, closure))))
 
 
 def without_load(states: Iterable[ContactState], closure: Closure | None) -> list[str]:

@@ -124,7 +124,8 @@ def friction(scene: Scene, slip: ContactState, law: Closure, press: ContactState
     """Return full slip of the charged cylinders by a closure at the load of a state.
 
     This is where a closure has a number or none. It has none without an equilibrium, and beyond its table of gaps:
-    there nearly all of a ridge touches, and the table's last air gap says nothing of it.
+    there nearly all of a ridge touches, and the table's last air gap says nothing of it. The voltage of a drive is what
+    its circuit leaves across the air gap of that closure.
 
     Args:
         scene: of the state.
@@ -141,15 +142,18 @@ def friction(scene: Scene, slip: ContactState, law: Closure, press: ContactState
 
 def _solved(scene: Scene, slip: ContactState, law: Closure, press: ContactState | None, tips: float = 1.0) -> Slip:
     """Return :func:`friction`; raise SceneError without an equilibrium, and for a finger that is none of cylinders."""
-    given = {"roughness": law, "f_ext": slip.f_ext, "voltage": slip.voltage, "force": None}
+    given: dict[str, Any] = {"roughness": law, "f_ext": slip.f_ext, "force": None}
+    if scene.supply is None:
+        given["voltage"] = slip.voltage
     known = [replace(press, f_ext=slip.f_ext)] if press is not None and press.contact_length > 0 else []
     (found,) = over_forces(scene.model_copy(update=given), [slip.f_ext], "full_slip", known, tips)
     if not isinstance(law, TabulatedClosure):
         return Slip(found.mu_app)
     p_c = found.f_contact / found.contact_length
+    voltage = slip.voltage if scene.supply is None else float(scene.supply.effective(law(p_c).d_eq))
     if p_c > law.pressures[1]:
-        return Slip(np.inf, _adhere(law, slip.voltage) or "the ridges' pressure is beyond the table")
-    balanced = float(law.balanced(p_c, slip.voltage))
+        return Slip(np.inf, _adhere(law, voltage) or "the ridges' pressure is beyond the table")
+    balanced = float(law.balanced(p_c, voltage))
     return Slip(found.mu_app, balanced=balanced if balanced >= BALANCED else 0.0)
 
 

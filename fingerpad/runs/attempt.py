@@ -11,7 +11,7 @@ from fingerpad.accuracy.solves import Solves
 from fingerpad.accuracy.states import StateRecorder
 from fingerpad.accuracy.whole_path import WholePath
 from fingerpad.model import breakdown, cautions
-from fingerpad.model.adhesion import adhering
+from fingerpad.model.adhesion import lost
 from fingerpad.model.finger import Step, meshed
 from fingerpad.model.options import FingerModel
 from fingerpad.model.report import Clock, Report
@@ -185,12 +185,13 @@ class Attempt:
             return self._affordable(refinement.run())
         except StepFailed as error:
             tip = hint(error) if self._model.mesh_file is None else ""
-            last, closure = self.report.record.states[-1:], self._model.closure
-            sticks = adhering(last[0], closure) if last and not isinstance(error, Interrupted) else ""
-            self._ended["failure"] = "; ".join(filter(None, (str(error), sticks or tip)))
+            why, states = str(error), self.report.record.states
             if isinstance(error, Interrupted):
                 self._ended["interrupted"] = error.signal.name
-            return None if reached else finer(self._model, error, self._comm)
+            elif states:
+                why = lost(error, states[-1], self._model.closure)
+            self._ended["failure"] = why if why != str(error) or not tip else f"{why}; {tip}"
+            return None if reached else finer(self._model, error, self._comm, why)
 
     def _affordable(self, restart: RestartRequired | None) -> RestartRequired | None:
         """Return a restart within the memory allowed; None, with a failure, for another one."""
@@ -255,6 +256,7 @@ class Attempt:
                 *cautions.on_states(record.states, scene.closure(), self._model.contact),
                 *breakdown.of_states(scene, record.states),
                 *long_steps(loads, error),
+                *([] if estimate is None else estimate.cautions()),
             ),
             record=more,
             folder=self._writer.folder,

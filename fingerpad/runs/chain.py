@@ -141,6 +141,7 @@ class Chain:
 
     def _path(self, model: "FingerModel") -> "FullSlips":
         """Return the full slips at the end of a path, with what the path turns out to need."""
+        from fingerpad.model.adhesion import lost
         from fingerpad.model.full_slip import FullSlips
         from fingerpad.model.simulation import RestartRequired, Simulation
         from fingerpad.runs.restarts import finer
@@ -154,7 +155,8 @@ class Chain:
             except StepFailed as error:
                 restart = finer(model, error, self._comm)
                 if restart is None:
-                    raise
+                    state = simulation.states[-1] if simulation.states else None
+                    raise StepFailed(lost(error, state, model.closure)) from error
             if restart is None:
                 return FullSlips(simulation)
             simulation.finger.solver.iteration.free()

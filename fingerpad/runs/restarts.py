@@ -124,7 +124,7 @@ def finer_mesh_may_help(error: "StepFailed", coarse_start: bool) -> bool:
     return "smaller mesh.contact" in hint(error)
 
 
-def finer(model: "FingerModel", error: "StepFailed", comm: "MPI.Comm") -> RestartRequired | None:
+def finer(model: "FingerModel", error: "StepFailed", comm: "MPI.Comm", reason: str = "") -> RestartRequired | None:
     """Return a restart with smaller elements, where that may help and is possible; collective.
 
     A path whose elements are twice as large as those of the final mesh is followed on that mesh. Else the contact size
@@ -134,6 +134,7 @@ def finer(model: "FingerModel", error: "StepFailed", comm: "MPI.Comm") -> Restar
         model: whose loads were not reached.
         error: why not.
         comm: communicator of the run.
+        reason: why not, with what else is known of the state before; empty for the error's words.
     """
     coarse = model.final is not None and model.mesh.contact > model.final.contact
     helps = model.mesh_file is None and finer_mesh_may_help(error, bool(model.asked) or coarse)
@@ -146,4 +147,4 @@ def finer(model: "FingerModel", error: "StepFailed", comm: "MPI.Comm") -> Restar
         meshed(finer, comm)
     except GeometryError:  # more than the memory allowed
         return None
-    return RestartRequired(str(error), finer)
+    return RestartRequired(reason or str(error), finer)

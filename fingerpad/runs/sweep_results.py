@@ -5,7 +5,6 @@ import io
 import itertools
 import json
 import re
-from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -121,15 +120,17 @@ class Sweep:
     def cautions(self) -> list[str]:
         """Return why numbers may be further off than their errors say, each with how many points it is of.
 
-        The numbers in a caution are those of the first point that has it.
+        Where the numbers in a caution differ from point to point, they are those of the first one, and it says so.
         """
-        first, count = dict[str, str](), Counter[str]()
+        found = dict[str, list[str]]()
         for result in self.results:
             mine = {_alike(text): text for text in result.cautions}
             for alike, text in mine.items():
-                first.setdefault(alike, text)
-            count.update(mine.keys())
-        return [f"{first[alike]} ({number} of {len(self)} points)" for alike, number in count.items()]
+                found.setdefault(alike, []).append(text)
+        return [
+            f"{texts[0]} ({len(texts)} of {len(self)} points{', numbers of the first' * (len(set(texts)) > 1)})"
+            for texts in found.values()
+        ]
 
     def to_xarray(self) -> "xarray.Dataset":
         """Return the sweep as one dataset with units, as ``sweep.nc`` has it.

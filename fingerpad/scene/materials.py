@@ -14,6 +14,7 @@ from typing import Annotated, Any, Literal
 import numpy as np
 from pydantic import BaseModel, ConfigDict, ValidationError, ValidationInfo
 
+from fingerpad import launcher
 from fingerpad.scene.electric import Electric
 from fingerpad.scene.law_keys import Kept, Kind, LawKey, fail, inside, keys_of, range_of, reading_results, whole
 from fingerpad.scene.messages import show
@@ -181,6 +182,8 @@ class _Solved:
 
     def __call__(self, done: int, of: int) -> None:
         """Print the number of contacts that are solved and of all."""
+        if launcher.rank():
+            return
         text = f"contacts of the height map: {done} of {of}"
         if self._live:
             sys.stderr.write(f"\r{text}" + "\n" * (done == of))
