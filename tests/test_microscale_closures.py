@@ -5,6 +5,7 @@ import re
 import numpy as np
 import pytest
 from scipy.integrate import quad
+from scipy.optimize import brentq
 from scipy.special import erf
 
 import fingerpad as fp
@@ -129,6 +130,17 @@ def test_sticking(closure):
     d_eq, voltage = closure(p).d_eq, closure.sticking_voltage()
     pull = [(8.854e-12 * (part * voltage) ** 2 / 2 / (H_0 + d_eq) ** 2 - p).max() for part in (1.001, 0.999)]
     assert pull[0] > 1e3 > pull[1]
+
+
+FLAT = (("bearing area", 150.0, 0.459), ("bearing area", 200.0, 0.685), ("boundary elements", 70.7, 0.44))
+
+
+@pytest.mark.parametrize(("words", "voltage", "known"), FLAT)
+def test_friction_of_a_flat_ridge(words, voltage, known):
+    """Under an external pressure of 20 kPa, p_c = p_ext + attraction; 70.7 V is the effective value of 200 V in all."""
+    law = CLOSURES[words]
+    p_c = brentq(lambda p: p - 2e4 - 8.854e-12 * voltage**2 / 2 / (H_0 + float(law(p).d_eq)) ** 2, 2e4, 1e5)
+    assert 0.25 * p_c / 2e4 == pytest.approx(known, rel=0.015)
 
 
 def test_past_the_fold():

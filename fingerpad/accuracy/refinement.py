@@ -32,10 +32,9 @@ Not estimated: the effect on normal contact of a friction history that is the fi
 import math
 from collections.abc import Mapping
 from dataclasses import replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from fingerpad.accuracy.estimate import Estimate, of_key
-from fingerpad.accuracy.solves import Solves
 from fingerpad.accuracy.states import Solve, quantities
 from fingerpad.model.adhesion import lost
 from fingerpad.model.simulation import RestartRequired
@@ -44,6 +43,9 @@ from fingerpad.results.states import WORDS
 from fingerpad.richardson import MeshParameter, errors, rigid, to_refine
 from geometry.profiles import GeometryError
 from variational.solvers.continuation import StepFailed
+
+if TYPE_CHECKING:
+    from fingerpad.accuracy.solves import Solves
 
 _SIZES = {"contact": ("contact",), "bulk": ("growth", "interface", "coarsest"), "receptor": ("receptor",)}
 _ROUNDS = 6  # of refinement
@@ -58,7 +60,7 @@ class Refinement(Estimate):
         to_come: solves that are still to come, the one that starts now among them; more where they are not enough.
     """
 
-    def __init__(self, solves: Solves) -> None:
+    def __init__(self, solves: "Solves") -> None:
         """Choose the mesh parameters.
 
         Args:

@@ -21,7 +21,6 @@ from typing import TYPE_CHECKING, Any
 
 from fingerpad.accuracy.estimate import Estimate
 from fingerpad.accuracy.over_time import differences
-from fingerpad.accuracy.solves import Solves
 from fingerpad.accuracy.states import Solve
 from fingerpad.model.simulation import Simulation
 from fingerpad.model.stimuli import SiteStimuli
@@ -34,6 +33,7 @@ from variational.solvers.continuation import StepFailed
 from variational.state import ContactState
 
 if TYPE_CHECKING:
+    from fingerpad.accuracy.solves import Solves
     from fingerpad.model.finger import Step
 
 
@@ -45,7 +45,7 @@ class WholePath(Estimate):
             load takes time.
     """
 
-    def __init__(self, solves: Solves, states: Sequence[ContactState], on_step: Callable[[float], None]) -> None:
+    def __init__(self, solves: "Solves", states: Sequence[ContactState], on_step: Callable[[float], None]) -> None:
         """Follow nothing yet.
 
         Args:
