@@ -4,7 +4,7 @@ A ridge adheres where its attraction is all that the screen bears. On closures o
 voltage at which the bearing area model has none; the states then depend on the path, and one may not be found.
 """
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 
 import numpy as np
 
@@ -65,6 +65,17 @@ def lost(error: Exception | str, state: ContactState | None, closure: Closure | 
         closure: see :func:`sticking`.
     """
     return "; ".join(filter(None, (str(error), adhering(state, closure))))
+
+
+def without_slip(states: Sequence[ContactState], closure: Closure | None) -> list[str]:
+    """Return that a slide ended without full slip where ridges adhere, as a caution; none where they do not.
+
+    Args:
+        states: of the path.
+        closure: see :func:`sticking`.
+    """
+    words = adhering(states[-1], closure) if states else ""
+    return [f"full slip was not reached, or not held: {words}"] if words else []
 
 
 def without_load(states: Iterable[ContactState], closure: Closure | None) -> list[str]:

@@ -11,7 +11,7 @@ from fingerpad.accuracy.solves import Solves
 from fingerpad.accuracy.states import StateRecorder
 from fingerpad.accuracy.whole_path import WholePath
 from fingerpad.model import breakdown, cautions
-from fingerpad.model.adhesion import lost
+from fingerpad.model.adhesion import lost, without_slip
 from fingerpad.model.finger import Step, meshed
 from fingerpad.model.options import FingerModel
 from fingerpad.model.report import Clock, Report
@@ -238,6 +238,7 @@ class Attempt:
         error = force_error(unknowns, left, finger.solver.force_scale)
         more |= self._comm.bcast(self._path() | totals | {"force_error": error})
         loads = tuple(record.loads(scene.loads(), mu_0))
+        lacks_slip = "full_slip" not in named and any(load.until_full_slip for load in scene.loads())
         more |= {"restarts": restarts.table, "laws": used(scene), "provenance": provenance()}
         result = Result(
             scene,
@@ -257,6 +258,7 @@ class Attempt:
                 *breakdown.of_states(scene, record.states),
                 *long_steps(loads, error),
                 *([] if estimate is None else estimate.cautions()),
+                *(without_slip(record.states, self._model.closure) if lacks_slip and not failure else []),
             ),
             record=more,
             folder=self._writer.folder,
