@@ -1,0 +1,146 @@
+"""Closures of rough contact in scenes, height maps, the command microscale and sweeps."""
+
+import re
+
+import numpy as np
+import pytest
+
+import fingerpad as fp
+from fingerpad.cli import main
+from fingerpad.cli import roughness as microscale
+from fingerpad.scene.dotted import with_values
+from tests.test_microscale_closures import CLOSURES
+from variational.roughness.spectrum import SelfAffine
+
+
+@pytest.mark.parametrize("law", ["BoundaryElements", "Persson"])
+def test_scene_and_back(law):
+    scene = fp.Scene(roughness={"law": law, "h_rms": "2 um", "field_in_contact": False})
+    assert isinstance(scene.roughness, getattr(fp, law)) and scene.roughness.h_rms == 2e-6
+    assert scene.roughness.h_0 == scene.h_0
+    assert fp.Scene(**scene.parameters()).roughness == scene.roughness
+
+
+@pytest.mark.parametrize(
+    ("table", "words"),
+    [
+        ({"shortest_wave": 1e-6}, "roughness.shortest_wave is 1e-06 m; .* so take 1.563e-06 to 1.25e-05 m"),
+        ({"hurst": 0.5}, "roughness.hurst is 0.5; tables of the package are for 0.6 to 0.9, and Persson has no such"),
+        ({"p_floor": 1e6}, "roughness.p_floor is 1000000; it must be below the pressure of the table's end"),
+        ({"surface": "abc"}, "roughness.surface is 'abc', and .* has no table of that name"),
+        ({"field_in_contact": 2}, "roughness.field_in_contact is 2; it must be true or false"),
+        ({"gamma": 0.4}, "roughness.gamma"),
+    ],
+)
+def test_refused_in_a_scene(table, words, tmp_path, monkeypatch):
+    monkeypatch.setenv("FINGERPAD_CACHE", str(tmp_path))
+    with pytest.raises(fp.SceneError, match=words):
+        fp.Scene(roughness={"law": "BoundaryElements"} | table)
+
+
+def test_height_map_of_a_scene(tmp_path, monkeypatch):
+    """The table of a map is that of the map as boundary elements have it; a map with non-square pixels is refused."""
+    monkeypatch.setenv("FINGERPAD_CACHE", str(tmp_path))
+    file = tmp_path / "skin.npy"
+    np.save(file, SelfAffine(2.0, 0.8, 40.0, shortest=12.0).surface((48, 48), (100.0, 100.0), 1).heights)
+    given = {"file": str(file), "unit": "um", "size": ["100 um", "100 um"]}
+    scene = fp.Scene(roughness={"law": "BoundaryElements", "topography": given})
+    law = scene.roughness
+    assert law.surface and law.wavelength == pytest.approx(100e-6)
+    assert fp.Scene(roughness={"law": "BearingArea", "topography": given}).roughness.h_rms == pytest.approx(law.h_rms)
+    assert 0 < law(2e4).d_eq < law(5e3).d_eq
+    with pytest.raises(fp.SceneError, match="roughness.topography: pixels of the map are .* needs square ones"):
+        fp.Scene(roughness={"law": "BoundaryElements", "topography": given | {"size": ["100 um", "90 um"]}})
+
+
+def test_height_map_has_what_it_measures(tmp_path, monkeypatch):
+    """Keys that would not be read are refused beside a map; heights in another unit are refused."""
+    monkeypatch.setenv("FINGERPAD_CACHE", str(tmp_path))
+    rough = SelfAffine(2.0, 0.8, 40.0, shortest=12.0).surface((48, 48), (100.0, 100.0), 1)
+    np.save(tmp_path / "skin.npy", rough.heights)
+    given = {"file": str(tmp_path / "skin.npy"), "unit": "um", "size": ["100 um", "100 um"]}
+    for name, value in (("hurst", 0.8), ("shortest_wave", "3 um"), ("surface", "abc")):
+        with pytest.raises(fp.SceneError, match=f"roughness.{name} is .* and roughness.topography is given too"):
+            fp.Scene(roughness={"law": "BoundaryElements", "topography": given, name: value})
+    assert fp.Scene(roughness={"law": "Persson", "topography": given, "hurst": 0.8}).roughness.hurst == 0.8
+    with pytest.raises(fp.SceneError, match="roughness.topography has h_rms = .* is the unit of the heights or"):
+        fp.Scene(roughness={"law": "BoundaryElements", "topography": given | {"unit": "pm"}})
+
+
+def test_result_is_read_where_the_table_is_not(tmp_path, monkeypatch):
+    """A folder on another computer: numbers, band and report are in it; another run needs the map."""
+    monkeypatch.setenv("FINGERPAD_CACHE", str(tmp_path / "here"))
+    np.save(tmp_path / "skin.npy", np.outer(np.cos(np.arange(24)), np.cos(np.arange(24) / 2)))
+    given = {"file": str(tmp_path / "skin.npy"), "unit": "um", "size": ["100 um", "100 um"]}
+    scene = fp.Scene(voltage=50.0, roughness={"law": "BoundaryElements", "topography": given})
+    made = fp.run(scene, model="cylinders", out=tmp_path / "run")
+    monkeypatch.setenv("FINGERPAD_CACHE", str(tmp_path / "there"))
+    found = fp.Result.load(tmp_path / "run")
+    assert found.full_slip.mu_app == made.full_slip.mu_app and main(["report", str(tmp_path / "run")]) == 0
+    with pytest.raises(fp.SceneError, match="roughness.surface is .* has no table of that name"):
+        fp.run(found.scene.replace(voltage=60.0), model="cylinders")
+
+
+@pytest.mark.parametrize("law", ["BoundaryElements", "Persson"])
+def test_microscale_table(law):
+    scene = fp.Scene(roughness={"law": law})
+    for row in microscale.table(scene, [100.0], [5e3, 5e4]):
+        assert row["p_el"] == pytest.approx(float(scene.roughness.attraction(row["p_c"], 100.0)), rel=1e-4)
+        assert row["p_ext"] == pytest.approx(row["p_c"] - row["p_el"])
+
+
+@pytest.mark.parametrize(
+    ("name", "pressures", "ends"),
+    [("boundary elements", "5e3,1e5", 2), ("boundary elements", "1e4", 1), ("persson", "1e4", 0)],
+)
+def test_microscale_prints_the_scatter(capsys, name, pressures, ends):
+    """Of boundary elements some per cent, one number where there is one alone; theory has none."""
+    closure = CLOSURES[name]
+    assert main(["microscale", "--set", f"roughness.law={type(closure).__name__}", "--p", pressures]) == 0
+    found = re.findall(r"to the next the air gap scatters by (.*) % \(rms\)", capsys.readouterr().out)
+    p = np.array([float(each) for each in pressures.split(",")])
+    known = sorted(100 * closure.spread(p) / closure(p).d_eq)
+    assert found == ([" to ".join(f"{share:.2g}" for share in known)] if ends else []) and len(known) >= ends
+
+
+@pytest.mark.parametrize(
+    ("changes", "begin"),
+    [
+        ({}, "1 kPa (roughness.p_floor)"),
+        ({"law": "BoundaryElements"}, "1 kPa (roughness.p_floor)"),
+        ({"law": "BoundaryElements", "p_floor": 1.0}, " kPa (the beginning of the table of gaps)"),
+    ],
+)
+def test_microscale_prints_where_the_air_gap_begins_to_follow(capsys, changes, begin):
+    """At the larger one of p_floor and the least pressure of the table."""
+    settings = [part for key, value in changes.items() for part in ("--set", f"roughness.{key}={value}")]
+    assert main(["microscale", *settings, "--p", "1e4"]) == 0
+    (line,) = re.findall("The air gap stays constant below .*", capsys.readouterr().out)
+    closure = microscale.microscopic(fp.Scene(roughness=changes))
+    assert f"{closure.pressures[0] * 1e-3:.4g} kPa (" in line and begin in line
+
+
+def test_sweep_over_closures_is_of_one_surface():
+    """Roughness that the scene gives stays, as when a run is given both; keys of another law alone go."""
+    scene = fp.Scene(roughness={"h_rms": 1e-6, "gamma": 0.45}, voltage=50.0)
+    laws = ["BoundaryElements", "Persson"]
+    curve = fp.sweep(scene, model="cylinders", **{"roughness.law": laws})
+    for law, found in zip(laws, curve, strict=True):
+        alone = fp.run(scene.replace(roughness={"law": law, "h_rms": 1e-6}), model="cylinders")
+        assert found.full_slip.mu_app == pytest.approx(alone.full_slip.mu_app, rel=1e-12)
+
+
+def test_sweep_over_laws_of_friction_keeps_a_coefficient_that_is_a_number():
+    """It stands for Coulomb's mu_f, which Derjaguin's law has too."""
+    scene = fp.Scene(friction=0.3)
+    assert with_values(scene, {"friction.law": "Coulomb"}).friction == 0.3
+    assert with_values(scene, {"friction.law": "Derjaguin", "friction.tau_0": 5e3}).friction.mu_f == 0.3
+
+
+def test_sweep_over_closures():
+    """Cylinders, 75 N/m at 70.7 V: more attraction by boundary elements, least without a field where it touches."""
+    curve = fp.sweep(
+        fp.Scene(voltage=70.7), model="cylinders", **{"roughness.law": ["BearingArea", "BoundaryElements"]}
+    )
+    bearing, exact = (run.full_slip.mu_app for run in curve)
+    assert 0.25 < bearing < exact - 0.05
