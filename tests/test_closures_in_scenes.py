@@ -144,3 +144,12 @@ def test_sweep_over_closures():
     )
     bearing, exact = (run.full_slip.mu_app for run in curve)
     assert 0.25 < bearing < exact - 0.05
+
+
+@pytest.mark.parametrize(("voltage", "told"), [(200, True), (80, False)])
+def test_check_tells_that_ridges_adhere(capsys, tmp_path, voltage, told):
+    """Before a run that follows jumps for a long time."""
+    given = "roughness.law=BoundaryElements", f"voltage={voltage}"
+    assert main(["check", "--out", str(tmp_path), *(word for each in given for word in ("--set", each))]) == 0
+    words = f"not reach full slip: by the closed form ridges adhere at {voltage} V; take a smaller voltage"
+    assert (words in capsys.readouterr().out) == told

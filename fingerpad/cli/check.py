@@ -7,8 +7,11 @@ from pathlib import Path
 from fingerpad.cli import mesh as meshes
 from fingerpad.cli.arguments import Parser, echo, scene_of
 from fingerpad.model.options import COARSER, FingerModel, ModelOptions, by_rule, memory, plan, refuse_mesh, unknowns
+from fingerpad.reduced import cylinders
+from fingerpad.reduced.closure_band import with_band
 from fingerpad.reduced.cylinder_errors import REGIONS, where, within
 from fingerpad.reduced.slide import too_short
+from fingerpad.results.closures import KNOWN
 from fingerpad.results.files import check_folder
 from fingerpad.results.terminal import about
 from fingerpad.scene import Load, Scene, SceneError
@@ -99,7 +102,7 @@ def _aims(load: Load) -> Iterator[str]:
 
 
 def _model(scene: Scene, needed: ModelOptions) -> Iterator[str]:
-    yield from (*finger_in_words(scene), *remarks(scene), *leakage(scene), *too_short(scene))
+    yield from (*finger_in_words(scene), *remarks(scene), *leakage(scene), *too_short(scene), *_adhering(scene))
     if caution := scene.contact.law.caution:
         yield caution
     if scene.geometry.file is None:
@@ -116,6 +119,20 @@ def _model(scene: Scene, needed: ModelOptions) -> Iterator[str]:
         yield (
             f"named states on these, with {scene.mesh.edge * 1e6:.3g} µm where their contact ends; the path on "
             f"elements {COARSER:g} times as large"
+        )
+
+
+def _adhering(scene: Scene) -> Iterator[str]:
+    """Yield that ridges adhere by the scene's closure, where the closed form has no friction for it."""
+    try:
+        known = with_band(cylinders.solve(scene)).record.get(KNOWN, {})
+    except SceneError:
+        return
+    if known and known["low"] is None:
+        why = ", ".join(dict.fromkeys(known["no_number"].values()))
+        yield (
+            f"a run may follow many jumps and not reach full slip: by the closed form {why}; take a smaller voltage or "
+            "another roughness"
         )
 
 
