@@ -3,7 +3,7 @@
 # make check  tests of every module that run no whole finger
 # make lint   style, layout and types: ruff and mypy, half a minute
 # make test-pip  the same digits with dolfinx from PyPI, in a Python from 3.12 on: make test-pip PYTHON=python3.13
-# make test-contact  rough contact beside the programs ContactMechanics and Adhesion of PyPI, in a venv; a minute
+# make test-contact  rough contact beside the programs ContactMechanics and Adhesion of PyPI, in a venv; two minutes
 # make test-order  all tests with other rounding: cells numbered the other way round, other kernels of OpenBLAS
 # make fuzz   10 000 scenes and command lines and as many files, each read or refused in one sentence; an hour
 # make pages  every generated page and picture of docs/ from the numbers kept there; seconds, no run
@@ -17,7 +17,7 @@
 # make drive  friction over frequency and waveform of the voltage; docs/drive.md, a minute
 # make fingers    friction of fingers by name side by side; docs/fingers.md
 # make viscosity  how skin relaxes, energy of random histories, friction after a step of voltage; docs/viscosity.md
-# make loads  seeded scenes of people's loads beside the closed form; docs/loads.md, half an hour, and it goes on
+# make loads  seeded scenes of people's loads beside the closed form; docs/loads.md, an hour or two in pieces of twenty minutes
 # make feel   what people and nerves were measured to do beside spikes; docs/feel.md, ten minutes
 # make performance  counts, ratios and seconds, part by part, on an idle machine; docs/performance.md, half an hour; prints the targets
 # make calibration  estimated errors beside known ones, scene by scene; docs/two_meshes.md, ten minutes
