@@ -116,7 +116,7 @@ class Estimate:
 
 
 def with_errors(estimate: Estimate, path: Mapping[str, ContactState]) -> dict[str, ContactState]:
-    """Return the named states of a path with their results on the final mesh, their errors and the penalty's share.
+    """Return the named states of a path with their results on the final mesh and their errors, the penalty's among them.
 
     Args:
         estimate: of the path's states.
@@ -125,17 +125,18 @@ def with_errors(estimate: Estimate, path: Mapping[str, ContactState]) -> dict[st
     estimates, found = estimate.estimates(), dict(path)
     for name, kept in estimate.base.states.items():
         if name in found:
-            parts = (errors_of(name, estimates), errors_of(name, estimate.penalty))
-            found[name] = replace(with_values(found[name], kept), error=parts[0], penalty=parts[1])
+            mesh, penalty = (errors_of(name, each) for each in (estimates, estimate.penalty))
+            error = Errors.of({key: value + abs(penalty.get(key, 0.0)) for key, value in mesh.items()})
+            found[name] = replace(with_values(found[name], kept), error=error, penalty=Errors.of(penalty))
     if {"uncharged", "charged"} <= set(found) and path["uncharged"].step == path["charged"].step:  # at 0 V one state
         found["uncharged"] = found["charged"]
     return found
 
 
-def errors_of(name: str, changes: Mapping[str, float]) -> Errors:
+def errors_of(name: str, changes: Mapping[str, float]) -> dict[str, float]:
     """Return the changes of a named state's quantities, of those by key; densities at receptors are left out."""
     known = {field.name for field in fields(Errors)}
-    return Errors(**{k: v for key, v in changes.items() if (k := key.removeprefix(f"{name}_")) in known and k != key})
+    return {k: v for key, v in changes.items() if (k := key.removeprefix(f"{name}_")) in known and k != key}
 
 
 def of_key(key: str) -> tuple[Output, str]:

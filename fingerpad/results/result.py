@@ -16,13 +16,13 @@ from fingerpad.results.headline import Headline, headline, missing_slip
 from fingerpad.results.quantities import (
     CHANGES,
     PER_LENGTH,
-    PLUS_MINUS,
     QUANTITIES,
     STABILITY,
     Output,
     cell,
     checked,
     head_rows,
+    plus_minus_of,
     side_by_side,
     valued,
 )
@@ -201,7 +201,8 @@ class Result(Answer):
             finger=WholeFinger.from_dict(summary["finger"], bare.scene.slices) if "finger" in summary else None,
         )
         used = {*bare._numbers(), "headline", "failure", "interrupted", "notes", "cautions", "outputs", "finger"}
-        used |= {f"{name}_{each.name}_{kind}" for name in STATES for each in fields(Errors) for kind in CHANGES}
+        changed = [*(each.name for each in fields(Errors)), *(each.name for each in bare.outputs)]
+        used |= {f"{name}_{key}_{kind}" for name in STATES for key in changed for kind in CHANGES}
         record = {key: value for key, value in summary.items() if key not in used}
         if "laws" in parameters:  # objects of Python, of which only the names are kept
             record["parameters"] = parameters
@@ -276,7 +277,7 @@ def _state(name: str, kept: Mapping[str, Any]) -> ContactState:
     texts = ("load", "reached")
     if wrong := [key for key, value in values.items() if not isinstance(value, int | float) and key not in texts]:
         raise TypeError(f"{wrong[0]} of {name} is no number")
-    more: dict[str, Any] = {kind: Errors(**kept.get(kind, {})) for kind in CHANGES}
+    more: dict[str, Any] = {kind: Errors.of(kept.get(kind, {})) for kind in CHANGES}
     more |= {key: values.pop(key) for key in (*STABILITY, "reached") if key in values}
     slip = {"all_slip": True, "slip_held": True} if name == "full_slip" else {}
     return replace(ContactState.from_row({"mu_app": math.nan} | values | slip), **more)
@@ -309,7 +310,7 @@ def _remarks(result: Result) -> list[str]:
     if (how := missing_slip(result)) and not result.failure:
         found.append(f"Full slip was {how}.")
     if any(state.error.known() for state in result.named.values()):
-        found.append(PLUS_MINUS)
+        found.append(plus_minus_of(result.parts()))
     sizes = {name: state.mesh_contact for name, state in result.named.items() if not math.isnan(state.mesh_contact)}
     if len(set(sizes.values())) > 1:  # with an accuracy
         each = (f"{1e6 * size:.3g} µm ({called(name, result.named[name].voltage)})" for name, size in sizes.items())

@@ -5,7 +5,7 @@ import io
 import itertools
 import json
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, overload
@@ -17,7 +17,7 @@ from fingerpad.reduced.closure_band import with_band
 from fingerpad.results import dataset, netcdf
 from fingerpad.results.closures import KNOWN
 from fingerpad.results.files import replace
-from fingerpad.results.quantities import FINGER, PER_LENGTH, Output
+from fingerpad.results.quantities import FINGER, PER_LENGTH, Output, plus_minus_of
 from fingerpad.results.states import STATES, WORDS
 from fingerpad.runs.sweep_columns import described, head_of, of_finger, printed, row, said_of, shown, tables
 from fingerpad.slices.errors import remarks
@@ -165,7 +165,7 @@ class Sweep:
         replace(Path(path), text.getvalue())
 
     def __str__(self) -> str:
-        """Return full slip over the axes, and loads over time, as tables with units; ± estimated errors.
+        """Return full slip over the axes, and loads over time, as tables with units; ± whole known errors.
 
         The first columns are of the whole finger, where it is known, and those of the middle section follow.
         """
@@ -187,10 +187,17 @@ class Sweep:
             lines += [f"Over time, in the load {name}", *_aligned(over_time)]
         forces = {each.finger.f_ext for each in self.results if each.finger is not None}
         known = remarks(forces, {column.rpartition("finger_")[2] for column in columns})
-        notes = [*known, *([] if any(map(of_finger, columns)) else [PER_LENGTH])]
+        notes = [*self._plus_minus(columns, rows), *known, *([] if any(map(of_finger, columns)) else [PER_LENGTH])]
         return "\n".join([*lines, *notes, *(f"! {caution}" for caution in self.cautions()), *self.notes])
 
     __repr__ = __str__
+
+    def _plus_minus(self, columns: Mapping[str, Output], rows: Sequence[Mapping[str, Any]]) -> list[str]:
+        """Return what the ± of a table's columns is of, a sentence; none without a ±."""
+        shown = {of_finger(column) for column in columns for each in rows if each.get(f"{column}_error")}
+        fingers = [each.finger.parts() for each in self.results if each.finger is not None and True in shown]
+        sections = [each.parts() for each in self.results if False in shown]
+        return [plus_minus_of(itertools.chain(*fingers, *sections))] if shown else []
 
 
 def _aligned(table: Sequence[Sequence[str]]) -> list[str]:
