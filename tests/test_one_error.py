@@ -9,8 +9,8 @@ import pytest
 import fingerpad as fp
 from fingerpad.cli import estimate
 from fingerpad.reduced import cylinder_errors
-from fingerpad.results.netcdf import arrays
 from fingerpad.reduced.cylinders import Cylinders, indentation, over_forces
+from fingerpad.results.netcdf import arrays
 from fingerpad.results.quantities import FINGER
 from fingerpad.runs.closed_form import ClosedForm
 from fingerpad.scene.parameters import Slices
@@ -40,7 +40,8 @@ def answers(scene, result, folder, key: str) -> dict[str, str]:
     swept = fp.sweep(scene, folder / "sweep", model="cylinders", quiet=True, voltage=[scene.voltage])
     with (folder / "sweep" / "table.csv").open(encoding="utf-8", newline="") as file:
         (row,) = csv.DictReader(file)
-    found["table.csv"] = shown(*(float(row[name]) for name in (f"full_slip_finger_{key}", f"full_slip_finger_{key}_error")))
+    names = (f"full_slip_finger_{key}", f"full_slip_finger_{key}_error")
+    found["table.csv"] = shown(*(float(row[name]) for name in names))
     values = arrays(folder / "sweep" / "sweep.nc")
     found["sweep.nc"] = shown(*(values[name][0, 2] for name in (f"finger_{key}", f"finger_{key}_error")))
     name = "f_ext" if scene.force is None else "force"
@@ -104,6 +105,7 @@ def test_value_does_not_depend_on_the_way_to_it():
 
 def test_longer_trace_has_the_same_sum():
     """A monotone cubic takes its slopes from its neighbours. Tolerance: the root of the force."""
+
     def under(top):
         forces = grid(70.0, top)
         states = over_forces(fp.Scene(voltage=200.0), forces, SLIP)

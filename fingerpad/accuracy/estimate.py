@@ -116,7 +116,7 @@ class Estimate:
 
 
 def with_errors(estimate: Estimate, path: Mapping[str, ContactState]) -> dict[str, ContactState]:
-    """Return the named states of a path with their results on the final mesh and their errors, the penalty's among them.
+    """Return the named states of a path with their results on the final mesh, and their errors.
 
     Args:
         estimate: of the path's states.

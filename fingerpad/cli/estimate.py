@@ -40,14 +40,17 @@ _OF_SECTION = {key: _of_section(key) for key in _SECTION}
 _ERROR = "_error"
 
 
-def _with_error(quantity: Output) -> tuple[Output, Output]:
-    return quantity, replace(quantity, name=quantity.name + _ERROR, words=f"± {quantity.symbol}")
-
-
 _GIVEN = ("voltage", _OF_SECTION["f_ext"].name, _OF_SECTION["ridges_in_contact"].name)  # without an error
+
+
+def _with_error(quantity: Output) -> tuple[Output, ...]:
+    error = replace(quantity, name=quantity.name + _ERROR, words=f"± {quantity.symbol}")
+    return (quantity,) if quantity.name in _GIVEN else (quantity, error)
+
+
 _QUANTITIES = (*(FINGER[key] for key in _WHOLE), *_OF_SECTION.values())
 _COLUMNS = (replace(FINGER["f_ext"], name="force"), QUANTITIES["voltage"],
-            *(each for one in _QUANTITIES for each in ((one,) if one.name in _GIVEN else _with_error(one))))  # fmt: skip
+            *(each for one in _QUANTITIES for each in _with_error(one)))  # fmt: skip
 _OF_FILES = ("f_t_of_section", "f_electrostatic_of_section", "ridges_in_contact_of_section")
 _SHOWN = tuple(each for each in _COLUMNS if each.name not in _OF_FILES and not each.name.endswith(_ERROR))
 _NAME = {"force": "force", "f_ext": "f_ext_of_section"}

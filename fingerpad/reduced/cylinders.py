@@ -289,7 +289,7 @@ def _stiffening(scene: Scene, state: str, shear: float) -> Callable[[Array], Arr
 
 
 def _errors(state: ContactState, known: Mapping[str, float]) -> Errors:
-    """Return the errors of a state by the relative ones that are known of it; that of the contact force is a force's."""
+    """Return the errors of a state by its known relative ones."""
     found = {key: share * abs(getattr(state, key)) for key, share in known.items()}
     return Errors.of(found | ({"f_contact": found["f_electrostatic"]} if "f_electrostatic" in found else {}))
 

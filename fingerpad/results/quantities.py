@@ -263,7 +263,8 @@ PER_LENGTH = (
 def plus_minus_of(parts: Iterable[str]) -> str:
     """Return what the ± beside numbers are of, a sentence; empty without a part."""
     words = ", ".join(dict.fromkeys(parts))
-    return f"±: error by {words}; what the finger and the model assume is not in it (docs/assumptions.md)." * bool(words)
+    said = f"±: error by {words}; what the finger and the model assume is not in it (docs/assumptions.md)."
+    return said if words else ""
 
 
 def checked(outputs: Any) -> tuple[Output, ...]:

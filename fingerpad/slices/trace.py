@@ -98,8 +98,11 @@ class Trace:
 
     def under(self, force: float) -> float:
         """Return the indentation (m) at an external force (N/m) between the first point and the end."""
-        first, last = np.log(self.depth[[0, -1]])
-        return float(np.exp(brentq(lambda x: np.log(self.at(np.exp([x]))["f_ext"][0] / force), first, last, xtol=1e-14)))
+
+        def excess(x: float) -> float:
+            return float(np.log(self.at(np.exp([x]))["f_ext"][0] / force))
+
+        return float(np.exp(brentq(excess, *np.log(self.depth[[0, -1]]), xtol=1e-14)))
 
     @cached_property
     def _powers(self) -> tuple[PchipInterpolator, Array, NDArray[np.bool_]]:
