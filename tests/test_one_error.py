@@ -10,6 +10,9 @@ import fingerpad as fp
 from fingerpad.cli import estimate
 from fingerpad.reduced import cylinder_errors
 from fingerpad.reduced.cylinders import Cylinders, indentation, over_forces
+from fingerpad.results import dataset
+from fingerpad.results.dataset import FILE
+from fingerpad.results.files import replace_json
 from fingerpad.results.netcdf import arrays
 from fingerpad.results.quantities import FINGER
 from fingerpad.runs.closed_form import ClosedForm
@@ -17,6 +20,7 @@ from fingerpad.scene.parameters import Slices
 from fingerpad.slices.total import at_force, profile
 from fingerpad.slices.trace import trace
 from fingerpad.slices.traces import grid
+from variational.state import Errors
 
 SLIP = "full_slip"
 ASKED = {"a force at the centre": {}, "newtons": {"force": 0.5}}
@@ -113,3 +117,19 @@ def test_longer_trace_has_the_same_sum():
         return at_force(profile(Slices()), made, 0.5, 16).values["mu_app"]
 
     assert under(75.0) == pytest.approx(under(300.0), rel=1e-12)
+
+
+def test_error_of_an_output_is_read_as_it_was_written(tmp_path):
+    """From result.nc, and from summary.json where that is lost; printed as any other."""
+    result = fp.run(model="cylinders", outputs=[fp.Output("p_mean", "kPa", lambda s: s.f_contact / s.contact_length)])
+    slip = result.full_slip
+    slip = replace(slip, error=Errors.of({"f_t": 0.5, "p_mean": 2e3}))
+    result = replace(result, full_slip=slip, folder=tmp_path)
+    replace_json(tmp_path / "summary.json", result.to_dict())
+    assert not dataset.save(result)
+    for file in ("", FILE):
+        if file:
+            (tmp_path / file).unlink()
+        again = fp.Result.load(tmp_path)
+        assert again.full_slip.error.known() == {"f_t": 0.5, "p_mean": 2e3}
+        assert again.cells("p_mean")[-1] == f"{1e-3 * slip.p_mean:.1f} ± 2.0"

@@ -218,7 +218,7 @@ class Attempt:
         unknowns, notes, more = finger.unknowns, [*restarts.notes], dict[str, Any]()
         notes += [*leakage(scene), *([NOTE] if any(load.takes_time for load in scene.loads()) else [])]
         if estimate is not None:
-            named = with_errors(estimate, named)
+            named = with_errors(estimate, named, self._outputs)
             unknowns, more["accuracy"] = estimate.base.unknowns, estimate.summary()
             notes += estimate.notes
             self.report.final(final)
