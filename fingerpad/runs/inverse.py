@@ -26,6 +26,7 @@ from fingerpad.runs.target import CONTRAST, Target, read
 from fingerpad.scene import Scene
 from fingerpad.scene.dotted import with_values
 from fingerpad.scene.messages import SceneError
+from fingerpad.scene.remarks import drive_in_short, other_under_a_drive
 from fingerpad.slices import errors
 
 
@@ -91,7 +92,7 @@ class Solution:
         of = " of the whole finger" if self.target.whole else " of the middle section"
         lines = [
             f"{self.target} over {axis.key} from {axis.shown(axis.low, axis.high)}: {quantity.words}{of} at full slip, "
-            "by the closed form."
+            f"by the closed form, under {drive_in_short(each.scene for each in self.roots)}."
         ]
         if self.target.name == CONTRAST:
             lines.append("contrast is the relative rise of µ_app by the voltage.")
@@ -102,7 +103,7 @@ class Solution:
             lines.append(f"{line}: {quantity.symbol} {_cell(self.target, root.number)}")
             if root.full is not None:
                 lines.append(f"    {self._beside(root, root.full)}")
-        return "\n".join([*lines, *self.notes])
+        return "\n".join([*lines, *other_under_a_drive(each.scene for each in self.roots), *self.notes])
 
     def _beside(self, root: Root, full: Result) -> str:
         """Return what the full model has at a root, beside the closed form."""

@@ -20,6 +20,7 @@ from fingerpad.results.files import replace
 from fingerpad.results.quantities import FINGER, PER_LENGTH, Output, plus_minus_of
 from fingerpad.results.states import STATES, WORDS
 from fingerpad.runs.sweep_columns import described, head_of, of_finger, printed, row, said_of, shown, tables
+from fingerpad.scene.remarks import drive_in_short, other_under_a_drive
 from fingerpad.slices.errors import remarks
 from variational.state import CONDITIONS, RESULTS
 
@@ -182,11 +183,14 @@ class Sweep:
             cells = [of.shown(values[column], errors[column]) for column, of in columns.items()]
             table.append([*first, *cells])
         of = said_of(columns)
-        lines = [f"{of[0].upper()}{of[1:]}, at {WORDS[state]}", *_aligned(table)]
+        scenes = [result.scene for result in self.results]
+        under = f"under {drive_in_short(scenes)}"
+        lines = [f"{of[0].upper()}{of[1:]}, at {WORDS[state]}, {under}", *_aligned(table)]
         for name, over_time in tables(rows, axes):
             lines += [f"Over time, in the load {name}", *_aligned(over_time)]
         forces = {each.finger.f_ext for each in self.results if each.finger is not None}
         known = remarks(forces, {column.rpartition("finger_")[2] for column in columns})
+        known += other_under_a_drive(scenes)
         notes = [*self._plus_minus(columns, rows), *known, *([] if any(map(of_finger, columns)) else [PER_LENGTH])]
         return "\n".join([*lines, *notes, *(f"! {caution}" for caution in self.cautions()), *self.notes])
 
