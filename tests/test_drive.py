@@ -191,6 +191,7 @@ TABLE = {"frequency": [10.0, 1e3], "eps": [2e3, 1e3], "sigma": [1e-4, 1e-3]}
             "electric.tissue.frequency is 1000 and then 10 Hz",
         ),
         (SINE, {"leak": 0.0}, "electric.leak is 0 ohm m^2; it must be from 0.001 to 1e+09 ohm m^2"),
+        (0.0, {"leak": {"peak": 100.0}}, "electric.leak.peak is 100 Hz; no leak through a gap of 1.6e-06 m has its"),
         (SINE, {"leak": "wet"}, "electric.leak is 'wet'; it must be 'none', 'sliding dry', 'resting' or 'moist'"),
     ],
 )

@@ -73,6 +73,14 @@ def test_mean_is_constant():
     assert_allclose(v, 100 / 2**0.5, rtol=1e-6)
 
 
+def test_mean_of_a_file_is_constant():
+    """A triangle's root mean square, however often it repeats itself: its points are no steps."""
+    file = {"waveform": "file", "times": [0.0, 1e-5, 3e-5, 4e-5], "voltages": [0.0, 100.0, -100.0, 0.0]}
+    t, v = over(scene(file | {"repeat": True}, follows="mean"))
+    assert list(t) == [0.0, 0.2]
+    assert_allclose(v, 100 / 3**0.5, rtol=1e-5)
+
+
 def test_share_is_that_of_the_gap():
     """One at the reference gap."""
     found = scene(SINE, **DRY)

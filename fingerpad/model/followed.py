@@ -10,7 +10,6 @@ A load begins with the drive switched on across a gap without charge, by the equ
 these are not known, of a table of a tissue or of a carrier, it begins in the steady state.
 """
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 

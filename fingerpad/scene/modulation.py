@@ -11,8 +11,9 @@ twice the carrier's frequency. A burst is a number of whole periods of the wave,
 from typing import Annotated, Any
 
 import numpy as np
+from annotated_types import Ge, Le
 from numpy.typing import ArrayLike, NDArray
-from pydantic import Field
+from pydantic import Strict
 
 from fingerpad.scene.messages import show
 from geometry.units import Finite, Table, within
@@ -22,7 +23,7 @@ SQUARE_MEAN = {"sine": 0.5, "square": 1.0, "triangle": 1 / 3}
 """Mean square of each wave of amplitude 1."""
 FASTEST_CARRIER = 2000.0
 """Largest number of a carrier's periods in one of the wave and its burst, of which samples are taken."""
-_Count = Annotated[int, Field(strict=True, ge=1, le=500)]
+_Count = Annotated[int, Strict(), Ge(1), Le(500)]
 
 
 def shape(waveform: str, part: ArrayLike, parts: float = 1.0) -> NDArray[np.float64]:

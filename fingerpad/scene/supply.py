@@ -151,7 +151,7 @@ def supply_of(wave: Waveform, electric: Electric, d_sc: float) -> Supply:
 
 
 def refuse_drives(drives: Mapping[str, Waveform], electric: Electric, d_sc: float) -> None:
-    """Refuse a drive with an offset that breaks down every gap, or of a frequency at which the tissue is not known.
+    """Refuse insulators without a circuit, and drives that break down every gap or whose frequency no tissue has.
 
     Args:
         drives: of a scene, by key.
@@ -161,6 +161,7 @@ def refuse_drives(drives: Mapping[str, Waveform], electric: Electric, d_sc: floa
     Raises:
         ValueError: in one sentence.
     """
+    electric.circuit(d_sc)
     for key, wave in drives.items():
         supply = supply_of(wave, electric, d_sc)
         if abs(wave.offset) > (highest := _widest(supply.h_0)):

@@ -197,6 +197,8 @@ class Waveform(Table):
     # -- samples -----------------------------------------------------------------------------------------
     def count(self, seconds: float, step_scale: float) -> float:
         """Return how many samples a load of some seconds has; zeros of a periodic voltage come on top."""
+        if math.isinf(step_scale):
+            return 0.0
         if self.times is not None:
             periods = max(seconds / self.period, 1.0) if self.repeat else 1.0
             return periods * len(self.samples(seconds / periods, step_scale))
