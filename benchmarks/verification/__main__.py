@@ -45,7 +45,7 @@ def main(given: Sequence[str] | None = None) -> int:
     results: dict[str, list[tuple[Case, Sequence[Row]]]] = {area: [] for area in args.only}
     for area, case in ((name, case) for name in args.only for case in AREAS[name]):
         start = time.perf_counter()
-        results[area].append((case, case.run(args.small)))
+        results[area].append((case, case.rows(args.small)))
         print(f"{area}: {case.name} ({time.perf_counter() - start:.0f} s)", flush=True)
         for row in results[area][-1][1]:
             words = f"{row.quantity}: {row.computed:.8g}, {row.reference:.8g} expected, error {row.error:.2g}"
