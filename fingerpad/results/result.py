@@ -28,6 +28,7 @@ from fingerpad.results.quantities import (
 )
 from fingerpad.results.quantities import read as read_outputs
 from fingerpad.results.states import STATES, LoadResult, called, load_results
+from fingerpad.scene.law_code import foreign
 from fingerpad.scene.messages import SceneError, clip
 from fingerpad.scene.reading import DEFAULT_MODEL
 from fingerpad.scene.remarks import coefficient
@@ -218,6 +219,7 @@ class Result(Answer):
             SceneError: the folder holds no result that can be read.
         """
         folder, name = Path(folder), clip(str(folder), 80)
+        foreign(folder)
         try:
             summary = read_object(folder / "summary.json")
             if set(summary) == {"failure"}:
