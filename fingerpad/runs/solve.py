@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from fingerpad import launcher
 from fingerpad.installed import needed_by, source, version
+from fingerpad.model import breakdown
 from fingerpad.reduced.closure_band import with_band
 from fingerpad.reduced.registry import find
 from fingerpad.results import dataset
@@ -61,6 +62,7 @@ def run(
 
     Returns:
         The result. A load that could not be reached is its ``failure``, with a warning; the states before are in it.
+        A voltage that breaks down air has a warning before the full model's minutes.
 
     Raises:
         SceneError: the scene cannot be run, in one sentence.
@@ -76,6 +78,8 @@ def run(
             f"resume is true, out is {show(out)} and model {show(model)}; only a full run in a folder can go on"
         )
     context = RunContext(None if out is None else Path(out), comm, resume=resume, outputs=outputs)
+    for caution in breakdown.ahead(scene.resolved()) if way.path and launcher.rank() == 0 else ():
+        warnings.warn(caution, stacklevel=2)
     result = solved(scene, way, context)
     if result.interrupted:
         raise stopped(result)
