@@ -1,6 +1,5 @@
 """No file beside a scene runs code: laws are of installed packages or of a folder that the user names."""
 
-import os
 import sys
 
 import pytest

@@ -1,8 +1,8 @@
 """Code of laws of one's own: from installed packages or a folder that the user names, known by a hash of its files.
 
 A scene is from anyone, and the path of a law in it names code to run. Where each part of that path lies is found
-before any of it is imported, :func:`imported` has the rules. The folders of the user are those of ``--laws`` (kept in the
-variable ``FINGERPAD_LAWS``, for processes of a sweep) and of ``PYTHONPATH``, the checkout of this program excepted.
+before any of it is imported; :func:`imported` has the rules. The folders of the user are those of ``--laws``, kept in
+the variable ``FINGERPAD_LAWS`` for processes of a sweep, and of ``PYTHONPATH``, the checkout of this program excepted.
 """
 
 import hashlib
@@ -54,9 +54,9 @@ def entries(variable: str) -> list[str]:
 def imported(module: str, name: str) -> Any:
     """Return what an import path names.
 
-    A module that is imported already has been chosen by the user's program. Another one has a file in a package with an
-    ``__init__``, all in an installed package or in a folder of the user. Python's own modules, ``__main__``, tests, demos
-    and what lies below the folder of a scene are refused.
+    A module that is imported already has been chosen by the user's program. Another one is a file of an installed
+    package or in a folder of the user, and so is the ``__init__`` of each package around it. Python's own modules,
+    ``__main__``, tests, demos and what lies below the folder of a scene are refused.
 
     Raises:
         ValueError: it cannot be imported; to follow the path and a semicolon.
@@ -115,7 +115,7 @@ def _found(name: str, places: Any) -> Any:
 
 
 def _refuse_beside(file: Path) -> None:
-    """Refuse a file below the folder of a scene, unless in a folder inside it that is named, or of installed packages."""
+    """Refuse a file below the folder of a scene, but for folders in it that are named or of installed packages."""
     installed = [*site.getsitepackages(), site.getusersitepackages()]
     chosen = {Path(each).resolve() for each in (*entries(LAWS), *installed)}
     for path in (file.absolute(), file.resolve()):
@@ -126,7 +126,7 @@ def _refuse_beside(file: Path) -> None:
 
 @contextmanager
 def _search_path() -> Iterator[None]:
-    """Leave out of Python's path, inside the block, what no user has named: the folders of checkout, shell and script."""
+    """Leave the folders of checkout, shell and script out of Python's path in the block, unless the user names them."""
     before, script = sys.path, getattr(sys.modules.get("__main__"), "__file__", None)
     named = {os.path.realpath(each) for each in entries("PYTHONPATH")} - _CHECKOUT
     given = {os.path.realpath(os.curdir), *([os.path.dirname(os.path.realpath(script))] if script else [])} - named
