@@ -15,10 +15,16 @@ from benchmarks.verification import (
     constitutive,
     cook,
     discretisation,
+    electric,
     friction,
     halfspace,
     microscale,
     normal_contact,
+    relaxing,
+    rollers,
+    rough,
+    slices,
+    spikes,
     tube,
 )
 from benchmarks.verification.case import Case, Row, draw, numbers
@@ -26,12 +32,16 @@ from benchmarks.verification.case import Case, Row, draw, numbers
 AREAS: dict[str, tuple[Case, ...]] = {
     "Constitutive": constitutive.CASES + tube.CASES,
     "Discretisation": discretisation.CASES + cook.CASES,
-    "Normal contact": normal_contact.CASES,
+    "Viscosity": relaxing.CASES,
+    "Normal contact": normal_contact.CASES + rollers.CASES,
     "Friction": friction.CASES,
     "Adhesion": adhesion.CASES,
-    "Rough contact": halfspace.CASES,
+    "Circuit": electric.CASES,
+    "Rough contact": halfspace.CASES + rough.CASES,
     "Microscale": microscale.CASES,
     "Two scales": microscale.TWO_SCALES,
+    "Whole finger": slices.CASES,
+    "Spikes": spikes.CASES,
 }
 
 

@@ -10,10 +10,14 @@ from numpy.typing import ArrayLike
 
 from benchmarks.harness import cell, cells, kept, page
 
-
-ELSEWHERE, CURVE, CONVERGENCE, IDENTITY = KINDS = ("elsewhere", "curve", "convergence", "identity")
-"""Kinds of numbers: an answer from elsewhere; the error of a whole curve beside a known one, whose answer is 0; an
-order of convergence, or the same problem solved more finely; the model's own equations, evaluated anew."""
+ELSEWHERE, CURVE, CONVERGENCE, IDENTITY = "elsewhere", "curve", "convergence", "identity"
+KINDS = {
+    ELSEWHERE: "answers from elsewhere",
+    CURVE: "errors of a curve, whose answer is 0",
+    CONVERGENCE: "orders of convergence, and finer meshes",
+    IDENTITY: "identities of the model's own equations",
+}
+"""Kinds of numbers, in words."""
 
 
 @dataclass(frozen=True)
@@ -115,4 +119,4 @@ def draw(docs: Path) -> Path:
             areas[area] += map(_line, names, some)
             rows += some
     count = {kind: sum(row.kind == kind for row in rows) for kind in KINDS}
-    return page(docs, "verification", "make verify", {"rows": rows, "areas": areas, "count": count})
+    return page(docs, "verification", "make verify", {"rows": rows, "areas": areas, "count": count, "KINDS": KINDS})

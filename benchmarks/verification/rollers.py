@@ -1,7 +1,7 @@
 r"""Curved facets: an arc meshed by parabolas, and the width of a roller that is pressed on the screen.
 
-A quarter of a tube has its inner and outer edge on arcs of known length and area. A facet of an arc that spans the angle
-t is off the arc by t^4 / 384 of the radius or less. The roller is a half-space's pad of radius R,
+A quarter of a tube lies between two arcs. A parabola through both ends and the middle of a facet that spans the angle t
+is off its arc by some t^4 / 384 of the radius. The roller is a half-space's pad of radius R,
 
 .. math:: 2a = 4 \sqrt{f R / \pi E^*}
 
@@ -46,10 +46,9 @@ def roller(small: bool) -> list[Row]:
     """Width of contact of a roller at three forces, each with the same body."""
     half, facets = 0.5e-3, 10 if small else 40
     size, e_star = half / (facets + 0.5), _YOUNG / (1 - _NU**2)
-    body = fp.Body(
-        pad(size, int(np.ceil(1.5 * facets)), _RADIUS, 50 * half), fp.SaintVenant(_YOUNG, _NU),
-        contact=fp.Penalty(100 * _YOUNG / size, 10 * _YOUNG / size), touch_depth=0.5e-6, step_scale=7.5, comm=MPI.COMM_SELF,
-    )  # fmt: skip
+    shape, contact = pad(size, int(np.ceil(1.5 * facets)), _RADIUS, 50 * half), fp.Penalty(100 * _YOUNG / size)
+    options = {"contact": contact, "touch_depth": 0.5e-6, "step_scale": 7.5, "comm": MPI.COMM_SELF}
+    body = fp.Body(shape, fp.SaintVenant(_YOUNG, _NU), **options)
     rows, why = [], "half a facet at either edge"
     for part in (0.5, 1.0, 1.3):
         force = np.pi * e_star * (part * half) ** 2 / (4 * _RADIUS)

@@ -72,7 +72,9 @@ def theory(small: bool) -> list[Row]:
     fallen = float((np.diff(energy) / np.sqrt(p[1:] * p[:-1])).sum())
     ours = separation(p[[0, -1]], _SPECTRUM, np.array([1.0 + 1e-12]))[:, 0]
     why = "quadratures over 4001 waves and 2001 pressures"
-    rows.append(Row("fall of the separation, 0.02 to 0.5 E* q_0 h_rms, over h_rms", ours[0] - ours[1], fallen, 2e-3, why))
+    rows.append(
+        Row("fall of the separation, 0.02 to 0.5 E* q_0 h_rms, over h_rms", ours[0] - ours[1], fallen, 2e-3, why)
+    )
     return rows
 
 

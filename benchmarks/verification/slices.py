@@ -27,7 +27,13 @@ def _trace() -> Trace:
     force = 2 / 3 * _K * width * depth
     return Trace(
         depth,
-        {"f_ext": force, "f_t": 0.3 * force, "f_electrostatic": 0 * force, "contact_length": width / 3, "gross_width": width},
+        {
+            "f_ext": force,
+            "f_t": 0.3 * force,
+            "f_electrostatic": 0 * force,
+            "contact_length": width / 3,
+            "gross_width": width,
+        },
     )
 
 
@@ -45,7 +51,10 @@ def foundation(small: bool) -> list[Row]:
             Row(f"gross area (mm²){words}", 1e6 * found.totals["gross_area"], 1e6 * area, 1e-6, why, mesh),
         ]
     place = float(found.thickness @ (found.z * found.columns["f_ext"])) / found.totals["f_ext"]
-    return [*rows, Row(f"centre of the force (mm), tilted by {_TILT:g}", 1e3 * place, -1e3 * _TILT * _R_Z, 1e-6, why, mesh)]
+    return [
+        *rows,
+        Row(f"centre of the force (mm), tilted by {_TILT:g}", 1e3 * place, -1e3 * _TILT * _R_Z, 1e-6, why, mesh),
+    ]
 
 
 CASES = (Case("Sum of slices on a foundation", "Johnson, Contact Mechanics, 1985, sec. 4.3", foundation),)
