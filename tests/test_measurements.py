@@ -274,7 +274,7 @@ def test_errors_of_a_sweep_count_with_the_spread(folder, table, tmp_path, capsys
     out = capsys.readouterr().out
     assert re.search(r"^ *25.000 +86.6 +0.3300 +0.0110 +0.3750 +0.0350 +0.0450 +13.6$", out, re.MULTILINE)
     assert re.search(r"^ *25.000 +200.0 +0.5100 +0.0200 +0.5000 +– +-0.0100 +-2.0$", out, re.MULTILINE)
-    assert "±: estimated discretisation error of the computed value, of the mesh alone.\n" in out
+    assert "±: whole known error of the computed value.\n" in out
     assert "Within the spread plus the error of the computed value: 3 of 4.\n" in out
 
 

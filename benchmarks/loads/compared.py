@@ -229,7 +229,10 @@ def region_of(band: Band) -> dict[str, Any] | None:
     if min(len(band.made), len(band.tests)) < LEAST:
         return None
     errors = dict[str, dict[str, float]]()
-    for state, length, every in (("full_slip", "contact_length", band.some), (WHOLE, "contact_area", band.whole + band.some)):
+    for state, length, every in (
+        ("full_slip", "contact_length", band.some),
+        (WHOLE, "contact_area", band.whole + band.some),
+    ):
         some = [each for each in every if fits(each)]
         lengths = [each.length for each in some if not math.isnan(each.length)]
         errors[state] = {"f_electrostatic": bound(each.error for each in some)}

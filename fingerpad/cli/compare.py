@@ -220,7 +220,7 @@ def _lines(compared: "pd.DataFrame") -> Iterator[str]:
     if about["ignored"]:
         yield f"Columns not read: {clip(', '.join(about['ignored']), 200)}."
     if errors:
-        yield "±: estimated discretisation error of the computed value, of the mesh alone."
+        yield "±: whole known error of the computed value."
     if about["turned"]:
         rows = f"{about['turned']} of {len(compared)} rows have a friction below 0"
         yield f"{rows}, of the other direction; its magnitude is compared."

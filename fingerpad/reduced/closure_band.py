@@ -99,8 +99,9 @@ def band(result: "Result") -> dict[str, Any]:
     has no number, since there is no ratio then.
     """
     scene, slip = result.scene, result.full_slip
-    if slip is None or not slip.voltage or not slip.mu_app > 0 or scene.history is not None:
+    if not _rubs(scene, slip):
         return {}
+    assert slip is not None
     try:
         laws, here = closures(scene.closure()), _solved(scene, slip, scene.closure(), result.uncharged)
     except SceneError:
@@ -114,6 +115,12 @@ def band(result: "Result") -> dict[str, Any]:
         "upper_bounds": {words: each.balanced for words, each in found.items() if each.balanced},
         "model": "cylinders",
     }
+
+
+def _rubs(scene: Scene, slip: ContactState | None) -> bool:
+    """Return whether full slip has friction under a voltage; without a law of friction it has roundoff of it."""
+    charged = slip is not None and slip.voltage != 0 and slip.mu_app > 0
+    return charged and scene.friction_law() is not None and scene.history is None
 
 
 def _finite(value: float) -> float | None:
@@ -207,8 +214,9 @@ def known(result: "Result", closures: Mapping[str, Any]) -> dict[str, Any]:
         closures: what :func:`band` returns for it.
     """
     slip, finger = result.full_slip, result.finger
-    if slip is None or not slip.voltage or not slip.mu_app > 0 or result.scene.history is not None:
+    if not _rubs(result.scene, slip):
         return {}
+    assert slip is not None
     whole = finger is not None and "full_slip" in finger.states
     mu = finger.states["full_slip"].mu_app if finger is not None and whole else slip.mu_app
     try:
