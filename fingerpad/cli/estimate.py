@@ -141,8 +141,8 @@ def grid(
             changed = {} if scene.supply is not None and voltage == scene.volts else {"voltage": voltage}
             row: dict[str, Any] = {_NAME[key]: force, "voltage": voltage}
             try:
-                given = {"force": force} if key == "force" else {"force": None, "f_ext": force}
-                row |= _row(found := form.result(scene.replace(**given, **changed)))
+                given: dict[str, Any] = {"force": force} if key == "force" else {"force": None, "f_ext": force}
+                row = _row(found := form.result(scene.replace(**given, **changed))) | row
                 at = f"At {force:g} {unit} there is no whole finger: "
                 lost += [at + note.partition(": ")[2] + "." for note in found.notes if note.startswith(NO_NEWTONS)]
             except SceneError as error:

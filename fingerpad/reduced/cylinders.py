@@ -144,14 +144,15 @@ class Cylinders(Model):
     def of_finger(self, scene: Scene, section: Result, finger: "WholeFinger") -> Result:
         """Return the result with the known error of the whole finger, or a caution that it is not known."""
         known, cautions, carried = dict(section.record[MODEL_ERROR]), [*section.cautions], dict(finger.carried)
-        under = scene.replace(force=finger.f_ext) if scene.force is None else scene
+        force = finger.f_ext
+        under = scene.replace(force=force) if scene.force is None else scene
         if "full_slip" in finger.states:
             attraction = finger.states["full_slip"].totals["f_electrostatic"]
             known[cylinder_errors.WHOLE] = cylinder_errors.at_full_slip(under, attraction)
             if scene.force is not None and section.full_slip is not None:
                 own = cylinder_errors.cautions(section.scene, _pull(section.full_slip))
                 cautions = [each for each in cautions if each not in own]
-                cautions += cylinder_errors.cautions(under, attraction / under.force)
+                cautions += cylinder_errors.cautions(under, attraction / force)
         for name, total in finger.states.items():
             found = known.get(cylinder_errors.WHOLE if name == "full_slip" else name, {})
             carried[name] = carried[name] | {MODEL: errors.of_model(found, total)}

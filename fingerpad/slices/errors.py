@@ -58,13 +58,15 @@ def of_section(state: ContactState | None, wavelength: float) -> dict[str, dict[
         wavelength: of a ridge (m).
     """
     mesh, penalty = dict[str, float](), dict[str, float]()
-    for name, of in _OF_SECTION.items() if state is not None else ():
+    if state is None:
+        return {MESH: mesh}
+    for name, of in _OF_SECTION.items():
         value, error, springs = (getattr(each, of) for each in (state, state.error, state.penalty))
         if value and not math.isnan(error):
             springs = 0.0 if math.isnan(springs) else abs(springs)
             mesh[name], penalty[name] = (error - springs) / abs(value), springs / abs(value)
     for part in (mesh, penalty):
-        if state is not None and "contact_area" in part:
+        if "contact_area" in part:
             ridge = part["contact_area"] * state.contact_length / state.ridges_in_contact
             part["gross_area"] = ridge / gross_width(state, wavelength)
     return {MESH: mesh} | ({PENALTY: penalty} if any(penalty.values()) else {})
@@ -132,7 +134,8 @@ def interpolation(finger: Profile, trace: Trace, total: Total, count: int) -> di
         count: slices in each stretch of contact.
 
     Returns:
-        Of friction, attraction, areas, indentation and effective width; empty for a trace of two points, of which none can be left out.
+        Of friction, attraction, areas, indentation and effective width; empty for a trace of two points, of which none
+        can be left out.
     """
     if len(trace.depth) < LEAST:
         return {}
