@@ -6,11 +6,14 @@ Their sequence is that of :mod:`benchmarks.loads.scenes` with another seed. Writ
 """
 
 import sys
-from typing import Any
+from collections.abc import Iterable
+from typing import Any, NamedTuple
 
 from benchmarks import harness
-from benchmarks.loads.scenes import Data, of_scenes, scenes
+from benchmarks.loads import meshes
+from benchmarks.loads.scenes import Data, of_scenes, scenes, section
 from benchmarks.loads.states import solved
+from fingerpad.reduced import cylinders
 
 COUNT, SEED = 8, 58
 _MINUTES = 10.0
@@ -26,6 +29,38 @@ def short(state: Data) -> Data:
 def fresh() -> list[Data]:
     """Return the values of the scenes by key."""
     return scenes(SEED, COUNT)
+
+
+class Beside(NamedTuple):
+    """A quantity of a section by the closed form beside the full model."""
+
+    scene: int
+    f_ext: float
+    off: float
+    """The full model's value over that of the closed form, less 1."""
+    error: float
+    """Relative ± of the closed form; NaN where that is not known."""
+
+    @property
+    def inside(self) -> bool:
+        """Whether the ± covers the full model's value."""
+        return abs(self.off) <= self.error
+
+
+def beside(kept: Iterable[Data], key: str, known: list[list[meshes.Checked]]) -> list[Beside]:
+    """Return a quantity of every state that the full model reached, without the error of its mesh.
+
+    Args:
+        kept: scenes with their states.
+        key: of the quantity at full slip.
+        known: of the meshes, as of :func:`benchmarks.loads.meshes.errors`.
+    """
+    found = []
+    for each in meshes.without(kept, known):
+        for state in (state for state in each["states"] if "failure" not in state):
+            number = cylinders.solve(section(each["values"], state["f_ext"])).number("full_slip", key)
+            found.append(Beside(each["scene"], state["f_ext"], state[key] / number.value - 1, number.error / number.value))
+    return found
 
 
 def main() -> int:
