@@ -233,11 +233,11 @@ def again(parameters: Mapping[str, Any], model: str) -> str:
         model: that was used.
     """
     given = {key: value for key, value in changed(parameters).items() if key != "model"}
-    option = "" if model == DEFAULT_MODEL else f" --model {model}"
+    option = "" if model == DEFAULT_MODEL else f" --model {shlex.quote(model)}"
     if any("[" in key or isinstance(value, list) or value is None for key, value in given.items()):
         code = (
             'import fingerpad as fp\n\nscene = fp.Scene.load("scene.json")  # in this folder\n'
-            f'fp.run(scene, model="{model}", out="results/again")'
+            f'fp.run(scene, model={json.dumps(model)}, out="results/again")'
         )
         return f"<pre><code>{text(code)}</code></pre>"
     options = "".join(f" {option_of(key, value)}" for key, value in given.items())

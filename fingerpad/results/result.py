@@ -30,7 +30,7 @@ from fingerpad.results.quantities import read as read_outputs
 from fingerpad.results.states import STATES, LoadResult, called, load_results
 from fingerpad.scene.law_code import foreign
 from fingerpad.scene.messages import SceneError, clip
-from fingerpad.scene.reading import DEFAULT_MODEL
+from fingerpad.scene.reading import DEFAULT_MODEL, model_name
 from fingerpad.scene.remarks import coefficient
 from fingerpad.scene.scene import as_kept
 from variational.state import CONDITIONS, PATH, RESULTS, ContactState, Errors
@@ -187,7 +187,7 @@ class Result(Answer):
         from fingerpad.slices.finger import WholeFinger  # it takes names of this module's wing
 
         parameters, named = summary["parameters"], summary.get("states", {})
-        bare = cls(as_kept(parameters), summary.get("model", DEFAULT_MODEL), None, None, None)
+        bare = cls(as_kept(parameters), model_name(summary.get("model", DEFAULT_MODEL)), None, None, None)
         states: dict[str, Any] = {name: _state(name, named[name]) for name in STATES if name in named}
         bare = replace(
             bare,
