@@ -30,7 +30,7 @@ from fingerpad.runs.sweep_columns import (
     shown,
     tables,
 )
-from fingerpad.scene import SceneError
+from fingerpad.scene import SceneError, changed_keys
 from fingerpad.scene.messages import clip
 from fingerpad.scene.reading import DEFAULT_MODEL, model_name
 from fingerpad.slices.errors import remarks
@@ -278,7 +278,7 @@ def _parameters(table: Table) -> str:
 
 
 def _cite(table: Table) -> str:
-    given = html.changed(table.parameters)
+    given = {key: value for key, (value, _) in changed_keys(table.parameters).items()}
     kept = {key: value for key, value in given.items() if not (key in table.axes or "[" in key or value is None)}
     options = [html.option_of(key, value) for key, value in kept.items()]
     options += [f"--model {shlex.quote(table.model)}"] if table.model != DEFAULT_MODEL else []
