@@ -318,7 +318,7 @@ def _remarks(result: Result) -> list[str]:
     if not math.isnan(share):
         found.append(f"Penalty: a rigid screen would change the contact length at full slip by {1e3 * share:+.2g} mm.")
     band = in_words(result.record.get(RECORD, {}))
-    found += [f"{band[0].upper()}{band[1:]}."] if band else []
+    found += [band] if band else []
     cautions = [f"! {caution}" for caution in result.cautions]
     return [*found, *([PER_LENGTH] if result.named else []), *result.notes, *cautions]
 
