@@ -29,7 +29,7 @@ the band is then open, and the band has the end of the other parts beside it.
 """
 
 import json
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import cache
 from importlib.resources import files
@@ -280,25 +280,34 @@ def _of_closures(closures: Mapping[str, Any], mu: float) -> Part:
 
 def _parts(result: "Result", slip: ContactState, here: float) -> Iterator[Part]:
     """Yield the other parts; ``here`` is µ_app of the charged cylinders at full slip."""
-    scene, own = result.scene, result.scene.closure()
-    full = dict(powers()) if coefficient(scene) is not None else {}
-    full[LAW] = (*powers()[LAW], *powers()[LAW])  # to either law
-
-    def part(name: str, changed: Iterable[tuple[Scene, Closure, float]]) -> Part:
+    scene, full = result.scene, dict(powers())
+    full = full if coefficient(scene) is not None else {LAW: full[LAW]}
+    for name, changed in changes(scene, slip, result.uncharged).items():
         found = [friction(each, slip, law, result.uncharged, tips) for each, law, tips in changed]
         why = {f"changed {name}": each.why for each in found if each.why}
-        pairs = zip(found, full.get(name, (1.0,) * len(found)), strict=True)
-        return Part(name, [(each.mu_app / here) ** power for each, power in pairs if not each.why], why)
-
-    still = _cylinders(_at(scene, 0.0), slip, own, result.uncharged)
-    laws = laws_like(scene.friction_law(), still.f_contact / still.contact_length)
-    yield part(LAW, ((scene.model_copy(update={"friction": law}), own, 1.0) for law in laws))
-    yield part("tips", ((scene, own, tips) for tips in TIPS))
-    if isinstance(own, BearingArea | TabulatedClosure):
-        yield part("roughness", ((scene, replace(own, h_rms=factor * own.h_rms), 1.0) for factor in CHANGE))
-        yield part("coating", ((*_coated(scene, own, factor), 1.0) for factor in CHANGE))
+        pairs = zip(found, full.get(name, (1.0, 1.0)), strict=True)
+        yield Part(name, [(each.mu_app / here) ** power for each, power in pairs if not each.why], why)
     if result.finger is not None and "f_t" in (ends := known_at(result.finger.f_ext)):
         yield Part("slices", [1 / (1 + end) for end in ends["f_t"]])
+
+
+def changes(
+    scene: Scene, slip: ContactState, press: ContactState | None
+) -> dict[str, list[tuple[Scene, Closure, float]]]:
+    """Return two changes of each assumption but the closure, by part: scene, closure and radius of tips over its own.
+
+    Arguments are those of :func:`friction`, and it raises SceneError as :func:`known` does.
+    """
+    own, still = scene.closure(), _cylinders(_at(scene, 0.0), slip, scene.closure(), press)
+    laws = laws_like(scene.friction_law(), still.f_contact / still.contact_length)
+    found = {
+        LAW: [(scene.model_copy(update={"friction": law}), own, 1.0) for law in laws],
+        "tips": [(scene, own, tips) for tips in TIPS],
+    }
+    if isinstance(own, BearingArea | TabulatedClosure):
+        found["roughness"] = [(scene, replace(own, h_rms=factor * own.h_rms), 1.0) for factor in CHANGE]
+        found["coating"] = [(*_coated(scene, own, factor), 1.0) for factor in CHANGE]
+    return found
 
 
 def laws_like(own: Friction | None, p_c: float) -> tuple[float, Derjaguin]:
@@ -312,12 +321,13 @@ def laws_like(own: Friction | None, p_c: float) -> tuple[float, Derjaguin]:
 
 @cache
 def powers() -> Mapping[str, Sequence[float]]:
-    """Return the powers of the cylinders' ratios that give the full model's, by part, of its changes in order."""
+    """Return the powers of the cylinders' ratios that give the full model's, by part, of its two changes in order.
+
+    Where a change has no ratio, as from Coulomb's law to itself, the power is that of the other one.
+    """
     kept = json.loads((files("fingerpad.reduced") / "full_changes.json").read_text(encoding="utf-8"))
-    return {
-        name: tuple(float(np.log(full) / np.log(closed)) for full, closed in zip(*part, strict=True))
-        for name, part in kept.items()
-    }
+    found = {name: [np.log(full) / np.log(closed) for full, closed in part] for name, part in kept.items()}
+    return {name: (*map(float, part), float(part[0]))[:2] for name, part in found.items()}
 
 
 def _coated(scene: Scene, own: BearingArea | TabulatedClosure, factor: float) -> tuple[Scene, Closure]:
