@@ -54,6 +54,24 @@ def test_given_keys_win(tmp_path):
     assert fp.Scene(finger="elderly", materials={"dermis": {"alpha": 5.0}}).materials.dermis.shear_modulus == 3240.0
 
 
+def test_keys_of_a_name_give_way_to_what_contradicts_them():
+    """A table of heights has no radius and no length, of the name or of the scene that is changed; both given do not
+    go together, and the record has the table alone.
+    """
+    table = {"z": [-0.01, 0.0, 0.01], "height": [2e-3, 0.0, 2e-3]}
+    for scene in (
+        fp.Scene(finger="child", slices=table),
+        fp.Scene(finger="child").replace(slices=table),
+        fp.Scene(slices=table).replace(finger="child"),
+        fp.Scene(**fp.Scene(finger="child").parameters()).replace(slices=table),
+    ):
+        assert scene.slices.height == (2e-3, 0.0, 2e-3)
+        assert scene.geometry.width == FINGERS["child"].values["geometry.width"]
+        assert fp.Scene(**scene.parameters()).slices == scene.slices
+    with pytest.raises(fp.SceneError, match="^slices.radius is 0.02 and slices.height is given too"):
+        fp.Scene(finger="child", slices=table | {"radius": 0.02})
+
+
 def test_another_name_keeps_what_was_given():
     """By replace, as sweeps do, through several names and back."""
     scene = fp.Scene(finger="child", friction=0.4, roughness={"gamma": 0.4}, geometry={"width": 0.018})

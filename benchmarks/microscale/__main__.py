@@ -256,14 +256,14 @@ def draw(docs: Path) -> Path:
         "pull": _pull, "area_scatter": [scatter / mean for mean, scatter in numbers["direct"]["wide"][2]],
         "reaches": _reaches, "compared": rows, "inside": sum(inside), "known_pairs": inside,
         "least_voltage": min(u for u in needed if u), "most_voltage": max(u for u in needed if u),
-        "small": numbers["small"],
+        "small": numbers["small"], "flat": harness.kept("measured", docs).numbers["others"]["gap"]["numbers"],
         "flat": lambda found: Scene().friction * (1 + found["attraction"] / contacts.P_EXT),
         "broken": [part for found in numbers["closures"].values() for part in found["broken"]],
         "first_off": deformed[0], "area_error": areas[min(areas)] / areas[max(areas)],
         "gap_span": f"{gaps[0][0]:.2f} to {gaps[-1][0]:.2f} µm; other code has {known[0]:.2f} to {known[-1]:.2f} µm",
         "kPa": 1e-3,
     }  # fmt: skip
-    return harness.page(docs, "microscale", "python3 -m benchmarks.microscale", globals() | names)
+    return harness.page(docs, "microscale", "python3 -m benchmarks.microscale", globals() | names, "measured")
 
 
 def _touches(words: str) -> bool:

@@ -26,7 +26,7 @@ from fingerpad.results.quantities import PER_LENGTH, Output
 from fingerpad.results.result import Result
 from fingerpad.results.states import WORDS
 from fingerpad.scene import Scene
-from fingerpad.scene.keys import every
+from fingerpad.scene.keys import by_name
 from fingerpad.scene.materials import BEARING_AREA, LARGEST_GAP
 from fingerpad.scene.remarks import LEAKAGE, skin_modulus
 from fingerpad.slices import errors, traces
@@ -89,7 +89,7 @@ _SHOWN = (
 
 def fields() -> Iterator[Field]:
     """Yield the fields of the page, with bounds and defaults from the keys of a scene."""
-    keys = {key.name: key for key in every(Scene)}
+    keys = by_name(Scene)
     for field in _SHOWN:
         key = keys[field.key]
         yield _bounded(field, key.limits, _FORCE if key.name == "force" else key.default)

@@ -12,6 +12,7 @@ from fingerpad.report.write import NAME
 from fingerpad.results.files import check_folder
 from fingerpad.results.folder import full_scene
 from fingerpad.runs.context import RunContext
+from fingerpad.runs.post import in_words
 from fingerpad.runs.solve import solved
 from fingerpad.scene import Scene
 from fingerpad.scene.messages import SceneError
@@ -57,7 +58,7 @@ def main(argv: Sequence[str]) -> int:
     if not model.meshes:
         if args.petsc:
             raise SceneError(f"{args.petsc[0]} is given and --model is {model.name}, which solves nothing by PETSc")
-        echo(str(solved(scene, model, context)))
+        echo(in_words(solved(scene, model, context)))
         _say_report(args)
         return 0
     from fingerpad.startup import start
@@ -71,7 +72,7 @@ def main(argv: Sequence[str]) -> int:
     with raises():
         result = solved(scene, model, context)
     if args.quiet or not model.path or scene.force is not None:  # else the run has printed it
-        echo(f"\n{result}" if result.finger or scene.force is None else result.failure)
+        echo(f"\n{in_words(result)}" if result.finger or scene.force is None else result.failure)
     _say_report(args)
     return exit_code(result)
 

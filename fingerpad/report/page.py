@@ -212,9 +212,9 @@ def all_parameters(parameters: Mapping[str, Any], varied: Container[str] = ()) -
         parameters: of a scene.
         varied: keys without a value of their own, since a sweep varies them.
     """
-    from fingerpad.scene.keys import every  # reads the docstrings of the models
+    from fingerpad.scene.keys import by_name  # reads the docstrings of the models
 
-    keys, other, rows = {key.name: key for key in every(Scene)}, changed(parameters), []
+    keys, other, rows = by_name(Scene), changed(parameters), []
     for name, value in flat(parameters).items():
         key = keys.get(re.sub(r"\[\d+\]", "[]", name))
         shown = "varied" if name in varied else _shown(value)

@@ -28,6 +28,7 @@ from fingerpad.results.quantities import (
 )
 from fingerpad.results.quantities import read as read_outputs
 from fingerpad.results.states import STATES, LoadResult, called, load_results
+from fingerpad.scene.law_code import foreign
 from fingerpad.scene.messages import SceneError, clip
 from fingerpad.scene.reading import DEFAULT_MODEL
 from fingerpad.scene.remarks import coefficient
@@ -147,9 +148,10 @@ class Result(Answer):
         """Return the names of the quantities of a named state in ``summary.json``."""
         return *CONDITIONS, *RESULTS, *STABILITY, *(each.name for each in self.outputs)
 
-    def to_dict(self) -> dict[str, Any]:
-        """Return the content of ``summary.json``, ready for JSON; SI units."""
-        found = {"headline": self.headline.to_dict(), **self._numbers(), **self.record}
+    def to_dict(self, headline: bool = True) -> dict[str, Any]:
+        """Return the content of ``summary.json``, ready for JSON, by default with the headline; SI units."""
+        found: dict[str, Any] = {"headline": self.headline.to_dict()} if headline else {}
+        found |= self._numbers() | self.record
         found |= {name: text for name in ("failure", "interrupted") if (text := getattr(self, name))}
         found |= {name: list(kept) for name in ("notes", "cautions") if (kept := getattr(self, name))}
         found |= {"outputs": [each.to_dict() for each in self.outputs]} if self.outputs else {}
@@ -218,6 +220,7 @@ class Result(Answer):
             SceneError: the folder holds no result that can be read.
         """
         folder, name = Path(folder), clip(str(folder), 80)
+        foreign(folder)
         try:
             summary = read_object(folder / "summary.json")
             if set(summary) == {"failure"}:

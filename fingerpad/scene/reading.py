@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 from pydantic import BaseModel
 
+from fingerpad.scene.law_code import foreign
 from fingerpad.scene.law_keys import table
 from fingerpad.scene.messages import SceneError, clip, key_of, show
 from variational import files
@@ -90,6 +91,8 @@ def read_study(path: Path) -> dict[str, Any]:
     Raises:
         SceneError: the file cannot be read, or is of a run that was given more than a scene.
     """
+    foreign(path.parent)
+    foreign(path.resolve().parent)
     if path.suffix.lower() == ".json":
         return {key: value for key, value in _kept(path).items() if key != "model"}
     data: dict[str, Any] = plain(read(path))

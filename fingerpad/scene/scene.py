@@ -274,6 +274,8 @@ class Scene(Table):
             found["geometry"] = {key: found["geometry"][key] for key in ("file", "file_sha256", "sc_thickness")}
         else:
             found["geometry"] = {key: x for key, x in found["geometry"].items() if not key.startswith("file")}
+        if self.slices.height is not None:
+            del found["slices"]["radius"], found["slices"]["length"]
         return found
 
 

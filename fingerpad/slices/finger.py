@@ -72,10 +72,8 @@ class WholeFinger:
                     f"and its trace in {WORDS[name]} begins at {first:.3g} N/m; "
                     "give a larger force, or run this one"
                 )
-        carried = {name: dict(each) for name, each in self.carried.items()}
-        for name, each in carried.items():
-            if errors.ESTIMATED in each:
-                each[errors.ESTIMATED] = errors.lighter(each[errors.ESTIMATED], states[name], self.f_ext / value)
+        ratio = self.f_ext / value
+        carried = {name: errors.lighter(each, states[name], ratio) for name, each in self.carried.items()}
         return replace(self, states=states, carried=carried)
 
     def values(self, name: str) -> dict[str, float]:
@@ -137,7 +135,7 @@ class WholeFinger:
         """Return what the errors of states are made of; of all states by default."""
         every = (self.carried.get(name, {}) for name in names or self.states)
         parts = dict.fromkeys(part for each in every for part, known in each.items() if known)
-        return (*parts, *[errors.POINTS] * bool(self.traces))
+        return tuple(dict.fromkeys([*parts, *[errors.POINTS] * bool(self.traces)]))
 
     def remarks(self) -> list[str]:
         """Return what a reader of the numbers must be told."""

@@ -20,6 +20,7 @@ Air breaks down by the local field (:func:`variational.roughness.statistics.brea
 """
 
 from dataclasses import dataclass
+from functools import cache
 from typing import NamedTuple
 
 import numpy as np
@@ -174,6 +175,7 @@ class GapCircuit:
         return np.asarray(np.fft.irfft(spectrum * gains, len(u)))
 
 
+@cache
 def fit_leak(peak: float, tissue: str | Tissue, gap: float, d_i: float, eps_i: float, d_sc: float) -> float:
     """Return R_gap (ohm m²) with which the share of the gap is largest at a frequency ``peak`` (Hz).
 
@@ -186,5 +188,7 @@ def fit_leak(peak: float, tissue: str | Tissue, gap: float, d_i: float, eps_i: f
 
     low, high = (float(np.log(end)) for end in _LEAKS)
     if not (peak > 0 and beyond(low) > 0 > beyond(high)):
-        raise ValueError(f"peak is {peak:g} Hz; no leak through a gap of {gap:g} m has its peak there")
+        raise ValueError(
+            f"peak is {peak:g} Hz; no leak through a gap of {gap:g} m has its peak there behind this tissue"
+        )
     return float(np.exp(scipy.optimize.brentq(beyond, low, high, xtol=1e-6)))
