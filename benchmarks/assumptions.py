@@ -27,8 +27,10 @@ from fingerpad.richardson import plus_minus
 from fingerpad.runs.batch import Summary
 from fingerpad.scene import Scene, load
 from fingerpad.scene.reading import override
+from fingerpad.scene.remarks import coefficient
 
 _CHANGES = harness.ROOT / "fingerpad" / "reduced" / "full_changes.json"
+_MU_0 = coefficient(Scene()) or 0.0
 _LIMIT = 3600.0  # s of processor time for one run
 PAPER, NEAR, LEAST_GAP = 0.55, 0.05, 1.7e-6  # µ_app, what counts as equal to it; m
 
@@ -98,7 +100,10 @@ LAWS = {
     "Coulomb 25": f"{_set('f_ext=25')} {_COARSE}",
     **{f"shear {force}{', 0 V' * (not u)}": _shear(force, u) for force in STRESS for u in (200, 0)},
 }
-COATING = {"electric.d_i=0.8e-6 electric.eps_sc=2062.5": "20 % less", "electric.d_i=1.2e-6 electric.eps_sc=1375": "20 % more"}
+COATING = {
+    "electric.d_i=0.8e-6 electric.eps_sc=2062.5": "20 % less",
+    "electric.d_i=1.2e-6 electric.eps_sc=1375": "20 % more",
+}
 BESIDE = {
     "flat 0": f"{_FLAT} --set voltage=0 {_COARSE}",
     "both": f"{_set('geometry.ridge_profile=[1, -0.11]')} {_COARSE}",
@@ -175,13 +180,15 @@ def changes_of(rows: Mapping[str, Mapping[str, float]]) -> dict[str, list[list[f
     growth = rows["shear 75"]["mu_app"] / rows["shear 75, 0 V"]["mu_app"]
     names = {"tips": tips, "roughness": [less, more], "coating": [thin, thick]}
     full = {name: [rows[each]["mu_app"] / rows["reference"]["mu_app"] for each in row] for name, row in names.items()}
-    full[closure_band.LAW] = [growth / (rows["reference"]["mu_app"] / Scene().friction)]
+    full[closure_band.LAW] = [growth / (rows["reference"]["mu_app"] / _MU_0)]
     slip = cylinders.solve(Scene()).full_slip
+    assert slip is not None
     here, closed = closure_band.friction(Scene(), slip, Scene().closure(), None).mu_app, dict[str, list[float]]()
     for name, changed in closure_band.changes(Scene(), slip, None).items():
         states = [closure_band.friction(each, slip, law, None, radius) for each, law, radius in changed]
         closed[name] = [state.mu_app / here for state in states][-len(full[name]) :]
-    return {name: [[round(a, 4), round(b, 4)] for a, b in zip(full[name], closed[name], strict=True)] for name in closed}
+    pairs = {name: zip(full[name], closed[name], strict=True) for name in closed}
+    return {name: [[round(a, 4), round(b, 4)] for a, b in each] for name, each in pairs.items()}
 
 
 # -- page ----------------------------------------------------------------------------------------------------
@@ -195,7 +202,7 @@ def sentences(found: Mapping[str, Any]) -> dict[str, Any]:
 
     def growth(name: str, bare: str | None) -> float:
         """Return how many times a voltage multiplies friction; without a run without voltage, by Coulomb's law."""
-        return float(rows[name]["mu_app"] / (rows[bare]["mu_app"] if bare else Scene().friction))
+        return float(rows[name]["mu_app"] / (rows[bare]["mu_app"] if bare else _MU_0))
 
     def gaps(name: str) -> Array:
         """Return the air gaps of both states (m)."""

@@ -191,7 +191,10 @@ def test_note_has_what_eq_3_leaves_out():
     ("electric", "words"),
     [
         ({"tissue": "dry"}, "After 0.1 s its attraction is 1.30 times that of Eq. 3, since the skin conducts."),
-        ({"tissue": "dry", "leak": 300.0}, "Charge leaks with a time constant of 12.1 ms: after 0.1 s its attraction is"),
+        (
+            {"tissue": "dry", "leak": 300.0},
+            "Charge leaks with a time constant of 12.1 ms: after 0.1 s",
+        ),
     ],
 )
 def test_constant_voltage_in_a_circuit_has_short_sentences(electric, words):

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import fingerpad as fp
-from fingerpad.reduced.closure_band import CHANGE, Slip, friction, known, powers, with_band
+from fingerpad.reduced.closure_band import Slip, friction, known, powers, with_band
 from fingerpad.report import trust
 from fingerpad.report.known import bars
 from fingerpad.results.closures import KNOWN, known_in_words
@@ -186,5 +186,6 @@ def test_text_files_and_picture_have_it(result):
     again = fp.Result.from_dict(result.to_dict())
     assert again.known == result.known and KNOWN in again.record
     picture = bars(result)
-    assert all(f">{name}<" in picture for name in ("solved to", "likely range", "rough contact", "friction law", "tips"))
+    names = ("solved to", "likely range", "rough contact", "friction law", "tips")
+    assert all(f">{name}<" in picture for name in names)
     assert "of the whole finger (–)<" in picture and "µ_app of" not in picture, "its symbol is typeset"

@@ -90,7 +90,8 @@ def test_changes_at_the_load_of_full_runs_are_theirs(name):
         "coating": ("electric.d_i=1.2e-6 electric.eps_sc=1375", "electric.d_i=0.8e-6 electric.eps_sc=2062.5"),
     }
     if name == LAW:
-        expected = [full["shear 75"]["mu_app"] / full["shear 75, 0 V"]["mu_app"] / (full["reference"]["mu_app"] / 0.25), 1.0]
+        growth = full["shear 75"]["mu_app"] / full["shear 75, 0 V"]["mu_app"]
+        expected = [growth / (full["reference"]["mu_app"] / 0.25), 1.0]
     else:
         expected = [full[each]["mu_app"] / full["reference"]["mu_app"] for each in rows[name]]
     assert ratios(cylinders(), name) == pytest.approx(expected, abs=1e-3)
@@ -124,5 +125,6 @@ def test_reason_is_a_note(keys, why):
 @pytest.mark.slow
 def test_full_run_without_friction_ends_well():
     """Its friction at full slip is roundoff of forces, over which no band is taken."""
-    found = fp.run(fp.Scene(**NINE, f_ext=1.0, voltage=50.0, friction=0.0, output={"receptors": False, "errors": False}))
+    lean = {"receptors": False, "errors": False}
+    found = fp.run(fp.Scene(**NINE, f_ext=1.0, voltage=50.0, friction=0.0, output=lean))
     assert not found.failure and found.known == {}

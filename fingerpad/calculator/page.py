@@ -19,7 +19,7 @@ from fingerpad.calculator import presets
 from fingerpad.installed import version
 from fingerpad.model.cautions import BALANCED
 from fingerpad.reduced import cylinder_errors, cylinders, uncharged
-from fingerpad.reduced.closure_band import CHANGE, TIPS, SHEAR_STRESS, closures, powers, with_band
+from fingerpad.reduced.closure_band import CHANGE, SHEAR_STRESS, TIPS, closures, powers, with_band
 from fingerpad.reduced.model import STATES
 from fingerpad.results.closures import KNOWN, known_in_words
 from fingerpad.results.quantities import PER_LENGTH, Output

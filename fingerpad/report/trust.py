@@ -222,7 +222,7 @@ def jumped(state: ContactState) -> bool:
 
 # -- headline --------------------------------------------------------------------------------------------
 def head(result: "Result") -> str:
-    """Return the finding: its sentence, the number, how far it is solved, its likely range, and whether to rely on it."""
+    """Return the finding: its sentence, the number, its error, its likely range, and whether to rely on it."""
     found = result.headline
     kind, words = verdict(findings(result))
     number = html.typeset(f"{found.symbol} {found.number}") if found.number else ""
