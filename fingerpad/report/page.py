@@ -71,10 +71,10 @@ def banner(
 
 
 def claims(sentences: Iterable[str], figure: str) -> str:
-    """Return sentences on how far a number is solved and known, in bold up to a bracket or a comma, and a figure."""
+    """Return sentences on how far a number is solved and known, in bold up to a bracket or a mark, and a figure."""
     lines = list[str]()
     for each in sentences:
-        first = re.split(r"(?=,| \()", each, maxsplit=1)[0]
+        first = re.split(r"(?=[,;:]| \()", each, maxsplit=1)[0]
         lines.append(f"<p><b>{typeset(first[0].upper() + first[1:])}</b>{typeset(each[len(first) :])}.</p>")
     return f'<div class="claims"><div>{"".join(lines)}</div>{figure}</div>' if lines else ""
 
