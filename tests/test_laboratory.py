@@ -157,7 +157,7 @@ def test_table_is_named_by_the_end_of_its_path(tmp_path, capsys):
     folder = tmp_path / ("a" * 90)
     folder.mkdir()
     (folder / "lab.csv").write_bytes(b"")
-    assert "lab.csv has no rows" in refused(capsys, "compare-data", str(folder / "lab.csv"), "--run", "nowhere")
+    assert "lab.csv has no numbers" in refused(capsys, "compare-data", str(folder / "lab.csv"), "--run", "nowhere")
 
 
 @pytest.mark.parametrize("content", [b"\x89PNG\r\n\x1a\n\0\0", b"", b"\xff\xfe", b"\n\n;;;\n", b"a;b\n" + b"1;" * 3000])

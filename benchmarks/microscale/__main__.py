@@ -256,7 +256,7 @@ def draw(docs: Path) -> Path:
         "pull": _pull, "area_scatter": [scatter / mean for mean, scatter in numbers["direct"]["wide"][2]],
         "reaches": _reaches, "compared": rows, "inside": sum(inside), "known_pairs": inside,
         "least_voltage": min(u for u in needed if u), "most_voltage": max(u for u in needed if u),
-        "small": numbers["small"], "flat": harness.kept("measured", docs).numbers["others"]["gap"]["numbers"],
+        "small": numbers["small"], "tips": harness.kept("measured", docs).numbers["others"]["gap"]["numbers"],
         "flat": lambda found: Scene().friction * (1 + found["attraction"] / contacts.P_EXT),
         "broken": [part for found in numbers["closures"].values() for part in found["broken"]],
         "first_off": deformed[0], "area_error": areas[min(areas)] / areas[max(areas)],

@@ -57,7 +57,7 @@ def theory(small: bool) -> list[Row]:
     """Area in contact by a walk of the pressure, and separation by the elastic energy."""
     q = np.array([_RATIO])
     variance = float(_slope_squared(q)[0]) / 4
-    rows, steps = [], 500 if small else 4000
+    rows, steps = [], 4000
     why = "a step of the walk beside the pressure, squared"
     for pressure in (0.05, 0.5):
         ours = float(contact_area(np.array([pressure]), _SPECTRUM, q)[0, 0])

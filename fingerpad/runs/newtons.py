@@ -73,7 +73,7 @@ def run(scene: Scene, context: RunContext) -> Result:
     all_together(comm)
     check_options(comm, scene.numerics.element)
     checkpoint = None if context.folder is None else checkpoint_of(scene, context.folder, ())
-    with closing(Console(comm, context.lines, context.bar)) as console, Interrupt(comm) as interrupt:
+    with closing(Console(comm, context.lines, context.bar, context.on_step)) as console, Interrupt(comm) as interrupt:
         made = _Newtons(scene, comm, console, interrupt, checkpoint)
         try:
             bare, cautions = made.result()

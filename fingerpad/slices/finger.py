@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from fingerpad import notebook
 from fingerpad.results.quantities import FINGER, FRICTION, head_rows, side_by_side
 from fingerpad.results.states import STATES, WORDS, called
 from fingerpad.scene import Scene, SceneError
@@ -16,9 +17,10 @@ from fingerpad.slices.total import Total, at_force, profile
 from fingerpad.slices.trace import NAMES, Trace
 
 _ROUNDOFF = 1e-9
+_TITLE = "Whole finger, as a sum of slices"
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class WholeFinger:
     """A whole finger under one force in its named states; SI units."""
 
@@ -146,7 +148,16 @@ class WholeFinger:
     def __str__(self) -> str:
         """Return the text *Whole finger* at the end of a run: the states side by side."""
         lines = side_by_side([*head_rows(self.heads()), *self.rows()])
-        return "\n".join(["Whole finger, as a sum of slices", *lines, *(f"  {each}" for each in self.remarks())])
+        return "\n".join([_TITLE, *lines, *(f"  {each}" for each in self.remarks())])
+
+    __repr__ = __str__
+    """In a console, too: the values of all slices are many pages."""
+
+    def _repr_html_(self) -> str:
+        """Return the text for a notebook."""
+        return notebook.page(
+            _TITLE, notebook.table(["", *self.heads()], self.rows()), notebook.folded("Remarks", self.remarks())
+        )
 
 
 def in_order(states: Mapping[str, Total]) -> dict[str, Total]:
