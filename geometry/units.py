@@ -150,6 +150,14 @@ def _root(unit: str) -> "tuple[Decimal, pint.Unit] | None":
     return Decimal(str(factor)), root
 
 
+def is_unit(text: str) -> bool:
+    """Return whether a text is a unit of any dimension, False where pint is not installed."""
+    try:
+        return _root(text) is not None
+    except ImportError:
+        return False
+
+
 def in_si(unit: str) -> tuple[str, float]:
     """Return the unit of :data:`QUANTITIES` that measures the same as a unit, and the factor from it to the unit.
 

@@ -21,9 +21,10 @@ from fingerpad.scene.electric import Electric
 from fingerpad.scene.messages import show
 from fingerpad.scene.modulation import shape
 from fingerpad.scene.waveform import Waveform
-from variational.attraction.circuit import BREAKDOWN_FIELD, BREAKDOWN_PLATEAU, LEAKS, GapCircuit, breakdown_voltage
+from variational.attraction.circuit import LEAKS, GapCircuit
 from variational.attraction.dielectric import VACUUM_PERMITTIVITY
 from variational.attraction.network import Network
+from variational.roughness.statistics import BREAKDOWN_FIELD, BREAKDOWN_PLATEAU, breakdown_voltage
 
 Array = NDArray[np.float64]
 SAMPLES = 4096
