@@ -47,6 +47,12 @@ def write(folder: Path) -> Path:
     return folder / NAME
 
 
+def of_result(result: Result) -> None:
+    """Write the report of a result that is in its folder; serial."""
+    assert result.folder is not None
+    write(result.folder)
+
+
 def _page(found: "Result | Table") -> str:
     if isinstance(found, Result):
         from fingerpad.report import run_page
@@ -58,29 +64,13 @@ def _page(found: "Result | Table") -> str:
 
 
 def attempt(folder: Path) -> Path | None:
-    """Write the report at the end of a run; None and a line on the console where it cannot be made; serial."""
+    """Write the report at the end of a sweep; None and a line on the console where it cannot be made; serial."""
     try:
         return write(folder)
     except Exception as error:  # whatever it is, the results are there
         again = "fingerpad report makes it again"
         print(f"fingerpad: no report of {clip(str(folder), 80)}: {clip(str(error), 160)}; {again}", file=sys.stderr)
         return None
-
-
-def draw_whole(result: Result) -> None:
-    """Write the pictures of a whole finger at the end of a run; a line on the console where that fails; serial.
-
-    These are ``footprint.png`` and, under a force in newtons, ``solid.png``.
-    """
-    if result.finger is None or result.folder is None:
-        return
-    for kind in ("footprint", "solid") if result.whole else ("footprint",):
-        try:
-            result.plot(kind, result.folder / f"{kind}.png")
-        except (OSError, ValueError) as error:
-            print(
-                f"fingerpad: {kind}.png was not written: {getattr(error, 'strerror', None) or error}", file=sys.stderr
-            )
 
 
 def read(folder: Path) -> "Result | Table":

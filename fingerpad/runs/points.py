@@ -10,7 +10,6 @@ from fingerpad.runs.context import RunContext
 from fingerpad.runs.sweep_columns import OTHER
 from fingerpad.scene import Scene
 from fingerpad.scene.reading import DEFAULT_MODEL
-from fingerpad.slices.estimate import with_newtons
 from variational.state import PATH, ContactState
 
 if TYPE_CHECKING:
@@ -37,17 +36,16 @@ class Point:
     """The state on the scene's own mesh, where that is another one."""
 
     def result(self, cost: Cost, before: "Counts", notes: Sequence[str]) -> Result:
-        """Return the result, with its whole finger where the closed form knows a press of it.
+        """Return the result.
 
         Args:
             cost: of all states on the mesh of the chain so far.
             before: counts of their solver before this one.
             notes: on how the state was found.
         """
-        from fingerpad.model import breakdown, cautions
         from fingerpad.model.state import broken
         from fingerpad.results.provenance import provenance
-        from fingerpad.scene.remarks import coefficient, remarks
+        from fingerpad.scene.remarks import coefficient
 
         finger, state, solve = self.finger, self.state, None
         newton, factorisations = cost.newton_iterations - before.newton, cost.factorisations - before.factorisations
@@ -62,8 +60,7 @@ class Point:
             )
             record = {"path_mesh": finger.size.model_dump(), "accuracy": {"mesh": solve.mesh.model_dump()}}
         record |= {"reached": state.reached, "force_error": finger.force_error, "provenance": provenance()}
-        formulation = finger.problem.interface.formulation
-        found = Result(
+        return Result(
             self.scene,
             DEFAULT_MODEL,
             None,
@@ -72,15 +69,9 @@ class Point:
             cost=replace(cost, newton_iterations=newton, factorisations=factorisations, unknowns=unknowns),
             failure=broken(state, finger.force_error, coefficient(self.scene)),
             notes=(f"This is full slip alone, {words}: {state.reached}.", *notes),
-            cautions=(
-                *remarks(self.scene),
-                *self._differences(),
-                *cautions.on_states([state], self.scene.closure(), formulation),
-                *breakdown.of_states(self.scene, [state]),
-            ),
+            cautions=tuple(self._differences()),
             record=record,
         )
-        return with_newtons(found)
 
     def _differences(self) -> list[str]:
         """Return a caution where other ridges touch on the two meshes."""
@@ -105,7 +96,7 @@ def of_run(scene: Scene, why: str, clock: "Clock", comm: "MPI.Comm") -> Result:
     found = run(scene, RunContext(comm=comm, bar=False, report=False))
     note = f"This is full slip of a run of its own, since it was not found from a state on larger elements: {why}."
     counts = Counts(found.cost.newton_iterations, found.cost.factorisations)
-    point = Result(
+    return Result(
         scene,
         DEFAULT_MODEL,
         None,
@@ -117,7 +108,6 @@ def of_run(scene: Scene, why: str, clock: "Clock", comm: "MPI.Comm") -> Result:
         cautions=found.cautions,
         record={key: found.record[key] for key in _OF_RUN if key in found.record} | {"reached": PATH},
     )
-    return with_newtons(point)
 
 
 def one(a: ContactState, b: ContactState) -> bool:
