@@ -7,6 +7,7 @@ import pytest
 
 import fingerpad as fp
 from fingerpad.cli import main
+from fingerpad.reduced.similarity import similar
 from fingerpad.scene import load
 from fingerpad.scene.fingers import FINGERS
 from tests.commands import refused
@@ -143,6 +144,20 @@ def test_name_without_effect_is_remarked():
     given = fp.Scene().parameters()
     assert "the name has no effect" in remarks(fp.Scene(**given | {"finger": "callused"}))[0]
     assert remarks(fp.Scene(finger="callused")) == remarks(fp.Scene()) == []
+
+
+@pytest.mark.parametrize("name", FINGERS)
+def test_headline_and_check_say_that_a_finger_was_not_measured(name, tmp_path, capsys):
+    """Of every name but the default finger's; where a name changes moisture, that it contradicts a measurement."""
+    remark = FINGERS[name].remark
+    scene = fp.Scene(finger=name)
+    assert bool(remark) == (name != "adult")
+    assert ("arXiv 2409.16936" in remark) == ("roughness.young" in FINGERS[name].values)
+    if not isinstance(similar(scene), str):
+        headline = fp.run(scene, model="cylinders").headline
+        assert headline.remark == remark and (not remark or f"\n  {remark}" in str(headline))
+    main(["check", "--set", f"finger={name}", "--set", "mesh.contact=40e-6", "--out", str(tmp_path)])
+    assert not remark or remark in capsys.readouterr().out
 
 
 def test_every_value_has_a_source_or_is_an_assumption():

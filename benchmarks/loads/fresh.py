@@ -59,7 +59,9 @@ def beside(kept: Iterable[Data], key: str, known: list[list[meshes.Checked]]) ->
     for each in meshes.without(kept, known):
         for state in (state for state in each["states"] if "failure" not in state):
             number = cylinders.solve(section(each["values"], state["f_ext"])).number("full_slip", key)
-            found.append(Beside(each["scene"], state["f_ext"], state[key] / number.value - 1, number.error / number.value))
+            found.append(
+                Beside(each["scene"], state["f_ext"], state[key] / number.value - 1, number.error / number.value)
+            )
     return found
 
 

@@ -11,7 +11,7 @@ import math
 
 import numpy as np
 
-from benchmarks.verification.case import Case, Row
+from benchmarks.verification.case import IDENTITY, Case, Row
 from fingerpad.afferents.filtered import FilteredUnit
 from fingerpad.afferents.linear import threshold
 from fingerpad.afferents.pin import DEPTH, force, stress
@@ -107,6 +107,6 @@ def thresholds(small: bool) -> list[Row]:
 _APART = "by a program apart, doi"
 CASES = (
     Case("Held ramps of SA-I", f"{_APART} 10.7554/eLife.01488", held),
-    Case("Filtered units under a pin", f"{_APART} 10.1073/pnas.1704856114, with constants of our own", pins),
+    Case("Filtered units under a pin", f"{_APART} 10.1073/pnas.1704856114, with constants of our own", pins, IDENTITY),
     Case("Thresholds of linear filters", f"{_APART} 10.1109/TBME.2020.3007397", thresholds),
 )

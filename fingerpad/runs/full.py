@@ -58,7 +58,7 @@ def run(scene: Scene, context: RunContext) -> Result:
     check_options(comm, scene.numerics.element)
     try:
         with (
-            closing(Console(comm, context.lines, context.bar)) as console,
+            closing(Console(comm, context.lines, context.bar, context.on_step)) as console,
             context.place(scene, DEFAULT_MODEL) as place,
         ):
             checkpoint = None if place is None else checkpoint_of(scene, place.folder, outputs)

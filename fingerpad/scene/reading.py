@@ -101,6 +101,17 @@ def read_study(path: Path) -> dict[str, Any]:
     return data
 
 
+def model_name(name: Any) -> str:
+    """Return the name of a model in files of results, which may be of one that is not registered here.
+
+    Raises:
+        SceneError: it is no name.
+    """
+    if not (isinstance(name, str) and re.fullmatch(r"[^\W\d][\w .-]{0,59}", name)):
+        raise SceneError(f"model is {show(name)}; it must be the name of a model: letters, digits and dots")
+    return name
+
+
 def model_of(path: Path | None) -> str:
     """Return the model of the run whose ``scene.json`` is given, :data:`DEFAULT_MODEL` of any other scene.
 
@@ -109,7 +120,7 @@ def model_of(path: Path | None) -> str:
     """
     if path is None or path.suffix.lower() != ".json":
         return DEFAULT_MODEL
-    return str(_kept(path).get("model", DEFAULT_MODEL))
+    return model_name(_kept(path).get("model", DEFAULT_MODEL))
 
 
 def _kept(path: Path) -> dict[str, Any]:

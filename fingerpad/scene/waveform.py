@@ -95,7 +95,7 @@ class Waveform(Table):
             if data.get(name) is not None:
                 raise ValueError(f"{name} and file are both given; give the file alone, which has them")
         rest = {key: value for key, value in data.items() if key not in OF_FILE}
-        return rest | table(data["file"], column, factor)
+        return rest | table(data["file"], column, factor, repeat=data.get("repeat") is True)
 
     @model_validator(mode="after")
     def _consistent(self) -> "Waveform":

@@ -1,8 +1,9 @@
 """Newtons of a run at no cost: one press, one full slip, and charged cylinders in between.
 
 A run of press, charge and slide has the cross-section's whole press without voltage, and one charged state and one full
-slip, at the scene's force. The slices away from the centre bear less. Their attraction and contact length are those
-of the model "cylinders" (:mod:`fingerpad.reduced.cylinders`) over the contact lengths of the run's own press, scaled to
+slip, at the scene's force. The press is on the path's mesh, whose elements are larger, and is scaled to its end on the
+final mesh. The slices away from the centre bear less. Their attraction and contact length are those
+of the model "cylinders" (:mod:`fingerpad.reduced.cylinders`) over the contact lengths of this press, scaled to
 the run's own state at the centre; their indentation is that of the press, scaled to its own. Full slip alone, as in a
 sweep of it, has no press; then it is the closed form's, of the default finger or of one similar to it.
 ``docs/newtons.md`` has the error of this estimate beside traces of the full model. A scene with a ``force`` computes

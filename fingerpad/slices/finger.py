@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from fingerpad import notebook
 from fingerpad.results.quantities import FINGER, FRICTION, MODEL, head_rows, plus_minus_of, side_by_side
 from fingerpad.results.states import STATES, WORDS, called
 from fingerpad.scene import Scene, SceneError
@@ -16,9 +17,10 @@ from fingerpad.slices.total import Total, at_force, profile
 from fingerpad.slices.trace import NAMES, Trace
 
 _ROUNDOFF = 1e-9
+_TITLE = "Whole finger, as a sum of slices"
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class WholeFinger:
     """A whole finger under one force in its named states; SI units."""
 
@@ -64,10 +66,13 @@ class WholeFinger:
             The finger with its errors; of a cheaper model without any, which are known in a range of forces alone.
 
         Raises:
-            SceneError: no force, or one that a trace does not reach.
+            SceneError: no force, one that a trace does not reach, or a finger without traces.
         """
         value, finger = Scene(force=force).force, profile(self.shape)
-        assert value is not None
+        if value is None:
+            raise SceneError("force is None; it must be a number in N, or a text such as '0.3 N'")
+        if missing := [WORDS[name] for name in self.states if name not in self.traces]:
+            raise SceneError(f"the finger has no trace of {missing[0]}, from which another force could be read; run it")
         states = {name: at_force(finger, self.traces[name], value, self.shape.count) for name in self.states}
         for name, total in states.items():
             first = finger.centre_scale * float(self.traces[name].columns["f_ext"][0])
@@ -150,7 +155,16 @@ class WholeFinger:
     def __str__(self) -> str:
         """Return the text *Whole finger* at the end of a run: the states side by side."""
         lines = side_by_side([*head_rows(self.heads()), *self.rows()])
-        return "\n".join(["Whole finger, as a sum of slices", *lines, *(f"  {each}" for each in self.remarks())])
+        return "\n".join([_TITLE, *lines, *(f"  {each}" for each in self.remarks())])
+
+    __repr__ = __str__
+    """In a console, too: the values of all slices are many pages."""
+
+    def _repr_html_(self) -> str:
+        """Return the text for a notebook."""
+        return notebook.page(
+            _TITLE, notebook.table(["", *self.heads()], self.rows()), notebook.folded("Remarks", self.remarks())
+        )
 
 
 def in_order(states: Mapping[str, Total]) -> dict[str, Total]:

@@ -210,9 +210,9 @@ def _of_path(scene: Scene, finger: WholeFinger, found: dict[str, Traced]) -> Res
 
 def sections(scene: Scene, found: Mapping[str, Traced]) -> dict[str, Any]:
     """Return the section at the centre of the finger by state; None in states without a trace."""
-    lowest, scale = profile(scene.slices).lowest[1], profile(scene.slices).centre_scale
+    scale, wavelength = profile(scene.slices).centre_scale, scene.geometry.ridge_wavelength
     named = {
-        name: _section(each, name, (each.total.delta - lowest) / scale, scene.geometry.ridge_wavelength)
+        name: _section(each, name, each.total.delta / scale, wavelength)
         for name, each in found.items()
         if each.total is not None
     }
