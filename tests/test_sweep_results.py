@@ -242,7 +242,9 @@ def test_newtons_of_a_whole_finger(tmp_path):
     assert row["full_slip_finger_f_t"] == totals["f_t"] and row["charged_finger_f_ext"] == pytest.approx(0.5)
     assert "charged_finger_f_t" not in row
     title, heads, line = str(done).splitlines()[:3]
-    assert title.startswith("Whole finger, and middle section per metre of finger, at full slip, under a voltage without")
+    assert title.startswith(
+        "Whole finger, and middle section per metre of finger, at full slip, under a voltage without"
+    )
     assert heads.index("F_T (N)") < heads.index("µ_app of section") < heads.index("f_T of section (N/m)")
     assert re.search(rf" {re.escape(result.finger.shown('full_slip', 'mu_app'))} ", line)
     data = done.to_xarray()

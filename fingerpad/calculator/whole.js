@@ -6,7 +6,7 @@
   const { NoEquilibriumError, interpolate, fitted, closure_of, ridge_of } = closedForm;
   const SUMS = [["f_electrostatic", "f_electrostatic"], ["contact_area", "contact_length"], ["gross_area", "gross_width"]];
 
-  /** Return the forces (N/m) of a trace: traces.grid. */
+  /** Return the forces (N/m) of a trace: slices/grid.py. */
   function grid(expected, top) {
     const { light, per_octave } = data.traces, first = Math.round(Math.log2(expected * light)) * per_octave;
     const last = Math.max(Math.ceil(Math.log2(top) * per_octave) + 1, first + 3);

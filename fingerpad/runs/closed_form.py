@@ -10,6 +10,7 @@ from fingerpad.runs.context import RunContext
 from fingerpad.scene import Scene
 from fingerpad.scene.messages import SceneError
 from fingerpad.slices import traces
+from fingerpad.slices.grid import of_points
 from fingerpad.slices.total import Total, profile
 from variational.coefficients import LawError
 
@@ -83,7 +84,7 @@ class ClosedForm:
 
         def traced(name: str, top: float, _: int) -> traces.Traced:
             solve: traces.Solve = lambda each, _: self.section(each)  # noqa: E731
-            return traces.of_points(section, self.model, solve, name, scene.centre_force, top)
+            return traces.Traced(*of_points(section, self.model, solve, name, scene.centre_force, top))
 
         found = traces.Reach(scene, traced).follow(STATE).total
         assert found is not None

@@ -4,11 +4,10 @@ The full model follows three histories. The finger is pressed without voltage. I
 pressed on. It is pressed lightly, charged, slid to full slip and pressed on while it slides. Where full slip does not
 depend on the path, one simulation has all of them (``fingerpad.runs.newtons``). Elsewhere they are ordinary scenes,
 and every accepted step at full slip is a point of the trace. A model without a path has points at fixed forces
-(:func:`grid`), so that a sum over them does not depend on the way to it. A trace that ends before the force is reached
-is made again to a larger one.
+(:mod:`fingerpad.slices.grid`), so that a sum over them does not depend on the way to it. A trace that ends before the
+force is reached is made again to a larger one.
 """
 
-import math
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import fields, replace
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -24,6 +23,8 @@ from fingerpad.scene.messages import SceneError
 from fingerpad.scene.parameters import LINE, POINT, POWER
 from fingerpad.slices import errors
 from fingerpad.slices.finger import WholeFinger, in_order
+from fingerpad.slices.grid import LIGHT as LIGHT
+from fingerpad.slices.grid import PER_OCTAVE, of_points
 from fingerpad.slices.total import BeyondTrace, Total, at_force, profile, under_one_force
 from fingerpad.slices.trace import Trace, TraceError, trace
 from geometry.units import computed
@@ -36,10 +37,6 @@ Solve = Callable[[Scene, str], Result]
 """Returns the result of a scene; takes a name for the folder of its files."""
 NO_NEWTONS = "no newtons of the whole finger"
 """Beginning of a note that says why."""
-PER_OCTAVE = 2
-"""Points of a trace of a model without a path in each doubling of the force."""
-LIGHT = 1 / 30
-"""Force under which a finger is charged, and slid to full slip, over the largest of its trace."""
 SMALLEST, _LARGEST = 1e-3, 5e3
 """Forces (N/m) of a scene."""
 _SHORTEST = 1.01 * SMALLEST / LIGHT  # N/m, largest force of a trace whose light one a scene can have
@@ -119,9 +116,10 @@ def with_sum(result: Result, model: "Model", solve: Solve) -> Result:
     """
     scene = result.scene
     try:
-        found = {name: of_points(scene, model, solve, name, scene.f_ext, scene.f_ext) for name in states(scene)}
+        f_ext = scene.f_ext
+        found = {name: Traced(*of_points(scene, model, solve, name, f_ext, f_ext)) for name in states(scene)}
         traces = {name: each.trace for name, each in found.items()}
-        totals = under_one_force(profile(scene.slices), traces, scene.slices.count, scene.f_ext)
+        totals = under_one_force(profile(scene.slices), traces, scene.slices.count, f_ext)
         found = {name: each._replace(total=totals[name]) for name, each in found.items()}
         return model.of_finger(scene, result, summed(scene, model.traces, found))
     except (SceneError, TraceError) as error:
@@ -329,7 +327,7 @@ def _made(scene: Scene, model: "Model", solve: Solve, name: str, top: float, tri
     here = scene.replace(force=None)
     if model.path:
         return _run(here, scene.force or 0.0, solve, name, top, tries)
-    return of_points(here, model, solve, name, scene.centre_force, top)
+    return Traced(*of_points(here, model, solve, name, scene.centre_force, top))
 
 
 def _run(scene: Scene, force: float, solve: Solve, name: str, top: float, tries: int) -> Traced:
@@ -343,34 +341,3 @@ def _run(scene: Scene, force: float, solve: Solve, name: str, top: float, tries:
     except TraceError as error:
         why = f": {result.failure}" if result.failure else ""
         raise SceneError(f"the force on the finger is {force:.4g} N; {error}{why}") from None
-
-
-def of_points(scene: Scene, model: "Model", solve: Solve, name: str, expected: float, top: float) -> Traced:
-    """Return a trace of a model without a path.
-
-    Args:
-        scene: without a force on the whole finger.
-        model: that solves.
-        solve: solves a scene by it.
-        name: of the state.
-        expected: force (N/m) at the centre of the finger, about.
-        top: force (N/m) that the trace is to reach.
-    """
-    kind = "full_slip" if name == "full_slip" else "charged"
-    scene = scene.model_copy(update={"voltage": 0.0}) if name == "uncharged" else scene
-    found = model.over_forces(scene, grid(expected, top), kind, lambda each: solve(each, name))
-    return Traced(trace(found, scene.geometry.ridge_wavelength), found)
-
-
-def grid(expected: float, top: float) -> list[float]:
-    """Return the forces (N/m) of a trace: powers of two and between them, from a light one to the second beyond a top.
-
-    A monotone cubic takes its slopes from its neighbours, so that more points do not change it up to the top.
-
-    Args:
-        expected: force at the centre of the finger, about, which is :data:`LIGHT` times that at the start.
-        top: force that the trace is to reach.
-    """
-    first = round(math.log2(expected * LIGHT)) * PER_OCTAVE
-    last = max(math.ceil(math.log2(top) * PER_OCTAVE) + 1, first + 3)
-    return [2.0 ** (k / PER_OCTAVE) for k in range(first, last + 1)]
