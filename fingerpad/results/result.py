@@ -11,7 +11,7 @@ from fingerpad import launcher
 from fingerpad.results import dataset
 from fingerpad.results.answer import Answer, Cost
 from fingerpad.results.closures import RECORD, in_words
-from fingerpad.results.files import read_object
+from fingerpad.results.files import FORMAT, read_object, refuse_other_format
 from fingerpad.results.headline import Headline, headline, missing_slip
 from fingerpad.results.quantities import (
     CHANGES,
@@ -166,6 +166,7 @@ class Result(Answer):
             for name, state in self.named.items()
         }
         return {
+            "format": FORMAT,
             "model": self.model,
             "f_ext": 0.0 if last is None else last.f_ext,
             "voltage": 0.0 if last is None else last.voltage,
@@ -223,6 +224,7 @@ class Result(Answer):
             summary = read_object(folder / "summary.json")
             if set(summary) == {"failure"}:
                 raise SceneError(f"the run in {name} was refused and has no results: {summary['failure']}")
+            refuse_other_format(summary, f"the run in {name}")
             found = cls.from_dict(summary, folder)
             if (kept := dataset.read(folder, [each.name for each in found.outputs])) is not None:
                 ways = {name: state.reached for name, state in found.named.items()}
