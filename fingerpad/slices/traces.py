@@ -23,7 +23,7 @@ from fingerpad.scene.parameters import LINE, POINT, POWER
 from fingerpad.slices import errors
 from fingerpad.slices.finger import WholeFinger, in_order
 from fingerpad.slices.total import BeyondTrace, Total, at_force, profile, under_one_force
-from fingerpad.slices.trace import Trace, TraceError, trace
+from fingerpad.slices.trace import Trace, TraceError, refuse_floating, trace
 from geometry.units import computed
 from variational.state import ContactState, Errors
 
@@ -341,9 +341,10 @@ def _run(scene: Scene, force: float, solve: Solve, name: str, top: float, tries:
 
 
 def of_points(scene: Scene, model: "Model", solve: Solve, name: str, top: float) -> Traced:
-    """Return a trace of a model without a path."""
+    """Return a trace of a model without a path; refuse states without a bone, and such that are none."""
     forces = [float(each) for each in np.geomspace(top * LIGHT, top, FORCES)]
     kind = "full_slip" if name == "full_slip" else "charged"
     scene = scene.model_copy(update={"voltage": 0.0}) if name == "uncharged" else scene
     found = model.over_forces(scene, forces, kind, lambda each: solve(each, name))
+    refuse_floating(found, model.name)
     return Traced(trace(found, scene.geometry.ridge_wavelength), found)
