@@ -21,7 +21,7 @@ from decimal import Decimal
 from functools import cache
 from typing import TYPE_CHECKING, Annotated, Any
 
-from pydantic import BaseModel, ConfigDict, Field, ValidatorFunctionWrapHandler, WrapValidator
+from pydantic import AllowInfNan, BaseModel, ConfigDict, Strict, ValidatorFunctionWrapHandler, WrapValidator
 from pydantic_core import PydanticCustomError
 
 if TYPE_CHECKING:
@@ -139,6 +139,14 @@ def _root(unit: str) -> "tuple[Decimal, pint.Unit] | None":
     return Decimal(str(factor)), root
 
 
+def is_unit(text: str) -> bool:
+    """Return whether a text is a unit of any dimension, False where pint is not installed."""
+    try:
+        return _root(text) is not None
+    except ImportError:
+        return False
+
+
 def in_si(unit: str) -> tuple[str, float]:
     """Return the unit of :data:`QUANTITIES` that measures the same as a unit, and the factor from it to the unit.
 
@@ -154,8 +162,9 @@ def in_si(unit: str) -> tuple[str, float]:
 
 
 # -- tables --------------------------------------------------------------------------------------------
-Finite = Annotated[float, Field(strict=True, allow_inf_nan=False)]
-Switch = Annotated[bool, Field(strict=True)]
+# Not by Field(...), whose one FieldInfo pydantic would share among keys: one of them would have another's default.
+Finite = Annotated[float, Strict(), AllowInfNan(False)]
+Switch = Annotated[bool, Strict()]
 
 
 class Table(BaseModel):

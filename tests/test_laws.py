@@ -147,6 +147,7 @@ class NoData(Closure):
         ({"roughness": Held(-1e-6)}, "roughness: closure Held returns an air gap of -1e-06 m at a pressure of 0 Pa"),
         ({"friction": Derjaguin(0.3, -5e3)}, "friction.tau_0 is -5000 Pa; it must be 0 or from 0.001 to 1e+09 Pa"),
         ({"friction": Saturating(0.4, lambda p: p)}, "friction.t_most is"),
+        ({"friction": Derjaguin(0.3, 1e9, 1e-3)}, "friction: the limit of Derjaguin(mu_f=0.3, tau_0=1000000000.0"),
         ({"friction": {"law": "Derjagun"}}, "friction.law is 'Derjagun'; it must be 'Coulomb', 'Derjaguin', "),
         ({"friction": {"law": "Derjaguin", "mu_f": 0.3}}, "friction.tau_0 is missing; it must be given"),
         ({"friction": {"mu_f": 0.3, "tau_0": 5e3}}, "friction.tau_0 is not a key of friction with the law Coulomb"),

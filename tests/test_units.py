@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pint
 import pytest
+from pydantic import Field, ValidationError
 
 from fingerpad.results.result import Result
 from fingerpad.scene import Scene, SceneError, as_kept
@@ -121,6 +122,22 @@ def test_text_without_pint_is_refused():
         "SceneError: f_ext is '50 dyn/cm'; its unit needs the package pint, which is not installed; it must be a "
         "number in N/m or a text such as '50 N/m'"
     )
+
+
+def test_required_key_takes_no_other_key_s_default():
+    """A number and a switch, with a description of their own, beside keys that have a default."""
+
+    class Own(units.Table):
+        given: units.Finite = 7.0
+        on: units.Switch = True
+        length: units.Finite = Field(..., description="A length.")
+        off: units.Switch = Field(..., description="A switch.")
+
+    assert {name for name, field in Own.model_fields.items() if field.is_required()} == {"length", "off"}
+    assert Own(length=1.0, off=False).given == 7.0
+    for wrong in ({"length": "1"}, {"length": math.inf}, {"off": 1}):
+        with pytest.raises(ValidationError):
+            Own(**{"length": 1.0, "off": False} | wrong)
 
 
 def test_zero_has_no_sign():

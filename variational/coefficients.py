@@ -64,7 +64,7 @@ class LawError(ValueError):
     """A law of one's own that the weak form cannot take; one sentence."""
 
 
-def said(error: Exception) -> str:
+def said(error: BaseException) -> str:
     """Return the message of an error in a user's law, in one line."""
     return " ".join(str(error).split()) or type(error).__name__
 

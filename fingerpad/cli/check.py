@@ -6,6 +6,7 @@ from pathlib import Path
 
 from fingerpad.cli import mesh as meshes
 from fingerpad.cli.arguments import Parser, echo, scene_of
+from fingerpad.model import breakdown
 from fingerpad.model.options import COARSER, FingerModel, ModelOptions, by_rule, memory, plan, refuse_mesh, unknowns
 from fingerpad.reduced import cylinders
 from fingerpad.reduced.closure_band import with_band
@@ -110,6 +111,7 @@ def _aims(load: Load) -> Iterator[str]:
 
 def _model(scene: Scene, needed: ModelOptions) -> Iterator[str]:
     yield from (*finger_in_words(scene), *remarks(scene), *leakage(scene), *too_short(scene), *_adhering(scene))
+    yield from breakdown.ahead(scene)
     if caution := scene.contact.law.caution:
         yield caution
     if scene.geometry.file is None:

@@ -225,6 +225,8 @@ def _lines(compared: "pd.DataFrame") -> Iterator[str]:
         yield f"{rows}, of the other direction; its magnitude is compared."
     yield from _fits(fits, about["mu_0"])
     yield from _misfit(about["misfit"], errors)
+    if not compared.voltage.any():
+        yield "No row is under a voltage: attraction is not compared."
     used = compared[compared.voltage > 0] if fits else compared
     beside, none = len(used), int(used.computed.isna().sum())
     if none:

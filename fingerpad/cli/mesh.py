@@ -87,18 +87,14 @@ def meshed(scene: Scene, receptors: bool, half: bool) -> Iterator[Any]:
     import gmsh
 
     from geometry import fingertip
-    from geometry.shape import session
+    from geometry.shape import built, session
 
     scene = by_rule(scene)
     with session("finger"):
         try:
-            fingertip.build(scene.geometry, scene.mesh, receptors, half)
+            built(lambda: fingertip.build(scene.geometry, scene.mesh, receptors, half))
         except GeometryError as error:
             raise SceneError(f"the finger cannot be meshed: {error}") from None
-        except Exception as error:
-            if type(error) is not Exception:  # gmsh's own are of no other kind
-                raise
-            raise SceneError(f"gmsh cannot mesh the finger: {error}; try smaller elements") from None
         yield gmsh
 
 
@@ -109,20 +105,20 @@ def section(scene: Scene, needed: ModelOptions) -> Section:
         SceneError: the finger cannot be meshed, or the file has no such mesh.
     """
     if scene.geometry.file is not None:
-        return _of_file(Path(scene.geometry.file))
+        return _of_file(Path(scene.geometry.file), scene.geometry.file_sha256 or "")
     with meshed(scene, needed.receptors, not needed.both_halves) as gmsh:
         return _read(gmsh)
 
 
-def _of_file(file: Path) -> Section:
+def _of_file(file: Path, sha256: str) -> Section:
     import gmsh
 
     from geometry import meshfile
-    from geometry.shape import session
+    from geometry.shape import built, session
 
     try:
         with session("file"):
-            return _read(gmsh, meshfile.file(file)())
+            return _read(gmsh, built(meshfile.file(file, sha256)))
     except GeometryError as error:
         raise SceneError(f"mesh: {error}") from None
 

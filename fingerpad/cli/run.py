@@ -6,6 +6,7 @@ from pathlib import Path
 
 from fingerpad.cli.arguments import Parser, echo, path, refuse_twice, scene_of
 from fingerpad.ctrl_c import raises
+from fingerpad.model import breakdown
 from fingerpad.reduced.registry import MODELS, find
 from fingerpad.report.write import NAME
 from fingerpad.results.files import check_folder
@@ -66,6 +67,8 @@ def main(argv: Sequence[str]) -> int:
     # PETSc has its options from here on.
     from fingerpad.runs.full import exit_code
 
+    for caution in breakdown.ahead(scene.resolved()) if shown else ():
+        echo(f"Caution: {caution}.")
     with raises():
         result = solved(scene, model, context)
     if args.quiet or not model.path or scene.force is not None:  # else the run has printed it

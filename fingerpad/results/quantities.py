@@ -219,7 +219,7 @@ FINGER = _listed(
     ("f_electrostatic", "N", "electrostatic attraction of the whole finger", "attraction F_el", 4),
     ("gross_area", "mm²", "area between the outermost touching ridges of the slices", "gross area", 1),
     ("contact_area", "mm²", "area in contact, of the ridges", "ridge contact area", 2),
-    ("indentation", "mm", "lowering of the bone at z = 0", "indentation δ", 3),
+    ("indentation", "mm", "lowering of the bone since the finger first touched", "indentation δ", 3),
     (
         "effective_width", "mm", "external force of the finger over that of its centre, the slice that touches first",
         "F_ext over f_ext of the centre", 2,

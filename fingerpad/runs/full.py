@@ -6,6 +6,7 @@ from contextlib import closing
 from typing import Any
 
 import fingerpad.startup  # noqa: F401
+from fingerpad.model import breakdown
 from fingerpad.model.options import FingerModel, by_rule, plan
 from fingerpad.model.report import Clock
 from fingerpad.results.interrupt import Interrupt, all_together, no_room
@@ -57,7 +58,7 @@ def run(scene: Scene, context: RunContext) -> Result:
     check_options(comm, scene.numerics.element)
     try:
         with (
-            closing(Console(comm, context.lines, context.bar)) as console,
+            closing(Console(comm, context.lines, context.bar, context.on_step)) as console,
             context.place(scene, DEFAULT_MODEL) as place,
         ):
             checkpoint = None if place is None else checkpoint_of(scene, place.folder, outputs)
@@ -76,6 +77,8 @@ def _run(scene: Scene, session: Session, kept: dict[str, Any] | None, context: R
     comm, writer, console = session.comm, session.writer, session.console
     clock, restarts, checkpoint = session.clock, session.restarts, session.checkpoint
     writer.log.info("scene %s", json.dumps(scene.parameters()))
+    for caution in breakdown.ahead(scene):
+        writer.log.warning(caution)
     model = FingerModel(by_rule(scene), plan(scene)).of_path()
     if kept is not None:
         clock.earlier(*kept["seconds"])

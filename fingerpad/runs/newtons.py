@@ -37,6 +37,7 @@ from fingerpad.scene.remarks import coefficient, used
 from fingerpad.slices import errors, traces
 from fingerpad.slices.correction import Pair, corrected, correction_errors, mesh_errors
 from fingerpad.slices.total import BeyondTrace, at_force, profile
+from fingerpad.slices.trace import TraceError
 from fingerpad.slices.traces import Traced
 from fingerpad.startup import MPI
 from geometry.profiles import GeometryError
@@ -73,7 +74,7 @@ def run(scene: Scene, context: RunContext) -> Result:
     all_together(comm)
     check_options(comm, scene.numerics.element)
     checkpoint = None if context.folder is None else checkpoint_of(scene, context.folder, ())
-    with closing(Console(comm, context.lines, context.bar)) as console, Interrupt(comm) as interrupt:
+    with closing(Console(comm, context.lines, context.bar, context.on_step)) as console, Interrupt(comm) as interrupt:
         made = _Newtons(scene, comm, console, interrupt, checkpoint)
         try:
             bare, cautions = made.result()
@@ -81,7 +82,7 @@ def run(scene: Scene, context: RunContext) -> Result:
             failure = f"{str(stopped).partition(';')[0]} of the {made.doing}; the same command goes on with it"
             bare = Result(scene, DEFAULT_MODEL, None, None, None, failure=failure, interrupted=stopped.signal.name)
             return replace(bare, cost=made.clock.cost(made.branches.counts, 0))
-        except BeyondTrace as error:  # of the corrected trace, which other ridges can make too short
+        except (BeyondTrace, TraceError) as error:  # of the corrected trace, which other ridges can make too short
             raise Unsuited(str(error)) from error
         except (SceneError, LawError):  # a run of its own would be refused as well
             raise

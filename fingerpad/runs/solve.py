@@ -4,13 +4,14 @@ import json
 import os
 import signal
 import warnings
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from fingerpad import launcher
 from fingerpad.installed import needed_by, source, version
+from fingerpad.model import breakdown
 from fingerpad.reduced.registry import find
 from fingerpad.results.files import below, has_other_format, read_object
 from fingerpad.results.folder import Serial, identity, on_rank_0
@@ -24,6 +25,7 @@ from fingerpad.scene.messages import SceneError, show
 from fingerpad.scene.reading import DEFAULT_MODEL, flat
 from fingerpad.scene.supply import REFERENCE
 from variational.coefficients import LawError
+from variational.state import ContactState
 
 if TYPE_CHECKING:
     from fingerpad.reduced.model import Model
@@ -42,6 +44,7 @@ def run(
     comm: "MPI.Comm | None" = None,
     resume: bool = False,
     outputs: Sequence[Output] = (),
+    on_step: Callable[[ContactState, float], None] | None = None,
     **changes: Any,
 ) -> Result:
     """Return what a model answers to a scene; collective.
@@ -56,10 +59,13 @@ def run(
         comm: communicator; by default of all ranks.
         resume: go on from where a run of the same scene in ``out`` was cut short; only of the full model.
         outputs: further quantities, each computed from every state: see :class:`fingerpad.results.quantities.Output`.
+        on_step: called after each step of a path with its state and the part of the run that is done, from 0 to 1; on
+            every rank. A closed form has no steps.
         changes: values of the scene by key, as :meth:`fingerpad.scene.Scene.replace` takes them.
 
     Returns:
         The result. A load that could not be reached is its ``failure``, with a warning; the states before are in it.
+        A voltage that breaks down air has a warning before the full model's minutes.
 
     Raises:
         SceneError: the scene cannot be run, in one sentence.
@@ -74,7 +80,9 @@ def run(
         raise SceneError(
             f"resume is true, out is {show(out)} and model {show(model)}; only a full run in a folder can go on"
         )
-    context = RunContext(None if out is None else Path(out), comm, resume=resume, outputs=outputs)
+    for caution in breakdown.ahead(scene.resolved()) if way.path and launcher.rank() == 0 else ():
+        warnings.warn(caution, stacklevel=2)
+    context = RunContext(None if out is None else Path(out), comm, resume=resume, outputs=outputs, on_step=on_step)
     result = solved(scene, way, context)
     if result.interrupted:
         raise stopped(result)

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from fingerpad import notebook
 from fingerpad.results.quantities import FINGER, FRICTION, head_rows, side_by_side
 from fingerpad.results.states import STATES, WORDS, called
 from fingerpad.scene import Scene, SceneError
@@ -16,9 +17,10 @@ from fingerpad.slices.total import Total, at_force, profile
 from fingerpad.slices.trace import NAMES, Trace
 
 _ROUNDOFF = 1e-9
+_TITLE = "Whole finger, as a sum of slices"
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class WholeFinger:
     """A whole finger under one force in its named states; SI units."""
 
@@ -72,10 +74,8 @@ class WholeFinger:
                     f"and its trace in {WORDS[name]} begins at {first:.3g} N/m; "
                     "give a larger force, or run this one"
                 )
-        carried = {name: dict(each) for name, each in self.carried.items()}
-        for name, each in carried.items():
-            if errors.ESTIMATED in each:
-                each[errors.ESTIMATED] = errors.lighter(each[errors.ESTIMATED], states[name], self.f_ext / value)
+        ratio = self.f_ext / value
+        carried = {name: errors.lighter(each, states[name], ratio) for name, each in self.carried.items()}
         return replace(self, states=states, carried=carried)
 
     def values(self, name: str) -> dict[str, float]:
@@ -137,7 +137,7 @@ class WholeFinger:
         """Return what the errors of states are made of; of all states by default."""
         every = (self.carried.get(name, {}) for name in names or self.states)
         parts = dict.fromkeys(part for each in every for part, known in each.items() if known)
-        return (*parts, *[errors.POINTS] * bool(self.traces))
+        return tuple(dict.fromkeys([*parts, *[errors.POINTS] * bool(self.traces)]))
 
     def remarks(self) -> list[str]:
         """Return what a reader of the numbers must be told."""
@@ -148,7 +148,16 @@ class WholeFinger:
     def __str__(self) -> str:
         """Return the text *Whole finger* at the end of a run: the states side by side."""
         lines = side_by_side([*head_rows(self.heads()), *self.rows()])
-        return "\n".join(["Whole finger, as a sum of slices", *lines, *(f"  {each}" for each in self.remarks())])
+        return "\n".join([_TITLE, *lines, *(f"  {each}" for each in self.remarks())])
+
+    __repr__ = __str__
+    """In a console, too: the values of all slices are many pages."""
+
+    def _repr_html_(self) -> str:
+        """Return the text for a notebook."""
+        return notebook.page(
+            _TITLE, notebook.table(["", *self.heads()], self.rows()), notebook.folded("Remarks", self.remarks())
+        )
 
 
 def in_order(states: Mapping[str, Total]) -> dict[str, Total]:
