@@ -82,7 +82,14 @@ def whole(scene: Scene, model: "Model", solve: Solve) -> Result:
     Raises:
         SceneError: a profile that does not fit, or a force that no trace reached.
     """
-    reach = Reach(scene, lambda name, top, tries: _made(scene, model, solve, name, top, tries))
+    here = scene.replace(force=None)
+
+    def made(name: str, top: float, tries: int) -> Traced:
+        if model.path:
+            return _run(here, scene.force or 0.0, solve, name, top, tries)
+        return of_points(here, model, solve, name, top)
+
+    reach = Reach(scene, made)
     try:
         found = {name: reach.follow(name) for name in states(scene)}
     except _Stopped as stopped:
@@ -117,7 +124,7 @@ def with_sum(result: Result, model: "Model", solve: Solve) -> Result:
         )
         found = {name: each._replace(total=totals[name]) for name, each in found.items()}
         return replace(result, finger=summed(scene, model.traces, found))
-    except (SceneError, TraceError) as error:
+    except SceneError as error:
         return replace(result, notes=(*result.notes, f"no newtons of the whole finger: {error}"))
 
 
@@ -319,14 +326,6 @@ class Reach:
             self._top = total.centre / self._scale * MARGIN  # of the next trace
             return made._replace(total=total)
         raise AssertionError("every try returns or raises")
-
-
-def _made(scene: Scene, model: "Model", solve: Solve, name: str, top: float, tries: int) -> Traced:
-    """Return a trace as ordinary scenes have it; arguments as of :class:`Reach` and :func:`whole`."""
-    here = scene.replace(force=None)
-    if model.path:
-        return _run(here, scene.force or 0.0, solve, name, top, tries)
-    return of_points(here, model, solve, name, top)
 
 
 def _run(scene: Scene, force: float, solve: Solve, name: str, top: float, tries: int) -> Traced:
