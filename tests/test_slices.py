@@ -204,6 +204,11 @@ def test_finger_under_another_force_is_read_from_its_traces():
         finger.under(50.0)
     with pytest.raises(SceneError, match="force is -1 N"):
         finger.under(-1.0)
+    for none, words in ((None, "force is None; it must be"), (float("nan"), "force is nan"), ("0.3", "has no unit")):
+        with pytest.raises(SceneError, match=words):
+            finger.under(none)
+    with pytest.raises(SceneError, match="the finger has no trace of full slip"):
+        replace(finger, traces={}).under(0.3)
     with pytest.raises(SceneError, match="the force is 0.0001 N, under which the centre of the finger bears"):
         finger.under(1e-4)
 

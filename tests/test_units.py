@@ -21,6 +21,8 @@ from tests.small_finger import small
 from tests.test_light import HEAVY, without
 from variational.state import ContactState
 
+DRIVE = "is a measure of a drive: write voltage = {waveform = 'sine', "
+
 
 def value(scene: scenes.Scene, key: str) -> float:
     found = scene
@@ -54,6 +56,8 @@ def test_text_is_the_number(key, text, number):
     ("key", "text", "message"),
     [
         ("f_ext", "50", "it has no unit; it must be a number in N/m or a text such as '50 N/m'"),
+        ("voltage", "120 Vrms", f"its unit is V, and rms {DRIVE}rms = '120 V', frequency = '100 Hz'}}"),
+        ("voltage", "0.3 kV_pp", f"its unit is kV, and pp {DRIVE}peak_to_peak = '0.3 kV', frequency = '100 Hz'}}"),
         (
             "f_ext",
             "50 V",

@@ -16,6 +16,7 @@ from fingerpad.results.closures import KNOWN
 from fingerpad.results.files import check_folder
 from fingerpad.results.terminal import about
 from fingerpad.scene import Load, Scene, SceneError
+from fingerpad.scene.messages import counted
 from fingerpad.scene.remarks import finger_in_words, leakage, remarks, used
 from geometry.profiles import GeometryError
 
@@ -152,8 +153,9 @@ def _size(scene: Scene, mesh: meshes.Section | None) -> Iterator[str]:
         how = "as mesh.touching_half_arc gives"
     else:
         how = "by a rule of thumb; a run takes more where they come near"
-    count = "" if own else f" of {scene.geometry.ridge_count}"
-    yield f"{mesh.ridges}{count} ridges can touch, {how}"
+    of = scene.geometry.ridge_count
+    ridges = counted(mesh.ridges, "ridge") if own else f"{mesh.ridges} of {counted(of, 'ridge')}"
+    yield f"{ridges} can touch, {how}"
     allowed = f"of the {scene.numerics.memory * 1e-9:.3g} GB allowed"
     allowed = "for which a mesh of a file is not refused" if own else allowed
     yield f"about {about(memory(number) * 1e-9)} GB of memory, {allowed}"

@@ -246,8 +246,8 @@ class Body:
     def _reach(self, target: Target, seconds: Quantity | None) -> "Body":
         if seconds is None and self.problem.in_time:
             raise ValueError(
-                f"{target.name} takes seconds, how long the load lasts, 0 for at once: the state of a body with a viscous "
-                "material, or friction with a memory, depends on it"
+                f"{target.name} takes seconds, how long the load lasts, 0 for at once: the state of a body with a "
+                "viscous material, or friction with a memory, depends on it"
             )
         duration = 0.0 if seconds is None else _finite("seconds", seconds, "s")
         if duration < 0:

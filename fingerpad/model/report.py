@@ -19,6 +19,7 @@ from fingerpad.results.drawing import View
 from fingerpad.results.quantities import Output, valued
 from fingerpad.results.terminal import Console
 from fingerpad.results.writing import Writer, ridge_rows, site_rows
+from fingerpad.scene.messages import counted
 from variational.solvers.outcome import Counts, memory_mb
 from variational.state import ContactState
 
@@ -111,7 +112,7 @@ class Report:
         for omission in omitted:
             console.show(f"{omission}")
             writer.log.info("%s", omission)
-        console.show(f"{finger.unknowns} unknowns, {len(finger.ridges)} ridges that can touch")
+        console.show(f"{finger.unknowns} unknowns, {counted(len(finger.ridges), 'ridge')} that can touch")
         console.head()
 
     def step(self, step: "Step", done: float) -> None:

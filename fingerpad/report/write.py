@@ -38,7 +38,7 @@ def write(folder: Path) -> Path:
         page = _page(found)
     except (LookupError, ValueError, TypeError, AttributeError) as error:  # of files that somebody else has written
         where, kind = clip(str(folder), 80), type(error).__name__
-        raise SceneError(f"no report of {where} can be made of its files ({kind}: {clip(str(error))})") from error
+        raise SceneError(f"no report of {where} can be made of its files ({kind}: {clip(str(error), 400)})") from error
     try:
         replace(folder / NAME, page)
     except OSError as error:
@@ -69,7 +69,7 @@ def attempt(folder: Path) -> Path | None:
         return write(folder)
     except Exception as error:  # whatever it is, the results are there
         again = "fingerpad report makes it again"
-        print(f"fingerpad: no report of {clip(str(folder), 80)}: {clip(str(error), 160)}; {again}", file=sys.stderr)
+        print(f"fingerpad: no report of {clip(str(folder), 80)}: {clip(str(error), 400)}; {again}", file=sys.stderr)
         return None
 
 

@@ -32,6 +32,7 @@ from fingerpad.runs.checkpoints import checkpoint_of, read
 from fingerpad.runs.context import RunContext
 from fingerpad.runs.post import Entry, cautions_on, kept
 from fingerpad.scene import Scene, SceneError
+from fingerpad.scene.messages import counted
 from fingerpad.scene.reading import DEFAULT_MODEL
 from fingerpad.scene.remarks import coefficient, used
 from fingerpad.slices import errors, traces
@@ -219,8 +220,8 @@ class _Newtons:
 def _differences(name: str, pairs: Sequence[Pair]) -> list[str]:
     """Return notes on states in which other ridges touch on the two meshes."""
     return [
-        f"{WORDS[name].capitalize()} at {fine.f_ext:.3g} N/m has {fine.ridges_in_contact} ridges in contact on the "
-        f"scene's mesh, and {coarse.ridges_in_contact} on that of the traces."
+        f"{WORDS[name].capitalize()} at {fine.f_ext:.3g} N/m has {counted(fine.ridges_in_contact, 'ridge')} in contact "
+        f"on the scene's mesh, and {coarse.ridges_in_contact} on that of the traces."
         for coarse, fine in ((pair.coarse, pair.fine) for pair in pairs)
         if fine.ridges_in_contact != coarse.ridges_in_contact
     ]

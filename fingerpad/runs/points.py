@@ -9,6 +9,7 @@ from fingerpad.results.result import Result
 from fingerpad.runs.context import RunContext
 from fingerpad.runs.sweep_columns import OTHER
 from fingerpad.scene import Scene
+from fingerpad.scene.messages import counted
 from fingerpad.scene.reading import DEFAULT_MODEL
 from variational.state import PATH, ContactState
 
@@ -77,7 +78,9 @@ class Point:
         """Return a caution where other ridges touch on the two meshes."""
         if self.final is None or self.final.state.ridges_in_contact == self.state.ridges_in_contact:
             return []
-        larger, own = (f"{s.f_t:.6g} N/m with {s.ridges_in_contact} ridges" for s in (self.state, self.final.state))
+        larger, own = (
+            f"{s.f_t:.6g} N/m with {counted(s.ridges_in_contact, 'ridge')}" for s in (self.state, self.final.state)
+        )
         return [f"full slip has f_T {own} on the scene's mesh, and {larger} on larger elements: the error has both"]
 
 
@@ -120,7 +123,7 @@ def with_other(result: Result, other: ContactState) -> Result:
     mine = result.full_slip
     assert mine is not None
     names = ("f_t", "mu_app", "contact_length", "f_electrostatic", "ridges_in_contact", "reached")
-    said = [f"f_T {s.f_t:.6g} N/m with {s.ridges_in_contact} ridges ({s.reached})" for s in (mine, other)]
+    said = [f"f_T {s.f_t:.6g} N/m with {counted(s.ridges_in_contact, 'ridge')} ({s.reached})" for s in (mine, other)]
     caution = f"there are two states of full slip: {said[0]} and {said[1]}"
     record = result.record | {OTHER: {name: getattr(other, name) for name in names}}
     return replace(result, record=record, cautions=(*result.cautions, caution))

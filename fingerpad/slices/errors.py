@@ -125,7 +125,8 @@ def interpolation(finger: Profile, trace: Trace, total: Total, count: int) -> di
         count: slices in each stretch of contact.
 
     Returns:
-        Of friction, attraction, areas, indentation and effective width; empty for a trace of two points, of which none can be left out.
+        Of friction, attraction, areas, indentation and effective width; empty for a trace of two points, of which none
+        can be left out.
     """
     if len(trace.depth) < LEAST:
         return {}

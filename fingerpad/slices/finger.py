@@ -61,10 +61,13 @@ class WholeFinger:
                 the force that it was made for, and down to its first point at the centre of the finger.
 
         Raises:
-            SceneError: no force, or one that a trace does not reach.
+            SceneError: no force, one that a trace does not reach, or a finger without traces.
         """
         value, finger = Scene(force=force).force, profile(self.shape)
-        assert value is not None
+        if value is None:
+            raise SceneError("force is None; it must be a number in N, or a text such as '0.3 N'")
+        if missing := [WORDS[name] for name in self.states if name not in self.traces]:
+            raise SceneError(f"the finger has no trace of {missing[0]}, from which another force could be read; run it")
         states = {name: at_force(finger, self.traces[name], value, self.shape.count) for name in self.states}
         for name, total in states.items():
             first = finger.centre_scale * float(self.traces[name].columns["f_ext"][0])
