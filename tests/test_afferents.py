@@ -209,8 +209,11 @@ def test_refusals(ask, said):
     ("text", "said"),
     [
         ("a = 1", "has no affparamsSA; it must be constants.py of TouchSim"),
-        (MINE.replace("10.0, 0.5,", "10.0,"), "affparamsSA in .* is no list of rows of 13 numbers"),
-        (MINE.replace("0.5", "f(1)"), "affparamsSA in .* is no list of rows of 13 numbers"),
+        (MINE.replace("10.0, 0.5,", "10.0,"), "affparamsSA in .* is no list of rows of 13 finite numbers"),
+        (MINE.replace("0.5", "1e400"), "affparamsSA in .* is no list of rows of 13 finite numbers"),
+        (MINE.replace("[[10.0", "[" * 100_000), "affparamsSA in .* is no list of rows of 13 finite numbers"),
+        (MINE * 4000, r"cannot be read: it has .* MB, and at most 1 MB are read"),
+        (MINE.replace("0.5", "f(1)"), "affparamsSA in .* is no list of rows of 13 finite numbers"),
     ],
 )
 def test_refused_files(tmp_path, text, said):

@@ -84,7 +84,7 @@ def test_data_frames_are_tables(grid):
     found = fp.compare(frame, grid, {"CoF": "friction (1)", "SD": "spread (1)"})
     assert found.attrs["source"] == "Somebody 2020" and found.spread.isna().tolist() == [False, True]
     frame["CoF"] = [0.3, np.nan]
-    with pytest.raises(SceneError, match=r"the table, row 1, column 3: the friction is missing; leave the row out or"):
+    with pytest.raises(SceneError, match=r"the table has nothing in row 1 of 'CoF'; it must be a finite number"):
         fp.compare(frame, grid, {"CoF": "friction (1)"})
 
 
@@ -104,7 +104,7 @@ def test_what_is_compared(grid):
     ("columns", "words"),
     [
         ({}, "no quantity; it has the columns Fn .N., U, CoF, and must have one of .* as in {'CoF': 'friction .1.'}"),
-        ({"CoF": "friction"}, "column 3: 'CoF' has no unit; write 'friction .1.' in the head or by columns"),
+        ({"CoF": "friction"}, "has 'CoF' without a unit; write 'friction .1.' in the head or by columns"),
         ({"CoF": "friction (1)", "Fn (N)": "force"}, "has no voltage, and its column 'U' may be one; name it"),
         ({"CoF": "friction (1)", "U": ""}, "has no force, and its column .* it out by {'Fn .N.': ''}"),
     ],
@@ -149,29 +149,29 @@ HEADS = "force (N/m), friction (1)\n"
 @pytest.mark.parametrize(
     ("text", "words"),
     [
-        ("force, friction (1)\n1, 2\n", "column 1: 'force' has no unit; write 'force (N/m)' in the head or by columns"),
-        ("force (furlong), friction (1)\n1, 2\n", "column 1: the unit of force is 'furlong'; its unit is not"),
+        ("force, friction (1)\n1, 2\n", "has 'force' without a unit; write 'force (N/m)' in the head or by columns"),
+        ("force (furlong), friction (1)\n1, 2\n", "has 'force (furlong)' in 'furlong', which is not a unit of force per length; it must be in N/m, or in N for"),
         ("force (N/m), friction force (N)\n1, 2\n", "it must be in N, as another column is of a whole finger"),
-        ("voltage (g), friction (1)\n1, 2\n", "its unit is not a unit of voltage; it must be in V"),
-        ("voltage (V), friction (N)\n1, 2\n", "column 2: the unit of friction is 'N'; it must be 1"),
+        ("voltage (g), friction (1)\n1, 2\n", "has 'voltage (g)' in 'g', which is not a unit of voltage; it must be in V"),
+        ("voltage (V), friction (N)\n1, 2\n", "has 'friction (N)' in 'N', which is not a number; it must be in 1 or %"),
         ("force (N), contact length (mm)\n1, 2\n", "has contact length, and a whole finger, which has a column in new"),
-        (HEADS + "1, 2\n3,\n", "line 4, column 2: the friction is missing; leave the row out"),
-        (HEADS + ", 2\n", "line 3, column 1: the force is missing"),
-        (HEADS + "1, 0\n", "the friction is '0'; it must be a finite number other than 0"),
-        ("force (N/m), contact length (mm)\n1, -2\n", "the contact length is '-2'; it must be a finite number greater"),
-        ("force (N/m); friction (1)\n1; 1.000,5\n", "the friction is '1.000,5'; it must be a finite number"),
-        ("force (N/m); friction (1)\n1; 2; 3\n", "line 3 has 3 cells below 2 columns; each must have one below"),
-        ("voltage (V), attraction (N/m)\n5, 0\n", "line 3, column 2: the attraction is 0; it must be so at 0 V alone"),
-        ('friction (1)\n"0.2\n', "is no table in CSV: line 3: unexpected end of data"),
-        ("participant, friction (1)\n, 2\n", "line 3, column 1: the participant is missing; give a name in each row"),
-        (HEADS + "1, 1_0\n", "line 3, column 2: the friction is '1_0'; it must be a finite number"),
-        (HEADS + "1, 0,2\n", "line 3 has 3 cells below 2 columns; decimals have points"),
-        ("voltage (V), friction (1)\ninf, 0.2\n", "the voltage is 'inf'; it must be a finite number"),
-        ("force (N/m), friction (1), spread (mm)\n1, 2, 3\n", "column 3: the unit of spread is 'mm'; it must be 1"),
-        ("# state: sideways\n" + HEADS + "1, 2\n", "state is 'sideways'; it must be one of uncharged, ch"),
+        (HEADS + "1, 2\n3,\n", "has nothing in line 4 of 'friction (1)'; it must be a finite number"),
+        (HEADS + ", 2\n", "has nothing in line 3 of 'force (N/m)'; it must be a finite number"),
+        (HEADS + "1, 0\n", "has '0' in line 3 of 'friction (1)'; it must be a finite number other than 0"),
+        ("force (N/m), contact length (mm)\n1, -2\n", "has '-2' in line 3 of 'contact length (mm)'; it must be greater than 0"),
+        ("force (N/m); friction (1)\n1; 1.000,5\n", "has '1.000,5' in line 3 of 'friction (1)'; it must be a finite number; decimals have points"),
+        ("force (N/m); friction (1)\n1; 2; 3\n", "has more cells in line 3 than its 2 heads; each cell must have a head"),
+        ("voltage (V), attraction (N/m)\n5, 0\n", "has '0' in line 3 of 'attraction (N/m)'; it must be other than 0 but at 0 V"),
+        ('friction (1)\n"0.2\n', "is no table in CSV: a quotation in line 3 does not end there"),
+        ("participant, friction (1)\n, 2\n", "has nothing in line 3 of 'participant'; it must be a name in each row"),
+        (HEADS + "1, 1_0\n", "has '1_0' in line 3 of 'friction (1)'; it must be a finite number"),
+        (HEADS + "1, 0,2\n", "has more cells in line 3 than its 2 heads; decimals have points"),
+        ("voltage (V), friction (1)\ninf, 0.2\n", "has 'inf' in line 3 of 'voltage (V)'; it must be a finite number"),
+        ("force (N/m), friction (1), spread (mm)\n1, 2, 3\n", "has 'spread (mm)' in 'mm', which is not a number; it must be in 1 or %"),
+        ("# state: sideways\n" + HEADS + "1, 2\n", "has the state 'sideways'; it must be one of uncharged, ch"),
         ("# State: Charged\nforce (N/m), friction force (N/m)\n1, 2\n", "has friction force at the state charged; bef"),
-        ("", "has no rows of numbers below a header"),
-        ("force (N/m), force (N/mm), friction (1)\n1, 2, 3\n", "two columns have the name force"),
+        ("", "has no numbers below a header"),
+        ("force (N/m), force (N/mm), friction (1)\n1, 2, 3\n", "has two columns with the name force"),
     ],
 )
 def test_tables_are_refused(table, capsys, text, words):

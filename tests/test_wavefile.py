@@ -21,13 +21,19 @@ BESIDE = ("Record Length,41", "Source,CH1", "Vertical Units,mV", "Horizontal Uni
 SIDE = "".join(
     f"{BESIDE[k] if k < 4 else ','},,{1e3 * t:.6f},{1e3 * u:.4f},\n" for k, (t, u) in enumerate(zip(T, U, strict=True))
 )
+ENUM = [*enumerate(zip(T, U, strict=True))]
+MIXED = "".join(f"{u:.6f},{k},{1e3 * t:.4f},\n" for k, (t, u) in ENUM)
 FILES = {
     "units in a line of their own": "Record Length,41\nSample Interval,5e-4\nSource,CH1\nSecond,Volt\n" + PLAIN,
     "units in brackets": "Model,X\n\ntime [s],Channel 1 (V)\n" + PLAIN,
     "semicolons and decimal commas": "Zeit;Kanal A\n(ms);(mV)\n\n" + COMMAS,
     "preamble beside the numbers": SIDE,
     "micro": "time (µs),U (kV)\n" + "".join(f"{1e6 * t:.2f},{u / 1e3:.9f}\n" for t, u in zip(T, U, strict=True)),
-    "no header": PLAIN,
+    "time in the last column": "CH1 (V),No.,msecs\n" + MIXED,
+    "heads of NumPy": "# t/ms,U/kV\n" + "".join(f"{1e3 * t:.4f},{u / 1e3:.9f}\n" for t, u in zip(T, U, strict=True)),
+    "quoted, with a named mark": 'sep=;\n"time_ms";"voltage mV"\n' + COMMAS,
+    "an index of pandas": ",Time ms,Voltage V\n" + "".join(f"{k},{1e3 * t:.4f},{u:.6f}\n" for k, (t, u) in ENUM),
+    "units of a preamble": "Horizontal Units,ms\nVertical Units,mV\n\nTIME,CH1\n" + COMMAS.replace(",", ".").replace(";", ","),
 }
 
 
@@ -77,7 +83,7 @@ def test_columns_are_chosen_by_name(tmp_path):
         assert wave.voltages[5] == pytest.approx(factor * U[5], rel=1e-5)
         assert wave.column is None, "a scene keeps the points alone"
     for column, given in ((None, "is not given"), ("CH3", "is 'CH3'")):
-        with pytest.raises(fp.SceneError, match=f"^voltage.column {given} and .*; it must be 'CH1' or 'CH2', as named"):
+        with pytest.raises(fp.SceneError, match=f"which has 'CH1' or 'CH2', and voltage.column {given}; it must be one of these"):
             fp.Scene(voltage={"waveform": "file", "file": file, "column": column})
 
 
@@ -97,13 +103,13 @@ def test_many_samples_are_averaged(tmp_path):
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        ("X,CH1,Start,Increment\nSequence,Volt,0,1e-4\n0,1\n1,2\n2,1\n", "whose first numbers are in 'Sequence'"),
-        ("Source,CH1\nSecond,Ampere\n0,1\n1,2\n", "whose numbers of 'CH1' are in 'Ampere'"),
-        ("Second,Volt\n0,1\n1,\n2,3\n", "whose line 3 has ''; it must be a finite number"),
-        ("Second,Volt\n0,1\nx,2\n2,3\n", "whose line 3 has 'x'; it must be a finite number"),
-        ("Second,Volt\n0,nan\n1,2\n2,3\n", "whose line 2 has 'nan'; it must be a finite number"),
-        ("a,b\nc,d\n", "which has no two columns of numbers"),
-        ("", "which has no two columns of numbers"),
+        ("X,CH1,Start,Increment\nSequence,Volt,0,1e-4\n0,1\n1,2\n2,1\n", "which has nothing named or united as time among 'Sequence', 'Volt'; write a head such as"),
+        ("Source,CH1\nSecond,Ampere\n0,1\n1,2\n", "which has 'CH1' in 'Ampere', which is not known; it must be in V"),
+        ("Second,Volt\n0,1\n1,\n2,3\n", "which has nothing in line 3 of 'Volt'; it must be a finite number"),
+        ("Second,Volt\n0,1\nx,2\n2,3\n", "which has 'x' in line 3 of 'Second'; it must be a finite number"),
+        ("Second,Volt\n0,nan\n1,2\n2,3\n", "which has 'nan' in line 2; it must be a finite number"),
+        ("a,b\nc,d\n", "which has no numbers below a header such as 'time (s),voltage (V)'"),
+        ("", "which has no numbers below a header"),
         ("t,u\n0,1\n1,2\n1,3\n", "times are 1 and then 1 s; each must be later"),
     ],
 )
@@ -131,7 +137,7 @@ def test_keys_of_files_are_refused(wave, words):
 
 def test_file_of_the_voltage_is_beside_the_scene(tmp_path):
     """As that of a load."""
-    write(tmp_path, FILES["no header"])
+    write(tmp_path, FILES["units in brackets"])
     scene = tmp_path / "scene.toml"
     scene.write_text('voltage = {waveform = "file", file = "scope.csv", probe = 100}\n', encoding="utf-8")
     assert fp.Scene.load(scene).voltage.peak == pytest.approx(150.0)

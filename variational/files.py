@@ -2,18 +2,15 @@
 
 import codecs
 import contextlib
-import csv
 import errno
 import os
-import re
 import stat
 import tempfile
 from collections.abc import Iterator
 from pathlib import Path
 
-_DECIMAL = re.compile(r"^([+-]?\d*),(?=\d+(?:[eE][+-]?\d+)?\s*%?$)")
 MOST_OF_TEXT = 1e6
-"""Largest size (bytes) of a scene or of a table of a user; the longest scene that comes along has 1000."""
+"""Largest size (bytes) of a scene or of a program of a user; the longest scene that comes along has 1000."""
 
 
 def read(path: str | Path, most: float = 500e6) -> bytes:
@@ -56,29 +53,6 @@ def text(content: bytes) -> str | None:
         return content.decode("utf-8-sig")
     except UnicodeDecodeError:
         return content.decode("latin-1")  # µ of an instrument
-
-
-def parted(text: str, mark: str) -> list[tuple[int, list[str]]]:
-    """Return the cells of each line of a text that is not empty, with the number of the line.
-
-    A decimal comma becomes a point, but where commas part the cells.
-
-    Args:
-        text: of a table, a line each row.
-        mark: what parts the cells.
-
-    Raises:
-        ValueError: a cell in quotation marks does not end in its line, or as :mod:`csv` has it.
-    """
-    found = []
-    for number, line in enumerate(text.splitlines(), start=1):
-        try:
-            cells = [cell.strip() for row in csv.reader([line], delimiter=mark, strict=True) for cell in row]
-        except csv.Error as error:
-            raise ValueError(f"line {number}: {error}") from None
-        if any(cells):
-            found.append((number, cells if mark == "," else [_DECIMAL.sub(r"\1.", cell) for cell in cells]))
-    return found
 
 
 def is_number(word: str) -> bool:

@@ -1,18 +1,21 @@
 """Units of :class:`~fingerpad.afferents.filtered.FilteredUnit` from a user's own copy of a parameter file.
 
-The file is ``constants.py`` of TouchSim, which has no licence and is not part of this package. It is read and not
-executed: lists of numbers that are assigned to the names of :data:`NAMES` are taken, thirteen for each unit.
+The file is ``constants.py`` of TouchSim, which has no licence and is not part of this package. It is read as text and
+not executed: lists of numbers that are assigned to the names of :data:`NAMES` are taken, thirteen for each unit.
 """
 
-import ast
+import math
+import re
 from pathlib import Path
 
 from fingerpad.afferents.filtered import FilteredUnit
 from fingerpad.scene.messages import SceneError, clip
+from variational import files
 
 NAMES = {"SA1": ("affparamsSA", "merkel"), "RA1": ("affparamsRA", "meissner"), "PC": ("affparamsPC", "pacinian")}
 """Names of lists in the file, and sites, by class."""
 _COUNT = 13
+_LIST = re.compile(r"[^\[\n]*\[\s*\[(.*?)\]\s*(?:,\s*)?\]", re.DOTALL)
 
 
 def read_units(file: str | Path) -> dict[str, tuple[FilteredUnit, ...]]:
@@ -24,33 +27,25 @@ def read_units(file: str | Path) -> dict[str, tuple[FilteredUnit, ...]]:
     Raises:
         SceneError: it cannot be read, or has no units.
     """
-    path, name = Path(file), clip(str(file), 80)
+    name = clip(str(file), 80)
     try:
-        body = ast.parse(path.read_text(encoding="utf-8")).body
-    except (OSError, SyntaxError, ValueError) as error:
-        raise SceneError(f"the parameter file {name} cannot be read: {error}") from None
-    given = {
-        target.id: line.value
-        for line in body
-        if isinstance(line, ast.Assign)
-        for target in line.targets
-        if isinstance(target, ast.Name)
-    }
-    found = {}
-    for each, (key, site) in NAMES.items():
-        if key not in given:
-            raise SceneError(f"the parameter file {name} has no {key}; it must be constants.py of TouchSim")
-        found[each] = tuple(FilteredUnit(row, site) for row in _rows(given[key], f"{key} in {name}"))
-    return found
+        text = files.text(files.read(file, files.MOST_OF_TEXT)) or ""
+    except OSError as error:
+        raise SceneError(f"the parameter file {name} cannot be read: {error.strerror or error}") from None
+    return {each: tuple(FilteredUnit(row, site) for row in _rows(text, key, name)) for each, (key, site) in NAMES.items()}
 
 
-def _rows(value: ast.expr, where: str) -> list[tuple[float, ...]]:
+def _rows(text: str, key: str, name: str) -> list[tuple[float, ...]]:
     """Return the rows of a list, or of the array that is made of it."""
-    table = value.args[0] if isinstance(value, ast.Call) and value.args else value
+    start = re.search(rf"^{key}\s*=", text, re.MULTILINE)
+    if start is None:
+        raise SceneError(f"the parameter file {name} has no {key}; it must be constants.py of TouchSim")
+    found = _LIST.match(text, start.end())
+    rows = re.split(r"\]\s*,\s*\[", re.sub(r"#.*", "", found[1])) if found else []
     try:
-        rows = [tuple(float(number) for number in row) for row in ast.literal_eval(table)]
-    except (ValueError, TypeError):
-        rows = []
-    if not rows or any(len(row) != _COUNT for row in rows):
-        raise SceneError(f"{where} is no list of rows of {_COUNT} numbers")
-    return rows
+        numbers = [tuple(map(float, row.strip(" \r\n\t,").split(","))) for row in rows]
+    except ValueError:
+        numbers = []
+    if not numbers or any(len(row) != _COUNT or not all(map(math.isfinite, row)) for row in numbers):
+        raise SceneError(f"{key} in {name} is no list of rows of {_COUNT} finite numbers")
+    return numbers

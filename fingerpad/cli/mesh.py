@@ -14,7 +14,7 @@ from fingerpad.cli import output
 from fingerpad.cli.arguments import PICTURE, Kind, Parser, echo, scene_of
 from fingerpad.model.options import ModelOptions, by_rule
 from fingerpad.scene import Scene
-from fingerpad.scene.messages import SceneError
+from fingerpad.scene.messages import SceneError, counted
 from geometry import tags
 from geometry.profiles import GeometryError
 
@@ -38,7 +38,8 @@ def main(argv: Sequence[str]) -> int:
     if scene.geometry.file is not None:
         raise SceneError("geometry.file is given, which is a mesh already; fingerpad check draws it")
     found = write(scene, args.out)
-    echo(f"{len(found.triangles)} triangles, {len(found.points)} vertices, {found.ridges} ridges that can touch")
+    ridges = counted(found.ridges, "ridge")
+    echo(f"{len(found.triangles)} triangles, {len(found.points)} vertices, {ridges} that can touch")
     echo(f"Written: {args.out}")
     if args.plot:
         draw(args.plot, found, scene)
@@ -187,7 +188,9 @@ def draw(file: Path, found: Section, scene: Scene) -> None:
             ("around the lowest point", (100 * size, 130 * size)),
             (f"lowest point: shortest edge of {size * 1e6:.3g} µm", (20 * size, 25 * size)),
         )
-    title = f"Mesh of the unloaded finger: {len(found.triangles)} triangles, {found.ridges} ridges can touch\n"
+    title = (
+        f"Mesh of the unloaded finger: {len(found.triangles)} triangles, {counted(found.ridges, 'ridge')} can touch\n"
+    )
     with output.panels(file, title, 3) as (figure, panels):
         left_most = found.points[:, 0].min()
         for ax, (title, view) in zip(panels, views, strict=True):

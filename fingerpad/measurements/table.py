@@ -17,49 +17,43 @@ more column is the quantity, and ``spread`` is its standard deviation, which a r
 """
 
 import re
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import NamedTuple
 
 import numpy as np
 import pandas as pd
 
-from fingerpad.scene.messages import SceneError, clip, ends, refuse_type
-from geometry.units import to_si
-from variational import files
+from fingerpad.scene import tables
+from fingerpad.scene.messages import SceneError, clip, ends, refuse_type, show
+from fingerpad.scene.tables import NUMBERS, Column, is_of, parts
 
 CONDITIONS = {"force": ("N", "N/m"), "voltage": ("V",)}
 """Columns that are conditions, and their SI units."""
-SECTION = {
-    "friction": ("mu_app", "1"),
-    "friction force": ("f_t", "N/m"),
-    "attraction": ("f_electrostatic", "N/m"),
-    "contact length": ("contact_length", "m"),
-    "ridges": ("ridges_in_contact", "1"),
-    "depth": ("depth", "m"),
+QUANTITIES = {
+    "friction": (("mu_app", "1"), ("mu_app", "1")),
+    "friction force": (("f_t", "N/m"), ("f_t", "N")),
+    "attraction": (("f_electrostatic", "N/m"), ("f_electrostatic", "N")),
+    "contact length": (("contact_length", "m"), None),
+    "ridges": (("ridges_in_contact", "1"), None),
+    "gross area": (None, ("gross_area", "m^2")),
+    "contact area": (None, ("contact_area", "m^2")),
+    "depth": (("depth", "m"), ("indentation", "m")),
 }
-"""Quantities of a cross-section: key of the result and SI unit; ``depth`` is the way that the bone has come down."""
-WHOLE = {
-    "friction": ("mu_app", "1"),
-    "friction force": ("f_t", "N"),
-    "attraction": ("f_electrostatic", "N"),
-    "gross area": ("gross_area", "m^2"),
-    "contact area": ("contact_area", "m^2"),
-    "depth": ("indentation", "m"),
-}
-"""Quantities of a whole finger."""
+"""Key of the result and SI unit of a cross-section, and of a whole finger; a depth is the way down of the bone."""
 STATES = {"uncharged": "uncharged", "charged": "charged", "full slip": "full_slip"}
 """What the state of a table can be, and its name in results."""
 PERSON = "participant"
 """Column of who was measured."""
-_NAMES = (*CONDITIONS, *(SECTION | WHOLE), "spread", PERSON)
+_NAMES = (*CONDITIONS, *QUANTITIES, "spread", PERSON)
 _PERCENT = ("%", "percent")
-_COMMENT = re.compile(r"#\s*(source|doi|url|people|state)\s*:(.*)", re.IGNORECASE)
-_HEAD = re.compile(r"\s*(.*?)\s*[(\[]\s*([^()\[\]]*?)\s*[)\]]\s*")
-_MAX_COLUMNS = 1000
+_COMMENT = re.compile(r"(source|doi|url|people|state)\s*:(.*)", re.IGNORECASE)
+_SINE = re.compile(
+    r"(?:^|(?<=[vu])|[ _-]+)(?:(rms|eff(?:ective)?)|(pp|p-p|pk-?pk|peak[ -]to[ -]peak)|(amplitude|peak))$", re.IGNORECASE
+)
+_EFFECTIVE = {None: ("", 1.0), 1: ("", 1.0), 2: (" peak to peak", 8**-0.5), 3: (" amplitude", 2**-0.5)}
+"""How a voltage is given, behind the V, and the effective value of a sine over it; by the group of the expression."""
 _MAX_PATH = 40_000  # characters: of the longest path that Linux has, with all of them escaped
-_MAX_HEAD = 200  # characters of a head with a unit
 
 
 @dataclass(frozen=True, eq=False)
@@ -88,31 +82,17 @@ class Measured:
     @property
     def key(self) -> str:
         """The quantity's name in results."""
-        return (WHOLE if self.whole else SECTION)[self.quantity][0]
+        return QUANTITIES[self.quantity][self.whole][0]
 
     @property
     def unit(self) -> str:
         """The quantity's SI unit."""
-        return (WHOLE if self.whole else SECTION)[self.quantity][1]
+        return QUANTITIES[self.quantity][self.whole][1]
 
     @property
     def force_unit(self) -> str:
         """The SI unit of forces."""
         return "N" if self.whole else "N/m"
-
-
-class _Column(NamedTuple):
-    head: str
-    name: str
-    """Of this program; empty where the column is ignored."""
-    unit: str
-    """Empty where none is given."""
-    mapped: bool
-    """Whether a mapping names it."""
-    where: str
-    """For a refusal."""
-    cells: "pd.Series[str]"
-    """As text, empty where a cell is missing; the index has the lines of a file."""
 
 
 def read(
@@ -135,201 +115,123 @@ def read(
     refuse_type("columns", columns, Mapping | None, "names by heads, as {'CoF': 'friction (1)'}")
     for head, of in (columns or {}).items():
         refuse_type(f"of columns, the name of {clip(repr(head))}", of, str | None, "text, as 'friction (1)'")
-    name, where, frame = ("the table", "row", _frame(table)) if isinstance(table, pd.DataFrame) else _file(Path(table))
-    about = {key: str(value) for key, value in frame.attrs.items()}
-    given = (state or about.get("state", "full slip")).lower().replace("_", " ")
-    if given not in STATES:
-        raise SceneError(f"{name}: state is {clip(repr(given))}; it must be one of {', '.join(STATES)}")
-    found = _named(name, frame, columns or {})
-    used, whole = {column.name: column for column in found if column.name}, False
-    quantities = [column for column in used.values() if column.name in SECTION | WHOLE]
-    if len(quantities) > 1:  # one that a mapping names is meant, whatever else is there
-        quantities = [column for column in quantities if column.mapped] or quantities
-        others = (SECTION | WHOLE).keys() - {column.name for column in quantities}
-        used = {key: column for key, column in used.items() if key not in others}
-    if len(quantities) != 1:
-        heads = clip(", ".join(map(str, frame)), 100)
-        has = ", ".join(column.name for column in quantities) or f"no quantity; it has the columns {heads}"
-        raise SceneError(
-            f"{name} has {has}, and must have one of {', '.join(SECTION | WHOLE)}, by its heads or by "
-            "columns, as in {'CoF': 'friction (1)'}"
-        )
-    quantity, whole = quantities[0].name, any(_is_whole(column) for column in used.values())
-    if quantity.startswith("friction") and given != "full slip":
-        raise SceneError(f"{name} has {quantity} at the state {given}; before the finger slides it has none")
-    known = WHOLE if whole else SECTION
-    if quantity not in known:
+    name = "the table" if isinstance(table, pd.DataFrame) else ends(table)
+    try:
+        return _measured(table, name, {head.strip(): of or "" for head, of in (columns or {}).items()}, state)
+    except ValueError as error:
+        raise SceneError(f"{name} {error}") from None
+
+
+def _measured(table: str | Path | pd.DataFrame, name: str, given: Mapping[str, str], state: str | None) -> Measured:
+    heads, about, path = _of_frame(table) if isinstance(table, pd.DataFrame) else _of_file(table)
+    asked = (state or about.get("state", "full slip")).lower().replace("_", " ")
+    if asked not in STATES:
+        raise ValueError(f"has the state {show(asked)}; it must be one of {', '.join(STATES)}")
+    used = _named(heads, given)
+    found = [of for of in used if of in QUANTITIES]
+    found = [of for of in found if used[of].head in given] or found  # one that a mapping names is meant
+    if len(found) != 1:
+        has = ", ".join(found) or f"no quantity; it has the columns {clip(', '.join(each.head for each in heads), 100)}"
+        example = "by its heads or by columns, as in {'CoF': 'friction (1)'}"
+        raise ValueError(f"has {has}, and must have one of {', '.join(QUANTITIES)}, {example}")
+    (quantity,) = found
+    used = {of: column for of, column in used.items() if of == quantity or of not in QUANTITIES}
+    whole = any("area" in of or (of != "spread" and is_of(each.unit, "N")) for of, each in used.items())
+    if quantity.startswith("friction") and asked != "full slip":
+        raise ValueError(f"has {quantity} at the state {asked}; before the finger slides it has none")
+    if (known := QUANTITIES[quantity][whole]) is None:
         kind = "a whole finger, which has a column in newtons or of an area," if whole else "a cross-section"
-        raise SceneError(f"{name} has {quantity}, and {kind} has {', '.join(known)}")
-    units = dict.fromkeys((quantity, "spread"), known[quantity][1]) | {"force": "N" if whole else "N/m", "voltage": "V"}
-    ignored = [column for column in found if column.name not in used and (column.name or not column.mapped)]
-    person = used.pop(PERSON, None)
-    rows = {key: _numbers(name, where, column, units[key]) for key, column in used.items()}
+        raise ValueError(f"has {quantity}, and {kind} has {', '.join(of for of in QUANTITIES if QUANTITIES[of][whole])}")
+    units = {quantity: known[1], "spread": known[1], "force": "N" if whole else "N/m", "voltage": "V"}
+    rows = {of: _numbers(each, units[of]) for of, each in used.items() if of != PERSON}
     turned = int((rows[quantity] < 0).sum())
     rows[quantity] = rows[quantity].abs()
-    if "spread" in used and used["spread"].unit in _PERCENT and quantities[0].unit not in _PERCENT:
+    used[quantity].refuse((rows[quantity] == 0) & (rows.get("voltage", 1.0) != 0), "other than 0 but at 0 V")
+    if "spread" in used and used["spread"].unit in _PERCENT and used[quantity].unit not in _PERCENT:
         rows["spread"] *= rows[quantity]
-    _refuse_zero(name, where, quantities[0], rows)
-    people = {} if person is None else {PERSON: _people(name, where, person)}
-    for condition in CONDITIONS:
-        if condition not in used:
-            _refuse_overlooked(name, condition, ignored)
-    measured = pd.DataFrame({"spread": np.nan} | rows | people, index=frame.index)
-    measured, left = measured.rename(columns={quantity: "measured"}), tuple(column.head for column in ignored)
-    path = "" if isinstance(table, pd.DataFrame) else ends(table, _MAX_PATH)
-    return Measured(name, about, STATES[given], quantity, whole, measured, left, turned, path)
+    if PERSON in used:
+        used[PERSON].refuse(used[PERSON].cells == "", "a name in each row")
+        rows[PERSON] = used[PERSON].cells.map(lambda cell: clip(cell, 40))
+    taken = {column.head for column in used.values()} | {head for head, of in given.items() if not of}
+    ignored = [column for column in heads if column.head not in taken]
+    for condition in CONDITIONS.keys() - used.keys():
+        _refuse_overlooked(condition, ignored)
+    measured = pd.DataFrame({"spread": np.nan} | rows).rename(columns={quantity: "measured"})
+    left = tuple(column.head for column in ignored)
+    return Measured(name, about, STATES[asked], quantity, whole, measured, left, turned, path)
 
 
-def _frame(table: pd.DataFrame) -> pd.DataFrame:
-    """Return a table whose index has no columns: of conditions, for example."""
-    return table.reset_index(allow_duplicates=True) if any(name is not None for name in table.index.names) else table
+def _of_frame(table: pd.DataFrame) -> tuple[list[Column], dict[str, str], str]:
+    """Return the columns of a DataFrame, whose index has some where it has names, and its facts."""
+    if any(name is not None for name in table.index.names):
+        table = table.reset_index(allow_duplicates=True)
+    cells = (table.iloc[:, k].astype(object) for k in range(table.shape[1]))  # also of categories, and with pd.NA
+    texts = (each.where(each.notna(), "").map(lambda cell: str(cell).strip()) for each in cells)
+    heads = [str(head).strip() for head in table]
+    columns = [Column(head, *parts(head), each, row="row") for head, each in zip(heads, texts, strict=True)]
+    return columns, {key: str(value) for key, value in table.attrs.items()}, ""
 
 
-def _file(file: Path) -> tuple[str, str, pd.DataFrame]:
-    """Return the name of a file, what its rows are called, and its cells by head and line."""
-    name = ends(file)
-    try:
-        text = files.text(files.read(file, files.MOST_OF_TEXT))
-    except OSError as error:
-        raise SceneError(f"{name} cannot be read: {error.strerror or error}") from None
-    if text is None:
-        raise SceneError(f"{name} is no text; it must be a table in CSV")
-    comments = [match for line in text.splitlines() if (match := _COMMENT.fullmatch(line.strip()))]
-    text = "\n".join("" if line.lstrip().startswith("#") else line for line in text.splitlines())
-    head = next((line for line in text.splitlines() if line.strip()), "")
-    mark = next((mark for mark in "\t;," if mark in head), ",")
-    if head.count(mark) >= _MAX_COLUMNS:
-        raise SceneError(f"{name} has {head.count(mark) + 1} columns; at most {_MAX_COLUMNS} are read")
-    try:
-        rows = files.parted(text, mark)
-    except ValueError as error:
-        raise SceneError(f"{name} is no table in CSV: {clip(str(error), 80)}") from None
-    if len(rows) < 2:
-        raise SceneError(f"{name} has no rows of numbers below a header such as 'force (N/m), friction (1)'")
-    (_, heads), *rows = rows
-    for line, cells in rows:
-        if len(cells) > len(heads) and any(cells[len(heads) :]):
-            why = "decimals have points, not commas" if mark == "," else "each must have one below each head"
-            raise SceneError(f"{name}, line {line} has {len(cells)} cells below {len(heads)} columns; {why}")
-    width = len(heads)
-    frame = pd.DataFrame([(cells + [""] * width)[:width] for _, cells in rows], [n for n, _ in rows], heads, dtype=str)
-    frame.attrs = {match[1].lower(): match[2].strip() for match in comments}
-    return name, "line", frame
+def _of_file(file: str | Path) -> tuple[list[Column], dict[str, str], str]:
+    """Return the columns of a file that have heads, its facts and its path."""
+    found = tables.read(file, "force (N/m), friction (1)")
+    comments = [match for comment in found.comments if (match := _COMMENT.fullmatch(comment))]
+    about = {match[1].lower(): match[2].strip() for match in comments}
+    return [column for column in found.columns if column.head], about, ends(file, _MAX_PATH)
 
 
-def _named(name: str, frame: pd.DataFrame, columns: Mapping[str, str | None]) -> list[_Column]:
-    """Return the columns with their names in this program."""
-    heads = [str(head).strip() for head in frame]
-    given, found = {head.strip(): of or "" for head, of in columns.items()}, []
-    if unknown := next((head for head in given if head not in heads), None):
-        raise SceneError(f"{name} has no column {clip(repr(unknown))}; it has {clip(', '.join(heads), 200)}")
-    for number, head in enumerate(heads, start=1):
-        of, unit = _parts(given.get(head, head))
-        if of not in _NAMES and head in given and of:
-            allowed = ", ".join(_NAMES)
-            raise SceneError(f"the column {clip(repr(head))} is {clip(repr(of))}; it must be one of {allowed}")
-        cells = frame.iloc[:, number - 1].map(lambda cell: "" if pd.isna(cell) else str(cell).strip())
-        of, unit = of if of in _NAMES else "", unit or _parts(head)[1]
-        if unit in ("", "1", *_PERCENT) and any(cells) and all(not cell or cell.endswith("%") for cell in cells):
+def _named(heads: Sequence[Column], given: Mapping[str, str]) -> dict[str, Column]:
+    """Return columns by their names in this program, with their units."""
+    found = dict[str, Column]()
+    if unknown := given.keys() - {column.head for column in heads}:
+        raise ValueError(f"has no column {show(min(unknown))}; it has {clip(', '.join(each.head for each in heads), 200)}")
+    for column in heads:
+        of, unit = parts(given[column.head]) if column.head in given else (column.name, column.unit)
+        of, unit, cells = of.lower(), unit or column.unit, column.cells
+        if of not in _NAMES:
+            if of and column.head in given:
+                raise ValueError(f"has {show(of)} for {show(column.head)}; it must be one of {', '.join(_NAMES)}")
+            continue
+        if of in found:
+            raise ValueError(f"has two columns with the name {of}; give one, and leave out the other")
+        if (not unit or unit in NUMBERS) and any(cells) and all(not cell or cell.endswith("%") for cell in cells):
             cells, unit = cells.str.rstrip("% "), "%"
-        found.append(_Column(head, of, unit, head in given, f"column {number}", cells))
-        if of and [column.name for column in found].count(of) > 1:
-            raise SceneError(f"{name}: two columns have the name {of}; give one, and leave out the other")
+        found[of] = replace(column, name=of, unit=unit, cells=cells)
     return found
 
 
-def _parts(head: str) -> tuple[str, str]:
-    """Return name and unit of a head."""
-    match = _HEAD.fullmatch(head[:_MAX_HEAD])
-    return (match[1].lower(), match[2]) if match else (head.lower(), "")
-
-
-def _is_whole(column: _Column) -> bool:
-    return "area" in column.name or (column.name != "spread" and _is(column.unit, "N"))
-
-
-def _is(unit: str, wanted: str) -> bool:
-    """Return whether a unit is of the kind of another one."""
-    try:
-        return to_si(f"1 {unit}", wanted) > 0
-    except ValueError:
-        return False
-
-
-def _refuse_overlooked(name: str, condition: str, ignored: list[_Column]) -> None:
+def _refuse_overlooked(condition: str, ignored: Sequence[Column]) -> None:
     """Refuse a table without a condition where an ignored column may be it."""
+    units = CONDITIONS[condition]
     for column in ignored:
-        units = CONDITIONS[condition]
-        numbers = column.cells.map(_number).notna().any()
-        if any(_is(column.unit, unit) for unit in units) if column.unit else numbers:
-            meant = condition if column.unit else f"{condition} ({units[0]})"
-            head = clip(repr(column.head))
-            raise SceneError(
-                f"{name} has no {condition}, and its column {head} may be one; name it by columns, as in "
-                f"{{{head}: '{meant}'}}, or leave it out by {{{head}: ''}}"
+        if any(is_of(column.unit, si) for si in units) if column.unit else column.numeric:
+            measure = _SINE.search(column.name) if condition == "voltage" else None
+            words, effective = _EFFECTIVE[measure and measure.lastindex]
+            meant = f"{condition} ({units[0]}{words})" if words or not column.unit else condition
+            by, head = f", which is taken times {effective:.3g}" if words else "", show(column.head)
+            raise ValueError(
+                f"has no {condition}, and its column {head} may be one; name it by columns, as in {{{head}: '{meant}'}}"
+                f"{by}, or leave it out by {{{head}: ''}}"
             )
 
 
-def _numbers(name: str, row: str, column: _Column, wanted: str) -> "pd.Series[float]":
-    """Return the values of a column in SI units."""
-    factor = _factor(f"{name}, {column.where}", column, wanted)
-    values, missing = column.cells.map(_number), column.cells == ""
-    least = {"voltage": "", "spread": ", 0 or more", "attraction": ", 0 or more"}.get(column.name, " greater than 0")
-    least = " other than 0" if column.name.startswith("friction") else least
-    values = values.abs() if column.name == "voltage" else values
-    wrong = ~np.isfinite(values) | ((values < 0) & (least != " other than 0")) | ((values == 0) & ("than" in least))
-    wrong &= ~missing | (column.name != "spread")
-    if wrong.any():
-        at = int(wrong.to_numpy().argmax())
-        cell, where = column.cells.iloc[at], f"{name}, {row} {column.cells.index[at]}, {column.where}"
-        if not cell:
-            raise SceneError(f"{where}: the {column.name} is missing; leave the row out or give the number")
-        comma = "; decimals have points" if "," in cell else ""
-        raise SceneError(f"{where}: the {column.name} is {clip(repr(cell))}; it must be a finite number{least}{comma}")
-    return values * factor
-
-
-def _number(cell: str) -> float:
-    """Return the number in a cell, NaN where it is none."""
-    try:
-        return np.nan if "_" in cell else float(cell)  # Python takes _ for a mark between digits
-    except ValueError:
-        return np.nan
-
-
-def _factor(where: str, column: _Column, wanted: str) -> float:
-    """Return the factor from the unit of a column to its SI unit."""
-    name, unit = column.name, column.unit
+def _numbers(column: Column, si: str) -> "pd.Series[float]":
+    """Return the values of a column in SI units; a voltage as the effective value of a sine."""
+    of, unit, effective = column.name, column.unit, 1.0
     if not unit:
-        raise SceneError(
-            f"{where}: {clip(repr(column.head))} has no unit; write '{name} ({wanted})' in the head or by columns, and "
-            "(1) for a number without"
-        )
-    if unit in _PERCENT and (wanted == "1" or name == "spread"):
-        return 0.01
-    if wanted == "1" and unit != "1":
-        raise SceneError(f"{where}: the unit of {name} is {clip(repr(unit))}; it must be 1 or %")
-    try:
-        return 1.0 if wanted == "1" else to_si(f"1 {unit}", wanted)
-    except ValueError as error:
-        why = str(error).partition(";")[0]
-        of_whole = {"N/m": "N/m, or in N for a whole finger", "N": "N, as another column is of a whole finger"}
-        allowed = of_whole.get(wanted, wanted)
-        raise SceneError(f"{where}: the unit of {name} is {clip(repr(unit))}; {why}; it must be in {allowed}") from None
-
-
-def _refuse_zero(name: str, row: str, column: _Column, rows: Mapping[str, "pd.Series[float]"]) -> None:
-    """Refuse an attraction of 0 under a voltage; without one it is 0."""
-    charged = rows["voltage"] != 0 if "voltage" in rows else True
-    wrong = (rows[column.name] == 0) & charged
-    if wrong.any():
-        line = column.cells.index[int(wrong.to_numpy().argmax())]
-        raise SceneError(f"{name}, {row} {line}, {column.where}: the {column.name} is 0; it must be so at 0 V alone")
-
-
-def _people(name: str, row: str, column: _Column) -> "pd.Series[str]":
-    """Return who was measured in each row."""
-    if (missing := column.cells == "").any():
-        line = column.cells.index[int(missing.to_numpy().argmax())]
-        raise SceneError(f"{name}, {row} {line}, {column.where}: the participant is missing; give a name in each row")
-    return column.cells.map(lambda cell: clip(cell, 40))
+        example = f"write '{of} ({si})' in the head or by columns, and (1) for a number without"
+        raise ValueError(f"has {show(column.head)} without a unit; {example}")
+    if of == "voltage" and (measure := _SINE.search(unit)):
+        unit, effective = unit[: measure.start()], _EFFECTIVE[measure.lastindex][1]
+    relative = of == "spread" and unit in _PERCENT
+    allowed = {"N/m": "N/m, or in N for a whole finger", "N": "N, as another column is of a whole finger"}
+    column, si = replace(column, unit=unit), "1" if relative else si
+    values = effective * column.numbers(si, allowed.get(si, "1 or %" if si == "1" else si), of == "spread")
+    if of == "voltage":
+        return values.abs()
+    if of.startswith("friction"):
+        column.refuse(values == 0, "a finite number other than 0")
+    else:
+        zero = of in ("spread", "attraction")
+        column.refuse((values < 0) | ((values == 0) & (not zero)), f"{'0 or more' if zero else 'greater than 0'}")
+    return values

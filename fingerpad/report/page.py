@@ -71,10 +71,10 @@ def banner(
 
 
 def claims(sentences: Iterable[str], figure: str) -> str:
-    """Return sentences on how far a number is solved and known, in bold up to a bracket or a comma, and a figure."""
+    """Return sentences on how far a number is solved and known, in bold up to a bracket or a mark, and a figure."""
     lines = list[str]()
     for each in sentences:
-        first = re.split(r"(?=,| \()", each, maxsplit=1)[0]
+        first = re.split(r"(?=[,;:]| \()", each, maxsplit=1)[0]
         lines.append(f"<p><b>{typeset(first[0].upper() + first[1:])}</b>{typeset(each[len(first) :])}.</p>")
     return f'<div class="claims"><div>{"".join(lines)}</div>{figure}</div>' if lines else ""
 
@@ -205,9 +205,9 @@ def all_parameters(parameters: Mapping[str, Any], varied: Container[str] = ()) -
         parameters: of a scene.
         varied: keys without a value of their own, since a sweep varies them.
     """
-    from fingerpad.scene.keys import every  # reads the docstrings of the models
+    from fingerpad.scene.keys import by_name  # reads the docstrings of the models
 
-    keys, other, rows = {key.name: key for key in every(Scene)}, changed_keys(parameters), []
+    keys, other, rows = by_name(Scene), changed_keys(parameters), []
     for name, value in flat(parameters).items():
         key = keys.get(re.sub(r"\[\d+\]", "[]", name))
         shown = "varied" if name in varied else _shown(value)

@@ -62,6 +62,10 @@ class Serial:
         """Return the value."""
         return value
 
+    def allgather(self, value: T) -> list[T]:
+        """Return the value, of the one rank."""
+        return [value]
+
 
 def on_rank_0(comm: "MPI.Comm | Serial", work: Callable[[], T]) -> T:
     """Return on every rank what rank 0 finds; collective.

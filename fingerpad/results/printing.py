@@ -75,7 +75,7 @@ def _remarks(result: "Answer") -> list[str]:
     if not math.isnan(share):
         found.append(f"Penalty: a rigid screen would change the contact length at full slip by {1e3 * share:+.2g} mm.")
     band = in_words(result.record.get(RECORD, {}))
-    found += [f"{band[0].upper()}{band[1:]}."] if band else []
+    found += [band] if band else []
     return [*found, *([PER_LENGTH] if result.named else []), *result.notes]
 
 

@@ -134,9 +134,10 @@ class Result(Answer):
         """Return the names of the quantities of a named state in ``summary.json``."""
         return *CONDITIONS, *RESULTS, *STABILITY, *(each.name for each in self.outputs)
 
-    def to_dict(self) -> dict[str, Any]:
-        """Return the content of ``summary.json``, ready for JSON; SI units."""
-        found = {"headline": self.headline.to_dict(), **self._numbers(), **self.record}
+    def to_dict(self, headline: bool = True) -> dict[str, Any]:
+        """Return the content of ``summary.json``, ready for JSON, by default with the headline; SI units."""
+        found: dict[str, Any] = {"headline": self.headline.to_dict()} if headline else {}
+        found |= self._numbers() | self.record
         found |= {name: text for name in ("failure", "interrupted") if (text := getattr(self, name))}
         found |= {name: list(kept) for name in ("notes", "cautions") if (kept := getattr(self, name))}
         found |= {"outputs": [each.to_dict() for each in self.outputs]} if self.outputs else {}

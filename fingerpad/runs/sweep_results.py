@@ -4,7 +4,6 @@ import csv
 import io
 import itertools
 import json
-import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -14,13 +13,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fingerpad import notebook
-from fingerpad.reduced.closure_band import with_band
 from fingerpad.results import dataset, netcdf
 from fingerpad.results.closures import KNOWN
 from fingerpad.results.files import replace
 from fingerpad.results.quantities import FINGER, PER_LENGTH, Output
 from fingerpad.results.states import STATES, WORDS
+from fingerpad.runs import post
 from fingerpad.runs.sweep_columns import described, head_of, of_finger, printed, row, said_of, shown, tables
+from fingerpad.scene.messages import alike
 from fingerpad.slices.errors import remarks
 from variational.state import CONDITIONS, RESULTS
 
@@ -70,7 +70,7 @@ class Sweep:
         if isinstance(k, slice):
             return tuple(self[place] for place in range(len(self))[k])
         result = self.results[k]
-        return result if KNOWN in result.record else with_band(result)
+        return result if KNOWN in result.record else post.applied(result, [post.BANDS])
 
     @property
     def whole(self) -> bool:
@@ -125,9 +125,8 @@ class Sweep:
         """
         found = dict[str, list[str]]()
         for result in self.results:
-            mine = {_alike(text): text for text in result.cautions}
-            for alike, text in mine.items():
-                found.setdefault(alike, []).append(text)
+            for form, text in {alike(text): text for text in result.cautions}.items():
+                found.setdefault(form, []).append(text)
         return [
             f"{texts[0]} ({len(texts)} of {len(self)} points{', numbers of the first' * (len(set(texts)) > 1)})"
             for texts in found.values()
@@ -210,11 +209,6 @@ def _aligned(table: Sequence[Sequence[str]]) -> list[str]:
     whole = [line for line in table if len(line) == len(table[0])]
     widths = [max(map(len, column)) for column in zip(*whole, strict=True)]
     return ["   ".join(cell.rjust(width) for cell, width in zip(line, widths, strict=False)) for line in table]
-
-
-def _alike(caution: str) -> str:
-    """Return a caution without its numbers, which differ from point to point."""
-    return re.sub(r"[-+]?\d[\d.]*(e[-+]?\d+)?(, (?=\d))?", "", caution)
 
 
 def _variables(sweep: Sweep) -> tuple[dataset.Variables, tuple[str, ...], dict[str, Any]]:

@@ -68,6 +68,12 @@ def _kind(voltage: Any) -> str:
 Voltage = Annotated[Annotated[Volts, Tag(NUMBER)] | Annotated[Waveform, Tag(WAVE)], Discriminator(_kind)]
 
 
+def repeated(voltage: Any) -> Any:
+    """Return a voltage, of a file as one period that repeats itself."""
+    of_file = isinstance(voltage, dict) and isinstance(voltage.get("file"), str) and voltage.get("waveform") == "file"
+    return voltage | {"repeat": True} if of_file else voltage
+
+
 class Load(Table):
     """A load to reach from the present one; omitted values stay as they are."""
 

@@ -219,9 +219,12 @@ class RoughnessKey(LawKey):
 
     def check(self, law: Any) -> None:
         """Refuse a floor of the pressure that is no floor, or holds the gap of an unloaded ridge at over a metre."""
+        if isinstance(law, BearingArea | TabulatedClosure) and not reading_results():
+            self._refuse_floor(law)  # results are read where a measured map's table is not
         super().check(law)
-        if reading_results() or not isinstance(law, BearingArea | TabulatedClosure):
-            return  # results are read where a measured map's table is not
+
+    @staticmethod
+    def _refuse_floor(law: BearingArea | TabulatedClosure) -> None:
         most, where = (
             (law.full_pressure, "at zero separation")
             if isinstance(law, BearingArea)

@@ -10,7 +10,7 @@ from dataclasses import is_dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
-from pydantic import Field, ValidationError, model_validator
+from pydantic import BeforeValidator, Field, ValidationError, model_validator
 
 from fingerpad import notebook
 from fingerpad.scene.changes import DEFAULT_HISTORY, changed, forget, with_coarse_start, with_finger, without_finger
@@ -19,7 +19,7 @@ from fingerpad.scene.fingers import ADULT, FingerName
 from fingerpad.scene.keys import every
 from fingerpad.scene.law_code import digest, folder_of, imported
 from fingerpad.scene.law_keys import Kept, kept
-from fingerpad.scene.loads import Load, Voltage, drives, refuse_contradictions
+from fingerpad.scene.loads import Load, Voltage, drives, refuse_contradictions, repeated
 from fingerpad.scene.materials import (
     BEARING_AREA,
     CLOSURES,
@@ -74,7 +74,7 @@ class Scene(Table):
     force: Annotated[Finite, within(1e-5, 200.0, "N")] | None = None
     """External normal force on the whole finger (N), in place of ``f_ext``. The result is then a sum over slices along
     the finger's axis (``docs/newtons.md``). Range: the weight of a milligram to that of 20 kg."""
-    voltage: Voltage = 200.0
+    voltage: Annotated[Voltage, BeforeValidator(repeated)] = 200.0
     """Instantaneous voltage U (V), or a drive, whose mean attraction over a period acts. *Assumption*: U is that of
     Eq. 3, not the peak-to-peak value of Table 3. Range: from 1 mV, which attracts with less than 1 µPa, to ten times
     the voltage of displays; 0 is no voltage. The sign changes no force."""
@@ -276,6 +276,8 @@ class Scene(Table):
             found["geometry"] = {key: found["geometry"][key] for key in ("file", "file_sha256", "sc_thickness")}
         else:
             found["geometry"] = {key: x for key, x in found["geometry"].items() if not key.startswith("file")}
+        if self.slices.height is not None:
+            del found["slices"]["radius"], found["slices"]["length"]
         return found
 
     def _repr_html_(self) -> str:

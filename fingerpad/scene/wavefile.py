@@ -1,25 +1,28 @@
-"""Voltages over time from a CSV file: of two columns under a header, or as an oscilloscope writes it.
+"""Voltages over time from a CSV file: under a header of two columns, or as an oscilloscope writes it.
 
-The first column of numbers has the times, the others have voltages. Lines before them are a preamble. Its last lines
-name the columns and their units, in brackets behind the names or in a line of their own; some instruments write it in
-columns beside the numbers. Without units the times are in s and the voltages in V. Times may begin anywhere: the first
-becomes 0, and the last sample closes the period.
+Names and units of columns decide, wherever they stand (:mod:`fingerpad.scene.tables`): the times are in the column that
+is named or united as time, and a column that counts samples is none. Without units they are in s, and the voltages in
+V. Times may begin anywhere: the first becomes 0.
 
-Files of more than :data:`POINTS` samples are averaged in groups, all of as many. Where this would take more than
-:data:`_LOST` of the mean square, a carrier for example, the file is refused.
+A file that repeats itself ends where a period does. One of 1.5 periods or more is cut to whole ones, another one must
+end with its first voltage, or one sample before. Files of more than :data:`POINTS` samples are averaged in groups, all
+of as many. Where this would take more than :data:`_LOST` of the mean square, a carrier for example, the file is refused.
 """
 
 import math
 import re
 from collections.abc import Sequence
-from typing import Annotated, Any, NamedTuple
+from dataclasses import replace
+from typing import TYPE_CHECKING, Annotated, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from fingerpad.scene.messages import clip, show
-from geometry.units import Finite, Range, to_si, within
-from variational import files
+from geometry.units import Finite, Range, within
+
+if TYPE_CHECKING:
+    from fingerpad.scene.tables import Column, Table
 
 POINTS = 2000
 """Most points of a waveform."""
@@ -30,13 +33,14 @@ _LEAST = 1e-3  # V; what is less in a table is 0: noise, or roundoff of a comput
 _LOST = 0.01  # of the mean square
 Volts = Annotated[Finite, within(_LEAST, HIGHEST, "V", zero=True, sides=2)]
 Seconds = Annotated[Finite, within(1e-9, 1e5, "s", zero=True)]
-_WORDS = {"second": "s", "sec": "s", "seconds": "s", "volt": "V", "volts": "V"}
-_TIMES = {*_WORDS, "s", "ms", "us", "µs", "μs", "ns", "sequence", "sample", "samples", "point", "points"}
-"""Of the first column in a line of units; some are none, and are refused."""
-_SIDE = {"s": "horizontal units", "V": "vertical units"}  # keys of a preamble beside the numbers
 Array = NDArray[np.float64]
-_HEAD = re.compile(r"(.*?)\s*[(\[]([^()\[\]]*)[)\]]")  # a name, and a unit in the last brackets behind it
-_Rows = list[tuple[int, list[str]]]  # number of a line, and its cells
+_HEADER = "time (s),voltage (V)"
+_TIME = re.compile(r"(time|zeit|temps|tiempo|tempo)\b.*|t|x([-_ ]?(axis|values?))?", re.IGNORECASE)
+_COUNT = re.compile(r"(samples?|ticks?|index|points?|number|no\.?|nr\.?|n|i|row|#|unnamed: \d+)?", re.IGNORECASE)
+_SIDE = {"s": "horizontal units", "V": "vertical units"}  # of a preamble
+_THOUSANDS = (1e3, 1e6, 1e9)  # by which a unit changes within a file
+_CLOSED = 0.02  # of the peak-to-peak value: a difference of the ends that is none
+_ALIKE = 0.05  # of the variance: half the mean square by which periods differ
 
 
 def or_zero(value: Any) -> Any:
@@ -44,139 +48,126 @@ def or_zero(value: Any) -> Any:
     return 0.0 if isinstance(value, float) and abs(value) < _LEAST else value
 
 
-def table(file: str, column: str | None = None, probe: float = 1.0) -> dict[str, Any]:
+def table(file: str, column: str | None = None, probe: float = 1.0, *, repeat: bool = False) -> dict[str, Any]:
     """Return times (s) and voltages (V) of a CSV file.
 
     Args:
         file: its path.
-        column: name of the voltages' column, with its unit as written there or without; its number where it has no
-            name, that of the times being 1; None where there is one alone.
+        column: name of the voltages' column, with its unit as written there or without; None where there is one alone.
         probe: factor on the voltages.
+        repeat: whether the file repeats itself, so that it must end where a period does.
 
     Raises:
         ValueError: it cannot be read, or has no such column, another unit, or a line without numbers in range; in one
             sentence that begins with the key.
     """
+    from fingerpad.scene import tables  # pandas
+
     name = f"file is {show(file)}"
-    rows = _rows(file, name)
-    places = _numbers(rows)
-    if len(places) < 2:
-        raise ValueError(f"{name}, which has no two columns of numbers; it must have one in s and one in V")
-    wide = places[-1]
-    numbers = (k for k, (_, row) in enumerate(rows) if len(row) > wide and all(files.is_number(row[j]) for j in places))
-    first = next(numbers)
-    labels = _labels(rows, first, places)
-    place = _chosen(name, labels, places, column)
-    factors = [_factor(name, label, unit) for label, unit in zip((labels[0], labels[place]), ("s", "V"), strict=True)]
-    for line, cells in rows[first:]:
-        _refuse_line(name, line, cells, places)
-    t, u = (np.array([float(cells[places[k]]) for _, cells in rows[first:]]) for k in (0, place))
-    t, u = _fewer(name, factors[0] * (t - t[0]), factors[1] * probe * u)
+    try:
+        t, u = _columns(tables.read(file, _HEADER), column)
+        t, u = t - t[0], probe * u
+        if len(t) > 1 and (np.diff(t) > 0).all():
+            _refuse_units(np.diff(t))
+            t, u = _whole(t, u) if repeat else (t, u)
+    except ValueError as error:
+        raise ValueError(f"{name}, which {error}") from None
+    t, u = _fewer(name, t, u)
     allowed = range_of(Volts)
     wrong = next((k for k, value in enumerate(u) if or_zero(float(value)) not in allowed), None)
     if wrong is not None:
         words = allowed.words(float(u[wrong])).partition(" (")[0]
         raise ValueError(f"{name}, which at {t[wrong]:.6g} s has a number that {words}")
+    if np.abs(u).max() < _LEAST:
+        raise ValueError(f"{name}, which has 0 V throughout; give a voltage, or the number 0 in its place")
     return {"times": t.tolist(), "voltages": [or_zero(float(value)) for value in u]}
 
 
-# -- text --------------------------------------------------------------------------------------------------------
-def _rows(file: str, name: str) -> _Rows:
-    """Return the lines that are not empty, parted by what makes most numbers of them: commas, semicolons or tabs."""
-    try:
-        data = files.read(file, files.MOST_OF_TEXT)
-    except OSError as error:
-        raise ValueError(f"{name}, which cannot be read: {show(error.strerror or str(error))}") from None
-    text = files.text(data)
-    if text is None:
-        raise ValueError(f"{name}, which is no text")
-    return max((_parted(text, mark, name) for mark in ",;\t"), key=_count)
+def _columns(found: "Table", wanted: str | None) -> list[Array]:
+    """Return the times (s) and the voltages (V) of a table, the latter by the name of its column."""
+    from fingerpad.scene.tables import is_of
+
+    columns = [each for each in found.columns if each.numeric]
+    if len(columns) < 2:
+        raise ValueError("has no two columns of numbers; it must have one in s and one in V")
+    if not found.headed and _SIDE["s"] not in found.facts:
+        raise ValueError(f"has no heads above its numbers; write '{_HEADER}' there")
+    if not found.headed:  # a preamble beside the numbers has times first
+        heads = ["time", *[found.facts.get("source", "voltage")] * (len(columns) - 1)]
+        columns = [replace(each, name=head, head=head) for each, head in zip(columns, heads, strict=True)]
+    named = [each for each in columns if _TIME.fullmatch(each.name)]
+    times = [each for each in columns if is_of(each.unit, "s")]
+    times = [each for each in named if each in times] or times or [each for each in named if not each.unit] or named
+    if not times:
+        heads = clip(", ".join(show(each.head) for each in columns), 100)
+        raise ValueError(f"has nothing named or united as time among {heads}; write a head such as 'time (s)'")
+    first, others = times[0], [each for each in columns if each not in times and not _COUNT.fullmatch(each.name)]
+    if other := next((each for each in times[1:] if (each.cells != first.cells).any()), None):
+        raise ValueError(f"has time twice, as {show(first.head)} and {show(other.head)}; it must have one alone")
+    units = {si: found.facts.get(_SIDE[si]) or si for si in _SIDE}
+    both = (("s", first), ("V", _chosen(others, wanted)))
+    return [replace(each, unit=each.unit or units[si]).numbers(si).to_numpy() for si, each in both]
 
 
-def _parted(text: str, mark: str, name: str) -> _Rows:
-    """Return the lines of a text with their cells."""
-    try:
-        return files.parted(text, mark)
-    except ValueError as error:
-        raise ValueError(f"{name}, which is no table in CSV: {show(clip(str(error), 100))}") from None
+def _chosen(columns: "Sequence[Column]", wanted: str | None) -> "Column":
+    """Return the column of a name, or the one that has voltages."""
+    from fingerpad.scene.tables import is_of
+
+    if not columns:
+        raise ValueError("has nothing in V beside its time")
+    volts = [each for each in columns if is_of(each.unit or "V", "V")] or columns
+    if wanted is None and len(volts) == 1:
+        return volts[0]
+    given = "not given" if wanted is None else show(wanted)
+    for heads in ([each.head for each in columns], [each.name for each in columns]):
+        for column, head in zip(columns, heads, strict=True):
+            if wanted is not None and head.casefold() == wanted.strip().casefold():
+                return column
+    names = " or ".join(show(each.name) for each in volts)
+    raise ValueError(f"has {names}, and column is {given}; it must be one of these")
 
 
-def _count(rows: _Rows) -> int:
-    """Return how many lines are of two numbers or more, and of nothing else."""
-    found = ([cell for cell in cells if cell] for _, cells in rows)
-    return sum(len(cells) > 1 and all(map(files.is_number, cells)) for cells in found)
+# -- times -------------------------------------------------------------------------------------------------------
+def _refuse_units(steps: Array) -> None:
+    """Refuse times whose unit changes on the way, as equal steps and then others a thousand times as large."""
+    equal = steps[1:][np.isclose(steps[1:], steps[:-1], rtol=0.01)]
+    if equal.size and np.isclose(equal.max() / equal.min(), _THOUSANDS, rtol=0.02).any():
+        raise ValueError(
+            f"has steps of time of {equal.min():.4g} s and then {equal.max():.4g} s, as if their unit "
+            "changed; give one unit throughout, or the points as times and voltages"
+        )
 
 
-def _numbers(rows: _Rows) -> list[int]:
-    """Return the places of columns of numbers, as many as half of those of the column with most of them, or more."""
-    counts = dict[int, int]()
-    for _, cells in rows:
-        for k, cell in enumerate(cells):
-            counts[k] = counts.get(k, 0) + files.is_number(cell)
-    most = max(counts.values(), default=0)
-    return [k for k, count in counts.items() if count > most / 2]
+def _whole(t: Array, u: Array) -> tuple[Array, Array]:
+    """Return a record of whole periods: one that is cut, or goes on for a sample with its first voltage."""
+    steps, period, apart, end = np.diff(t), _period(t, u), abs(u[-1] - u[0]), t[-1]
+    if period is not None:
+        end = math.floor((t[-1] + 1.5 * steps.min()) / period) * period
+        end = t[-1] if abs(end - t[-1]) < 0.25 * steps.min() else end
+    elif steps.max() < 1.01 * steps.min() and _CLOSED * np.ptp(u) < apart <= 1.01 * np.abs(np.diff(u)).max():
+        end = t[-1] + steps[-1]
+    elif apart > _CLOSED * np.ptp(u):
+        raise ValueError(
+            f"begins with {u[0]:.4g} V and ends with {u[-1]:.4g} V after {t[-1]:.4g} s, without whole "
+            "periods; it repeats itself, so it must end with its first voltage"
+        )
+    kept = t < end - 0.25 * steps.min()
+    return np.append(t[kept], end), np.append(u[kept], np.interp(end, t, u, right=u[0] if end > t[-1] else u[-1]))
 
 
-def _refuse_line(name: str, line: int, cells: Sequence[str], places: Sequence[int]) -> None:
-    texts = [cells[k] if k < len(cells) else "" for k in places]
-    wrong = next((text for text in texts if not (files.is_number(text) and math.isfinite(float(text)))), None)
-    if wrong is not None:
-        raise ValueError(f"{name}, whose line {line} has {show(wrong)}; it must be a finite number")
-    count = sum(map(bool, cells))
-    if places[0] == 0 and count > len(places):
-        raise ValueError(f"{name}, whose line {line} has {count} cells; it must have {len(places)}, as the others")
+def _period(t: Array, u: Array) -> float | None:
+    """Return the period (s) of a record of 1.5 periods or more, None of another one.
 
+    It is the least delay, past the first lobe, at which the record hardly differs from itself and varies.
+    """
+    import scipy.signal
 
-# -- columns -----------------------------------------------------------------------------------------------------
-class _Label(NamedTuple):
-    """What stands above a column of numbers; empty where there is nothing."""
-
-    name: str
-    unit: str
-    head: str
-    """Both as written."""
-
-
-def _labels(rows: _Rows, first: int, places: Sequence[int]) -> list[_Label]:
-    """Return the label of each column of numbers."""
-    if places[0] > 0:
-        beside = {cells[0].casefold(): cells[1] for _, cells in rows if len(cells) > 1 and cells[0]}
-        units = [beside.get(_SIDE[unit], "") for unit in ("s", "V")]
-        names = ["", *[beside.get("source", "")] * (len(places) - 1)]
-        return [_Label(names[k], units[min(k, 1)], names[k]) for k in range(len(places))]
-    above = [cells for _, cells in rows[max(first - 2, 0) : first] if all(k < len(cells) and cells[k] for k in places)]
-    last = above[-1] if above else [""] * (places[-1] + 1)
-    bare = [cell.strip("()[]") for cell in last]
-    if len(above) > 1 and bare[0].casefold() in _TIMES:  # names, and a line of units
-        return [_Label(above[0][k], bare[k], above[0][k]) for k in places]
-    found = [(last[k], _HEAD.fullmatch(last[k])) for k in places]
-    return [_Label(match[1], match[2].strip(), head) if match else _Label(head, "", head) for head, match in found]
-
-
-def _chosen(name: str, labels: Sequence[_Label], places: Sequence[int], column: str | None) -> int:
-    """Return which of the columns of numbers has the voltages."""
-    if column is None and len(places) == 2:
-        return 1
-    names = [label.name or str(place + 1) for label, place in zip(labels, places, strict=True)]
-    wanted = None if column is None else column.strip().casefold()
-    for known in ([label.head for label in labels], names):
-        same = [k for k in range(1, len(places)) if known[k].casefold() == wanted]
-        if same:
-            return same[0]
-    given = "is not given" if column is None else f"is {show(column)}"
-    raise ValueError(f"column {given} and {name}; it must be {' or '.join(map(show, names[1:]))}, as named there")
-
-
-def _factor(name: str, label: _Label, si: str) -> float:
-    """Return the unit of a column over the SI unit."""
-    column, unit = label.name, label.unit
-    if not unit:
-        return 1.0
-    try:
-        return to_si(f"1 {_WORDS.get(unit.casefold(), unit)}", si)
-    except ValueError:
-        what = "first numbers" if si == "s" else f"numbers of {show(column)}"
-        raise ValueError(f"{name}, whose {what} are in {show(clip(unit, 40))}; they must be in {si} or m{si}") from None
+    v = np.interp(np.linspace(0.0, t[-1], POINTS), t, u)
+    apart = np.array([np.mean((v[k:] - v[:-k]) ** 2) for k in range(1, 2 * POINTS // 3)])
+    near = 1 + scipy.signal.find_peaks(-apart, height=-2 * _ALIKE * v.var())[0]
+    near = near[near > 1 + np.argmax(apart > v.var())]
+    found = [int(k) for k in near if min(v[k:].var(), v[:-k].var()) > v.var() / 4]
+    return found[-1] / round(found[-1] / found[0]) * t[-1] / (POINTS - 1) if found else None
 
 
 def _fewer(name: str, t: Array, u: Array) -> tuple[Array, Array]:

@@ -61,10 +61,13 @@ class WholeFinger:
                 the force that it was made for, and down to its first point at the centre of the finger.
 
         Raises:
-            SceneError: no force, or one that a trace does not reach.
+            SceneError: no force, one that a trace does not reach, or a finger without traces.
         """
         value, finger = Scene(force=force).force, profile(self.shape)
-        assert value is not None
+        if value is None:
+            raise SceneError("force is None; it must be a number in N, or a text such as '0.3 N'")
+        if missing := [WORDS[name] for name in self.states if name not in self.traces]:
+            raise SceneError(f"the finger has no trace of {missing[0]}, from which another force could be read; run it")
         states = {name: at_force(finger, self.traces[name], value, self.shape.count) for name in self.states}
         for name, total in states.items():
             first = finger.centre_scale * float(self.traces[name].columns["f_ext"][0])
@@ -74,10 +77,8 @@ class WholeFinger:
                     f"and its trace in {WORDS[name]} begins at {first:.3g} N/m; "
                     "give a larger force, or run this one"
                 )
-        carried = {name: dict(each) for name, each in self.carried.items()}
-        for name, each in carried.items():
-            if errors.ESTIMATED in each:
-                each[errors.ESTIMATED] = errors.lighter(each[errors.ESTIMATED], states[name], self.f_ext / value)
+        ratio = self.f_ext / value
+        carried = {name: errors.lighter(each, states[name], ratio) for name, each in self.carried.items()}
         return replace(self, states=states, carried=carried)
 
     def values(self, name: str) -> dict[str, float]:
@@ -139,7 +140,7 @@ class WholeFinger:
         """Return what the errors of states are made of; of all states by default."""
         every = (self.carried.get(name, {}) for name in names or self.states)
         parts = dict.fromkeys(part for each in every for part, known in each.items() if known)
-        return (*parts, *[errors.POINTS] * bool(self.traces))
+        return tuple(dict.fromkeys([*parts, *[errors.POINTS] * bool(self.traces)]))
 
     def remarks(self) -> list[str]:
         """Return what a reader of the numbers must be told."""
