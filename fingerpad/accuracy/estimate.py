@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 from fingerpad.accuracy.states import Solve, with_values
 from fingerpad.results.quantities import QUANTITIES, Output
 from fingerpad.results.states import WORDS
-from fingerpad.richardson import TWO, of_two_meshes, plus_minus
+from fingerpad.richardson import RECEPTOR, TWO, of_two_meshes, plus_minus
 from fingerpad.scene.messages import SceneError
 from variational.element import ELEMENTS
 from variational.state import ContactState, Errors
@@ -96,8 +96,10 @@ class Estimate:
             for name, state in fine.states.items()
             if name in coarse.states
         }
-        receptor = fine.mesh.receptor
-        self._two = of_two_meshes(coarse.parts(), fine.parts(), facets, self.degree, short=short, receptor=receptor)
+        parts = fine.parts()
+        if fine.mesh.receptor > RECEPTOR:  # of densities there is no estimate
+            parts = {name: part for name, part in parts.items() if "_sed_" not in name}
+        self._two = of_two_meshes(coarse.parts(), parts, facets, self.degree, short=short)
         self.base, self.coarse = fine, coarse
 
     def _shares(self, name: str, error: float) -> dict[str, float]:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 from fingerpad import launcher
 from fingerpad.results import dataset, printing
 from fingerpad.results.answer import Answer, Cost
-from fingerpad.results.files import read_object
+from fingerpad.results.files import FORMAT, read_object, refuse_other_format
 from fingerpad.results.headline import Headline, headline
 from fingerpad.results.quantities import CHANGES, STABILITY, Output, checked, valued
 from fingerpad.results.quantities import read as read_outputs
@@ -153,6 +153,7 @@ class Result(Answer):
             for name, state in self.named.items()
         }
         return {
+            "format": FORMAT,
             "model": self.model,
             "f_ext": 0.0 if last is None else last.f_ext,
             "voltage": 0.0 if last is None else last.voltage,
@@ -212,6 +213,7 @@ class Result(Answer):
             summary = read_object(folder / "summary.json")
             if set(summary) == {"failure"}:
                 raise SceneError(f"the run in {name} was refused and has no results: {summary['failure']}")
+            refuse_other_format(summary, f"the run in {name}")
             found = cls.from_dict(summary, folder)
             if (kept := dataset.read(folder, [each.name for each in found.outputs])) is not None:
                 ways = {name: state.reached for name, state in found.named.items()}

@@ -267,8 +267,7 @@ class Scene(Table):
     def parameters(self) -> dict[str, Any]:
         """Return every parameter in use, ready for JSON; as a scene it gives the same run again."""
         unused = {"history"} if self.history is None else {*DEFAULT_HISTORY}
-        unused |= {"accuracy"} if self.accuracy is None else set()
-        unused |= {"finger"} if self.finger == ADULT else set()
+        unused |= {*["accuracy"] * (self.accuracy is None), *["finger"] * (self.finger == ADULT)}
         unused |= {"force" if self.force is None else "f_ext"}
         found = self.model_dump(mode="json", exclude=unused)
         if self.geometry.file is not None:  # whose mesh has its own shape and sizes

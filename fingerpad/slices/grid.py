@@ -5,7 +5,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 from fingerpad.scene import Scene
-from fingerpad.slices.trace import Trace, trace
+from fingerpad.slices.trace import Trace, refuse_floating, trace
 from variational.state import ContactState
 
 if TYPE_CHECKING:
@@ -26,7 +26,7 @@ def of_points(
     expected: float,
     top: float,
 ) -> tuple[Trace, list[ContactState]]:
-    """Return a trace of a model without a path, and its states.
+    """Return a trace of a model without a path, and its states; refuse states without a bone.
 
     Args:
         scene: without a force on the whole finger.
@@ -39,6 +39,7 @@ def of_points(
     kind = "full_slip" if name == "full_slip" else "charged"
     scene = scene.model_copy(update={"voltage": 0.0}) if name == "uncharged" else scene
     found = model.over_forces(scene, grid(expected, top), kind, lambda each: solve(each, name))
+    refuse_floating(found, model.name)
     return trace(found, scene.geometry.ridge_wavelength), found
 
 

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from scipy.interpolate import PchipInterpolator
 from scipy.optimize import brentq
 
+from fingerpad.scene.messages import SceneError
 from variational.state import ContactState
 
 Array = NDArray[np.float64]
@@ -21,8 +22,21 @@ _NOTHING = 1e-12  # of the largest external force: values below it are roundoff
 _APART = 1e-4  # relative distance of two points: of closer ones, slopes are made by the tolerances of solvers (1e-6)
 
 
-class TraceError(ValueError):
+class TraceError(SceneError):
     """States of which no trace can be made; one sentence."""
+
+
+def refuse_floating(states: Iterable[ContactState], model: str) -> None:
+    """Refuse states of a model that do not have the height of their bone.
+
+    Raises:
+        TraceError: one has none.
+    """
+    if any(np.isnan(state.bone_height) for state in states):
+        raise TraceError(
+            f"the model {model!r} gives its states no bone_height, which forces in newtons on the whole finger need; "
+            "give f_ext in place of force, or the model's states a bone_height"
+        )
 
 
 @dataclass(frozen=True)

@@ -122,7 +122,7 @@ def with_sum(result: Result, model: "Model", solve: Solve) -> Result:
         totals = under_one_force(profile(scene.slices), traces, scene.slices.count, f_ext)
         found = {name: each._replace(total=totals[name]) for name, each in found.items()}
         return model.of_finger(scene, result, summed(scene, model.traces, found))
-    except (SceneError, TraceError) as error:
+    except SceneError as error:
         return replace(result, notes=(*result.notes, f"{NO_NEWTONS}: {error}"))
 
 
