@@ -204,7 +204,7 @@ def _refuse_overlooked(condition: str, ignored: Sequence[Column]) -> None:
     """Refuse a table without a condition where an ignored column may be it."""
     units = CONDITIONS[condition]
     for column in ignored:
-        if any(is_of(column.unit, si) for si in units) if column.unit else column.numeric:
+        if any(is_of(_SINE.sub("", column.unit), si) for si in units) if column.unit else column.numeric:
             measure = _SINE.search(column.name) if condition == "voltage" else None
             words, effective = _EFFECTIVE[measure and measure.lastindex]
             meant = f"{condition} ({units[0]}{words})" if words or not column.unit else condition

@@ -18,6 +18,7 @@ from typing import Any, BinaryIO
 from uuid import uuid4
 
 from fingerpad.scene.messages import SceneError, clip
+from variational.files import read
 
 _MAX_BYTES = 200_000_000  # of a file that is read; a summary of a thousand loads has two millions
 _FILES = 160  # bytes that the longest name of a file in a folder of results takes of a path
@@ -52,14 +53,11 @@ def read_object(file: Path) -> dict[str, Any]:
     """Return the object that a JSON file of a folder of results holds, whoever wrote it.
 
     Raises:
-        OSError: it cannot be read.
-        ValueError: it is no ordinary file, too large, or holds something else than an object of some depth.
+        OSError: it cannot be read, is no ordinary file or too large.
+        ValueError: it holds something else than an object of some depth.
     """
-    about = file.stat()
-    if not stat.S_ISREG(about.st_mode) or about.st_size > _MAX_BYTES:
-        raise ValueError(f"{file.name} is no ordinary file of at most {_MAX_BYTES} bytes")
     try:
-        found = json.loads(file.read_text(encoding="utf-8"))
+        found = json.loads(read(file, _MAX_BYTES).decode())
     except RecursionError:
         found = None
     if not isinstance(found, dict) or not _is_shallow(found, _MAX_DEPTH):

@@ -110,13 +110,17 @@ def factor(unit: str, si: str) -> float:
     Raises:
         ValueError: the unit is not known, or of another dimension.
     """
-    for spelling, usual in _SPELLINGS:
-        unit = spelling.sub(usual, unit)
     if si != "1":
-        return to_si(f"1 {unit}", si)
+        return to_si(f"1 {_usual(unit)}", si)
     if unit not in NUMBERS:
         raise ValueError("is not a number")
     return NUMBERS[unit]
+
+
+def _usual(unit: str) -> str:
+    for spelling, usual in _SPELLINGS:
+        unit = spelling.sub(usual, unit)
+    return unit
 
 
 def is_of(unit: str, si: str) -> bool:
@@ -212,10 +216,9 @@ def _heads(above: pd.DataFrame, places: Sequence[int]) -> list[tuple[str, str, s
     """Return head, name and unit of each column from the lines above the numbers."""
     *names, last = [[""] * len(above.columns), *above.to_numpy().tolist()]
     bare = [cell.strip("()[] ") for cell in last]
-    if len(names) > 1 and (
-        all(cell[0] in "([" for cell in last if cell)
-        or (any(map(_BARE.fullmatch, bare)) and all(not u or u in NUMBERS or is_unit(u) or is_unit(u.lower()) for u in bare))
-    ):
+    known = (not u or u in NUMBERS or is_unit(_usual(u)) or is_unit(u.lower()) for u in bare)
+    in_brackets = all(cell[0] in "([" for cell in last if cell)
+    if len(names) > 1 and (in_brackets or (any(map(_BARE.fullmatch, bare)) and all(known))):
         return [(head, parts(head)[0], unit) for head, unit in zip(names[-1], bare, strict=True)]
     if len(names) > 1 and any(files.is_number(last[k]) for k in places):
         wrong = next(last[k] for k in places if pd.isna(pd.to_numeric(last[k] or "-", errors="coerce")))

@@ -101,7 +101,8 @@ def _columns(found: "Table", wanted: str | None) -> list[Array]:
     if not times:
         heads = clip(", ".join(show(each.head) for each in columns), 100)
         raise ValueError(f"has nothing named or united as time among {heads}; write a head such as 'time (s)'")
-    first, others = times[0], [each for each in columns if each not in times and not _COUNT.fullmatch(each.name)]
+    first = times[0]
+    others = [each for each in columns if each not in times and (each.unit or not _COUNT.fullmatch(each.name))]
     if other := next((each for each in times[1:] if (each.cells != first.cells).any()), None):
         raise ValueError(f"has time twice, as {show(first.head)} and {show(other.head)}; it must have one alone")
     units = {si: found.facts.get(_SIDE[si]) or si for si in _SIDE}
