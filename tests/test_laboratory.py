@@ -188,7 +188,7 @@ def test_measure_of_a_voltage_is_offered_with_its_factor():
     with pytest.raises(fp.SceneError, match=re.escape(said)):
         read(frame)
     assert voltages(frame, {"Vpp (V)": "voltage (V peak to peak)"}) == pytest.approx([35.355339])
-    with pytest.raises(fp.SceneError, match=re.escape("{'Vrms': 'voltage (V)'}, or leave")):
+    with pytest.raises(fp.SceneError, match=re.escape("{'Vrms': 'voltage'}, or leave")):
         read(frame.rename(columns={"Vpp (V)": "Vrms"}).assign(Vrms=[3.0]))
 
 
