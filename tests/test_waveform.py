@@ -206,7 +206,7 @@ def test_nothing_but_the_voltage_holds_the_skin(offset, allowed):
     [
         (None, "which cannot be read: 'No such file or directory'"),
         ("time (m),voltage (V)\n0,1\n", "which has 'time (m)' in 'm', which is not a unit of time; it must be in s"),
-        ("time (s),current (A)\n0,1\n", "which has 'current (A)' in 'A', which is not a unit of voltage; it must be in V"),
+        ("time (s),current (A)\n0,1\n", "has 'current (A)' in 'A', which is not a unit of voltage; it must be in V"),
         (TABLE + "0,1\n", "times are 1; there must be from 2"),
         (TABLE + "0,1\n1,2,3\n", "which has more cells in line 3 than its 2 heads"),
         (TABLE + "0,1\n1,inf\n", "which has 'inf' in line 3 of 'voltage (V)'; it must be a finite number"),
