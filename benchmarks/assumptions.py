@@ -1,15 +1,18 @@
 """What the open choices change: readings, parameters and ridge profiles beside the default scene.
 
-environment/run python3 -m benchmarks.assumptions [--jobs 2] [--draw]     twenty minutes of one core
+environment/run python3 -m benchmarks.assumptions [--jobs 2] [--missing] [--draw]     half an hour of one core
 
-Full runs at 75 N/m with errors, most of them with 20 um at the Merkel sites, on which friction hardly depends. Each row
-of the page is the command of one run. Writes docs/assumptions.json and docs/assumptions.md.
+Full runs with errors, most of them at 75 N/m and with 20 um at the Merkel sites, on which friction hardly depends. Each
+row of the page is the command of one run; ``--missing`` runs those alone that docs/assumptions.json lacks. Writes
+docs/assumptions.json, docs/assumptions.md, and fingerpad/reduced/full_changes.json: ratios of µ_app by the full model
+and by charged cylinders, for the parts of a likely range.
 """
 
 import argparse
 import shlex
 import sys
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -18,11 +21,16 @@ import numpy as np
 from benchmarks import harness
 from benchmarks.paper.friction import within
 from benchmarks.runs import Array, Run
+from fingerpad.reduced import closure_band, cylinders
+from fingerpad.results import files
 from fingerpad.richardson import plus_minus
 from fingerpad.runs.batch import Summary
 from fingerpad.scene import Scene, load
 from fingerpad.scene.reading import override
+from fingerpad.scene.remarks import coefficient
 
+_CHANGES = harness.ROOT / "fingerpad" / "reduced" / "full_changes.json"
+_MU_0 = coefficient(Scene()) or 0.0
 _LIMIT = 3600.0  # s of processor time for one run
 PAPER, NEAR, LEAST_GAP = 0.55, 0.05, 1.7e-6  # µ_app, what counts as equal to it; m
 
@@ -79,15 +87,35 @@ FLAT = {
     "flat 170": f"{_FLAT} {_COARSE}",
     "flat 200": f"{_FLAT} --set voltage=200 {_COARSE}",
 }
+STRESS = {75: 12.7e3, 25: 7.9e3}
+"""Shear stress on the ridges (Pa), by force (N/m): about the friction of Coulomb's law without voltage."""
+
+
+def _shear(force: int, voltage: int) -> str:
+    law = f"friction={{law='Derjaguin', mu_f=0, tau_0={STRESS[force]}}}"
+    return f"{_set(law, f'f_ext={force}', f'voltage={voltage}')} {_COARSE}"
+
+
+LAWS = {
+    "Coulomb 25": f"{_set('f_ext=25')} {_COARSE}",
+    **{f"shear {force}{', 0 V' * (not u)}": _shear(force, u) for force in STRESS for u in (200, 0)},
+}
+COATING = {
+    "electric.d_i=0.8e-6 electric.eps_sc=2062.5": "20 % less",
+    "electric.d_i=1.2e-6 electric.eps_sc=1375": "20 % more",
+}
 BESIDE = {
     "flat 0": f"{_FLAT} --set voltage=0 {_COARSE}",
     "both": f"{_set('geometry.ridge_profile=[1, -0.11]')} {_COARSE}",
+    "blunt 25": f"{_set('geometry.ridge_profile=[1, -0.125]', 'f_ext=25')} {_COARSE}",
 }
 
 
 def runs() -> dict[str, str]:
     """Return the options of all full runs by name."""
-    return {**READINGS, **{change: f"{_set(change)} {_COARSE}" for change in (*PARAMETERS, *LITTLE)}, **FLAT, **BESIDE}
+    coatings = {change: f"{_set(*change.split())} {_COARSE}" for change in COATING}
+    single = {change: f"{_set(change)} {_COARSE}" for change in (*PARAMETERS, *LITTLE)}
+    return {**READINGS, **single, **coatings, **LAWS, **FLAT, **BESIDE}
 
 
 # -- ridge profiles ------------------------------------------------------------------------------------------
@@ -115,19 +143,24 @@ _KEYS = ("mu_app", "f_t", "contact_length")
 
 
 def _row(summary: Summary) -> dict[str, float | None]:
-    """Return the numbers of a summary at full slip, and the contact length of normal contact; SI."""
+    """Return the numbers of a summary at full slip, of the whole finger µ_app, and the length of normal contact; SI."""
     found = {key: summary[f"full_slip_{key}"] for key in _KEYS}
-    return found | {"error": summary.get("full_slip_mu_app_error"), "charged": summary["charged_contact_length"]}
+    whole = (summary.get("finger") or {}).get("states", {}).get("full_slip", {}).get("mu_app")
+    more = {"error": summary.get("full_slip_mu_app_error"), "charged": summary["charged_contact_length"]}
+    return found | more | {"whole": whole}
 
 
 def compute(args: argparse.Namespace) -> None:
     """Run what is missing and keep the numbers."""
-    scenes = {name: scene(options) for name, options in runs().items()}
-    shapes = {name: scene(options) for name, options in profiles().items()}
+    found: dict[str, dict[str, Any]] = {"full": {}, "profiles": {}}
+    if args.missing:
+        before = harness.kept("assumptions", args.docs)
+        found = {key: dict(before.numbers[key]) for key in found}
+    scenes = {name: scene(options) for name, options in runs().items() if name not in found["full"]}
+    shapes = {name: scene(options) for name, options in profiles().items() if name not in found["profiles"]}
     full, shaped = harness.run(scenes, args, _LIMIT), harness.run(shapes, args, _LIMIT)
     if failed := [name for name, summary in (full | shaped).items() if "failure" in summary]:
         raise SystemExit(f"no numbers are kept: {'; '.join(failed)} failed; the other runs are kept in {args.out}")
-    found: dict[str, dict[str, Any]] = {"full": {}, "profiles": {}}
     for name, its in scenes.items():
         run = Run(its, args.out)
         gaps = {state: run.final(state, "ridges")["d_eq"].tolist() for state in ("charged", "full_slip")}
@@ -136,7 +169,28 @@ def compute(args: argparse.Namespace) -> None:
         pressure = shaped[name]["full_slip_f_contact"] / shaped[name]["full_slip_contact_length"]
         more = {"pressure": pressure, "d_eq": float(its.closure()(pressure).d_eq)}
         found["profiles"][name] = _row(shaped[name]) | more
-    harness.keep("assumptions", found, harness.made([*full.values(), *shaped.values()]), args.docs)
+    by = harness.made([*full.values(), *shaped.values()])
+    if args.missing:
+        by = replace(by, commit="", source=", ".join(dict.fromkeys([before.made.source, *by.source.split(", ")])))
+    harness.keep("assumptions", found, by, args.docs)
+    files.replace(_CHANGES, harness.text(changes_of(found["full"])) + "\n")
+
+
+def changes_of(rows: Mapping[str, Mapping[str, float]]) -> dict[str, list[list[float]]]:
+    """Return the ratios of µ_app to that of the default, by part and change: of full runs, and of charged cylinders."""
+    tips, (more, less), (thin, thick) = [*PARAMETERS][:2], [*PARAMETERS][2:4], COATING
+    growth = rows["shear 75"]["mu_app"] / rows["shear 75, 0 V"]["mu_app"]
+    names = {"tips": tips, "roughness": [less, more], "coating": [thin, thick]}
+    full = {name: [rows[each]["mu_app"] / rows["reference"]["mu_app"] for each in row] for name, row in names.items()}
+    full[closure_band.LAW] = [growth / (rows["reference"]["mu_app"] / _MU_0)]
+    slip = cylinders.solve(Scene()).full_slip
+    assert slip is not None
+    here, closed = closure_band.friction(Scene(), slip, Scene().closure(), None).mu_app, dict[str, list[float]]()
+    for name, changed in closure_band.changes(Scene(), slip, None).items():
+        states = [closure_band.friction(each, slip, law, None, radius) for each, law, radius in changed]
+        closed[name] = [state.mu_app / here for state in states][-len(full[name]) :]
+    pairs = {name: zip(full[name], closed[name], strict=True) for name in closed}
+    return {name: [[round(a, 4), round(b, 4)] for a, b in each] for name, each in pairs.items()}
 
 
 # -- page ----------------------------------------------------------------------------------------------------
@@ -147,6 +201,10 @@ def sentences(found: Mapping[str, Any]) -> dict[str, Any]:
     def change(name: str, other: str = "reference", key: str = "mu_app") -> float:
         """Return by how much a run differs from another (%)."""
         return float(100 * (rows[name][key] / rows[other][key] - 1))
+
+    def growth(name: str, bare: str | None, key: str = "mu_app") -> float:
+        """Return how many times a voltage multiplies friction; without a run without voltage, by Coulomb's law."""
+        return float(rows[name][key] / (rows[bare][key] if bare else _MU_0))
 
     def gaps(name: str) -> Array:
         """Return the air gaps of both states (m)."""
@@ -162,7 +220,7 @@ def sentences(found: Mapping[str, Any]) -> dict[str, Any]:
     at_200 = [row for name, row in shaped if name.endswith("200 V") and "flat" not in name]
     flattest = [(float(name.split()[-2]), row) for name, row in shaped if name.startswith(_SHOWN[-1])]
     return {
-        "rows": rows, "change": change, "gaps": gaps, "counts": counts, "near": at_200,
+        "rows": rows, "change": change, "growth": growth, "gaps": gaps, "counts": counts, "near": at_200,
         "off": lambda name: 100 * (rows[name]["mu_app"] / PAPER - 1),
         "close": [row["d_eq"] for row in at_200 if near(row)],
         "met": [voltage for voltage, row in flattest if row["d_eq"] >= LEAST_GAP and near(row)],
@@ -196,5 +254,16 @@ def draw(docs: Path) -> Path:
     return harness.page(docs, "assumptions", "python3 -m benchmarks.assumptions", globals() | names)
 
 
+def main() -> int:
+    """Run the command: as :func:`benchmarks.harness.main`, and ``--missing``."""
+    parser = harness.parser(__doc__)
+    parser.add_argument("--missing", action="store_true", help="run only what docs/assumptions.json lacks")
+    args = parser.parse_args()
+    if not args.draw:
+        compute(args)
+    print(draw(args.docs))
+    return 0
+
+
 if __name__ == "__main__":
-    sys.exit(harness.main(__doc__, compute, draw))
+    sys.exit(main())

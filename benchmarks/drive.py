@@ -64,6 +64,7 @@ def compute(args: argparse.Namespace) -> None:
         "uncharged": drive(Scene(voltage=SINE | {"amplitude": 1.0})).f_t.min(),
         "waves": {name: _waves(each) for name, each in WAVES.items()},
         "means": {each: _waves({"waveform": "sine", each: VOLTS, "frequency": 100.0}) for each in MEASURES},
+        "left_out": {name: [_left_out(f, CIRCUITS[name]) for f in SHOWN] for name in ("sliding dry", "moist")},
         "constant": {name: _remains(each) for name, each in CIRCUITS.items() if "leak" in each},
         "time": {kind: _over_time(kind, leaky) for kind in ("sine", "square")},
         "felt": _felt_at(leaky, [float(f) for f in np.geomspace(10, 480, 21)]),
@@ -88,6 +89,13 @@ def _share(frequency: float, electric: Mapping[str, Any]) -> float:
 def _friction(frequency: float, electric: Mapping[str, Any]) -> float:
     """Return the mean friction force (N/m) of a sine."""
     return float(drive(_scene(SINE | {"frequency": frequency}, electric)).f_t.mean())
+
+
+def _left_out(frequency: float, electric: Mapping[str, Any]) -> float:
+    """Return by how much µ_app of Eq. 3 is above that in a circuit, over the latter: of a sine of 200 V rms."""
+    wave = {"waveform": "sine", "rms": VOLTS, "frequency": frequency}
+    eq_3, circuit = (float(drive(_scene(wave, each)).f_t.mean()) for each in ({}, electric))
+    return eq_3 / circuit - 1
 
 
 def _wave(wave: Mapping[str, Any], electric: Mapping[str, Any]) -> dict[str, float]:

@@ -155,15 +155,16 @@ class Kept:
 def keep(name: str, numbers: Any, by: Made, docs: Path = DOCS) -> None:
     """Write numbers to ``docs/NAME.json``, short records a line each; values that are not finite become null."""
     finite = json.loads(json.dumps({"made": asdict(by), "numbers": numbers}), parse_constant=lambda _: None)
-    replace(docs / f"{name}.json", _text(finite) + "\n")
+    replace(docs / f"{name}.json", text(finite) + "\n")
 
 
-def _text(data: Any, indent: str = "") -> str:
+def text(data: Any, indent: str = "") -> str:
+    """Return data as JSON, short records a line each."""
     line = json.dumps(data, ensure_ascii=False)
     if not isinstance(data, list | dict) or len(line) <= _LINE:
         return line
     inner, named = indent + " ", data.items() if isinstance(data, dict) else (("", value) for value in data)
-    parts = [f'"{key}": {_text(value, inner)}' if key else _text(value, inner) for key, value in named]
+    parts = [f'"{key}": {text(value, inner)}' if key else text(value, inner) for key, value in named]
     return f"{line[0]}\n{inner}" + f",\n{inner}".join(parts) + f"\n{indent}{line[-1]}"
 
 

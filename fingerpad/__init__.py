@@ -10,9 +10,16 @@ where they come from are in ``__init__.pyi``; laws of :mod:`fingerpad.scene.mate
 """
 
 import ast
+import os
 from importlib import import_module
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
+
+# A notebook's backend is inherited by programs of its terminal. Matplotlib cannot even be imported where it is missing.
+if (_KERNEL := os.environ.get("MPLBACKEND", "")).startswith("module://"):
+    if find_spec(_KERNEL.removeprefix("module://").partition(".")[0]) is None:
+        del os.environ["MPLBACKEND"]
 
 _LIST = ast.parse(Path(__file__).with_suffix(".pyi").read_text(encoding="utf-8")).body
 _HOMES = {name.name: str(line.module) for line in _LIST if isinstance(line, ast.ImportFrom) for name in line.names}

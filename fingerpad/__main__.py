@@ -9,6 +9,7 @@ from fingerpad.ctrl_c import ends_at_once
 def main() -> int:
     """Run the command in the process's arguments; return the exit code."""
     ends_at_once()
+    os.environ["MPLBACKEND"] = "agg"  # of all pictures, whatever a user or a notebook has
     _open_streams()
     from fingerpad.cli import main as command
 

@@ -9,6 +9,7 @@ import gmsh
 import numpy as np
 from numpy.typing import NDArray
 
+from geometry import tags
 from geometry.profiles import GeometryError
 
 Array = NDArray[np.float64]
@@ -66,6 +67,21 @@ def unfold() -> None:
 def second_order() -> Numbers:
     """Return the nodes of the triangles of second order of the current gmsh model, shape (triangles, 6)."""
     return np.asarray(gmsh.model.mesh.getElementsByType(TRIANGLE)[1], dtype=np.int64).reshape(-1, 6)
+
+
+def triangles_and_skin() -> tuple[Numbers, Numbers]:
+    """Return the corners of the current gmsh model's triangles, shape (n, 3), and of edges that can touch, (m, 2)."""
+    found: list[Numbers] = []
+    for dim, chosen in ((2, lambda tag: True), (1, tags.is_ridge)):
+        parts = [
+            nodes.astype(np.int64).reshape(len(elements), -1)[:, : dim + 1]
+            for _, tag in gmsh.model.getPhysicalGroups(dim)
+            if chosen(tag)
+            for entity in gmsh.model.getEntitiesForPhysicalGroup(dim, tag)
+            for _, elements, nodes in zip(*gmsh.model.mesh.getElements(dim, entity), strict=True)
+        ]
+        found.append(np.concatenate([np.empty((0, dim + 1), dtype=np.int64), *parts]))
+    return found[0], found[1]
 
 
 def refuse_folded(triangles: Numbers, unit: float = 1.0) -> None:

@@ -16,9 +16,8 @@ except ImportError:
     from dolfinx.io import gmshio
 
 from geometry import tags
-from geometry.curved import refuse_folded, second_order
 from geometry.profiles import GeometryError
-from geometry.shape import Shape, session
+from geometry.shape import Shape, built, session
 
 
 @dataclass(frozen=True)
@@ -65,16 +64,15 @@ def load(comm: MPI.Comm, build: Callable[[], float], needed: Iterable[int] = ())
     Raises:
         GeometryError: what ``build`` or gmsh refuses, on every rank; or a needed tag without any entity.
     """
-    unit, failure = 1.0, None
+    unit = 1.0
+    failure: Exception | None = None
     with ExitStack() as stack:
         if comm.rank == 0:
             try:
                 stack.enter_context(session("body"))
-                unit = build()
-                refuse_folded(second_order(), unit)
+                unit = built(build)
             except Exception as error:  # whatever it is, the other ranks must not wait for a mesh
-                plain = type(error) is Exception  # gmsh's own, which are of no other kind
-                failure = GeometryError(f"gmsh cannot mesh the body: {error}; try smaller elements") if plain else error
+                failure = error
         failure = comm.bcast(failure)
         if failure is not None:
             raise failure
@@ -85,27 +83,4 @@ def load(comm: MPI.Comm, build: Callable[[], float], needed: Iterable[int] = ())
         count = comm.allreduce(int(np.sum(cell_tags.values == tag)) + int(np.sum(facet_tags.values == tag)))
         if count == 0:
             raise GeometryError(f"the mesh has no cell or facet with tag {tag}")
-    found = TaggedMesh(mesh, cell_tags, facet_tags)
-    _refuse_corner_cells(found)
-    return found
-
-
-def _refuse_corner_cells(body: TaggedMesh) -> None:
-    """Refuse a triangle with two sides on the skin that can touch; collective.
-
-    Raises:
-        GeometryError: where the first of them is, on every rank.
-    """
-    mesh, (facets, values) = body.mesh, (body.facet_tags.indices, body.facet_tags.values)
-    mesh.topology.create_connectivity(1, 2)
-    to_cells = mesh.topology.connectivity(1, 2)
-    of = [to_cells.links(f)[0] for f, tag in zip(facets, values, strict=True) if tags.is_ridge(int(tag))]
-    cells, count = np.unique(np.array(of, dtype=np.int32), return_counts=True)
-    middles = dolfinx.mesh.compute_midpoints(mesh, 2, cells[count > 1])[:, :2].tolist()
-    everywhere = [place for there in mesh.comm.allgather(middles) for place in there]
-    if everywhere:
-        x, y = (round(1e3 * each, 6) + 0.0 for each in everywhere[0])  # no minus before a zero
-        raise GeometryError(
-            f"the triangle at x = {x:g} mm, y = {y:g} mm has two sides on the skin that can touch, and one is allowed; "
-            "give smaller elements there, or a skin without a corner"
-        )
+    return TaggedMesh(mesh, cell_tags, facet_tags)

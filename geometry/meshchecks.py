@@ -57,6 +57,28 @@ def refuse_misshapen(corners: Array) -> None:
         )
 
 
+def refuse_corners(xy: Array, triangles: Numbers, skin: Numbers) -> None:
+    """Refuse a triangle with two sides on the skin that can touch.
+
+    Args:
+        xy: places of all nodes (m), shape (nodes, 2).
+        triangles: their nodes by place in ``xy``, shape (triangles, 3).
+        skin: nodes of the edges that can touch, shape (edges, 2).
+    """
+
+    def keys(edges: Numbers) -> Numbers:
+        return np.asarray(np.sort(edges, axis=-1) @ [len(xy), 1])
+
+    sides = np.isin(keys(triangles[:, [[0, 1], [1, 2], [2, 0]]]), keys(skin)).sum(axis=1)
+    if (sides > 1).any():
+        middle = xy[triangles[sides.argmax()]].mean(axis=0)
+        x, y = (round(1e3 * each, 6) + 0.0 for each in middle)  # no minus before a zero
+        raise GeometryError(
+            f"the triangle at x = {x:g} mm, y = {y:g} mm has two sides on the skin that can touch, and one is allowed; "
+            "give smaller elements there, or a skin without a corner"
+        )
+
+
 def refuse_unconnected(xy: Array, triangles: Numbers) -> None:
     """Refuse triangles that are twice in the mesh, and neighbours that do not share their nodes.
 

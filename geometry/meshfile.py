@@ -79,8 +79,11 @@ def file(path: str | Path, sha256: str = "") -> float:
         with files.alone(content, "mesh.msh") as copy:  # gmsh would run a script called NAME.msh.opt beside NAME.msh
             _refuse_unreadable(copy, len(content))
             gmsh.merge(str(copy))
+        if gmsh.model.getNumberOfPartitions():
+            raise GeometryError("the mesh is cut into partitions; write it whole, as by gmsh's Mesh > Unpartition")
         _rename()
         _check_mesh()
+        _renumber()
     except GeometryError as error:
         raise GeometryError(f"{path}: {error}") from error
     return 1.0
@@ -197,6 +200,26 @@ def _check_mesh() -> None:
     refuse_unconnected(xyz[:, :2], places)
     _check_facets(triangles)
     _check_lowest(xyz[used], np.asarray(nodes, dtype=np.int64)[used])
+
+
+def _renumber() -> None:
+    """Leave the nodes of triangles alone in the model, numbered from 1 without a gap, and the groups."""
+    groups = [(dim, tag, gmsh.model.getPhysicalName(dim, tag)) for dim, tag in gmsh.model.getPhysicalGroups()]
+    elements = [_of_group(dim, tag) for dim, tag, _ in groups]
+    numbers, coordinates, _ = gmsh.model.mesh.getNodes()
+    order = np.argsort(numbers)
+    used = np.unique(np.concatenate([nodes.ravel() for nodes in elements]))
+    places = coordinates.reshape(-1, 3)[order[np.searchsorted(numbers, used, sorter=order)]]
+    gmsh.model.remove()
+    gmsh.model.add("file")
+    cells = next(k for k, (dim, _, _) in enumerate(groups, start=1) if dim == 2)
+    for k, (dim, tag, name) in enumerate(groups, start=1):
+        gmsh.model.addDiscreteEntity(dim, k)
+        gmsh.model.addPhysicalGroup(dim, [k], tag, name)
+    gmsh.model.mesh.addNodes(2, cells, np.arange(1, len(used) + 1), places.ravel())
+    for k, ((dim, _, _), nodes) in enumerate(zip(groups, elements, strict=True), start=1):
+        kind = next(kind for kind, count in _KINDS[dim].items() if count == nodes.shape[1])
+        gmsh.model.mesh.addElementsByType(k, kind, [], np.searchsorted(used, nodes).ravel() + 1)
 
 
 def _check_lowest(xyz: Array, nodes: Numbers) -> None:

@@ -10,6 +10,11 @@ from pathlib import Path
 from typing import Any, ParamSpec
 
 import gmsh
+import numpy as np
+
+from geometry.curved import refuse_folded, second_order, triangles_and_skin
+from geometry.meshchecks import refuse_corners
+from geometry.profiles import GeometryError
 
 P = ParamSpec("P")
 
@@ -50,6 +55,30 @@ def shape(needed: Iterable[int]) -> Callable[[Callable[P, float]], Callable[P, S
         return make
 
     return decorate
+
+
+def built(build: Callable[[], float]) -> float:
+    """Mesh a body in the current gmsh session, for a run or a picture, and check it; return its unit (m).
+
+    Args:
+        build: meshes in the current gmsh session and returns the length of its unit in m.
+
+    Raises:
+        GeometryError: what ``build`` or gmsh refuses, folded triangles, and those with two sides that can touch.
+    """
+    try:
+        unit = build()
+    except Exception as error:
+        if type(error) is not Exception:  # gmsh's own are of no other kind
+            raise
+        raise GeometryError(f"gmsh cannot mesh the body: {error}; try smaller elements") from None
+    refuse_folded(second_order(), unit)
+    numbers, coordinates, _ = gmsh.model.mesh.getNodes()
+    order = np.argsort(numbers)
+    triangles, skin = triangles_and_skin()
+    places = np.searchsorted(numbers[order], triangles)
+    refuse_corners(unit * coordinates.reshape(-1, 3)[order, :2], places, np.searchsorted(numbers[order], skin))
+    return unit
 
 
 @contextmanager

@@ -21,7 +21,7 @@ from decimal import Decimal
 from functools import cache
 from typing import TYPE_CHECKING, Annotated, Any
 
-from pydantic import BaseModel, ConfigDict, Field, ValidatorFunctionWrapHandler, WrapValidator
+from pydantic import AllowInfNan, BaseModel, ConfigDict, Strict, ValidatorFunctionWrapHandler, WrapValidator
 from pydantic_core import PydanticCustomError
 
 if TYPE_CHECKING:
@@ -52,6 +52,10 @@ _UNIT = re.compile(rf"{_NAME}(?:(?:\s*[*/·]\s*|\s+){_NAME})*")  # pint's own te
 
 _PLAIN = ("m", "N", "V", "Pa", "s", "Hz")
 _PREFIXES = {"": 0, "n": -9, "u": -6, "µ": -6, "μ": -6, "m": -3, "k": 3, "M": 6}  # powers of ten
+
+_OF_DRIVE = re.compile(r"([nuµμmk]?V)[\s_]*\(?(rms|eff|ac|pp|p-p|pk-pk|pk|peak|p)\)?", re.IGNORECASE)
+_MEASURES = {"rms": ("rms", "eff", "ac"), "peak_to_peak": ("pp", "p-p", "pk-pk"), "amplitude": ("pk", "peak", "p")}
+"""Keys of a drive by what instruments write behind V."""
 
 # What a number may have been meant in, over the SI unit that it is taken for.
 _SLIPS = {
@@ -102,7 +106,14 @@ def to_si(text: str, unit: str) -> float:
     except ImportError:
         raise ValueError(f"its unit needs the package pint, which is not installed; {wanted}") from None
     if found is None:
-        raise ValueError(f"its unit is not known; {wanted}")
+        measure = _OF_DRIVE.fullmatch(given)
+        if measure is None or unit != "V":
+            raise ValueError(f"its unit is not known; {wanted}")
+        key = next(key for key, words in _MEASURES.items() if measure[2].lower() in words)
+        raise ValueError(
+            f"its unit is {measure[1]}, and {measure[2]} is a measure of a drive: write voltage = {{waveform = 'sine', "
+            f"{key} = '{number} {measure[1]}', frequency = '100 Hz'}}"
+        )
     (factor, root), (one, wanted_root) = found, _root(unit) or found
     if root != wanted_root:
         raise ValueError(f"its unit is not a unit of {QUANTITIES[unit]}; {wanted}")
@@ -162,8 +173,9 @@ def in_si(unit: str) -> tuple[str, float]:
 
 
 # -- tables --------------------------------------------------------------------------------------------
-Finite = Annotated[float, Field(strict=True, allow_inf_nan=False)]
-Switch = Annotated[bool, Field(strict=True)]
+# Not by Field(...), whose one FieldInfo pydantic would share among keys: one of them would have another's default.
+Finite = Annotated[float, Strict(), AllowInfNan(False)]
+Switch = Annotated[bool, Strict()]
 
 
 class Table(BaseModel):

@@ -39,7 +39,7 @@ from tests import fuzz_files
 from variational.attraction.cylinder import Cylinder, NoEquilibriumError
 
 SCENES = sorted((Path(__file__).parent.parent / "demos/scenes").glob("*.toml"))
-LONGEST = 300  # characters of a refusal
+LONGEST = 500  # characters of a refusal
 _NUMBERS = tuple("0 -1 1 nan inf -inf 1e308 5e-324 -0.0 1e-9 1e9 16 1.97 75e3 2e14".split())
 _WHOLE = ("9" * 400, "0x" + "f" * 5000, "-" + "9" * 30, "9223372036854775808", "0b1", "1_000")
 _TEXTS = (

@@ -6,9 +6,11 @@ import numpy as np
 import pytest
 
 import fingerpad as fp
+from fingerpad.cli import main
 from fingerpad.model import breakdown
 from fingerpad.runs import newtons
 from tests.small_finger import NINE
+from variational.roughness.statistics import breakdown_voltage, breaking_gaps
 from variational.state import ContactState, RidgeStates
 
 SINE = {"waveform": "sine", "amplitude": 400.0, "frequency": 100.0}
@@ -78,6 +80,59 @@ def test_period_counts_where_states_have_a_mean(drive, electric):
         assert breakdown.of_states(timed, [state(scene.volts, load="wave", load_number=2)]) == [
             found.replace("'slide'", "'wave'")
         ]
+
+
+@pytest.mark.parametrize(
+    ("scene", "volts"),
+    [
+        (fp.Scene(voltage=5000.0), 5000.0),
+        (fp.Scene(voltage={"waveform": "sine", "rms": 1000.0, "frequency": 1e3}), 1414.2),
+        (fp.Scene(history=[{"name": "press", "f_ext": 10.0}, {"name": "charge", "voltage": -600.0}]), 600.0),
+    ],
+    ids=["constant", "drive", "history"],
+)
+def test_before_a_run(scene, volts):
+    """The peak over gap and insulators, by Eq. 3 in the gap of a ridge under 10 kPa; four digits are printed."""
+    gap = float(scene.closure()(1e4).d_eq)
+    (found,) = breakdown.ahead(scene)
+    assert float(found.partition(" V ")[0]) == pytest.approx(volts * gap / (gap + H_0), rel=5e-4)
+    assert "in a ridge under 10 kPa" in found and "from 330 V on air breaks down there" in found
+
+
+def test_nothing_is_said_of_voltages_that_air_bears():
+    """200 V leave 160 V across a gap of 2 µm."""
+    assert breakdown.ahead(fp.Scene(voltage=200.0)) == breakdown.ahead(fp.Scene(voltage=0.0)) == []
+
+
+@pytest.mark.parametrize("command", [["check"], ["estimate", "--force", "0.5 N"]])
+def test_commands_tell_before_a_run(command, capsys, tmp_path, monkeypatch):
+    """At 450 V there is a friction, at 5 kV a refusal, and both say that air breaks down."""
+    monkeypatch.chdir(tmp_path)
+    for volts in ("450", "5000"):
+        main([*command, "--set", f"voltage={volts}"])
+        shown = capsys.readouterr()
+        assert "from 330 V on air breaks down there" in shown.out + shown.err
+
+
+def test_run_tells_before_it_computes(monkeypatch):
+    """A warning in Python, before anything is solved."""
+
+    class Solved(Exception):
+        pass
+
+    def solve(*_):
+        raise Solved
+
+    monkeypatch.setattr("fingerpad.runs.solve.solved", solve)
+    with pytest.warns(UserWarning, match="from 330 V on air breaks down"), pytest.raises(Solved):
+        fp.run(fp.Scene(voltage=5000.0))
+
+
+def test_one_voltage_of_breakdown():
+    """What a closure takes for broken down begins where a ridge's gap breaks down: U g / (h_0 + g) is 330 V."""
+    (small, large) = breaking_gaps(600.0, H_0)
+    assert 600.0 * large[0] / (H_0 + large[0]) == pytest.approx(330.0) or large[0] == pytest.approx(330.0 / 350e6)
+    assert float(breakdown_voltage(5e-6)) == 330.0
 
 
 @pytest.mark.slow

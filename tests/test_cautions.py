@@ -8,6 +8,7 @@ import pytest
 
 import fingerpad as fp
 import geometry
+from benchmarks import drive
 from benchmarks.harness import DOCS, kept
 from fingerpad.calculator.page import page
 from fingerpad.cli import compare, main
@@ -173,9 +174,35 @@ def table(*voltages: float) -> dict:
 
 # -- what it is of -----------------------------------------------------------------------------------------
 def test_constant_voltage_has_the_note_alone():
-    """It may be the effective value of an alternating one: no caution, and nothing at 0 V."""
+    """It may be the rms value of an alternating one: no caution, and nothing at 0 V."""
     assert leakage(Scene()) == [LEAKAGE] and remarks(Scene()) == []
     assert leakage(from_data({"voltage": 0.0})) == []
+
+
+def test_note_has_what_eq_3_leaves_out():
+    """In µ_app of a dry finger, by docs/drive.json, as it is printed: in whole percent."""
+    found = dict(zip(drive.SHOWN, kept("drive").numbers["left_out"]["sliding dry"], strict=True))
+    shown = [f"{abs(100 * found[f]):.0f} % {'high' if found[f] > 0 else 'low'} at {f / unit:g} {name}"
+             for f, unit, name in ((10.0, 1, "Hz"), (1e3, 1e3, "kHz"), (1e4, 1e3, "kHz"))]  # fmt: skip
+    assert f"µ_app by Eq. 3 is {shown[0]}, {shown[1]} and {shown[2]} (200 V rms, 75 N/m" in LEAKAGE
+
+
+@pytest.mark.parametrize(
+    ("electric", "words"),
+    [
+        ({"tissue": "dry"}, "After 0.1 s its attraction is 1.30 times that of Eq. 3, since the skin conducts."),
+        (
+            {"tissue": "dry", "leak": 300.0},
+            "Charge leaks with a time constant of 12.1 ms: after 0.1 s",
+        ),
+    ],
+)
+def test_constant_voltage_in_a_circuit_has_short_sentences(electric, words):
+    """1.30 is the square of (h_0 + g) / (d_i / eps_i + g): the gap of 1.6 µm behind the coating alone."""
+    (note,) = leakage(from_data({"electric": electric}))
+    assert words in note and all(len(each.split()) <= 20 for each in note.replace("Eq. 3", "Eq.3").split(". "))
+    h_0, coating, gap = Scene().h_0, 1e-6 / 3.9, 1.6e-6
+    assert ((h_0 + gap) / (coating + gap)) ** 2 == pytest.approx(1.30, abs=5e-3)
 
 
 @pytest.mark.parametrize(

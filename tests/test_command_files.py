@@ -169,7 +169,9 @@ def test_mesher_that_fails_is_refused_in_a_sentence(monkeypatch, capsys):
         raise Exception("no closed loop")  # noqa: TRY002  # as gmsh's are
 
     monkeypatch.setattr("geometry.fingertip.build", fail)
-    assert "gmsh cannot mesh the finger: no closed loop; try smaller" in refused(capsys, "mesh", "--out", "x.msh")
+    assert "the finger cannot be meshed: gmsh cannot mesh the body: no closed loop; try smaller" in refused(
+        capsys, "mesh", "--out", "x.msh"
+    )
     monkeypatch.setattr("geometry.fingertip.build", lambda *given: 1 / 0)
     with pytest.raises(ZeroDivisionError):
         main(["mesh", "--out", "x.msh"])

@@ -111,7 +111,7 @@ def test_params_as_a_scene_is_the_default(tmp_path, capsys):
 
 def test_every_key_is_listed():
     """Those that a scene writes down are among them, with a meaning, a unit where it has one, and a range."""
-    found = {key.name: key for key in keys.every(Scene)}
+    found = keys.by_name(Scene)
     named = {key for key in _flat(Scene().parameters())}
     assert named <= set(found)
     assert (found["roughness.h_rms"].unit, found["roughness.h_rms"].default) == ("m", 3.1e-6)
@@ -120,6 +120,18 @@ def test_every_key_is_listed():
     assert found["contact.formulation"].allowed == '"penalty", "nitsche", "augmented" or module:Class'
     assert found["geometry.ridge_count"].allowed == "whole, 1 to 101"
     assert found["history[].name"].required
+
+
+def test_each_law_has_its_own_range_and_meaning():
+    """Of a name that several laws have: that of Coulomb's coefficient is not that of Speed's."""
+    rows = [key for key in keys.every(Scene) if key.name == "friction.mu_f"]
+    assert {key.meaning.rpartition(" Of ")[2]: key.allowed for key in rows} == {
+        "Coulomb alone.": "0 or 1e-06 to 2",
+        "Derjaguin alone.": "0 or 1e-06 to 2",
+        "Speed alone.": "1e-06 to 5",
+    }
+    with pytest.raises(fp.SceneError, match="friction.mu_f is 6; it must be from 1e-06 to 5"):
+        from_data({"friction": {"law": "Speed", "mu_f": 6.0}})
 
 
 def _flat(data: dict, table: str = "") -> list[str]:

@@ -189,18 +189,6 @@ def test_full_disk_loses_no_table_of_a_sweep(tmp_path, monkeypatch):
     assert str(found).endswith(found.notes[1]) and len(rows_of(tmp_path, "table")) == 2
 
 
-def test_error_of_the_program_is_no_note(tmp_path, monkeypatch):
-    """It is raised, after the summary is on disk."""
-
-    def broken(result):
-        raise KeyError("p_mean")
-
-    monkeypatch.setattr(dataset, "attributes", broken)
-    with pytest.raises(KeyError, match="p_mean"):
-        fp.run(fp.Scene(), model="cylinders", out=tmp_path)
-    assert (tmp_path / "summary.json").exists() and not (tmp_path / "result.nc").exists()
-
-
 # -- Energy densities at the mechanoreceptors' sites in the named states: in sweeps and reports, as  ---
 def test_sites_of_a_sweep_are_those_of_its_states(folder, tmp_path):
     data = xarray.load_dataset(folder / "result.nc")

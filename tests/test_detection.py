@@ -76,15 +76,36 @@ def test_most_sensitive_component_decides():
     assert found.value == pytest.approx(1 / 0.042)
 
 
-@pytest.mark.parametrize(
-    ("leak", "ratios", "error"),
-    [(300.0, (0.26, 0.57, 1.08, 1.52, 2.15, 2.66), 0.05), ("none", (2.7, 4.3, 6.1, 5.2, 3.7, 2.7), 0.09)],
-    ids=["leak", "no leak"],
-)
-def test_square_over_sine(leak, ratios, error):
+def test_square_over_sine():
     """By independent code, of two digits. Tolerance: thresholds between the published ones are read differently."""
-    found = thresholds(fp.Scene(electric={"tissue": "dry", "leak": leak}))
-    assert_allclose([each.square_over_sine for each in found], ratios, rtol=error)
+    found = thresholds(fp.Scene(electric=DRY))
+    assert_allclose([each.square_over_sine for each in found], (0.26, 0.57, 1.08, 1.52, 2.15, 2.66), rtol=0.05)
+
+
+@pytest.mark.parametrize("leak", [None, 300.0])
+@pytest.mark.parametrize("frequency", [15.0, 60.0, 240.0])
+def test_square_is_that_of_its_fourier_series(leak, frequency):
+    """The force as products of the exact coefficients 2/(i pi k): the level has no error of samples in a jump.
+
+    Tolerance: of the series, cut at k = 80001, and of the samples, each 0.3 % without a leak.
+    """
+    circuit, layers = GapCircuit("dry", leak), (1.6e-6, 1e-6, 3.9, 425e-6)
+    k = np.arange(1, 80002, 2)
+    half = 2 / (1j * np.pi * k) * circuit.gain(frequency * k, *layers)
+    field, n = np.concatenate([half[::-1].conj(), half]), len(half)  # of k from -80001 to 80001
+    force = {2 * m: 2 * abs(field[m:] @ field[m:][::-1]) for m in range(1, 12)}
+    best = max(force, key=lambda m: force[m] / detection.threshold(m * frequency))
+    found = detection.of_wave(circuit, "square", frequency, layers)
+    assert n == 40001 and found.frequency == best * frequency
+    assert found.value == pytest.approx(force[best] / detection.threshold(found.frequency), rel=6e-3)
+
+
+def test_square_without_losses_is_never_felt():
+    """Its attraction is constant: no threshold, and one friction over the period, that of the constant voltage."""
+    scene = fp.Scene(voltage=SINE | {"waveform": "square"})
+    assert [each.square_over_sine for each in thresholds(scene)] == [np.inf] * 6
+    constant = cylinders.solve(fp.Scene(voltage=200.0)).full_slip.f_t
+    assert_allclose(fp.drive(scene).f_t, constant, rtol=1e-9)
 
 
 def test_sine_over_the_frequency():

@@ -66,6 +66,15 @@ def test_full_run_of_the_readme_is_the_kept_one():
     assert f"µ_app of the {headline['of']} = {number}, {headline['state']}." in README
 
 
+def test_measured_findings_of_the_readme_are_those_of_their_page():
+    """Of how many, how many are met, and how many in part: as docs/measured.md begins."""
+    page = (ROOT / "docs" / "measured.md").read_text(encoding="utf-8")
+    counts = re.search(r"^Of (\d+) measured findings this model meets (\d+), (\d+) more in part", page, re.MULTILINE)
+    assert counts is not None
+    of, met, part = counts.groups()
+    assert f"Of {of} [measured findings](docs/measured.md) the model meets {met}, and {part} more in part" in README
+
+
 def test_claims_of_the_readme_are_those_of_its_pages():
     """The effect is that of the output below it; the count of verified numbers is that of docs/verification.md."""
     found = re.search(r"whole finger = ([0-9.]+) ± ", README)

@@ -136,10 +136,23 @@ def test_supply_is_computed_once():
     assert supply_of(scene.voltage, scene.electric, 425e-6) is scene.supply
 
 
-def test_square_has_its_mean_at_jumps():
-    """As its Fourier series: half of the samples sum to its amplitude less half a sample."""
-    u = one_period(fp.Scene(voltage=SINE | {"waveform": "square"}).voltage)
-    assert u[0] == u[len(u) // 2] == 0 and set(u[1 : len(u) // 2]) == {200.0}
+@pytest.mark.parametrize(
+    "drive",
+    [
+        SINE | {"waveform": "square"},
+        SINE | {"waveform": "square", "burst": {"on": 2, "off": 2}},
+        {"waveform": "file", "times": [0.0, 1.0], "voltages": [-200.0, 200.0]},
+    ],
+    ids=["square", "burst", "sawtooth"],
+)
+def test_no_sample_lies_inside_a_jump(drive):
+    """Of 400 V, or 200 V into a pause: only the voltages of both sides are there, and the sawtooth never stops."""
+    u = one_period(fp.Scene(voltage=drive).voltage)
+    if drive["waveform"] == "file":
+        assert u[0] == -200 and np.ptp(np.diff(u)) < 1e-9
+    else:
+        assert set(u) == ({-200.0, 200.0} | ({0.0} if "burst" in drive else set()))
+        assert u.sum() == 0 and u[0] == 200
 
 
 # -- refusals --------------------------------------------------------------------------------------------------------
@@ -178,6 +191,7 @@ TABLE = {"frequency": [10.0, 1e3], "eps": [2e3, 1e3], "sigma": [1e-4, 1e-3]}
             "electric.tissue.frequency is 1000 and then 10 Hz",
         ),
         (SINE, {"leak": 0.0}, "electric.leak is 0 ohm m^2; it must be from 0.001 to 1e+09 ohm m^2"),
+        (0.0, {"leak": {"peak": 100.0}}, "electric.leak.peak is 100 Hz; no leak through a gap of 1.6e-06 m has its"),
         (SINE, {"leak": "wet"}, "electric.leak is 'wet'; it must be 'none', 'sliding dry', 'resting' or 'moist'"),
     ],
 )

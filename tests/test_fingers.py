@@ -7,6 +7,7 @@ import pytest
 
 import fingerpad as fp
 from fingerpad.cli import main
+from fingerpad.reduced.similarity import similar
 from fingerpad.scene import load
 from fingerpad.scene.fingers import FINGERS
 from tests.commands import refused
@@ -51,6 +52,24 @@ def test_given_keys_win(tmp_path):
     neo_hooke = fp.Scene(finger="elderly", materials={"dermis": {"law": "NeoHooke"}})
     assert neo_hooke.materials.dermis == fp.NeoHooke(3240.0)
     assert fp.Scene(finger="elderly", materials={"dermis": {"alpha": 5.0}}).materials.dermis.shear_modulus == 3240.0
+
+
+def test_keys_of_a_name_give_way_to_what_contradicts_them():
+    """A table of heights has no radius and no length, of the name or of the scene that is changed; both given do not
+    go together, and the record has the table alone.
+    """
+    table = {"z": [-0.01, 0.0, 0.01], "height": [2e-3, 0.0, 2e-3]}
+    for scene in (
+        fp.Scene(finger="child", slices=table),
+        fp.Scene(finger="child").replace(slices=table),
+        fp.Scene(slices=table).replace(finger="child"),
+        fp.Scene(**fp.Scene(finger="child").parameters()).replace(slices=table),
+    ):
+        assert scene.slices.height == (2e-3, 0.0, 2e-3)
+        assert scene.geometry.width == FINGERS["child"].values["geometry.width"]
+        assert fp.Scene(**scene.parameters()).slices == scene.slices
+    with pytest.raises(fp.SceneError, match="^slices.radius is 0.02 and slices.height is given too"):
+        fp.Scene(finger="child", slices=table | {"radius": 0.02})
 
 
 def test_another_name_keeps_what_was_given():
@@ -125,6 +144,20 @@ def test_name_without_effect_is_remarked():
     given = fp.Scene().parameters()
     assert "the name has no effect" in remarks(fp.Scene(**given | {"finger": "callused"}))[0]
     assert remarks(fp.Scene(finger="callused")) == remarks(fp.Scene()) == []
+
+
+@pytest.mark.parametrize("name", FINGERS)
+def test_headline_and_check_say_that_a_finger_was_not_measured(name, tmp_path, capsys):
+    """Of every name but the default finger's; where a name changes moisture, that it contradicts a measurement."""
+    remark = FINGERS[name].remark
+    scene = fp.Scene(finger=name)
+    assert bool(remark) == (name != "adult")
+    assert ("arXiv 2409.16936" in remark) == ("roughness.young" in FINGERS[name].values)
+    if not isinstance(similar(scene), str):
+        headline = fp.run(scene, model="cylinders").headline
+        assert headline.remark == remark and (not remark or f"\n  {remark}" in str(headline))
+    main(["check", "--set", f"finger={name}", "--set", "mesh.contact=40e-6", "--out", str(tmp_path)])
+    assert not remark or remark in capsys.readouterr().out
 
 
 def test_every_value_has_a_source_or_is_an_assumption():

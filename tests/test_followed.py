@@ -52,15 +52,33 @@ def test_carrier_is_averaged():
 
 
 def test_burst_has_its_pauses():
-    """Two periods of 20 ms and three without a voltage."""
-    t, v = over(scene(SINE | {"burst": {"on": 2, "off": 3}}))
-    assert abs(v[(t > 0.0401) & (t < 0.0999)]).max() == 0 and v[t < 0.04].max() == pytest.approx(100.0)
-    assert np.all(np.diff(t) > 0)
+    """Two periods of 20 ms and three without a voltage, which need no table; a square jumps at both of their ends."""
+    for drive, jumps in ((SINE, []), (SINE | {"waveform": "square"}, [0.01, 0.02, 0.03, 0.04, 0.1, 0.11, 0.12])):
+        burst = drive | {"burst": {"on": 2, "off": 3}}
+        (wave,) = (load.wave for load in followed.loads(scene(burst, 0.125)) if load.wave is not None)
+        t, v = map(np.array, zip(*wave.samples(0.125, 1.0), strict=True))
+        assert abs(v[(t > 0.0401) & (t < 0.0999)]).max() == 0 and v[t < 0.04].max() == pytest.approx(100.0)
+        assert_allclose(t[1:][np.diff(t) == 0], jumps, rtol=1e-12)
+        assert wave.between((0.05, 0.0), (0.06, 0.0), 0.055) == 0
+        assert_allclose(_after(t, v, 0.1), _after(t, v, 0.0)[: len(_after(t, v, 0.1))], atol=1e-9)
+
+
+def _after(t, v, begin: float):
+    """Return the voltages up to 24 ms after a time."""
+    return v[(t > begin + 1e-6) & (t < begin + 0.024)]
 
 
 def test_mean_is_constant():
     _, v = over(scene(SINE | {"frequency": 5e3}, follows="mean"))
     assert_allclose(v, 100 / 2**0.5, rtol=1e-6)
+
+
+def test_mean_of_a_file_is_constant():
+    """A triangle's root mean square, however often it repeats itself: its points are no steps."""
+    file = {"waveform": "file", "times": [0.0, 1e-5, 3e-5, 4e-5], "voltages": [0.0, 100.0, -100.0, 0.0]}
+    t, v = over(scene(file | {"repeat": True}, follows="mean"))
+    assert list(t) == [0.0, 0.2]
+    assert_allclose(v, 100 / 3**0.5, rtol=1e-5)
 
 
 def test_share_is_that_of_the_gap():

@@ -1,7 +1,10 @@
 """Folders of results with files that somebody else has written, or that are cut short: one sentence each."""
 
+import html
 import json
 import os
+import re
+import shlex
 import shutil
 import struct
 import zlib
@@ -16,7 +19,7 @@ import fingerpad as fp
 from fingerpad.cli import main
 from fingerpad.reduced import cylinders
 from fingerpad.reduced.registry import find
-from fingerpad.report.page import picture
+from fingerpad.report.page import again, picture
 from fingerpad.report.write import write
 from fingerpad.results import style
 from fingerpad.results.arrays import finger_of
@@ -108,6 +111,25 @@ def test_pipe_in_place_of_the_table_of_a_sweep(tmp_path):
     os.mkfifo(tmp_path / "table.csv")
     with pytest.raises(SceneError, match="the table of .* cannot be read: .* not an ordinary file"):
         write(tmp_path)
+
+
+@pytest.mark.parametrize("model", ["full --out ~; rm -rf ~ #", "$(rm x)", "`rm x`", "<script>", "a\nb", "", 5])
+def test_model_that_is_no_name_is_refused(answered, tmp_path, capsys, model):
+    """The report of a folder from elsewhere has a command to copy into a shell."""
+    copy = Path(shutil.copytree(answered, tmp_path / "copy"))
+    for name in ("summary.json", "scene.json"):
+        (copy / name).write_text(json.dumps(json.loads((copy / name).read_text()) | {"model": model}))
+    with pytest.raises(SceneError, match="model is .*; it must be the name of a model"):
+        write(copy)
+    assert main(["run", str(copy / "scene.json"), "--out", str(tmp_path / "again")]) == 2
+    assert "it must be the name of a model" in capsys.readouterr().err
+
+
+def test_values_in_the_command_of_a_report_are_quoted():
+    """What a shell gets for them are the words themselves."""
+    text = "a 'b' $(rm x); `rm x` & <i>"
+    code = html.unescape(re.search("<code>(.*)</code>", again({"finger": text}, "my model"), re.DOTALL)[1])
+    assert shlex.split(code)[2:] == ["--set", f"finger={text}", "--model", "my model", "--out", "results/again"]
 
 
 # -- pictures ------------------------------------------------------------------------------------------

@@ -10,7 +10,7 @@ from tests.test_topography import grid, wave
 from variational import files
 from variational.roughness.heightfile import _matrix, scan
 from variational.roughness.spectrum import SelfAffine
-from variational.roughness.topography import filled, mark
+from variational.roughness.topography import filled
 
 
 @pytest.mark.parametrize("name", ["map.npy", "map.txt", "map.csv"])
@@ -135,27 +135,9 @@ def test_text_that_is_no_plain_matrix(text, message, other, tmp_path):
         scan(tmp_path / "map.csv", **PLAIN)
 
 
-@pytest.mark.parametrize("save", [np.savetxt, np.save])
-def test_numbers_of_lines_and_columns_are_refused(save, tmp_path):
-    """As pandas writes index and header, and instruments coordinates; whether or not the corner has a number."""
-    h = SelfAffine().surface((40, 36), (100e-6, 90e-6), 3).heights * 1e6
-    across, along = 2.5 * np.arange(36), np.arange(40)
-    both = np.block([[np.full((1, 1), np.nan), np.arange(36)[None]], [along[:, None], h]])
-    name = tmp_path / ("map.npy" if save is np.save else "map.txt")
-    for heights, words in (
-        (np.vstack([across, h]), "first line, from 2.5 to 87.5"),
-        (np.column_stack([along, h]), "first column, from 1 to 39"),
-        (both, "first line, from 0 to 35"),
-        (np.column_stack([np.append(np.nan, 1e3 + along), np.vstack([-across, h])]), "first line, from -0 to -87.5"),
-    ):
-        save(name, heights)
-        with pytest.raises(ValueError, match=f"at equal steps in its {words}, which number or place the others"):
-            scan(name, **PLAIN)
-    x, y = grid((40, 36), (100, 90))
-    save(name, 0.2 * x - 0.1 * y)  # a plane has equal steps everywhere
-    assert scan(name, **PLAIN).missing == 0
-    save(name, h)
-    assert np.ptp(scan(name, **PLAIN).map.heights) == pytest.approx(1e-6 * np.ptp(h))
+def smooth(shape=(40, 36), seed: int = 3) -> np.ndarray:
+    """Heights (µm) of a self-affine surface, in pixels of 2.5 µm."""
+    return SelfAffine().surface(shape, (2.5e-6 * shape[0], 2.5e-6 * shape[1]), seed).heights * 1e6
 
 
 # -- text that SurfaceTopography reads -----------------------------------------------------------------------
@@ -180,6 +162,29 @@ def test_text_with_units_in_its_header(encoding, other, tmp_path):
     assert scan(path, size=(90e-6, 100e-6)).map.pixel == pytest.approx((2.5e-6, 2.5e-6))
     with pytest.raises(ValueError, match="has no size; give 'size' or 'pixel'"):
         scan(path)
+
+
+def test_phases_have_their_factor_in_the_header(other, tmp_path):
+    """Of a holographic microscope: heights in rad with the metres of one, to the six digits of the text."""
+    h = smooth()
+    head = "h=40 w=36\npixel size=2.5e-006 m\ndata unit=rad\nheight conversion factor (-> m)=1.06e-007\n"
+    rows = "\n".join(" ".join(f"{z:.6f}" for z in row) + " " for row in h * 1e-6 / 1.06e-7)
+    (tmp_path / "map.txt").write_text(head + rows + "\n")
+    found = scan(tmp_path / "map.txt").map
+    np.testing.assert_allclose(found.heights, 1e-6 * h.T, atol=1e-13)
+    assert found.size == pytest.approx((90e-6, 100e-6))
+
+
+@pytest.mark.parametrize(
+    "head", ["DataLine," + ",".join(map(str, range(1, 37))), '"XY Calibration","2500","nm"\n"Unit","um"']
+)
+def test_heads_that_nobody_reads_are_refused(head, other, tmp_path):
+    """Of laser microscopes: numbers of lines, a unit and a calibration, which the unit given might contradict."""
+    (tmp_path / "map.csv").write_text(head + "\n" + "\n".join(",".join(map(str, row)) for row in smooth()))
+    with pytest.raises(
+        ValueError, match="no plain matrix .*line 1 has '(DataLine|XY Cal.*)'.*; save the heights alone"
+    ):
+        scan(tmp_path / "map.csv", **PLAIN)
 
 
 def test_without_the_optional_package(monkeypatch, tmp_path):
@@ -262,25 +267,3 @@ def test_heights_and_lengths_over_any_skin_are_refused(tmp_path):
         scan(tmp_path / "high.npy", "m", (1e-3, 1e-3))
     with pytest.raises(ValueError, match=r"high.npy is 160 m x 160 m large, at most 0.1 m is allowed"):
         scan(tmp_path / "high.npy", "m", (160.0, 160.0))
-
-
-@pytest.mark.parametrize("width", [1, 3, 20])
-def test_deep_grooves_are_no_marks(width):
-    """Walls are steep and 1000 interquartile ranges deep, but the floor has heights of its own."""
-    h = 0.1 * np.random.default_rng(1).normal(size=(64, 64))
-    h[30 : 30 + width] -= 135.0
-    assert mark(h) is None
-
-
-def test_marks_among_extremes_and_coarse_steps():
-    """Of two extreme values neither hides the other; heights in whole steps, most of them equal, are none."""
-    h = np.random.default_rng(1).normal(size=(20, 20))
-    h[0, :3], h[1, 1] = -9999, 32767
-    assert mark(h) == 32767
-    h[1, 1] = np.nan
-    assert mark(h) == -9999
-    h = np.zeros((20, 20))
-    h[3, 3:8] = [1, 2, 3, 4, 5]
-    assert mark(h) is None and mark(np.zeros((4, 4))) is None
-    h[4, 4] = -9999
-    assert mark(h) == -9999

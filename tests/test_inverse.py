@@ -72,7 +72,7 @@ def test_section_has_the_target_at_the_key(target, over, value):
         ("F_T=0.3 N", "force", None, 0.3),
         ("mu_app=2x", "voltage", None, 0.5),
         ("contrast=10 %", "electric.d_i", None, 0.275),
-        ("µ_app=40 %", "roughness.h_rms", None, 0.4),
+        ("µ_app=0.4", "roughness.h_rms", None, 0.4),
     ],
 )
 def test_whole_finger_has_the_target_at_the_key(target, over, force, value):
@@ -155,7 +155,8 @@ def test_command_prints_the_key(capsys):
         (["--target=mu_app"], "target is 'mu_app'; write it as"),
         (["--target=mu=2"], "mu is not a quantity of a target; it must be one of contrast, mu_app,"),
         (["--target=mu_app=x"], "target mu_app is 'x'; it must have a number"),
-        (["--target=mu_app=2 V"], "target mu_app is '2 V'; it must be a number, in %, or a multiple"),
+        (["--target=mu_app=2 V"], "target mu_app is '2 V'; it must be a number, or a multiple such as \"2x\""),
+        (["--target=µ_app=200%"], 'such as "2x"; for a rise by the voltage it is contrast=200 %'),
         (["--target=contrast=2x"], "target contrast is '2x'; it must be a number or in %"),
         (["--target=F_T=0.3 V"], "target F_T is '0.3 V'; its unit is not a unit of force"),
         (["--target=F_T=0.3 N", "--over=f_ext"], "F_T is a quantity of the whole finger and over is f_ext; give force"),

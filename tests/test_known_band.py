@@ -1,4 +1,4 @@
-"""How far friction is known: parts by assumption, their sum, open ends, words and the picture of a report."""
+"""The likely range of friction: parts by assumption, their sum, open ends, words and the picture of a report."""
 
 import json
 from dataclasses import replace
@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import fingerpad as fp
-from fingerpad.reduced.closure_band import Slip, friction, known, with_band
+from fingerpad.reduced.closure_band import Slip, friction, known, powers, with_band
 from fingerpad.report import trust
 from fingerpad.report.known import bars
 from fingerpad.results.closures import KNOWN, known_in_words
@@ -26,7 +26,7 @@ def parts(result):
 def test_parts(result):
     """All that apply to a finger, the largest first; each has the result inside, and the band has each part."""
     found, mu = parts(result), result.headline.value
-    assert set(found) == {"closure", "tips", "roughness", "coating", "slices"}
+    assert set(found) == {"friction law", "rough contact", "tips", "roughness", "coating", "slices"}
     spans = [np.log(high / low) for low, high in found.values()]
     assert spans == sorted(spans, reverse=True)
     for low, high in found.values():
@@ -40,8 +40,8 @@ def test_sum_is_of_squares(result):
 
 
 def test_roughness_is_that_of_runs_with_it(result):
-    """The ratio of its section in runs with h_rms 20 % smaller and larger, to roundoff; a coating likewise."""
-    law, finger_over_section = result.scene.roughness, result.headline.value / result.full_slip.mu_app
+    """The ratio of its section in runs with h_rms 20 % smaller and larger, to its power, to roundoff; coatings too."""
+    law, section = result.scene.roughness, result.full_slip.mu_app
     for name, changes in {
         "roughness": [{"roughness": replace(law, h_rms=factor * law.h_rms)} for factor in (1.2, 0.8)],
         "coating": [
@@ -50,7 +50,8 @@ def test_roughness_is_that_of_runs_with_it(result):
         ],
     }.items():
         runs = [fp.run(result.scene.replace(**each), model="cylinders").full_slip.mu_app for each in changes]
-        assert parts(result)[name] == pytest.approx([finger_over_section * mu for mu in runs], rel=1e-9)
+        ratios = [(mu / section) ** power for mu, power in zip(runs, reversed(powers()[name]), strict=True)]
+        assert parts(result)[name] == pytest.approx([result.headline.value * ratio for ratio in ratios], rel=1e-9)
 
 
 def test_blunter_tips_raise_friction(result):
@@ -64,14 +65,13 @@ def test_band_is_of_the_headline(load):
     found = fp.run(fp.Scene(voltage=100.0, **load), model="cylinders")
     assert found.known["whole"] and "slices" in parts(found)
     assert found.known["mu_app"] == found.headline.value == found.finger.states["full_slip"].mu_app
-    assert "µ_app of the whole finger by closure" in known_in_words(found.known)
 
 
 def test_slices_of_unknown_error_are_named():
     """Under 0.1 N no finger in three dimensions was compared."""
     found = fp.run(fp.Scene(voltage=100.0, f_ext=10.0), model="cylinders")
     assert "slices" not in parts(found)
-    assert known_in_words(found.known).endswith("; not in it: slices, whose error is not known at this force")
+    assert known_in_words(found.known).endswith("\nNot in it: slices, whose error is not known at this force.")
 
 
 def test_section_alone_has_its_band():
@@ -79,7 +79,7 @@ def test_section_alone_has_its_band():
     found = fp.run(fp.Scene(voltage=100.0, slices={"length": 5e-3}), model="cylinders")
     assert found.finger is None and not found.known["whole"]
     assert found.known["mu_app"] == found.headline.value == found.full_slip.mu_app
-    assert "µ_app of the middle section by closure" in found.headline.known
+    assert found.headline.known.startswith(f"Likely range {found.known['low']:.2f} to ")
 
 
 def test_band_of_a_section_beside_a_finger_without_full_slip(result):
@@ -92,7 +92,7 @@ def test_band_of_a_section_beside_a_finger_without_full_slip(result):
 def test_law_of_ones_own(result):
     """It has no roughness and no insulator to change, and no other closures."""
     found = known(replace(result, scene=result.scene.replace(roughness=Held())), {})
-    assert [part["name"] for part in found["parts"]] == ["tips", "slices"]
+    assert [part["name"] for part in found["parts"]] == ["friction law", "tips", "slices"]
 
 
 @pytest.fixture(scope="module")
@@ -104,6 +104,8 @@ def adhering():
 def test_adhering_closures_open_the_upper_end(adhering):
     """Band and part have none in files either; the part keeps the largest number of the others, that of a run."""
     found, (closure, *others) = json.loads(json.dumps(adhering.known)), adhering.known["parts"]
+    above = [np.log(part["high"] / found["mu_app"]) for part in others]
+    assert found["at_least"] == pytest.approx(found["mu_app"] * np.exp(np.sqrt(sum(each**2 for each in above))))
     assert (found["high"], closure["high"]) == (None, None) and all(part["high"] for part in others)
     assert list(closure["no_number"]) == ["boundary elements", "Persson's theory"]
     law = fp.Persson(adhering.scene.h_0, field_in_contact=False)
@@ -114,25 +116,30 @@ def test_adhering_closures_open_the_upper_end(adhering):
 
 def test_open_end_in_words_and_picture(adhering):
     kept, picture = adhering.known, bars(adhering)
-    ends = f"closure {kept['mu_app']:.2f} to {kept['parts'][0]['at_least']:.2f} and more"
-    why = "by boundary elements and Persson's theory ridges adhere at 200 V: no number"
-    text = f"known to about {kept['low']:.2f} and more, by the cheaper model of charged cylinders"
-    assert adhering.headline.known.startswith(text) and f"{ends} ({why})" in adhering.headline.known
-    assert f">{kept['low']:.2f} and more<" in picture and picture.count("<path") == 2, "arrows of band and closure"
-    assert "An arrow is an open end. By boundary elements and Persson&#x27;s theory ridges adhere" in picture
+    ends = f"rough contact {kept['mu_app']:.2f} to {kept['parts'][0]['at_least']:.2f}, friction law "
+    of = "no upper end by two of three models of rough contact, in which ridges adhere at 200 V."
+    first, second = adhering.headline.known.splitlines()
+    assert first == f"Likely range {kept['low']:.2f} to {kept['at_least']:.2f}; {of}"
+    assert second.startswith(f"With one assumption changed: {ends}")
+    assert f"\n  {first}\n  {second}" in str(adhering)
+    assert f">{kept['low']:.2f} to {kept['at_least']:.2f}<" in picture
+    assert picture.count("<path") == 2, "arrows of band and closure"
+    assert "An arrow is an open end. No number by boundary elements and Persson&#x27;s theory: ridges adhere" in picture
+    page = trust.head(adhering)
+    assert f"<b>Likely range {kept['low']:.2f} to {kept['at_least']:.2f}</b>; no upper end by two of three" in page
 
 
 def test_largest_number_that_is_an_upper_bound(result):
     """At 100 V it is that of boundary elements, by which attraction balances more than a tenth of the pressure."""
-    closure = next(part for part in result.known["parts"] if part["name"] == "closure")
+    closure = next(part for part in result.known["parts"] if part["name"] == "rough contact")
     law = fp.BoundaryElements(result.scene.h_0)
     run = fp.run(result.scene.replace(roughness=law), model="cylinders")
     share = float(law.balanced(run.record["full_slip_p_c"], 100.0))
     assert closure["upper_bounds"] == {"boundary elements": pytest.approx(share, rel=1e-9)} and share > 0.1
-    words = f"the largest number, by boundary elements, is an upper bound: attraction balances {100 * share:.0f} %"
-    assert words in known_in_words(result.known) and words[1:] in bars(result)
+    words = f"The largest number, by boundary elements, is an upper bound: attraction balances {100 * share:.0f} %"
+    assert words in known_in_words(result.known) and words in bars(result)
     small = fp.run(result.scene.replace(voltage=20.0), model="cylinders")  # which balances less than a tenth
-    assert small.known["parts"][0]["name"] == "closure" and "upper_bounds" not in small.known["parts"][0]
+    assert small.known["parts"][0]["name"] == "rough contact" and "upper_bounds" not in small.known["parts"][0]
 
 
 def test_result_whose_own_closure_has_no_number(adhering):
@@ -154,6 +161,7 @@ def test_changed_coating_beyond_the_table():
     found = fp.run(fp.Scene(voltage=150.0, roughness={"law": "BoundaryElements"}), model="cylinders").known
     coating = next(part for part in found["parts"] if part["name"] == "coating")
     assert coating["no_number"] == {"changed coating": "ridges adhere at 150 V"} and found["high"] is None
+    assert "; no upper end with changed coating, where ridges adhere at 150 V.\n" in known_in_words(found)
 
 
 @pytest.mark.parametrize(
@@ -174,10 +182,10 @@ def test_none_without_voltage_or_friction():
 
 def test_text_files_and_picture_have_it(result):
     ends = f"{result.known['low']:.2f} to {result.known['high']:.2f}"
-    by = "by the cheaper model of charged cylinders: µ_app of the whole finger by closure"
-    assert f"Known to about {ends}, {by}" in str(result)
+    assert f"\n  Likely range {ends}.\n  With one assumption changed: rough contact " in str(result)
     again = fp.Result.from_dict(result.to_dict())
     assert again.known == result.known and KNOWN in again.record
     picture = bars(result)
-    assert all(f">{name}<" in picture for name in ("solved to", "known to", "closure", "tips", "roughness"))
+    names = ("solved to", "likely range", "rough contact", "friction law", "tips")
+    assert all(f">{name}<" in picture for name in names)
     assert "of the whole finger (–)<" in picture and "µ_app of" not in picture, "its symbol is typeset"

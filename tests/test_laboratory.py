@@ -114,6 +114,14 @@ def test_nothing_is_fitted_to_one_kind_of_rows(grid, columns):
     assert found.attrs["fits"] == [] and "mu_0" not in found
 
 
+def test_rows_without_voltage_alone_are_told(grid, tmp_path, capsys):
+    """Their misfit is that of the scene's friction coefficient."""
+    for volts, told in ((0, True), (100, False)):
+        (tmp_path / "t.csv").write_text(f"force (N/m),voltage (V),friction (1)\n25,{volts},0.3\n75,{volts},0.3\n")
+        main(["compare-data", str(tmp_path / "t.csv"), "--sweep", str(grid.folder)])
+        assert ("No row is under a voltage: attraction is not compared.\n" in capsys.readouterr().out) == told
+
+
 def test_other_laws_have_no_coefficient(tmp_path):
     """Derjaguin's friction without voltage is not one number."""
     law = {"law": "Derjaguin", "mu_f": 0.25, "tau_0": 1e3}

@@ -2,7 +2,7 @@
 
 import json
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from pathlib import Path
 
 import numpy as np
@@ -21,6 +21,7 @@ from geometry import tags
 from variational.coefficients import parameter
 from variational.contact.formulation import Springs
 from variational.contact.friction import Coulomb, Derjaguin, Friction
+from variational.contact.penalty import Penalty
 from variational.materials.material import Material
 from variational.materials.neo_hooke import NeoHooke
 from variational.materials.ogden import Ogden
@@ -147,6 +148,7 @@ class NoData(Closure):
         ({"roughness": Held(-1e-6)}, "roughness: closure Held returns an air gap of -1e-06 m at a pressure of 0 Pa"),
         ({"friction": Derjaguin(0.3, -5e3)}, "friction.tau_0 is -5000 Pa; it must be 0 or from 0.001 to 1e+09 Pa"),
         ({"friction": Saturating(0.4, lambda p: p)}, "friction.t_most is"),
+        ({"friction": Derjaguin(0.3, 1e9, 1e-3)}, "friction: the limit of Derjaguin(mu_f=0.3, tau_0=1000000000.0"),
         ({"friction": {"law": "Derjagun"}}, "friction.law is 'Derjagun'; it must be 'Coulomb', 'Derjaguin', "),
         ({"friction": {"law": "Derjaguin", "mu_f": 0.3}}, "friction.tau_0 is missing; it must be given"),
         ({"friction": {"mu_f": 0.3, "tau_0": 5e3}}, "friction.tau_0 is not a key of friction with the law Coulomb"),
@@ -158,6 +160,14 @@ def test_what_is_no_law_is_refused(given, sentence):
         Scene(**given)
     assert sentence in str(error.value)
     assert "\n" not in str(error.value)
+
+
+@pytest.mark.parametrize("law", [NeoHooke, BearingArea, Coulomb, Penalty, Saturating, fp.Persson])
+def test_unknown_parameter_is_refused_with_the_known_ones(law):
+    """In one sentence, of laws of the package and of one's own."""
+    names = ", ".join(field.name for field in fields(law))
+    with pytest.raises(ValueError, match=f"^{law.__name__} has no parameter 'yong'; its parameters are {names}$"):
+        law(yong=1e5)
 
 
 @pytest.mark.parametrize("solid", [NeoHooke, Ogden, SaintVenant], ids=repr)

@@ -287,3 +287,43 @@ def test_page_runs(tmp_path, monkeypatch):
         printed(code, names)
     skin = names["pad"].skin
     assert (np.diff(skin.x.ravel()) > 0).all()
+
+
+# -- numbers of nodes ----------------------------------------------------------------------------------------------
+def alone():
+    """With a point in a group, as also Mesh.SaveAll has it in the file: its node is of no cell."""
+    model()
+    point = gmsh.model.addDiscreteEntity(0)
+    gmsh.model.mesh.addNodes(0, point, [10**6], [0, 5 * MM, 0])
+    gmsh.model.mesh.addElementsByType(point, 15, [], [10**6])
+    gmsh.model.addPhysicalGroup(0, [point], name="centre")
+
+
+def numbered(first: int, gap: int):
+    """Return what meshes the ridge with nodes numbered from elsewhere, one in ten after a gap."""
+
+    def build():
+        model()
+        old = np.sort(gmsh.model.mesh.getNodes()[0])
+        new = first + np.arange(len(old)) + gap * (np.arange(len(old)) // 10)
+        gmsh.model.mesh.renumberNodes(old, new)
+
+    return build
+
+
+@pytest.mark.mpi
+@pytest.mark.parametrize("build", [alone, numbered(48, 0), numbered(1, 3)], ids=["a node alone", "from 48", "gaps"])
+@pytest.mark.parametrize("version", [2.2, 4.1])
+def test_numbers_of_nodes_do_not_matter(place, build, version):
+    """dolfinx ends the program for a node of no cell, and its reader asserts numbers from 1 without a gap."""
+    made, own = load(MPI.COMM_WORLD, geometry.file(write(place, build, version))), load(MPI.COMM_WORLD, RIDGE)
+    for dim in (0, 2):
+        assert made.mesh.topology.index_map(dim).size_global == own.mesh.topology.index_map(dim).size_global
+    assert MPI.COMM_WORLD.allreduce(len(made.rim)) == MPI.COMM_WORLD.allreduce(len(own.rim))
+
+
+def test_partitions_are_refused(place):
+    """Their groups are of pieces, whose edges are more than the outline."""
+    written = write(place, changed(lambda: gmsh.model.mesh.partition(2)))
+    with pytest.raises(GeometryError, match="mine.msh: the mesh is cut into partitions; write it whole, as by gmsh's"):
+        load(MPI.COMM_WORLD, geometry.file(written))

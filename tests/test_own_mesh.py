@@ -150,7 +150,7 @@ def test_check_reads_and_draws_the_file(place, tmp_path, capsys):
     words = ["--set", f"geometry.file={place}", "--set", "voltage=0", "--out", str(tmp_path / "out")]
     assert main(["check", *words]) == 0
     said = capsys.readouterr().out
-    assert re.search(r"\d+ triangles of element P2", said) and "1 ridges can touch" in said
+    assert re.search(r"\d+ triangles of element P2", said) and "1 ridge can touch" in said
     assert (tmp_path / "out" / "mesh.png").stat().st_size > 10_000
     assert main(["mesh", *words[:2], "--out", str(tmp_path / "other.msh")]) == 2
     assert "geometry.file is given, which is a mesh already" in capsys.readouterr().err

@@ -223,6 +223,15 @@ def test_value_nobody_can_mean(key, value, meant):
     assert re.match(pattern, refusal(None, **{key.replace(".", "__"): value}))
 
 
+def test_sentences_are_whole_and_values_are_shortened():
+    """However long the sentence: of two findings, one after the other, the second is the remedy."""
+    long = "full slip has no answer, " * 15 + "and so the voltage must be smaller"
+    assert str(SceneError(long)) == long
+    with pytest.raises(SceneError) as error:
+        scenes.from_data({"finger": "x" * 5000})
+    assert len(str(error.value)) < 300
+
+
 # -- arguments in Python -----------------------------------------------------------------------------------------
 @pytest.mark.parametrize("call", [fp.run, lambda scene: fp.sweep(scene, model="cylinders", voltage=[0.0])])
 @pytest.mark.parametrize("scene", [{}, 0, {"f_ext": 5.0}, "scene.toml"])

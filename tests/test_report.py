@@ -20,7 +20,6 @@ from fingerpad.results.quantities import cell
 from fingerpad.results.result import Result
 from fingerpad.runs.context import RunContext
 from fingerpad.runs.solve import solved
-from fingerpad.scene import Scene
 from tests.browser import SIZES, asked
 from tests.small_finger import small
 from variational.attraction.dielectric import VACUUM_PERMITTIVITY
@@ -283,14 +282,6 @@ def test_bad_folder_is_refused_in_a_sentence(tmp_path, capsys, files, words):
     said = capsys.readouterr().err
     assert words in said and said.count("\n") == 1
     assert not (tmp_path / NAME).exists()
-
-
-def test_report_that_fails_does_not_cost_the_run(tmp_path, monkeypatch, capsys):
-    monkeypatch.setattr(run_page, "page", lambda result: 1 / 0)
-    result = solved(Scene(), find("cylinders"), RunContext(tmp_path))
-    assert result.full_slip.mu_app == json.loads((tmp_path / "summary.json").read_text())["full_slip_mu_app"]
-    assert not (tmp_path / NAME).exists()
-    assert "no report of" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize("model", ["full", "cylinders"])

@@ -73,8 +73,8 @@ def test_repeated_states_are_one_point():
 # -- discretisation, interpolation, estimate -------------------------------------------------------------
 def test_discretisation_is_that_of_the_section():
     state = contact_state(f_t=40.0, error=Errors(f_t=0.4), ridges_in_contact=1, contact_length=1e-3)
-    assert errors.discretisation(state) == {"f_t": pytest.approx(0.01)}
-    assert errors.discretisation(None) == {}
+    assert errors.discretisation(state, 5e-4) == {"f_t": pytest.approx(0.01)}
+    assert errors.discretisation(None, 5e-4) == {}
 
 
 def test_power_law_has_no_error_of_interpolation():

@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pint
 import pytest
+from pydantic import Field, ValidationError
 
 from fingerpad.results.result import Result
 from fingerpad.scene import Scene, SceneError, as_kept
@@ -19,6 +20,8 @@ from tests.measures import contact_state
 from tests.small_finger import small
 from tests.test_light import HEAVY, without
 from variational.state import ContactState
+
+DRIVE = "is a measure of a drive: write voltage = {waveform = 'sine', "
 
 
 def value(scene: scenes.Scene, key: str) -> float:
@@ -53,6 +56,8 @@ def test_text_is_the_number(key, text, number):
     ("key", "text", "message"),
     [
         ("f_ext", "50", "it has no unit; it must be a number in N/m or a text such as '50 N/m'"),
+        ("voltage", "120 Vrms", f"its unit is V, and rms {DRIVE}rms = '120 V', frequency = '100 Hz'}}"),
+        ("voltage", "0.3 kV_pp", f"its unit is kV, and pp {DRIVE}peak_to_peak = '0.3 kV', frequency = '100 Hz'}}"),
         (
             "f_ext",
             "50 V",
@@ -121,6 +126,22 @@ def test_text_without_pint_is_refused():
         "SceneError: f_ext is '50 dyn/cm'; its unit needs the package pint, which is not installed; it must be a "
         "number in N/m or a text such as '50 N/m'"
     )
+
+
+def test_required_key_takes_no_other_key_s_default():
+    """A number and a switch, with a description of their own, beside keys that have a default."""
+
+    class Own(units.Table):
+        given: units.Finite = 7.0
+        on: units.Switch = True
+        length: units.Finite = Field(..., description="A length.")
+        off: units.Switch = Field(..., description="A switch.")
+
+    assert {name for name, field in Own.model_fields.items() if field.is_required()} == {"length", "off"}
+    assert Own(length=1.0, off=False).given == 7.0
+    for wrong in ({"length": "1"}, {"length": math.inf}, {"off": 1}):
+        with pytest.raises(ValidationError):
+            Own(**{"length": 1.0, "off": False} | wrong)
 
 
 def test_zero_has_no_sign():

@@ -18,6 +18,7 @@ from variational.materials.ogden import Ogden
 from variational.materials.qlv import QLV
 from variational.materials.saint_venant import SaintVenant
 from variational.materials.viscoelastic import Viscoelastic
+from variational.output import Receptors
 from variational.problem import Interface, Problem
 from variational.solvers.continuation import Target
 
@@ -115,6 +116,22 @@ def test_long_time(body):
     elastic = sigma.eval(problem.mesh, np.array([0], dtype=np.int32)).reshape(3, 3)
     found = strained.to(sheared(0.1, 0.05), 40.0)
     np.testing.assert_allclose(found, elastic, atol=1e-9 * np.abs(elastic).max())
+
+
+@pytest.mark.parametrize("held", [0.0, 0.05, 1.0])
+def test_density_has_what_branches_store(body, held):
+    """Of the springs of a generalised Maxwell solid in simple shear γ, held for a time t.
+
+    W = G(0) γ² / 2 (1 - Σ g (1 - exp(-2 t / τ))). Tolerance: nonlinear terms, of the order of γ and its product with α.
+    """
+    gamma, G = 1e-5, 86.76e3
+    strained = Strained(over(body).problem)
+    strained.to(np.array([[1.0, gamma], [0.0, 1.0]]), 0.0)
+    strained.to(np.array([[1.0, gamma], [0.0, 1.0]]), held)
+    (density,) = Receptors(strained.problem, np.array([[0.1e-3, 0.2e-3]])).sed()
+    relaxed = sum(g * (1 - np.exp(-2 * held / tau)) for g, tau in ((0.154, 1.111), (0.495, 0.092)))
+    at_once = G / (1 - 0.154 - 0.495)
+    assert density == pytest.approx(at_once * gamma**2 / 2 * (1 - relaxed), rel=1e-3)
 
 
 def test_convolution(body):

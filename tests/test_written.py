@@ -1,4 +1,4 @@
-"""Laws of one's own are imported from Python's path alone, and laws of one name and other code are two laws."""
+"""Laws of one's own in scenes: every way of a run takes them, and laws of one name and other code are two laws."""
 
 import json
 import os
@@ -41,25 +41,27 @@ COARSE = {"mesh": {"contact": 40e-6}, "output": {"errors": False, "receptors": F
 
 @pytest.fixture
 def place(tmp_path, monkeypatch):
-    """A folder on Python's path with a law, and the scene of that law in another one."""
-    (tmp_path / "path").mkdir()
-    (tmp_path / "path" / "mylaws.py").write_text(MINE.format(factor=0.1), encoding="utf-8")
-    (tmp_path / "scene.toml").write_text(SCENE, encoding="utf-8")
-    monkeypatch.setenv("PYTHONPATH", str(tmp_path / "path"))
-    monkeypatch.syspath_prepend(tmp_path / "path")
+    """The folder of a scene with a law of another folder beside, which is on Python's path."""
+    folder, path = tmp_path / "scene", tmp_path / "path"
+    folder.mkdir()
+    path.mkdir()
+    (path / "mylaws.py").write_text(MINE.format(factor=0.1), encoding="utf-8")
+    (folder / "scene.toml").write_text(SCENE, encoding="utf-8")
+    monkeypatch.setenv("PYTHONPATH", str(path))
+    monkeypatch.syspath_prepend(path)
     monkeypatch.delitem(sys.modules, "mylaws", raising=False)
-    yield tmp_path
+    yield folder
     sys.modules.pop("mylaws", None)
 
 
 def edited(place: Path) -> None:
     """Change the law and forget it, as a new process does."""
-    (place / "path" / "mylaws.py").write_text(MINE.format(factor=0.1111), encoding="utf-8")
+    (place.parent / "path" / "mylaws.py").write_text(MINE.format(factor=0.1111), encoding="utf-8")
     sys.modules.pop("mylaws", None)
 
 
 def command(place: Path, *words: str, cwd: Path | None = None, **more: str) -> subprocess.CompletedProcess[str]:
-    path = {"PYTHONPATH": os.pathsep.join([str(place / "path"), os.getcwd()])}
+    path = {"PYTHONPATH": os.pathsep.join([str(place.parent / "path"), os.getcwd()])}
     return python("-m", "fingerpad", *words, cwd=cwd, **path | more)
 
 
@@ -76,7 +78,7 @@ def test_law_of_a_scene_file_has_units_and_ranges_of_its_own(place):
 @pytest.mark.parametrize(
     ("path", "sentence"),
     [
-        ("nolaws:Mine", "Python finds no module nolaws; put its folder on PYTHONPATH"),
+        ("nolaws:Mine", "Python finds no module nolaws in installed packages and folders of yours; name the folder"),
         ("mylaws:Yours", "the module mylaws has no Yours"),
         ("mylaws:fp", "it must be a Friction"),
         ("os:path", "the module is one of Python's own"),
@@ -86,21 +88,10 @@ def test_law_of_a_scene_file_has_units_and_ranges_of_its_own(place):
     ],
 )
 def test_path_that_names_no_law_is_refused(place, path, sentence):
-    (place / "path" / "broken.py").write_text("raise RuntimeError('no law here')", encoding="utf-8")
+    (place.parent / "path" / "broken.py").write_text("raise RuntimeError('no law here')", encoding="utf-8")
     with pytest.raises(SceneError) as error:
         Scene(friction={"law": path, "k": 2.0})
     assert f"friction.law is {path!r}; " in str(error.value) and sentence in str(error.value)
-
-
-def test_no_code_beside_a_scene_is_imported(place):
-    """Neither in the scene's folder nor in the current one, unless PYTHONPATH names it."""
-    (place / "mylaws.py").write_text("raise SystemExit('run')", encoding="utf-8")
-    words = ("estimate", place / "scene.toml")
-    done = command(place, *words, cwd=place, PYTHONPATH=os.getcwd())
-    assert done.returncode == 2 and "Python finds no module mylaws; put its folder on PYTHONPATH" in done.stderr
-    (place / "mylaws.py").write_text(MINE.format(factor=0.1), encoding="utf-8")
-    done = command(place, *words, cwd=place, PYTHONPATH=os.pathsep.join([os.getcwd(), str(place)]))
-    assert done.returncode == 0 and "Friction Mine(k=2, tau=5000 Pa)." in done.stdout
 
 
 # -- every way of a run ----------------------------------------------------------------------------------------

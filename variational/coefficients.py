@@ -64,7 +64,7 @@ class LawError(ValueError):
     """A law of one's own that the weak form cannot take; one sentence."""
 
 
-def said(error: Exception) -> str:
+def said(error: BaseException) -> str:
     """Return the message of an error in a user's law, in one line."""
     return " ".join(str(error).split()) or type(error).__name__
 
@@ -88,7 +88,23 @@ def refuse_not_positive(law: Any, zero: bool = False) -> None:
             raise ValueError(f"{each.name} of {type(law).__name__} is {value!r}; it must be finite and {allowed}")
 
 
-class Law:
+class Named:
+    """A class of dataclasses that refuse a parameter they do not have in one sentence, with those that they have."""
+
+    def __new__(cls, *_: Any, **given: Any) -> Self:
+        """Return an instance.
+
+        Raises:
+            LawError: a name that is none of the dataclass.
+        """
+        names = [f.name for f in fields(cls) if f.init] if is_dataclass(cls) else [*given]
+        wrong = next((name for name in given if name not in names), None)
+        if wrong is not None:
+            raise LawError(f"{cls.__name__} has no parameter {wrong!r}; its parameters are {', '.join(names)}")
+        return super().__new__(cls)
+
+
+class Law(Named):
     """A law with numbers; derive a frozen dataclass from one of the laws' bases."""
 
     coefficients: ClassVar[tuple[str, ...] | None] = None

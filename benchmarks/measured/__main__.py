@@ -2,9 +2,10 @@
 
 environment/run python3 -m benchmarks.measured [--jobs 2] [--draw]
 
-Most numbers are those of docs/paper.json and docs/models.json (make paper, benchmarks.models), to be made again after
-them. Eight runs of an uncharged press are made here, some ten seconds each. Writes docs/measured.json, and from it
-docs/measured.md and its picture. A finding of the kind ``simulated`` was computed by its source and does not count.
+Most numbers are those of docs/paper.json, docs/models.json and docs/viscosity.json (make paper, benchmarks.models, make
+viscosity), to be made again after them. Ten presses are run here, some ten seconds each, and one that is held for 20 s.
+Writes docs/measured.json, and from it docs/measured.md and its picture. A finding of the kind ``simulated`` was
+computed by its source and does not count.
 """
 
 import argparse
@@ -19,12 +20,17 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from benchmarks.harness import cells, keep, kept, made, main, page, picture, run
-from benchmarks.measured import drives, fingers, rows, rules
+from benchmarks.measured import drives, fingers, keys, rows, rules
 from benchmarks.measured.rules import BUILT, HIT
 from benchmarks.runs import VOLTAGES, Run
 from fingerpad.results import style
 from fingerpad.scene import Scene
 
+_LEFT_OUT = (
+    "time", "relaxation", "speed", "real_sliding", "adhesion", "gap_sliding",
+    "friction_acrylic", "friction_power", "friction_occluded",
+)  # fmt: skip
+"""Rows of what the default finger leaves out."""
 _LIMIT = 600.0  # s of processor time for one run
 
 
@@ -41,24 +47,29 @@ def pressed(scene: Scene, out: Path) -> dict[str, Any]:
     return {"length": length, "ridges": len(ridges)} | along
 
 
-def numbers(runs: dict[str, Any], docs: Path) -> dict[str, Any]:
-    """Return the numbers of the page from runs of :func:`pressed` and the kept numbers of the other pages."""
+def numbers(runs: dict[str, Any], held: Mapping[str, list[float]], docs: Path) -> dict[str, Any]:
+    """Return the numbers of the page from runs of :func:`pressed`, a held finger and the kept ones of other pages."""
     grid = rows.grid(kept("paper", docs).numbers, kept("models", docs).numbers)
-    # Of what the scenes do not have at all, time for example, the verdict is in the table of texts.
-    known: dict[str, rows.Row] = {text["key"]: ({}, text["verdict"]) for text in _read("rows") if text["verdict"]}
+    # Where no scene has a key for a finding, the verdict is in the table of texts.
+    typed: dict[str, rows.Row] = {text["key"]: ({}, text["verdict"]) for text in _read("rows") if text["verdict"]}
+    of_time = keys.of_time(kept("viscosity", docs).numbers, held)
+    every = {"rows": rows.numbers(grid, runs) | drives.numbers() | of_time | typed, "others": keys.others(runs)}
     judged = {
-        key: {"numbers": {name: float(value) for name, value in found.items()}, "verdict": verdict}
-        for key, (found, verdict) in (rows.numbers(grid, runs) | drives.numbers() | known).items()
+        name: {
+            key: {"numbers": {each: float(value) for each, value in found.items()}, "verdict": verdict}
+            for key, (found, verdict) in table.items()
+        }
+        for name, table in every.items()
     }
-    return {"runs": runs, "rows": judged, "curves": rows.curves(grid)}
+    return {"runs": runs, "held": held, "curves": rows.curves(grid)} | judged
 
 
 def compute(args: argparse.Namespace) -> None:
     """Run what is missing and keep the numbers."""
     wanted = fingers.scenes()
-    summaries = run(wanted, args, _LIMIT)
+    summaries = run(wanted | {"held": keys.scene()}, args, _LIMIT)
     runs = {name: pressed(scene, args.out) for name, scene in wanted.items()}
-    keep("measured", numbers(runs, args.docs), made(summaries.values()), args.docs)
+    keep("measured", numbers(runs, keys.held(args.out), args.docs), made(summaries.values()), args.docs)
 
 
 # -- page ------------------------------------------------------------------------------------------------------
@@ -87,6 +98,19 @@ def judged(docs: Path) -> list[Row]:
     return judged
 
 
+def with_keys(docs: Path) -> list[Row]:
+    """Return the findings that are computed with other keys too, in the order of ``others.csv``."""
+    found, first = kept("measured", docs).numbers["others"], {text["key"]: text for text in _read("rows")}
+    made_of = []
+    for text in _read("others"):
+        numbers, verdict = found[text["key"]].values()
+        verdict = BUILT if text["built"] and verdict == HIT else verdict
+        ours = text["ours"].format(**numbers).replace("%", " %")
+        line = cells(first[text["key"]]["measured"], text["keys"], ours, text["fitted"], f"**{verdict}**")
+        made_of.append(Row(text["key"], "other", numbers, verdict, line))
+    return made_of
+
+
 def _read(name: str) -> list[dict[str, str]]:
     with (Path(__file__).parent / f"{name}.csv").open(encoding="utf-8", newline="") as file:
         return list(csv.DictReader(file))
@@ -96,7 +120,9 @@ def draw(docs: Path) -> Path:
     """Write docs/measured.md and its picture from docs/measured.json."""
     picture(docs / "measured.png", (11, 4), lambda figure: _paint(figure, kept("measured", docs).numbers))
     every = judged(docs)
-    names = {"judged": every, "found": [row.verdict for row in every if row.kind != "simulated"]}
+    names: dict[str, Any] = {"judged": every, "others": with_keys(docs)}
+    names |= {"left_out": sum(row.verdict == rules.MISS for row in every if row.key in _LEFT_OUT)}
+    names |= {"found": [row.verdict for row in every if row.kind != "simulated"]}
     return page(docs, "measured", "make measured", globals() | names)
 
 

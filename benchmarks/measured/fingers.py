@@ -26,6 +26,7 @@ FORCE = 75.0  # N/m
 SIZES = (40e-6, 20e-6)  # m, contact sizes; the difference of their numbers is the stated error
 SOFTER = (2.0, 4.0)  # times, by which the stratum corneum is softened; not fitted
 ROUGHER = 1.0  # friction coefficient beside the default of 0.25
+FLAT = (1, -0.625, 0.27778, -0.08333, 0.01515, -0.00126)  # -sin(t/2)^12, a tip that is flat over half a ridge
 
 
 def name(kind: str, size: float) -> str:
@@ -39,13 +40,20 @@ def scenes() -> dict[str, Scene]:
     for softer in SOFTER:
         shear = Scene().materials.stratum_corneum.shear_modulus / softer
         kinds[f"soft {softer:g}"] = {"materials": {"stratum_corneum": {"shear_modulus": shear}}}
-    return {name(kind, size): _pressed(size, more) for size in SIZES for kind, more in kinds.items()}
+    kinds["flat"] = {"geometry": {"ridge_profile": FLAT}}
+    return {name(kind, size): pressed(size, more) for size in SIZES for kind, more in kinds.items()}
 
 
-def _pressed(size: float, more: dict[str, Any]) -> Scene:
+def pressed(size: float, more: dict[str, Any]) -> Scene:
+    """Return the default finger pressed by :data:`FORCE`, with a contact size (m) and other keys."""
     mesh = {"contact": size, "receptor": size, "interface": 120e-6, "growth": 0.5}
     output = {"receptors": False, "errors": False}
     return plain({"history": [{"name": "press", "f_ext": FORCE}], "mesh": mesh, "output": output} | more)
+
+
+def gross(run: Mapping[str, Any]) -> float:
+    """Return the width (m) between the outer edges of the outermost touching ridges."""
+    return float((run["ridges"] - 1) * Scene().geometry.ridge_wavelength + run["length"] / run["ridges"])
 
 
 # -- whole fingers ---------------------------------------------------------------------------------------------

@@ -237,14 +237,9 @@ def _length(run: Mapping[str, Any]) -> float:
     return float(run["length"])
 
 
-def _gross(run: Mapping[str, Any]) -> float:
-    """Return the width (m) between the outer edges of the outermost touching ridges."""
-    return float((run["ridges"] - 1) * Scene().geometry.ridge_wavelength + run["length"] / run["ridges"])
-
-
 def _softer(runs: Mapping[str, Any]) -> Row:
     """Judge either area at each softening of the stratum corneum."""
-    real, gross = ([_change(runs, f"soft {s:g}", of) for s in fingers.SOFTER] for of in (_length, _gross))
+    real, gross = ([_change(runs, f"soft {s:g}", of) for s in fingers.SOFTER] for of in (_length, fingers.gross))
     holds = [change >= STRIKING for change, _ in real] + [abs(change) <= SIMILAR for change, _ in gross]
     (less, less_error), (more, error) = real
     numbers = {"less": less, "less_error": less_error, "more": more, "error": error}

@@ -66,7 +66,7 @@ def laws() -> dict[str, Law]:
     }
 
 
-FULL = {  # words: closure and effective voltage
+FULL = {  # words: closure and rms voltage
     "bearing area, rms": ("bearing area", NUMBER),
     "boundary elements, peak to peak": ("boundary elements", round(NUMBER * READINGS["peak to peak"], 1)),
     "boundary elements, no field in contact, amplitude": (
@@ -133,7 +133,7 @@ def friction(law: Law, f_ext: float, voltage: float | Mapping[str, Any]) -> dict
 
 
 def _given() -> dict[str, float | Mapping[str, Any]]:
-    """Return the effective voltage (V) or the drive of each reading of the paper's number."""
+    """Return the rms voltage (V) or the drive of each reading of the paper's number."""
     return {**{name: NUMBER * part for name, part in READINGS.items()}, **CIRCUIT}
 
 
@@ -256,14 +256,14 @@ def draw(docs: Path) -> Path:
         "pull": _pull, "area_scatter": [scatter / mean for mean, scatter in numbers["direct"]["wide"][2]],
         "reaches": _reaches, "compared": rows, "inside": sum(inside), "known_pairs": inside,
         "least_voltage": min(u for u in needed if u), "most_voltage": max(u for u in needed if u),
-        "small": numbers["small"],
+        "small": numbers["small"], "tips": harness.kept("measured", docs).numbers["others"]["gap"]["numbers"],
         "flat": lambda found: Scene().friction * (1 + found["attraction"] / contacts.P_EXT),
         "broken": [part for found in numbers["closures"].values() for part in found["broken"]],
         "first_off": deformed[0], "area_error": areas[min(areas)] / areas[max(areas)],
         "gap_span": f"{gaps[0][0]:.2f} to {gaps[-1][0]:.2f} µm; other code has {known[0]:.2f} to {known[-1]:.2f} µm",
         "kPa": 1e-3,
     }  # fmt: skip
-    return harness.page(docs, "microscale", "python3 -m benchmarks.microscale", globals() | names)
+    return harness.page(docs, "microscale", "python3 -m benchmarks.microscale", globals() | names, "measured")
 
 
 def _touches(words: str) -> bool:
@@ -305,7 +305,7 @@ def _paint(figure: Figure, numbers: Mapping[str, Any]) -> None:
     mu.grid(alpha=0.3)
     mu.axhline(PAPER, color="0.5", ls="--", zorder=0)
     mu.set(
-        xlabel="effective voltage (V)",
+        xlabel="rms voltage (V)",
         ylabel="µ_app at full slip (–)",
         ylim=(0.2, 1.2),
         title="C  75 N/m; dashed: 0.55",

@@ -15,10 +15,16 @@ from benchmarks.verification import (
     constitutive,
     cook,
     discretisation,
+    electric,
     friction,
     halfspace,
     microscale,
     normal_contact,
+    relaxing,
+    rollers,
+    rough,
+    slices,
+    spikes,
     tube,
 )
 from benchmarks.verification.case import Case, Row, draw, numbers
@@ -26,12 +32,16 @@ from benchmarks.verification.case import Case, Row, draw, numbers
 AREAS: dict[str, tuple[Case, ...]] = {
     "Constitutive": constitutive.CASES + tube.CASES,
     "Discretisation": discretisation.CASES + cook.CASES,
-    "Normal contact": normal_contact.CASES,
+    "Viscosity": relaxing.CASES,
+    "Normal contact": normal_contact.CASES + rollers.CASES,
     "Friction": friction.CASES,
     "Adhesion": adhesion.CASES,
-    "Rough contact": halfspace.CASES,
+    "Circuit": electric.CASES,
+    "Rough contact": halfspace.CASES + rough.CASES,
     "Microscale": microscale.CASES,
     "Two scales": microscale.TWO_SCALES,
+    "Whole finger": slices.CASES,
+    "Spikes": spikes.CASES,
 }
 
 
@@ -45,7 +55,7 @@ def main(given: Sequence[str] | None = None) -> int:
     results: dict[str, list[tuple[Case, Sequence[Row]]]] = {area: [] for area in args.only}
     for area, case in ((name, case) for name in args.only for case in AREAS[name]):
         start = time.perf_counter()
-        results[area].append((case, case.run(args.small)))
+        results[area].append((case, case.rows(args.small)))
         print(f"{area}: {case.name} ({time.perf_counter() - start:.0f} s)", flush=True)
         for row in results[area][-1][1]:
             words = f"{row.quantity}: {row.computed:.8g}, {row.reference:.8g} expected, error {row.error:.2g}"

@@ -10,6 +10,15 @@ from numpy.typing import ArrayLike
 
 from benchmarks.harness import cell, cells, kept, page
 
+ELSEWHERE, CURVE, CONVERGENCE, IDENTITY = "elsewhere", "curve", "convergence", "identity"
+KINDS = {
+    ELSEWHERE: "answers from elsewhere",
+    CURVE: "errors of a curve, whose answer is 0",
+    CONVERGENCE: "orders of convergence, and finer meshes",
+    IDENTITY: "identities of the model's own equations",
+}
+"""Kinds of numbers, in words."""
+
 
 @dataclass(frozen=True)
 class Row:
@@ -27,6 +36,13 @@ class Row:
     """Observed order of convergence, where several meshes were run."""
     absolute: bool = False
     """Whether error and tolerance are in the quantity's unit; relative otherwise."""
+    kind: str = ELSEWHERE
+    """Of :data:`KINDS`; :data:`CURVE` by itself where the answer is 0."""
+
+    def __post_init__(self) -> None:
+        """Take an answer of 0 for that of a curve."""
+        if self.reference == 0 and self.kind == ELSEWHERE:
+            object.__setattr__(self, "kind", CURVE)
 
     @property
     def error(self) -> float:
@@ -48,6 +64,12 @@ class Case:
     reference: str
     """Where the answer comes from, with its DOI or equation number."""
     run: Callable[[bool], Sequence[Row]]
+    kind: str = ELSEWHERE
+    """Of its numbers that have no other kind."""
+
+    def rows(self, small: bool) -> list[Row]:
+        """Return the rows, each with its kind."""
+        return [replace(row, kind=self.kind) if row.kind == ELSEWHERE else row for row in self.run(small)]
 
 
 def worst(rows: Sequence[Row]) -> Row:
@@ -63,7 +85,7 @@ def order(errors: ArrayLike, parts: ArrayLike) -> float:
 
 def order_row(quantity: str, observed: float, expected: float, tolerance: float, why: str, mesh: str) -> Row:
     """Return the row of an observed order of convergence."""
-    return Row(quantity, observed, expected, tolerance, why, mesh, observed, absolute=True)
+    return Row(quantity, observed, expected, tolerance, why, mesh, observed, absolute=True, kind=CONVERGENCE)
 
 
 # -- page ----------------------------------------------------------------------------------------------------
@@ -96,4 +118,5 @@ def draw(docs: Path) -> Path:
             names = [f"{case['name']}; {case['reference']}", *[""] * (len(some) - 1)]
             areas[area] += map(_line, names, some)
             rows += some
-    return page(docs, "verification", "make verify", {"rows": rows, "areas": areas})
+    count = {kind: sum(row.kind == kind for row in rows) for kind in KINDS}
+    return page(docs, "verification", "make verify", {"rows": rows, "areas": areas, "count": count, "KINDS": KINDS})

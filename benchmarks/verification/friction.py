@@ -15,7 +15,7 @@ bottom, f / (E* 300 a), is felt as a shear of 1 % of mu p_0.
 import numpy as np
 
 from benchmarks.verification.bodies import Array, Smooth, formulations, over_screen
-from benchmarks.verification.case import Case, Row
+from benchmarks.verification.case import IDENTITY, Case, Row
 from geometry.bodies import pad, ridge
 from variational.contact.augmented import AugmentedLagrangian
 from variational.contact.formulation import Formulation
@@ -112,6 +112,6 @@ def partial_slip(small: bool) -> list[Row]:
 _COULOMB = "Coulomb's law: f_T is mu_0 times the contact force, wherever the plane is"
 _CATTANEO = "Cattaneo 1938, Mindlin 1949, in Johnson 1985, sec. 7.2(a), doi 10.1017/CBO9781139171731"
 CASES = (
-    Case("Full slip", _COULOMB, full_slip),
+    Case("Full slip", _COULOMB, full_slip, IDENTITY),
     Case("Partial slip", _CATTANEO, partial_slip),
 )

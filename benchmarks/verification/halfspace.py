@@ -19,7 +19,7 @@ pressure and :math:`\sqrt2 E^* q h / 2 \cos q x \cos q y`.
 
 import numpy as np
 
-from benchmarks.verification.case import Case, Row, order, order_row
+from benchmarks.verification.case import CONVERGENCE, Case, Row, order, order_row
 from variational.roughness.halfspace import press
 from variational.roughness.spectrum import SelfAffine
 from variational.roughness.topography import HeightMap
@@ -150,5 +150,5 @@ CASES = (
     Case("Sphere on a half-space, by FFT", f"Hertz 1882, in {_JOHNSON}, sec. 4.2(a)", sphere),
     Case("Wave on a half-space, by FFT", f"Westergaard 1939, in {_JOHNSON}, sec. 13.2", wave),
     Case("Waves in two directions, full contact", f"closed form, {_JOHNSON}, sec. 13.1", full_contact),
-    Case("Random surface on two grids and more", "the same surface on finer pixels", grids),
+    Case("Random surface on two grids and more", "the same surface on finer pixels", grids, CONVERGENCE),
 )

@@ -18,7 +18,7 @@ from scipy.optimize import minimize_scalar
 
 from benchmarks.verification import bearing_area as exact
 from benchmarks.verification.bodies import over_screen
-from benchmarks.verification.case import Case, Row, worst
+from benchmarks.verification.case import IDENTITY, Case, Row, worst
 from geometry.bodies import block
 from variational.contact.penalty import Penalty
 from variational.materials.saint_venant import SaintVenant
@@ -157,13 +157,13 @@ def flat_ridge(small: bool) -> list[Row]:
 
 _ANEW = "in 30 digits by mpmath"
 CASES = (
-    Case("Air gap over separation", f"{_PAPER}, Eqs. 11, 13, 14, {_ANEW}", separations),
-    Case("Thresholds of stickiness", f"{_PAPER}, Eqs. 9 and 15, {_ANEW}", thresholds),
-    Case("Folds at 200 V", f"{_PAPER}, Eq. 9, {_ANEW}", folds),
-    Case("Uniform ridge", f"{_PAPER}, Eqs. 3, 9, 13, {_ANEW}", partial(_table, scalar, _ROUNDOFF, "–")),
-    Case("Air gap at an external pressure", f"{_PAPER}, Eqs. 9 and 13, {_ANEW}", external_pressures),
+    Case("Air gap over separation", f"{_PAPER}, Eqs. 11, 13, 14, {_ANEW}", separations, IDENTITY),
+    Case("Thresholds of stickiness", f"{_PAPER}, Eqs. 9 and 15, {_ANEW}", thresholds, IDENTITY),
+    Case("Folds at 200 V", f"{_PAPER}, Eq. 9, {_ANEW}", folds, IDENTITY),
+    Case("Uniform ridge", f"{_PAPER}, Eqs. 3, 9, 13, {_ANEW}", partial(_table, scalar, _ROUNDOFF, "–"), IDENTITY),
+    Case("Air gap at an external pressure", f"{_PAPER}, Eqs. 9 and 13, {_ANEW}", external_pressures, IDENTITY),
 )
 TWO_SCALES = (
-    Case("Flat ridge", f"scalar equation of the closure, {_PAPER}, Eqs. 3, 4, 9, 13, {_ANEW}", flat_ridge),
-    Case("Closure table", f"the same equation, {_ANEW}", partial(_table, charged, _COUPLED, _MESH)),
+    Case("Flat ridge", f"scalar equation of the closure, {_PAPER}, Eqs. 3, 4, 9, 13, {_ANEW}", flat_ridge, IDENTITY),
+    Case("Closure table", f"the same equation, {_ANEW}", partial(_table, charged, _COUPLED, _MESH), IDENTITY),
 )

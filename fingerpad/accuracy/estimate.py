@@ -92,7 +92,8 @@ class Estimate:
             for name, state in fine.states.items()
             if name in coarse.states
         }
-        self._two = of_two_meshes(coarse.parts(), fine.parts(), facets, self.degree, short=short)
+        receptor = fine.mesh.receptor
+        self._two = of_two_meshes(coarse.parts(), fine.parts(), facets, self.degree, short=short, receptor=receptor)
         self.base = fine
 
     def _shares(self, name: str, error: float) -> dict[str, float]:

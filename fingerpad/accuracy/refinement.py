@@ -41,6 +41,7 @@ from fingerpad.model.simulation import RestartRequired
 from fingerpad.results.interrupt import Interrupted
 from fingerpad.results.states import WORDS
 from fingerpad.richardson import MeshParameter, errors, rigid, to_refine
+from fingerpad.scene.messages import counted
 from geometry.profiles import GeometryError
 from variational.solvers.continuation import StepFailed
 
@@ -137,10 +138,9 @@ class Refinement(Estimate):
             others = [name for name in path.states if _ridges(path, name) != _ridges(sharp, name)]
             if others:
                 name = others[0]
-                reason = (
-                    f"{_ridges(sharp, name)} ridges touch at {WORDS[name]} on the final mesh, and on that of the path "
-                )
-                reason = lost(f"{reason}{_ridges(path, name)}", sharp.states[name].state, model.closure)
+                here = counted(_ridges(sharp, name), "ridge touches", "ridges touch")
+                reason = f"{here} at {WORDS[name]} on the final mesh, and on that of the path {_ridges(path, name)}"
+                reason = lost(reason, sharp.states[name].state, model.closure)
         except StepFailed as error:
             if model.mesh == final or isinstance(error, Interrupted):
                 raise
@@ -238,7 +238,9 @@ class Refinement(Estimate):
         for name in sorted(coarse.states.keys() & finer.states.keys()):
             before, now = (s.states[name].state.ridges_in_contact for s in (coarse, finer))
             if before != now:
-                self.notes.append(f"halving {key}: {now} ridges in contact at {WORDS[name]} instead of {before}")
+                self.notes.append(
+                    f"halving {key}: {counted(now, 'ridge')} in contact at {WORDS[name]} instead of {before}"
+                )
 
     def _on_mesh(self, refinements: Mapping[str, int]) -> Solve:
         """Return the states in use on the scene's mesh with sizes halved so often."""

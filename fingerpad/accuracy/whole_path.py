@@ -28,6 +28,7 @@ from fingerpad.results.interrupt import Interrupted
 from fingerpad.results.states import WORDS
 from fingerpad.results.terminal import about
 from fingerpad.richardson import FEW_FACETS, of_two_paths
+from fingerpad.scene.messages import counted
 from geometry.profiles import GeometryError
 from variational.solvers.continuation import StepFailed
 from variational.state import ContactState
@@ -120,8 +121,9 @@ class WholePath(Estimate):
                 continue
             here, there = state.state.ridges_in_contact, other.state.ridges_in_contact
             if here != there:
+                ridges = counted(here, "ridge touches", "ridges touch")
                 self._note(
-                    f"{here} ridges touch at {WORDS[name]}, and {there} on elements twice as large: "
+                    f"{ridges} at {WORDS[name]}, and {there} on elements twice as large: "
                     "the estimated discretisation error includes this change"
                 )
         return replace(coarse, states=kept)

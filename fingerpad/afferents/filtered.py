@@ -12,11 +12,10 @@ with the current h_k = p10 b1(k) + p11 b2(k), k samples after the last spike. A 
 samples after the last spike; V is then 0. p8 is the size of the noise, off by default; the delay p12 is left out.
 Saal, Delhaye, Rayhaun, Bensmaia (2017), doi 10.1073/pnas.1704856114.
 
-d of a pin is (dP/dt) / (2 a z^2), far from it (pi / 3 a) ds/dt: its factor is the gain here. Thresholds are several to
-30 times too high, so shapes and ratios alone are of use.
+d of a pin is (dP/dt) / (2 a z^2), far from it (pi / 3 a) ds/dt: the gain here. Thresholds are up to 30 times too high.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -43,8 +42,7 @@ class FilteredUnit(Afferent):
     parameters: tuple[float, ...]
     site: str = "merkel"  # type: ignore[misc]
     dynamic_gain: float = np.pi / (3 * RADIUS)  # 1/m, dynamic input over the rate of the stress
-    noise: int | None = None
-    """Seed of the noise; None without noise."""
+    noise: int | None = None  # seed of the noise; None without noise
     name, step, longest_step = "FilteredUnit", 2e-4, 2.5e-3
 
     def stimulus(self, history: History) -> Array:
@@ -57,8 +55,9 @@ class FilteredUnit(Afferent):
 
         p = self.parameters
         b = scipy.signal.butter(3, 10 * p[0], fs=1 / self.step)
-        rate = np.gradient(stress, self.step, axis=1) * self.dynamic_gain
-        s, d = (scipy.signal.lfilter(*b, each, axis=1) for each in (_MPA * stress, _MPA * _PER_MM * rate))
+        given = (stress - stress[:, :1], _PER_MM * self.dynamic_gain * np.gradient(stress, self.step, axis=1))
+        s, d = (scipy.signal.lfilter(*b, _MPA * each, axis=1) for each in given)
+        s += _MPA * stress[:, :1]
         a = np.diff(d, axis=1, append=d[:, -1:])
         parts = [part for each in (s, d, a) for part in (np.maximum(each, 0), np.maximum(-each, 0))]
         found = sum(weight * part for weight, part in zip(p[1:7], parts, strict=True))
@@ -70,8 +69,9 @@ class FilteredUnit(Afferent):
         """Return whether each unit fires at each sample."""
         currents = np.ascontiguousarray(self.current(stimulus).T)
         after = np.append(np.array(self.parameters[10:12]) @ _after_spike(), 0.0)
-        fired = np.zeros(currents.shape, bool)
-        v, since = np.zeros(len(stimulus)), np.full(len(stimulus), _SAMPLES)
+        fired, since = np.zeros(currents.shape, bool), np.full(len(stimulus), _SAMPLES)
+        steady = self.parameters[9] * replace(self, noise=None).current(stimulus[:, [0, 0]])[:, 0]
+        v = steady * (steady <= 1)  # just after a spike where it fires steadily
         for n in range(len(currents) - 1):  # a spike in this sample is at its end
             v += currents[n] + after[since] - v / self.parameters[9]
             since = np.minimum(since + 1, _SAMPLES)

@@ -4,9 +4,9 @@ The stress drives a current (pA) of four branches, clipped at 0 and added; three
 
 .. math:: I = \sum_i \Big\langle k_i \int e^{-(t-t')/\tau_i} \, d\sigma(t') \Big\rangle.
 
-It charges heminodes of m = 8, 5, 3 and 1 Merkel cells, C dV/dt = m I - V / R. The first over 30 mV fires, and all are
-reset to 0. V is proportional to m, so the largest is always the first, and it alone is followed. Intervals are 1 ms at
-least. Without noise. Within a step of 0.1 ms the current is that at its end, and V is exact.
+It charges heminodes of m = 8, 5, 3 and 1 Merkel cells, C dV/dt = m I - V / R, from the steady state of the first
+stress. The first over 30 mV fires, and all are reset to 0. V is proportional to m: the largest is always the first, and
+it alone is followed. Intervals are 1 ms at least. Without noise. In a step of 0.1 ms I is that at its end, V exact.
 
 Lesniak et al. (2014), doi 10.7554/eLife.01488; Gerling et al. (2018), doi 10.1371/journal.pcbi.1006264: the mouse's
 hairy skin; constants of a public implementation. Their skin relaxes: in an elastic one the unit adapts less.
@@ -72,7 +72,7 @@ class SA1(Afferent):
             current += k * np.maximum(scipy.signal.lfilter([1], [1, -np.exp(-self.step / tau)], change), 0)
         decay, wait = np.exp(-self.step / (R * C)), round(_LEAST / self.step)
         charge = np.ascontiguousarray((1 - decay) * R * CELLS * _PER_KPA * current.T)
-        fired, v = np.zeros(charge.shape, bool), np.zeros(len(stimulus))
+        fired, v = np.zeros(charge.shape, bool), (steady := charge[0] / (1 - decay)) * (steady <= V_MOST)
         for n in range(1, len(charge)):
             v = decay * v + charge[n]
             fired[n] = (v > V_MOST) & ~fired[max(n - wait + 1, 0) : n].any(axis=0)

@@ -74,9 +74,9 @@ const closedForm = (function () {
   const [EXACT, ROUGH] = [1e-9, 1e-3]; // last steps of ln(m - 1)
 
   class Cylinder {
-    /** sheared: what the modulus gains per pressure. */
-    constructor(radius, unsheared, h_0, closure, sheared = 0) {
-      Object.assign(this, { radius, unsheared, modulus: unsheared, h_0, closure, sheared, near: 0 });
+    /** stiffening: what the modulus gains at a pressure. */
+    constructor(radius, unsheared, h_0, closure, stiffening = () => 0) {
+      Object.assign(this, { radius, unsheared, modulus: unsheared, h_0, closure, stiffening, near: 0 });
     }
     under_load(f, voltage) {
       const half_width = (beyond, sigma) => { // the root of the force's equation, quadratic in a; and its slope over m
@@ -139,7 +139,7 @@ const closedForm = (function () {
     branch(shape, f, voltage) {
       const strength = (data.eps_0 * voltage ** 2) / 2; // over the square of the distance, Eq. 3
       const borne = (p_c, d_eq, tolerance) => {
-        this.modulus = this.unsheared + this.sheared * p_c;
+        this.modulus = this.unsheared + this.stiffening(p_c);
         const sigma = strength / (this.h_0 + d_eq) ** 2, beyond = shape(sigma, d_eq, tolerance);
         return 2 * this.half * (p_c - sigma * (1 + beyond)) - f;
       };
@@ -162,7 +162,7 @@ const closedForm = (function () {
           `no contact pressure from ${show(PRESSURES[0])} to 1e+07 Pa bears ${show(f)} N/m on a ridge at ` +
             `${show(voltage)} V; try another force or length`);
       const [place, p_c] = first, d_eq = this.closure.d_eq(p_c), sigma = strength / (this.h_0 + d_eq) ** 2;
-      this.modulus = this.unsheared + this.sheared * p_c;
+      this.modulus = this.unsheared + this.stiffening(p_c);
       const beyond = shape(sigma, d_eq, EXACT), length = 2 * this.half, f_attraction = sigma * length * (1 + beyond);
       const others = () => { // pressures of further equilibria, the lowest first
         const found = [];
@@ -240,14 +240,15 @@ const closedForm = (function () {
     };
   }
 
-  /** Return a ridge in a state; tips: radius of its tip over the default's, whose root Hertz's length grows with. */
-  function ridge_of(p, footprint, state, closure, tips = 1) {
+  /** Return a ridge in a state.
+   * tips: radius of its tip over the default's, whose root Hertz's length grows with; limit: of friction at a pressure. */
+  function ridge_of(p, footprint, state, closure, tips = 1, limit = (p_c) => p.friction * p_c) {
     const n = footprint.ridges[state], length = Math.sqrt(tips) * footprint.length[state], f = p.f_ext / n;
     const radius = tips * data.tip_radius, h_0 = closure.h_0;
     if (footprint.charged)
       return new Cylinder(radius, data.skin_modulus, h_0, closure).over_length(length / n, f, p.voltage);
-    const sheared = state === "full_slip" ? data.shear * Math.max(p.friction - data.friction, 0) : 0;
-    return new Cylinder(radius, hertz_modulus(radius, f, length / n), h_0, closure, sheared).under_load(f, p.voltage);
+    const stiffening = state === "full_slip" ? (p_c) => data.shear * Math.max(limit(p_c) - data.friction * p_c, 0) : undefined;
+    return new Cylinder(radius, hertz_modulus(radius, f, length / n), h_0, closure, stiffening).under_load(f, p.voltage);
   }
 
   return { NoEquilibriumError, Closure, solve, given, refuse, interpolate, fitted, closure_of, ridge_of };

@@ -42,7 +42,7 @@ const drive = (function () {
       const phase = k / SAMPLES;
       const shape = waveform === "sine" ? Math.sin(2 * Math.PI * phase)
         : waveform === "triangle" ? 1 - Math.abs(((4 * phase + 1) % 4) - 2)
-          : phase % 0.5 === 0 ? 0 : phase < 0.5 ? 1 : -1;
+          : phase < 0.5 ? 1 : -1; // at a jump the value behind it
       return offset + amplitude * shape;
     });
   }

@@ -72,7 +72,7 @@
     const band = given ? null : knownBand.of(values, found), error = error_of(values, given, found), relative = error ? error.mu_app : null;
     bars.draw(find("known"), band, relative, values.newtons ? "whole finger" : "middle section");
     find("caption_known").textContent = band ? bars.words(band, relative) : "";
-    return band ? `, known to about ${bars.span(band)}` : "";
+    return band ? `, likely range ${bars.span(band)}${band.high === Infinity ? ", open" : ""}` : "";
   }
 
   const span = ({ key, low, high }) => {

@@ -19,14 +19,14 @@ from fingerpad.calculator import presets
 from fingerpad.installed import version
 from fingerpad.model.cautions import BALANCED
 from fingerpad.reduced import cylinder_errors, cylinders, uncharged
-from fingerpad.reduced.closure_band import CHANGE, TIPS, closures, with_band
+from fingerpad.reduced.closure_band import CHANGE, SHEAR_STRESS, TIPS, closures, powers, with_band
 from fingerpad.reduced.model import STATES
 from fingerpad.results.closures import KNOWN, known_in_words
 from fingerpad.results.quantities import PER_LENGTH, Output
 from fingerpad.results.result import Result
 from fingerpad.results.states import WORDS
 from fingerpad.scene import Scene
-from fingerpad.scene.keys import every
+from fingerpad.scene.keys import by_name
 from fingerpad.scene.materials import BEARING_AREA, LARGEST_GAP
 from fingerpad.scene.remarks import LEAKAGE, skin_modulus
 from fingerpad.slices import errors, traces
@@ -89,7 +89,7 @@ _SHOWN = (
 
 def fields() -> Iterator[Field]:
     """Yield the fields of the page, with bounds and defaults from the keys of a scene."""
-    keys = {key.name: key for key in every(Scene)}
+    keys = by_name(Scene)
     for field in _SHOWN:
         key = keys[field.key]
         yield _bounded(field, key.limits, _FORCE if key.name == "force" else key.default)
@@ -163,7 +163,7 @@ def band() -> dict[str, Any]:
             areas = _short(np.log(law.statistics(nodes).area)) if law.field_in_contact else None
             laws.append({"words": words, "pressures": _short(nodes / unit), "gaps": by_pressure, "areas": areas})
     slices = [[force, list(ends)] for force, ends in errors.ONCE["f_t"]]
-    changes = {"change": CHANGE, "tips": TIPS, "share": BALANCED}
+    changes = {"change": CHANGE, "tips": TIPS, "share": BALANCED, "powers": {**powers()}, "p_reg": SHEAR_STRESS.p_reg}
     return changes | {"ratios": _short(_RATIOS), "laws": laws, "slices": slices}
 
 
@@ -246,9 +246,9 @@ def _regions() -> str:
 
 
 def _band() -> str:
-    """Return how far µ_app is known, by all assumptions, at the values of the first sentence."""
+    """Return the likely range of µ_app, by all assumptions, at the values of the first sentence."""
     words = known_in_words(with_band(_whole(_FORCE, _VOLTAGE)).record.get(KNOWN, {}))
-    return html.escape(f"At {_FORCE:g} N and {_VOLTAGE:g} V the default finger is {words}." if words else "")
+    return html.escape(f"µ_app of the default finger at {_FORCE:g} N and {_VOLTAGE:g} V. {words}" if words else "")
 
 
 def _table() -> str:

@@ -61,7 +61,8 @@ def _finger(name: str, finger: NamedFinger, keys: Collection[str]) -> Preset | N
     same = {key: default[key] for each in FINGERS.values() for key in each.values if key in keys}
     choices = {"circuit": finger.values.get("electric.leak", "lossless")}
     source = ". ".join(dict.fromkeys(trait.source for trait in finger.traits)) or "The finger of the paper"
-    return Preset("Finger", name, same | values, f"{finger.words}. {source}.", choices)
+    words = f"{finger.words}. {source}. {finger.remark}".rstrip()
+    return Preset("Finger", name, same | values, words, choices)
 
 
 def data(scales: Mapping[str, float]) -> Iterator[dict[str, Any]]:

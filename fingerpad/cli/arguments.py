@@ -16,6 +16,7 @@ from fingerpad.cli import COMMANDS, ranges
 from fingerpad.model.options import check
 from fingerpad.scene import Scene, from_data, load, override
 from fingerpad.scene.keys import every
+from fingerpad.scene.law_code import allow
 from fingerpad.scene.messages import SceneError, clip, ends
 from geometry.units import to_si
 
@@ -77,6 +78,8 @@ class Parser(argparse.ArgumentParser):
         self.add_argument(
             "--set", action="append", default=[], metavar="KEY=VALUE", help="a key of the scene; one --set for each key"
         )
+        what = "a folder of your own from which laws may be imported; may be given again"
+        self.add_argument("--laws", action="append", default=[], type=path, metavar="FOLDER", help=what)
 
     def add_ranges(self, *keys: str) -> None:
         """Add an option for several values of each of these keys, which :func:`several` reads."""
@@ -134,6 +137,11 @@ class Parser(argparse.ArgumentParser):
         args, rest = self.parse_known_args(words)
         if rest:
             self._refuse(rest[0], petsc)
+        for folder in getattr(args, "laws", ()):
+            try:
+                allow(folder)
+            except ValueError as error:
+                raise SceneError(f"--laws is {clip(str(folder), 80)}; {error}") from None
         values = [each for value in vars(args).values() for each in (value if isinstance(value, list) else [value])]
         for name, kind in self._written.items():
             file = getattr(args, name)

@@ -6,6 +6,7 @@ from pathlib import Path
 
 from fingerpad.cli import mesh as meshes
 from fingerpad.cli.arguments import Parser, echo, scene_of
+from fingerpad.model import breakdown
 from fingerpad.model.options import COARSER, FingerModel, ModelOptions, by_rule, memory, plan, refuse_mesh, unknowns
 from fingerpad.reduced import cylinders
 from fingerpad.reduced.closure_band import with_band
@@ -15,6 +16,7 @@ from fingerpad.results.closures import KNOWN
 from fingerpad.results.files import check_folder
 from fingerpad.results.terminal import about
 from fingerpad.scene import Load, Scene, SceneError
+from fingerpad.scene.messages import counted
 from fingerpad.scene.remarks import finger_in_words, leakage, remarks, used
 from geometry.profiles import GeometryError
 
@@ -103,6 +105,7 @@ def _aims(load: Load) -> Iterator[str]:
 
 def _model(scene: Scene, needed: ModelOptions) -> Iterator[str]:
     yield from (*finger_in_words(scene), *remarks(scene), *leakage(scene), *too_short(scene), *_adhering(scene))
+    yield from breakdown.ahead(scene)
     if caution := scene.contact.law.caution:
         yield caution
     if scene.geometry.file is None:
@@ -150,8 +153,9 @@ def _size(scene: Scene, mesh: meshes.Section | None) -> Iterator[str]:
         how = "as mesh.touching_half_arc gives"
     else:
         how = "by a rule of thumb; a run takes more where they come near"
-    count = "" if own else f" of {scene.geometry.ridge_count}"
-    yield f"{mesh.ridges}{count} ridges can touch, {how}"
+    of = scene.geometry.ridge_count
+    ridges = counted(mesh.ridges, "ridge") if own else f"{mesh.ridges} of {counted(of, 'ridge')}"
+    yield f"{ridges} can touch, {how}"
     allowed = f"of the {scene.numerics.memory * 1e-9:.3g} GB allowed"
     allowed = "for which a mesh of a file is not refused" if own else allowed
     yield f"about {about(memory(number) * 1e-9)} GB of memory, {allowed}"

@@ -21,7 +21,7 @@ from fingerpad.results.states import WORDS, called
 from fingerpad.runs.context import RunContext
 from fingerpad.runs.solve import solved
 from fingerpad.scene import Scene
-from fingerpad.scene.messages import SceneError, clip, ends
+from fingerpad.scene.messages import SceneError, clip, counted, ends
 from variational.state import RESULTS
 
 if TYPE_CHECKING:
@@ -115,7 +115,9 @@ def _footprint(scene: Scene, length: float | None, ridges: int | None, run: Path
         raise SceneError(f"--ridges is {ridges}, and the finger has {finger.ridge_count}; count those that touch")
     if length > ridges * finger.ridge_wavelength:
         whole = 1e3 * ridges * finger.ridge_wavelength
-        raise SceneError(f"--contact-length is {1e3 * length:g} mm, longer than {ridges} ridges, {whole:.3g} mm")
+        raise SceneError(
+            f"--contact-length is {1e3 * length:g} mm, longer than {counted(ridges, 'ridge')}, {whole:.3g} mm"
+        )
     return cylinders.given(length, ridges)
 
 
@@ -228,6 +230,8 @@ def _lines(compared: "pd.DataFrame") -> Iterator[str]:
         what = alone if about["quantity"].startswith("friction") else "contact without voltage"
         yield f"All compared rows are at 0 V: the misfit is that of {what}, and not of the attraction."
     yield from _misfit(about["misfit"], errors)
+    if not compared.voltage.any():
+        yield "No row is under a voltage: attraction is not compared."
     used = compared[compared.voltage > 0] if fits else compared
     beside, none = len(used), int(used.computed.isna().sum())
     if none:

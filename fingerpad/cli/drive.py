@@ -1,6 +1,7 @@
 """``fingerpad drive``: friction over the period of a drive, and whether it is felt, without finite elements."""
 
 import argparse
+import math
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -50,6 +51,8 @@ def main(argv: Sequence[str]) -> int:
     found = _over_period(scene)
     echo(f"\nVoltage at the threshold of detection, relative to a sine of {REFERENCE:g} Hz:\n")
     echo(output.text(_COLUMNS, rows))
+    if math.isinf(max(row["square"] for row in rows)):
+        echo("\ninf: never felt, as the attraction is constant.")
     circuit = scene.electric.circuit(scene.geometry.sc_thickness)
     echo(f"\nThrough {circuit_in_words(circuit)}.")
     beyond = [f"{row['frequency']:g}" for row in rows if row["extrapolated"]]

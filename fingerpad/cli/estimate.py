@@ -9,6 +9,7 @@ from typing import Any
 
 from fingerpad.cli import output
 from fingerpad.cli.arguments import Parser, echo, scene_of, several
+from fingerpad.model import breakdown
 from fingerpad.model.cautions import on_states
 from fingerpad.reduced import cylinder_errors, cylinders
 from fingerpad.results.quantities import FINGER, PER_LENGTH, QUANTITIES, Output
@@ -75,6 +76,7 @@ def main(argv: Sequence[str]) -> int:
     over = scene.supply is not None and args.voltage is None
     voltages = [scene.volts] if over else several(args, scene, "voltage")
     rows, lost = grid(scene, forces, voltages, key)
+    most = scene if over else scene.replace(voltage=max(voltages, key=abs))
     whole = any("mu_app" in row for row in rows)
     echo("Friction of the whole finger" if whole else "Friction of the section", end="")
     echo(" at full slip by a closed form, every ridge in contact the same charged cylinder.")
@@ -87,7 +89,8 @@ def main(argv: Sequence[str]) -> int:
         echo("F_ext has that f_ext at the finger's centre at full slip, as in fingerpad run --model cylinders. The")
         echo("full model has indentations of its own, and so another F_ext.")
     states = [row["state"] for row in rows if "state" in row]
-    limits = (f"{text[0].upper()}{text[1:]}." for text in on_states(states, scene.closure()))
+    found = (*on_states(states, scene.closure()), *breakdown.ahead(most))
+    limits = (f"{text[0].upper()}{text[1:]}." for text in found)
     if over:
         for force in forces:
             echo(f"\nAt {force:g} {'N' if key == 'force' else 'N/m'}. {drive(scene.replace(**{key: force}))}")
@@ -132,7 +135,8 @@ def grid(
                 lost.append(f"At {force:g} {unit} and {voltage:g} V: {error}.")
             rows.append(row)
     if not any("state" in row for row in rows):
-        raise SceneError(lost[-1].partition(": ")[2].rstrip("."))
+        beyond = breakdown.ahead(scene if scene.supply is not None else scene.replace(voltage=max(voltages, key=abs)))
+        raise SceneError("; ".join([*beyond, lost[-1].partition(": ")[2].rstrip(".")]))
     return rows, lost
 
 

@@ -14,7 +14,7 @@ from fingerpad.cli import output
 from fingerpad.cli.arguments import PICTURE, Kind, Parser, echo, scene_of
 from fingerpad.model.options import ModelOptions, by_rule
 from fingerpad.scene import Scene
-from fingerpad.scene.messages import SceneError
+from fingerpad.scene.messages import SceneError, counted
 from geometry import tags
 from geometry.profiles import GeometryError
 
@@ -38,7 +38,8 @@ def main(argv: Sequence[str]) -> int:
     if scene.geometry.file is not None:
         raise SceneError("geometry.file is given, which is a mesh already; fingerpad check draws it")
     found = write(scene, args.out)
-    echo(f"{len(found.triangles)} triangles, {len(found.points)} vertices, {found.ridges} ridges that can touch")
+    ridges = counted(found.ridges, "ridge")
+    echo(f"{len(found.triangles)} triangles, {len(found.points)} vertices, {ridges} that can touch")
     echo(f"Written: {args.out}")
     if args.plot:
         draw(args.plot, found, scene)
@@ -87,18 +88,14 @@ def meshed(scene: Scene, receptors: bool, half: bool) -> Iterator[Any]:
     import gmsh
 
     from geometry import fingertip
-    from geometry.shape import session
+    from geometry.shape import built, session
 
     scene = by_rule(scene)
     with session("finger"):
         try:
-            fingertip.build(scene.geometry, scene.mesh, receptors, half)
+            built(lambda: fingertip.build(scene.geometry, scene.mesh, receptors, half))
         except GeometryError as error:
             raise SceneError(f"the finger cannot be meshed: {error}") from None
-        except Exception as error:
-            if type(error) is not Exception:  # gmsh's own are of no other kind
-                raise
-            raise SceneError(f"gmsh cannot mesh the finger: {error}; try smaller elements") from None
         yield gmsh
 
 
@@ -109,20 +106,20 @@ def section(scene: Scene, needed: ModelOptions) -> Section:
         SceneError: the finger cannot be meshed, or the file has no such mesh.
     """
     if scene.geometry.file is not None:
-        return _of_file(Path(scene.geometry.file))
+        return _of_file(Path(scene.geometry.file), scene.geometry.file_sha256 or "")
     with meshed(scene, needed.receptors, not needed.both_halves) as gmsh:
         return _read(gmsh)
 
 
-def _of_file(file: Path) -> Section:
+def _of_file(file: Path, sha256: str) -> Section:
     import gmsh
 
     from geometry import meshfile
-    from geometry.shape import session
+    from geometry.shape import built, session
 
     try:
         with session("file"):
-            return _read(gmsh, meshfile.file(file)())
+            return _read(gmsh, built(meshfile.file(file, sha256)))
     except GeometryError as error:
         raise SceneError(f"mesh: {error}") from None
 
@@ -191,7 +188,9 @@ def draw(file: Path, found: Section, scene: Scene) -> None:
             ("around the lowest point", (100 * size, 130 * size)),
             (f"lowest point: shortest edge of {size * 1e6:.3g} µm", (20 * size, 25 * size)),
         )
-    title = f"Mesh of the unloaded finger: {len(found.triangles)} triangles, {found.ridges} ridges can touch\n"
+    title = (
+        f"Mesh of the unloaded finger: {len(found.triangles)} triangles, {counted(found.ridges, 'ridge')} can touch\n"
+    )
     with output.panels(file, title, 3) as (figure, panels):
         left_most = found.points[:, 0].min()
         for ax, (title, view) in zip(panels, views, strict=True):

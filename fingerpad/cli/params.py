@@ -90,7 +90,7 @@ def page(found: Sequence[Key]) -> str:
     by_table: dict[str, list[Key]] = {}
     for key in found:
         by_table.setdefault(key.name.rpartition(".")[0], []).append(key)
-    lines = [_PAGE.format(keys=len(found), tables=len([name for name in by_table if name]))]
+    lines = [_PAGE.format(keys=len({key.name for key in found}), tables=len([name for name in by_table if name]))]
     for name, keys in by_table.items():
         plain = name.replace("[]", "")
         heading = f"`[[{plain}]]`" if name.endswith("[]") else f"`[{plain}]`" if name else "Top level"

@@ -6,11 +6,13 @@ from pathlib import Path
 
 from fingerpad.cli.arguments import Parser, echo, path, refuse_twice, scene_of
 from fingerpad.ctrl_c import raises
+from fingerpad.model import breakdown
 from fingerpad.reduced.registry import MODELS, find
 from fingerpad.report.write import NAME
 from fingerpad.results.files import check_folder
 from fingerpad.results.folder import full_scene
 from fingerpad.runs.context import RunContext
+from fingerpad.runs.post import in_words
 from fingerpad.runs.solve import solved
 from fingerpad.scene import Scene
 from fingerpad.scene.messages import SceneError
@@ -56,7 +58,7 @@ def main(argv: Sequence[str]) -> int:
     if not model.meshes:
         if args.petsc:
             raise SceneError(f"{args.petsc[0]} is given and --model is {model.name}, which solves nothing by PETSc")
-        echo(str(solved(scene, model, context)))
+        echo(in_words(solved(scene, model, context)))
         _say_report(args)
         return 0
     from fingerpad.startup import start
@@ -65,10 +67,12 @@ def main(argv: Sequence[str]) -> int:
     # PETSc has its options from here on.
     from fingerpad.runs.full import exit_code
 
+    for caution in breakdown.ahead(scene.resolved()) if shown else ():
+        echo(f"Caution: {caution}.")
     with raises():
         result = solved(scene, model, context)
     if args.quiet or not model.path or scene.force is not None:  # else the run has printed it
-        echo(f"\n{result}" if result.finger or scene.force is None else result.failure)
+        echo(f"\n{in_words(result)}" if result.finger or scene.force is None else result.failure)
     _say_report(args)
     return exit_code(result)
 

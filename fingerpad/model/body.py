@@ -23,9 +23,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 import fingerpad.startup  # noqa: F401
+from fingerpad import notebook
 from fingerpad.model import cautions
 from fingerpad.model.state import contact_state, force_error, refuse_strained, steady, step_record
 from fingerpad.results.fields import Fields, of_snapshot
+from fingerpad.results.quantities import QUANTITIES, side_by_side
 from fingerpad.results.states import full_slip
 from fingerpad.scene.materials import refuse_thickness
 from fingerpad.startup import MPI
@@ -153,61 +155,75 @@ class Body:
         self.state = self._present(None)
 
     # -- loads -------------------------------------------------------------------------------------------
-    def press(self, f_ext: Quantity | None = None, *, height: Quantity | None = None) -> "Body":
+    def press(
+        self, f_ext: Quantity | None = None, *, height: Quantity | None = None, seconds: Quantity | None = None
+    ) -> "Body":
         """Press the body, by a force or by the height of the bone; return the body.
 
         Args:
             f_ext: external normal force on the bone (N/m), kept in what follows.
             height: change of the bone's height from the unloaded position (m), negative when pressed; it is kept in
                 what follows.
+            seconds: how long the load takes (s), 0 for at once; required where a material is viscous or friction has a
+                memory. The same load again is a hold.
 
         Raises:
-            ValueError: not one of the two is given, or ``f_ext`` is not positive.
+            ValueError: not one of the two is given, ``f_ext`` is not positive, or ``seconds`` is negative or missing.
             StepFailed: see :meth:`slide`.
         """
         if (f_ext is None) == (height is None):
             raise ValueError("press takes either f_ext, in N/m, or height, in m")
         if f_ext is None:
-            return self._reach(Target("press", bone_height=_finite("height", height, "m")))
+            return self._reach(Target("press", bone_height=_finite("height", height, "m")), seconds)
         force = _finite("f_ext", f_ext, "N/m")
         if force <= 0:
             raise ValueError(f"f_ext is {force:g} N/m; it must be positive; lift() takes a body off the screen")
-        return self._reach(Target("press", f_ext=force))
+        return self._reach(Target("press", f_ext=force), seconds)
 
-    def lift(self, height: Quantity = 0.0) -> "Body":
+    def lift(self, height: Quantity = 0.0, *, seconds: Quantity | None = None) -> "Body":
         """Lift the bone by displacement; return the body.
 
         Args:
             height: change of the bone's height from the unloaded position (m). A body that sticks to the screen needs
                 more than 0 to come off.
+            seconds: see :meth:`press`.
 
         Raises:
+            ValueError: ``seconds`` is negative or missing.
             StepFailed: see :meth:`slide`.
         """
-        return self._reach(Target("lift", bone_height=_finite("height", height, "m")))
+        return self._reach(Target("lift", bone_height=_finite("height", height, "m")), seconds)
 
-    def charge(self, voltage: Quantity) -> "Body":
-        """Change the voltage U (V) between screen and body, of either sign, without leakage; return the body.
+    def charge(self, voltage: Quantity, *, seconds: Quantity | None = None) -> "Body":
+        """Change the voltage between screen and body, without leakage; return the body.
+
+        Args:
+            voltage: U (V), of either sign.
+            seconds: see :meth:`press`.
 
         Raises:
-            ValueError: the body has no roughness.
+            ValueError: the body has no roughness, or ``seconds`` is negative or missing.
             StepFailed: see :meth:`slide`.
         """
         u = _finite("voltage", voltage, "V")
         if self._closure is None:
             raise ValueError("the body has no roughness, so that it has no air gap to charge; give Body a roughness")
-        return self._reach(Target("charge", voltage=u))
+        return self._reach(Target("charge", voltage=u), seconds)
 
-    def slide(self, distance: Quantity | None = None, *, until_full_slip: bool = False) -> "Body":
+    def slide(
+        self, distance: Quantity | None = None, *, until_full_slip: bool = False, seconds: Quantity | None = None
+    ) -> "Body":
         """Move the bone sideways; return the body.
 
         Args:
             distance: how far, from where it is (m), negative towards x < 0.
             until_full_slip: stop as soon as all points in contact slip one way; without a distance, the bone moves
                 towards x > 0 by the size of the body at most.
+            seconds: see :meth:`press`; of the whole distance, also where full slip ends the slide before.
 
         Raises:
-            ValueError: neither a distance nor ``until_full_slip`` is given, or full slip is asked for without friction.
+            ValueError: neither a distance nor ``until_full_slip`` is given, full slip is asked for without friction, or
+                ``seconds`` is negative or missing.
             StepFailed: no equilibrium was found, or there was no full slip. The states accepted before are kept, and
                 the body is in the last one of them.
         """
@@ -222,15 +238,23 @@ class Body:
                 f"distance is {far:g} m; the body of {size:.3g} m slides by {_FARTHEST * size:.3g} m at most"
             )
         x = float(self._made.solver.control.x) + far
-        self._reach(Target("slide", bone_x=x, until_full_slip=until_full_slip))
+        self._reach(Target("slide", bone_x=x, until_full_slip=until_full_slip), seconds)
         if until_full_slip and not self.state.all_slip:
             raise StepFailed(f"slide: there is no full slip within {abs(far):g} m; give a larger distance")
         return self
 
-    def _reach(self, target: Target) -> "Body":
+    def _reach(self, target: Target, seconds: Quantity | None) -> "Body":
+        if seconds is None and self.problem.in_time:
+            raise ValueError(
+                f"{target.name} takes seconds, how long the load lasts, 0 for at once: the state of a body with a "
+                "viscous material, or friction with a memory, depends on it"
+            )
+        duration = 0.0 if seconds is None else _finite("seconds", seconds, "s")
+        if duration < 0:
+            raise ValueError(f"seconds is {duration:g} s; it must be 0 or more")
         self._load = target.name
         self._loads += 1
-        self._made.continuation.run(target)
+        self._made.continuation.run(replace(target, duration=duration))
         return self
 
     # -- accepted states -----------------------------------------------------------------------------------
@@ -254,6 +278,23 @@ class Body:
         They are computed of all states so far; without ``roughness`` there are none.
         """
         return cautions.on_states(self.states, self._closure, self.problem.interface.formulation)
+
+    def _rows(self) -> list[tuple[str, str]]:
+        """Return the last accepted state in words: quantities with their units, and their values."""
+        found = [(quantity.title, quantity.shown(getattr(self.state, key))) for key, quantity in QUANTITIES.items()]
+        return [row for row in found if row[1] != "–"]
+
+    def __repr__(self) -> str:
+        """Return the last accepted state."""
+        return "\n".join([self._title(), *side_by_side(self._rows())])
+
+    def _repr_html_(self) -> str:
+        """Return the last accepted state for a notebook."""
+        return notebook.page(self._title(), notebook.table(("", "last state"), self._rows()))
+
+    def _title(self) -> str:
+        last = f"{self._load} in step {len(self.states)}" if self.states else "unloaded"
+        return f"Body of {len(self.triangles)} triangles, per metre of depth: {last}"
 
     @property
     def _d_eq(self) -> Array:
@@ -279,6 +320,7 @@ class Body:
         found = contact_state(
             path, self._made.observer.ridge_loads(path.surface_state), self._made.surface.ridge_numbers, self._d_eq,
             load=self._load, load_number=self._loads, record=record, skin=self._points.gather(path.surface_state),
+            time=path.time if self.problem.in_time else math.nan,
         )  # fmt: skip
         least = force_error(solver.layout.global_size, max(_TOLERANCE, solver.floor), solver.force_scale)
         laws = self.problem.interface

@@ -1,7 +1,7 @@
 """Breakdown of air between skin and screen: a caution by the field in the gap of each ridge in contact.
 
 A ridge's gap is its equivalent air gap d_eq, and the voltage across it is that of the circuit at each instant. It
-breaks down by :func:`variational.attraction.circuit.breakdown_voltage`, in which the total voltage does not count.
+breaks down by :func:`variational.roughness.statistics.breakdown_voltage`, in which the total voltage does not count.
 Loads over time are looked at in their states. Where a state has the mean attraction of a drive, a period of the drive
 counts, in its steady state. *Assumption*: skin beside the contact, and ridges above the screen, are not looked at.
 """
@@ -13,12 +13,15 @@ import numpy as np
 
 from fingerpad.model import followed
 from fingerpad.scene.supply import Supply, supply_of
-from variational.attraction.circuit import breakdown_voltage
+from variational.roughness.statistics import breakdown_voltage
 from variational.state import ContactState
 
 if TYPE_CHECKING:
     from fingerpad.scene import Scene
     from fingerpad.scene.waveform import Waveform
+
+
+_LIGHT = 1e4  # Pa, of a ridge at the edge of a contact, whose gap is the widest
 
 
 class Across(NamedTuple):
@@ -51,6 +54,22 @@ def of_gaps(scene: "Scene", points: Iterable[tuple[str, float, float]]) -> list[
     )
 
 
+def ahead(scene: "Scene") -> list[str]:
+    """Return the caution on the loads of a scene before anything is solved, in the gap of a ridge under 10 kPa.
+
+    Ridges at the edge of a contact bear as little. Their gaps are the widest, and have the largest part of the voltage.
+    """
+    gap, name = float(scene.closure()(_LIGHT).d_eq), f"a ridge under {_LIGHT * 1e-3:g} kPa"
+    if scene.supply is not None:
+        return _caution([_over_period(scene.supply, name, gap)])
+    share = followed.share(scene)
+    part = gap / (gap + scene.h_0) * (1.0 if share is None else float(share(gap)))
+    found = [Across(name, gap, abs(load.level) * part) for load in scene.loads() if load.level]
+    waves = [load.wave for load in scene.loads() if load.wave is not None]
+    supplies = (supply_of(wave, scene.electric, scene.geometry.sc_thickness) for wave in waves)
+    return _caution([*found, *(_over_period(supply, name, gap) for supply in supplies)])
+
+
 def of_states(scene: "Scene", states: Iterable[ContactState]) -> list[str]:
     """Return the caution on the ridge in contact in whose gap air is the farthest beyond breakdown, with the instant.
 
@@ -64,7 +83,7 @@ def of_states(scene: "Scene", states: Iterable[ContactState]) -> list[str]:
 
 def _caution(points: Iterable[Across]) -> list[str]:
     worst = max(points, key=lambda each: each.beyond, default=None)
-    if worst is None or worst.beyond <= 1:
+    if worst is None or not worst.beyond > 1:
         return []
     return [
         f"{worst.volts:.4g} V are across a gap of {1e6 * worst.gap:.3g} µm in {worst.where}, and from "

@@ -10,7 +10,6 @@ A load begins with the drive switched on across a gap without charge, by the equ
 these are not known, of a table of a tissue or of a carrier, it begins in the steady state.
 """
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -87,12 +86,7 @@ def loads(scene: "Scene") -> "tuple[Load, ...]":
         if load.wave is None:
             continue
         supply, mean = supply_of(load.wave, scene.electric, scene.geometry.sc_thickness), scene.electric.follows
-        if (
-            mean == "instantaneous"
-            and supply.circuit.lossless
-            and load.wave.carrier is None
-            and load.wave.burst is None
-        ):
+        if mean == "instantaneous" and supply.circuit.lossless and load.wave.carrier is None:
             continue
         seconds = load.seconds(way or 0.0)
         times, volts = constant(supply, seconds) if mean == "mean" else over_time(supply, seconds)
@@ -121,7 +115,7 @@ def over_time(supply: Supply, seconds: float) -> tuple[Array, Array]:
     factor = (supply.h_0 + REFERENCE) / REFERENCE
     count = int(np.clip(POINTS / max(seconds * (wave.frequency or 0.0), 1.0), _FEW, _MANY))
     if wave.carrier is None and isinstance(tissue, ColeCole):
-        t, u = (np.array(each) for each in zip(*_pieces(wave, seconds, count), strict=True))
+        t, u = (np.array(each) for each in zip(*wave.samples(seconds, 24 / count), strict=True))
         network = Network.of(supply.circuit, REFERENCE, *supply.behind)
         return t, factor * network.response(t, u)
     square = (factor * supply.across(REFERENCE)) ** 2
@@ -140,23 +134,6 @@ def _averaged(square: Array, carried: int) -> Array:
     """Return the mean of values over one period of a carrier around each, by their Fourier series."""
     spectrum = np.fft.rfft(square)
     return np.asarray(np.fft.irfft(spectrum * np.sinc(np.arange(len(spectrum)) / carried), len(square)))
-
-
-def _pieces(wave: Waveform, seconds: float, count: int) -> Iterator[tuple[float, float]]:
-    """Yield times (s) and voltages (V) of a drive without carrier, straight in between; two of one time are a jump."""
-    if wave.burst is None:
-        yield from wave.samples(seconds, 24 / count)
-        return
-    plain, one = wave.model_copy(update={"burst": None}), 1 / (wave.frequency or 1.0)
-    on, off = wave.burst.on * one, wave.burst.off * one
-    start = 0.0
-    while start < seconds * (1 - 1e-9):
-        yield from ((start + t, u) for t, u in plain.samples(min(on, seconds - start), 24 / count))
-        start += on
-        if start < seconds * (1 - 1e-9):
-            end = min(start + off, seconds)
-            yield from ((float(t), wave.offset) for t in np.linspace(start, end, count // 2))
-        start += off
 
 
 def _table(times: Array, volts: Array, period: float) -> Waveform:

@@ -3,7 +3,7 @@
 import json
 import logging
 import time
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
@@ -19,6 +19,7 @@ from fingerpad.results.drawing import View
 from fingerpad.results.quantities import Output, valued
 from fingerpad.results.terminal import Console
 from fingerpad.results.writing import Writer, ridge_rows, site_rows
+from fingerpad.scene.messages import counted
 from variational.solvers.outcome import Counts, memory_mb
 from variational.state import ContactState
 
@@ -77,6 +78,7 @@ class Report:
 
     Attributes:
         record: the states.
+        lost: outputs that could not be computed, by name, and why.
     """
 
     def __init__(
@@ -100,7 +102,7 @@ class Report:
             clock: of the run.
             outputs: computed from each state.
         """
-        self._outputs = outputs
+        self._outputs, self.lost = outputs, dict[str, str]()
         self._simulation, self._writer, self._console, self._clock = simulation, writer, console, clock
         finger, checks = simulation.finger, simulation.checks
         self.record = PathRecord(finger.problem.mesh.comm, checks)
@@ -110,7 +112,7 @@ class Report:
         for omission in omitted:
             console.show(f"{omission}")
             writer.log.info("%s", omission)
-        console.show(f"{finger.unknowns} unknowns, {len(finger.ridges)} ridges that can touch")
+        console.show(f"{finger.unknowns} unknowns, {counted(len(finger.ridges), 'ridge')} that can touch")
         console.head()
 
     def step(self, step: "Step", done: float) -> None:
@@ -126,7 +128,7 @@ class Report:
             record = replace(step.state.record, processor_seconds=self._clock.processor_seconds())
             state = replace(step.state, record=record, changes=tuple(step.attempt.changes))
             state = replace(state, sites=self._viewer.sites(), stimuli=self._viewer.stimuli(step))
-            state = valued(state, self._outputs)
+            state = valued(state, self._outputs, self.lost)
             self.record.states.append(state)
             skin, body = self._viewer.skin(step), self._viewer.body(fields=False)
             if skin is not None and body is not None:
@@ -199,11 +201,12 @@ class Report:
         for state in self.record.states:
             self._show(state, done)
 
-    def write_motion(self, folder: Path) -> None:
-        """Write ``motion.npz``; collective."""
+    def motion(self) -> Callable[[Path], None] | None:
+        """Return what writes ``motion.npz`` into a folder, on rank 0; collective."""
         body = self._viewer.body(fields=False)
-        if body is not None and self.record.moved:
-            motion.write(folder, body, self.record.moved)
+        if body is None or not self.record.moved:
+            return None
+        return lambda folder: motion.write(folder, body, self.record.moved)
 
     def _log_checks(self) -> None:
         for step, check in list(self._simulation.checks.items())[self._logged :]:

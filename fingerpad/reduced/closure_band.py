@@ -8,7 +8,9 @@ without voltage where it has one, else the default finger's.
 **All assumptions.** The ± of a result is what mesh and penalty leave unsolved. Its assumptions move µ_app by more
 (docs/assumptions.md). Each part changes one of them, by the same ratio:
 
-- closure: to the other models of roughness;
+- friction law: to Coulomb's law, and to a constant shear stress on the ridges in contact (:class:`.Derjaguin` without a
+  friction coefficient). Each has the friction of the result's own law without voltage, at the same force;
+- rough contact: to the other models of roughness;
 - tips: ridge tips half as curved, and one and a half times. The length of a contact follows the root of the radius;
 - roughness: h_rms 20 % smaller and larger, of the result's closure;
 - coating: the effective thickness h_0 of coating and skin 20 % smaller and larger;
@@ -17,13 +19,20 @@ without voltage where it has one, else the default finger's.
 The band is that of the result's headline: of the whole finger wherever slices are summed over it. Ratios of the middle
 section are taken for it.
 
-The changes are conventions, those of docs/assumptions.md. The parts are taken as independent: the band is the root of
-the sum of their squares, in the logarithm of µ_app and to either side. A closure whose ridges adhere, beyond its table
-of gaps, has no number: the upper end of the band is then open.
+The changes are conventions, those of docs/assumptions.md. Full runs of these changes are known at one load, in
+``full_changes.json`` by ``python3 -m benchmarks.assumptions``. The ratio of the cylinders is taken to the power that
+gives the full model's ratio at that load (:func:`powers`), for friction law, tips, roughness and coating.
+
+The parts are taken as independent: the band is the root of the sum of their squares, in the logarithm of µ_app and to
+either side. A closure whose ridges adhere, beyond its table of gaps, has no number: the upper end of its part and of
+the band is then open, and the band has the end of the other parts beside it.
 """
 
-from collections.abc import Iterable, Iterator, Mapping
+import json
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
+from functools import cache
+from importlib.resources import files
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -35,7 +44,9 @@ from fingerpad.reduced.cylinders import over_forces
 from fingerpad.results.closures import KNOWN, RECORD
 from fingerpad.scene import Scene
 from fingerpad.scene.messages import SceneError
+from fingerpad.scene.remarks import coefficient
 from fingerpad.slices.errors import known_at
+from variational.contact.friction import Derjaguin, Friction
 from variational.roughness.bam import BearingArea
 from variational.roughness.boundary_elements import BoundaryElements
 from variational.roughness.closure import Closure
@@ -48,6 +59,9 @@ if TYPE_CHECKING:
 
 CHANGE, TIPS = (0.8, 1.2), (2.0, 1 / 1.5)
 """Factors of a value, and of the radius of a tip."""
+LAW = "friction law"
+SHEAR_STRESS = Derjaguin(mu_f=0.0, tau_0=1.0)
+"""A constant shear stress on ridges in contact (Pa)."""
 OUTSIDE, OWN = "no field in contact", "the result's own closure"
 _SHARED = ("h_0", "h_rms", "wavelength", "young", "p_floor")
 
@@ -97,14 +111,14 @@ def band(result: "Result") -> dict[str, Any]:
     A closure without a number is None, and ``no_number`` has the reason. ``upper_bounds`` has what a closure balances
     whose attraction is an upper bound (:meth:`.TabulatedClosure.balanced`). Empty too where the result's own closure
     has no number, since there is no ratio then.
+
+    Raises:
+        SceneError: it is no scene of charged cylinders.
     """
     scene, slip = result.scene, result.full_slip
-    if slip is None or not slip.voltage or not slip.mu_app > 0 or scene.history is not None:
+    if not _has_band(result) or slip is None:
         return {}
-    try:
-        laws, here = closures(scene.closure()), _solved(scene, slip, scene.closure(), result.uncharged)
-    except SceneError:
-        return {}
+    laws, here = closures(scene.closure()), _solved(scene, slip, scene.closure(), result.uncharged)
     if not laws or here.why:
         return {}
     found = {words: friction(scene, slip, law, result.uncharged) for words, law in laws.items()}
@@ -114,6 +128,12 @@ def band(result: "Result") -> dict[str, Any]:
         "upper_bounds": {words: each.balanced for words, each in found.items() if each.balanced},
         "model": "cylinders",
     }
+
+
+def _has_band(result: "Result") -> bool:
+    """Return whether there is friction at full slip that a voltage changes."""
+    slip = result.full_slip
+    return bool(slip is not None and slip.voltage and slip.mu_app > 0 and result.scene.friction_law() is not None)
 
 
 def _finite(value: float) -> float | None:
@@ -142,11 +162,7 @@ def friction(scene: Scene, slip: ContactState, law: Closure, press: ContactState
 
 def _solved(scene: Scene, slip: ContactState, law: Closure, press: ContactState | None, tips: float = 1.0) -> Slip:
     """Return :func:`friction`; raise SceneError without an equilibrium, and for a finger that is none of cylinders."""
-    given: dict[str, Any] = {"roughness": law, "f_ext": slip.f_ext, "force": None}
-    if scene.supply is None:
-        given["voltage"] = slip.voltage
-    known = [replace(press, f_ext=slip.f_ext)] if press is not None and press.contact_length > 0 else []
-    (found,) = over_forces(scene.model_copy(update=given), [slip.f_ext], "full_slip", known, tips)
+    found = _cylinders(scene if scene.supply is not None else _at(scene, slip.voltage), slip, law, press, tips)
     if not isinstance(law, TabulatedClosure):
         return Slip(found.mu_app)
     p_c = found.f_contact / found.contact_length
@@ -157,17 +173,40 @@ def _solved(scene: Scene, slip: ContactState, law: Closure, press: ContactState 
     return Slip(found.mu_app, balanced=balanced if balanced >= BALANCED else 0.0)
 
 
+def _cylinders(
+    scene: Scene, slip: ContactState, law: Closure, press: ContactState | None, tips: float = 1.0
+) -> ContactState:
+    """Return full slip of the charged cylinders at the voltage of a scene; raise SceneError as :func:`_solved`."""
+    under = scene.model_copy(update={"roughness": law, "f_ext": slip.f_ext, "force": None})
+    known = [replace(press, f_ext=slip.f_ext)] if press is not None and press.contact_length > 0 else []
+    (found,) = over_forces(under, [slip.f_ext], "full_slip", known, tips)
+    return found
+
+
+def _at(scene: Scene, voltage: float) -> Scene:
+    return scene.model_copy(update={"voltage": voltage})
+
+
 def _adhere(law: Closure, voltage: float) -> str:
     return f"ridges adhere at {voltage:.4g} V" if sticking(law, voltage) else ""
 
 
 # -- all assumptions ---------------------------------------------------------------------------------------
 def with_band(result: "Result") -> "Result":
-    """Return a result with its bands in its record, where it has some: over closures, and over all assumptions."""
-    found = band(result)
-    all_parts = known(result, found)
+    """Return a result with its bands in its record, over closures and over all assumptions, or a note why it has none.
+
+    It has none, and no note, where no voltage changes friction.
+    """
+    if not _has_band(result):
+        return result
+    try:
+        found = band(result)
+        all_parts = known(result, found)
+    except SceneError as error:
+        why, _, _ = str(error).partition(";")
+        return replace(result, notes=(*result.notes, f"No likely range of µ_app is computed: {why}."))
     more = ({RECORD: found} if found else {}) | ({KNOWN: all_parts} if all_parts else {})
-    return replace(result, record=result.record | more) if more else result
+    return replace(result, record=result.record | more)
 
 
 class Part(NamedTuple):
@@ -199,22 +238,22 @@ def known(result: "Result", closures: Mapping[str, Any]) -> dict[str, Any]:
     """Return the band of µ_app at full slip and its parts, the largest first, ready for JSON; empty without a band.
 
     The upper end is None where it is open: of a part with a change that has no number, and then of the band. Such a
-    part has ``at_least``, its largest number, and ``no_number``, the reasons. Both ends of the band are None where the
-    result's own closure has no number.
+    part has ``at_least``, its largest number, and ``no_number``, the reasons. ``at_least`` of the band is the end by
+    the parts that have one. Both ends of the band are None where the result's own closure has no number.
 
     Args:
         result: with full slip under a voltage.
         closures: what :func:`band` returns for it.
+
+    Raises:
+        SceneError: it is no scene of charged cylinders.
     """
     slip, finger = result.full_slip, result.finger
-    if slip is None or not slip.voltage or not slip.mu_app > 0 or result.scene.history is not None:
+    if not _has_band(result) or slip is None:
         return {}
     whole = finger is not None and "full_slip" in finger.states
     mu = finger.states["full_slip"].mu_app if finger is not None and whole else slip.mu_app
-    try:
-        here = _solved(result.scene, slip, result.scene.closure(), result.uncharged)
-    except SceneError:
-        return {}
+    here = _solved(result.scene, slip, result.scene.closure(), result.uncharged)
     unknown = ["slices"] if finger is not None and whole and "f_t" not in known_at(finger.f_ext) else []
     found: dict[str, Any] = {"mu_app": mu, "low": None, "high": None, "whole": whole, "parts": [], "not_known": unknown}
     if here.why:
@@ -224,9 +263,11 @@ def known(result: "Result", closures: Mapping[str, Any]) -> dict[str, Any]:
     if not parts:
         return {}
     parts.sort(key=lambda part: -np.log(part.ends[1] / part.ends[0]))
-    below, above = np.sqrt(np.sum(np.log([part.ends for part in parts]) ** 2, axis=0))
-    ends = {"low": mu * float(np.exp(-below)), "high": _finite(mu * float(np.exp(above)))}
-    return found | ends | {"parts": [part.kept(mu) for part in parts]}
+    logs = np.log([part.ends for part in parts])
+    below, above = np.sqrt(np.sum(np.where(np.isfinite(logs), logs, 0.0) ** 2, axis=0))
+    low, at_least = mu * float(np.exp(-below)), mu * float(np.exp(above))
+    open_end = {"high": None, "at_least": at_least} if np.isinf(logs).any() else {"high": at_least}
+    return found | {"low": low} | open_end | {"parts": [part.kept(mu) for part in parts]}
 
 
 def _of_closures(closures: Mapping[str, Any], mu: float) -> Part:
@@ -234,24 +275,59 @@ def _of_closures(closures: Mapping[str, Any], mu: float) -> Part:
     values = {words: value for words, value in closures.get("mu_app", {}).items() if value is not None}
     largest = max(values, key=lambda words: values[words], default="")
     bounds = {words: share for words, share in closures.get("upper_bounds", {}).items() if words == largest}
-    return Part("closure", [value / mu for value in values.values()], closures.get("no_number", {}), bounds)
+    return Part("rough contact", [value / mu for value in values.values()], closures.get("no_number", {}), bounds)
 
 
 def _parts(result: "Result", slip: ContactState, here: float) -> Iterator[Part]:
     """Yield the other parts; ``here`` is µ_app of the charged cylinders at full slip."""
-    scene, own = result.scene, result.scene.closure()
-
-    def part(name: str, changed: Iterable[tuple[Scene, Closure, float]]) -> Part:
+    scene, full = result.scene, dict(powers())
+    full = full if coefficient(scene) is not None else {LAW: full[LAW]}
+    for name, changed in changes(scene, slip, result.uncharged).items():
         found = [friction(each, slip, law, result.uncharged, tips) for each, law, tips in changed]
         why = {f"changed {name}": each.why for each in found if each.why}
-        return Part(name, [each.mu_app / here for each in found if not each.why], why)
-
-    yield part("tips", ((scene, own, tips) for tips in TIPS))
-    if isinstance(own, BearingArea | TabulatedClosure):
-        yield part("roughness", ((scene, replace(own, h_rms=factor * own.h_rms), 1.0) for factor in CHANGE))
-        yield part("coating", ((*_coated(scene, own, factor), 1.0) for factor in CHANGE))
+        pairs = zip(found, full.get(name, (1.0, 1.0)), strict=True)
+        yield Part(name, [(each.mu_app / here) ** power for each, power in pairs if not each.why], why)
     if result.finger is not None and "f_t" in (ends := known_at(result.finger.f_ext)):
         yield Part("slices", [1 / (1 + end) for end in ends["f_t"]])
+
+
+def changes(
+    scene: Scene, slip: ContactState, press: ContactState | None
+) -> dict[str, list[tuple[Scene, Closure, float]]]:
+    """Return two changes of each assumption but the closure, by part: scene, closure and radius of tips over its own.
+
+    Arguments are those of :func:`friction`, and it raises SceneError as :func:`known` does.
+    """
+    own, still = scene.closure(), _cylinders(_at(scene, 0.0), slip, scene.closure(), press)
+    laws = laws_like(scene.friction_law(), still.f_contact / still.contact_length)
+    found = {
+        LAW: [(scene.model_copy(update={"friction": law}), own, 1.0) for law in laws],
+        "tips": [(scene, own, tips) for tips in TIPS],
+    }
+    if isinstance(own, BearingArea | TabulatedClosure):
+        found["roughness"] = [(scene, replace(own, h_rms=factor * own.h_rms), 1.0) for factor in CHANGE]
+        found["coating"] = [(*_coated(scene, own, factor), 1.0) for factor in CHANGE]
+    return found
+
+
+def laws_like(own: Friction | None, p_c: float) -> tuple[float, Derjaguin]:
+    """Return a friction coefficient, and a shear stress, with the friction of a law at a mean contact pressure (Pa).
+
+    On the ridge that they have in common the pressure is the same too: what friction shears is its own.
+    """
+    stress = 0.0 if own is None else float(own.limit(p_c))
+    return stress / p_c, replace(SHEAR_STRESS, tau_0=stress / float(SHEAR_STRESS.limit(p_c)))
+
+
+@cache
+def powers() -> Mapping[str, Sequence[float]]:
+    """Return the powers of the cylinders' ratios that give the full model's, by part, of its two changes in order.
+
+    Where a change has no ratio, as from Coulomb's law to itself, the power is that of the other one.
+    """
+    kept = json.loads((files("fingerpad.reduced") / "full_changes.json").read_text(encoding="utf-8"))
+    found = {name: [np.log(full) / np.log(closed) for full, closed in part] for name, part in kept.items()}
+    return {name: (*map(float, part), float(part[0]))[:2] for name, part in found.items()}
 
 
 def _coated(scene: Scene, own: BearingArea | TabulatedClosure, factor: float) -> tuple[Scene, Closure]:

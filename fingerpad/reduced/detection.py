@@ -19,6 +19,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from fingerpad.scene.modulation import shape
 from variational.attraction.circuit import GapCircuit
 
 Array = NDArray[np.float64]
@@ -28,13 +29,8 @@ DISPLACEMENT = (24.3, 11.1, 5.34, 1.87, 0.496, 0.115, 0.079, 0.049, 0.042, 0.046
 """Displacement thresholds (µm)."""
 REFERENCE = 120.0
 """Frequency (Hz) of a sine to whose threshold others are relative."""
-_SAMPLES = 4096
-_PLACES = np.arange(_SAMPLES) / _SAMPLES
-WAVES: dict[str, Array] = {
-    "sine": np.sin(2 * np.pi * _PLACES),
-    "square": np.where(_PLACES % 0.5 == 0, 0.0, np.where(_PLACES < 0.5, 1.0, -1.0)),
-}
-"""A period of each wave of amplitude 1; at a jump it is the mean, as a Fourier series has it."""
+_SAMPLES = 1 << 14
+_NOTHING = 1e-9  # of the largest force: an amplitude that is roundoff
 
 
 def threshold(frequency: ArrayLike) -> Array:
@@ -60,8 +56,8 @@ class Level:
         return not FREQUENCY[0] <= self.frequency <= FREQUENCY[-1]
 
     def relative_to(self, other: "Level") -> float:
-        """Return the voltage at the threshold over that of another drive."""
-        return float(np.sqrt(other.value / self.value))
+        """Return the voltage at the threshold over that of another drive; infinite for a constant force."""
+        return float(np.sqrt(other.value / self.value)) if self.value else np.inf
 
 
 def level(force: ArrayLike, frequency: float) -> Level:
@@ -73,6 +69,7 @@ def level(force: ArrayLike, frequency: float) -> Level:
     """
     values = np.asarray(force, dtype=float)
     amplitude = 2 / len(values) * np.abs(np.fft.rfft(values))[1:]
+    amplitude[amplitude < _NOTHING * np.abs(values).max()] = 0.0
     at = frequency * np.arange(1, len(amplitude) + 1)
     felt = amplitude / threshold(at)
     k = int(np.argmax(felt))
@@ -84,11 +81,12 @@ def of_wave(circuit: GapCircuit, wave: str, frequency: float, layers: tuple[floa
 
     Args:
         circuit: of the gap.
-        wave: a name of :data:`WAVES`.
+        wave: as for :func:`fingerpad.scene.modulation.shape`.
         frequency: of the wave (Hz).
         layers: gap (m), d_i (m), eps_i, d_sc (m).
 
     Raises:
         ValueError: the frequency is not greater than 0, or the tissue is not known there.
     """
-    return level(circuit.response(WAVES[wave], frequency, *layers) ** 2, frequency)
+    period = shape(wave, np.arange(_SAMPLES), _SAMPLES)
+    return level(circuit.response(period, frequency, *layers) ** 2, frequency)

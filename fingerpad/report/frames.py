@@ -18,6 +18,7 @@ from fingerpad.results.arrays import finger_of, skin_of
 from fingerpad.results.raster import along, cells_at, pieces
 from fingerpad.results.result import Result
 from fingerpad.results.states import WORDS, called, partial_slip
+from fingerpad.scene.messages import counted
 from variational.state import ContactState
 
 Array = NDArray[np.float64]
@@ -145,7 +146,7 @@ def _about(state: ContactState | None) -> str:
     slides = abs(state.f_t) > 1e-9 * abs(state.f_ext) and not math.isnan(state.mu_app)
     slip = f", µ_app = {state.mu_app:.3f} of the middle section" if slides else ""
     count = state.ridges_in_contact
-    length = f"L_R = {_MM * state.contact_length:.3f} mm, {count} ridge{'s' * (count != 1)} in contact"
+    length = f"L_R = {_MM * state.contact_length:.3f} mm, {counted(count, 'ridge')} in contact"
     return f"{conditions_of(state)}{slip}, {length}"
 
 

@@ -1,4 +1,4 @@
-"""Two bars below the headline of a report: how far friction is solved, and how far it is known, with its parts."""
+"""Bars below the headline of a report: how far friction is solved, and its likely range with the parts of it."""
 
 import math
 from typing import TYPE_CHECKING
@@ -10,7 +10,7 @@ from fingerpad.results.palette import BLUE, GREY, VERMILION
 if TYPE_CHECKING:
     from fingerpad.results.result import Result
 
-_LEFT, _RIGHT, _WIDTH, _ROW = 92.0, 134.0, 480.0, 26.0  # px
+_LEFT, _RIGHT, _WIDTH, _ROW = 112.0, 114.0, 480.0, 26.0  # px
 _LEAST, _APART = 3.0, 34.0  # px, of the shortest bar, and between two ticks
 _TICKS = (0.02, 0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.8, 1, 1.5, 2, 3, 5, 10, 20, 50, 100)
 _SYMBOL = 'µ<tspan dy="4" font-size="12">app</tspan><tspan dy="-4">&#8203;</tspan>'  # typeset, as SVG has it
@@ -27,7 +27,7 @@ def bars(result: "Result") -> str:
     mu, error = kept["mu_app"], found.error
     solved = {"name": "solved to", "low": mu - error, "high": mu + error}
     bands = [(solved, BLUE)] if error < mu else []
-    bands += [({"name": "known to", **kept}, VERMILION), *((part, GREY) for part in kept["parts"])]
+    bands += [({"name": "likely range", **kept}, VERMILION), *((part, GREY) for part in kept["parts"])]
     every = [part[key] for part, _ in bands for key in ("low", "high", "at_least") if part.get(key) is not None]
     low, high = math.log(min(every)), math.log(max(every))
     margin = 0.05 * (high - low)
@@ -50,10 +50,10 @@ def bars(result: "Result") -> str:
         lines.append(_text(_WIDTH - _RIGHT + 8, y + 13, span(part), "start"))
     lines.append(_text((_LEFT + _WIDTH - _RIGHT) / 2, end + 36, f"{_SYMBOL} of the {found.of} (–)", "middle"))
     said = [_SAID, *([_OPEN] if kept["high"] is None else [])]
-    said += [f"{note[0].upper()}{note[1:]}." for part in kept["parts"] for note in notes(part)]
+    said += [note for part in kept["parts"] for note in notes(part)]
     return (
         f'<figure class="bars"><svg viewBox="0 0 {_WIDTH:g} {end + 42:g}" role="img" font-size="15" '
-        f'aria-label="How far µ_app is solved, and how far it is known">{"".join(lines)}</svg>'
+        f'aria-label="How far µ_app is solved, and its likely range">{"".join(lines)}</svg>'
         f"<figcaption>{text(' '.join(said))}</figcaption></figure>"
     )
 

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from fingerpad.results.quantities import SYMBOL
-from fingerpad.scene import Scene, SceneError, override
+from fingerpad.scene import Scene, SceneError, changed_keys, override
 from fingerpad.scene.reading import DEFAULT_MODEL, flat
 from variational.files import read
 
@@ -72,10 +72,10 @@ def banner(
 
 
 def claims(sentences: Iterable[str], figure: str) -> str:
-    """Return sentences on how far a number is solved and known, in bold up to a bracket or a comma, and a figure."""
+    """Return sentences on how far a number is solved and known, in bold up to a bracket or a mark, and a figure."""
     lines = list[str]()
     for each in sentences:
-        first = re.split(r"(?=,| \()", each, maxsplit=1)[0]
+        first = re.split(r"(?=[,;:]| \()", each, maxsplit=1)[0]
         lines.append(f"<p><b>{typeset(first[0].upper() + first[1:])}</b>{typeset(each[len(first) :])}.</p>")
     return f'<div class="claims"><div>{"".join(lines)}</div>{figure}</div>' if lines else ""
 
@@ -199,13 +199,6 @@ def _class(kind: str) -> str:
 
 
 # -- parameters: how to run it again, and how to cite it ------------------------------------------------
-def changed(parameters: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the parameters that are not those of the default scene, by dotted key."""
-    default, given = (flat(json.loads(json.dumps(each))) for each in (Scene().parameters(), parameters))
-    empty = {key for key, value in given.items() if value is None and key not in default}  # of a table that is given
-    return {key: value for key, value in given.items() if key not in empty and default.get(key, ...) != value}
-
-
 def all_parameters(parameters: Mapping[str, Any], varied: Container[str] = ()) -> str:
     """Return the table of every parameter; those that are not the default are marked.
 
@@ -213,9 +206,9 @@ def all_parameters(parameters: Mapping[str, Any], varied: Container[str] = ()) -
         parameters: of a scene.
         varied: keys without a value of their own, since a sweep varies them.
     """
-    from fingerpad.scene.keys import every  # reads the docstrings of the models
+    from fingerpad.scene.keys import by_name  # reads the docstrings of the models
 
-    keys, other, rows = {key.name: key for key in every(Scene)}, changed(parameters), []
+    keys, other, rows = by_name(Scene), changed_keys(parameters), []
     for name, value in flat(parameters).items():
         key = keys.get(re.sub(r"\[\d+\]", "[]", name))
         shown = "varied" if name in varied else _shown(value)
@@ -233,12 +226,12 @@ def again(parameters: Mapping[str, Any], model: str) -> str:
         parameters: of its scene.
         model: that was used.
     """
-    given = {key: value for key, value in changed(parameters).items() if key != "model"}
-    option = "" if model == DEFAULT_MODEL else f" --model {model}"
+    given = {key: value for key, (value, _) in changed_keys(parameters).items() if key != "model"}
+    option = "" if model == DEFAULT_MODEL else f" --model {shlex.quote(model)}"
     if any("[" in key or isinstance(value, list) or value is None for key, value in given.items()):
         code = (
             'import fingerpad as fp\n\nscene = fp.Scene.load("scene.json")  # in this folder\n'
-            f'fp.run(scene, model="{model}", out="results/again")'
+            f'fp.run(scene, model={json.dumps(model)}, out="results/again")'
         )
         return f"<pre><code>{text(code)}</code></pre>"
     options = "".join(f" {option_of(key, value)}" for key, value in given.items())

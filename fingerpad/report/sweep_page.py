@@ -4,6 +4,7 @@ import csv
 import io
 import itertools
 import math
+import shlex
 from collections.abc import Mapping
 from contextlib import suppress
 from dataclasses import dataclass
@@ -30,9 +31,9 @@ from fingerpad.runs.sweep_columns import (
     shown,
     tables,
 )
-from fingerpad.scene import SceneError
+from fingerpad.scene import SceneError, changed_keys
 from fingerpad.scene.messages import clip
-from fingerpad.scene.reading import DEFAULT_MODEL
+from fingerpad.scene.reading import DEFAULT_MODEL, model_name
 from fingerpad.slices.errors import remarks
 from variational.files import read
 
@@ -119,7 +120,7 @@ def table_of(folder: Path) -> Table:
     rows = tuple({key: text if key == "failure" else _value(text) for key, text in row.items()} for row in texts)
     try:
         asked = read_object(folder / "sweep.json")
-        more = str(asked["model"]), str(asked.get("version", ""))
+        more = model_name(asked["model"]), str(asked.get("version", ""))
         cautions, notes = (tuple(map(str, asked.get(name, ()))) for name in ("cautions", "notes"))
         outputs = read_outputs(asked.get("outputs", ()))
         return Table(folder, axes, rows, dict(asked["parameters"]), *more, cautions, notes, outputs)
@@ -278,10 +279,10 @@ def _parameters(table: Table) -> str:
 
 
 def _cite(table: Table) -> str:
-    given = html.changed(table.parameters)
+    given = {key: value for key, (value, _) in changed_keys(table.parameters).items()}
     kept = {key: value for key, value in given.items() if not (key in table.axes or "[" in key or value is None)}
     options = [html.option_of(key, value) for key, value in kept.items()]
-    options += [f"--model {table.model}"] if table.model != DEFAULT_MODEL else []
+    options += [f"--model {shlex.quote(table.model)}"] if table.model != DEFAULT_MODEL else []
     options += ["--states full_slip"] if any("full_slip_reached" in row for row in table.rows) else []
     values = table.values()
     if all(type(value) in (int, float) for each in values.values() for value in each):

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 _SMALL, _LARGE = 0.02, 0.1
 """Relative errors below which an error is small, and above which the mesh is too coarse for more than a trend."""
 
-_NO_ERROR = "The run did not estimate the error of its mesh. It is not in any ±, nor in the band of what is known."
+_NO_ERROR = "The run did not estimate the error of its mesh. It is not in any ±, nor in the likely range."
 
 
 class Finding(NamedTuple):
@@ -222,13 +222,14 @@ def jumped(state: ContactState) -> bool:
 
 # -- headline --------------------------------------------------------------------------------------------
 def head(result: "Result") -> str:
-    """Return the finding: its sentence, the number, how far it is solved and known, and whether to rely on it."""
+    """Return the finding: its sentence, the number, its error, its likely range, and whether to rely on it."""
     found = result.headline
     kind, words = verdict(findings(result))
     number = html.typeset(f"{found.symbol} {found.number}") if found.number else ""
     said = f"of the {found.of}, {found.at}{_factor(result)}" if number else ""
     more = f'{html.typeset(words)} <a href="#trust">What was examined</a>'
-    claims = html.claims(filter(None, (found.solved, found.known)), bars(result))
+    known = (line.removesuffix(".") for line in found.known.splitlines())
+    claims = html.claims(filter(None, (found.solved, *known, found.remark.removesuffix("."))), bars(result))
     return html.banner("report of a run", result.folder, found.sentence, number, said, kind, more, claims)
 
 

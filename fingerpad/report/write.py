@@ -38,13 +38,19 @@ def write(folder: Path) -> Path:
         page = _page(found)
     except (LookupError, ValueError, TypeError, AttributeError) as error:  # of files that somebody else has written
         where, kind = clip(str(folder), 80), type(error).__name__
-        raise SceneError(f"no report of {where} can be made of its files ({kind}: {clip(str(error))})") from error
+        raise SceneError(f"no report of {where} can be made of its files ({kind}: {clip(str(error), 400)})") from error
     try:
         replace(folder / NAME, page)
     except OSError as error:
         where = clip(str(folder / NAME), 80)
         raise SceneError(f"the report cannot be written to {where}: {error.strerror}") from None
     return folder / NAME
+
+
+def of_result(result: Result) -> None:
+    """Write the report of a result that is in its folder; serial."""
+    assert result.folder is not None
+    write(result.folder)
 
 
 def _page(found: "Result | Table") -> str:
@@ -58,29 +64,13 @@ def _page(found: "Result | Table") -> str:
 
 
 def attempt(folder: Path) -> Path | None:
-    """Write the report at the end of a run; None and a line on the console where it cannot be made; serial."""
+    """Write the report at the end of a sweep; None and a line on the console where it cannot be made; serial."""
     try:
         return write(folder)
     except Exception as error:  # whatever it is, the results are there
         again = "fingerpad report makes it again"
-        print(f"fingerpad: no report of {clip(str(folder), 80)}: {clip(str(error), 160)}; {again}", file=sys.stderr)
+        print(f"fingerpad: no report of {clip(str(folder), 80)}: {clip(str(error), 400)}; {again}", file=sys.stderr)
         return None
-
-
-def draw_whole(result: Result) -> None:
-    """Write the pictures of a whole finger at the end of a run; a line on the console where that fails; serial.
-
-    These are ``footprint.png`` and, under a force in newtons, ``solid.png``.
-    """
-    if result.finger is None or result.folder is None:
-        return
-    for kind in ("footprint", "solid") if result.whole else ("footprint",):
-        try:
-            result.plot(kind, result.folder / f"{kind}.png")
-        except (OSError, ValueError) as error:
-            print(
-                f"fingerpad: {kind}.png was not written: {getattr(error, 'strerror', None) or error}", file=sys.stderr
-            )
 
 
 def read(folder: Path) -> "Result | Table":

@@ -12,30 +12,45 @@ KNOWN = "known"
 """Key of the band over all assumptions there."""
 
 
+_COUNTS = ("none", "one", "two", "three")
+_VARIANT = ", "  # before what a model of roughness is computed without
+_MODELS = "rough contact"
+
+
 def in_words(kept: Mapping[str, Any]) -> str:
-    """Return a kept band as a sentence; empty without one."""
+    """Return a kept band over models of roughness in sentences; empty without one."""
     if not kept:
         return ""
     found = {words: value for words, value in kept["mu_app"].items() if value is not None}
     low, high = (pick(found, key=lambda words: found[words]) for pick in (min, max))
     bounds = {words: share for words, share in kept.get("upper_bounds", {}).items() if words == high}
-    ends = f"{found[low]:.2f} ({low}) to {found[high]:.2f} ({high})" + " and more" * bool(kept.get("no_number"))
-    words = (
-        f"models of roughness: µ_app of the middle section {ends} at full slip, by the ratio of charged cylinders; "
-        "which one holds for a finger is open (docs/microscale.md)"
+    first = (
+        f"By models of rough contact µ_app of the middle section is {found[low]:.2f} ({low}) to {found[high]:.2f} "
+        f"({high}) at full slip."
     )
-    return "; ".join([words, *notes({**kept, "upper_bounds": bounds})])
+    last = "Which one holds for a finger is open (docs/microscale.md)."
+    return " ".join([first, *notes({**kept, "upper_bounds": bounds}), last])
 
 
 def known_in_words(kept: Mapping[str, Any]) -> str:
-    """Return a kept band over all assumptions as a sentence, the largest part first; empty without one."""
+    """Return a kept band over all assumptions, a sentence a line, the largest part first; empty without one."""
     if not kept or kept["low"] is None:
         return ""
-    parts = ", ".join(f"{part['name']} {_with_notes(part)}" for part in kept["parts"])
-    of = "whole finger" if kept["whole"] else "middle section"
-    words = f"known to about {span(kept)}, by the cheaper model of charged cylinders: µ_app of the {of} by {parts}"
-    lacks = ", ".join(kept["not_known"])
-    return words + (f"; not in it: {lacks}, whose error is not known at this force" if lacks else "")
+    opened = [_opened(part) for part in kept["parts"] if part["high"] is None]
+    parts = ", ".join(f"{part['name']} {span(part)}" for part in kept["parts"])
+    bounds = [note for part in kept["parts"] for note in notes({"upper_bounds": part.get("upper_bounds", {})})]
+    lacks = [f"Not in it: {', '.join(kept['not_known'])}, whose error is not known at this force."]
+    lines = ["; ".join([f"Likely range {span(kept)}", *opened]) + ".", f"With one assumption changed: {parts}."]
+    return "\n".join([*lines, *bounds, *(lacks if kept["not_known"] else [])])
+
+
+def _opened(part: Mapping[str, Any]) -> str:
+    """Return of which changes of a part there is no upper end, and why, in words."""
+    every, why = part["no_number"], " and ".join(dict.fromkeys(part["no_number"].values()))
+    if part["name"] != _MODELS:
+        return f"no upper end with {' and '.join(every)}, where {why}"
+    count = _COUNTS[len({words.partition(_VARIANT)[0] for words in every})]
+    return f"no upper end by {count} of three models of rough contact, in which {why}"
 
 
 def why_not_known(kept: Mapping[str, Any]) -> str:
@@ -46,10 +61,8 @@ def why_not_known(kept: Mapping[str, Any]) -> str:
 
 
 def span(part: Mapping[str, Any]) -> str:
-    """Return the ends of a band or of a part: "and more" where the upper one is open."""
-    if part["high"] is None:
-        return f"{part['low']:.2f} and more"
-    return f"{part['low']:.2f} to {part['high']:.2f}"
+    """Return the ends of a band or of a part; of an open one the end that has a number."""
+    return f"{part['low']:.2f} to {part['at_least'] if part['high'] is None else part['high']:.2f}"
 
 
 def notes(part: Mapping[str, Any]) -> list[str]:
@@ -57,15 +70,8 @@ def notes(part: Mapping[str, Any]) -> list[str]:
     reasons: dict[str, list[str]] = {}
     for words, why in part.get("no_number", {}).items():
         reasons.setdefault(why, []).append(words)
-    return [f"by {' and '.join(those)} {why}: no number" for why, those in reasons.items()] + [
-        f"the largest number, by {words}, is an upper bound: attraction balances {100 * min(share, 1.0):.0f} % of the "
-        "pressure in contact"
+    return [f"No number by {' and '.join(those)}: {why}." for why, those in reasons.items()] + [
+        f"The largest number, by {words}, is an upper bound: attraction balances {100 * min(share, 1.0):.0f} % of the "
+        "pressure in contact."
         for words, share in part.get("upper_bounds", {}).items()
     ]
-
-
-def _with_notes(part: Mapping[str, Any]) -> str:
-    """Return the ends of a part, its largest number where they are open, and why, in brackets."""
-    low, most = part["low"], part.get("at_least", part["low"])
-    ends = f"{low:.2f} to {most:.2f} and more" if most > low else span(part)
-    return f"{ends} ({'; '.join(of_ends)})" if (of_ends := notes(part)) else ends

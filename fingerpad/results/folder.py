@@ -17,6 +17,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, BinaryIO, TypeVar
 
 from fingerpad.results.files import lock_file, read_object, remove, replace_json
+from fingerpad.scene.law_code import foreign
 from fingerpad.scene.messages import SceneError, ends
 from fingerpad.scene.reading import DEFAULT_MODEL
 from fingerpad.scene.scene import Scene, from_data
@@ -60,6 +61,10 @@ class Serial:
     def bcast(self, value: Any) -> Any:
         """Return the value."""
         return value
+
+    def allgather(self, value: T) -> list[T]:
+        """Return the value, of the one rank."""
+        return [value]
 
 
 def on_rank_0(comm: "MPI.Comm | Serial", work: Callable[[], T]) -> T:
@@ -202,6 +207,7 @@ def full_scene(folder: Path) -> Scene:
         FolderError: there is none, or it is of another model.
         SceneError: its mesh, or the file of a law of one's own, is gone or was changed.
     """
+    foreign(folder)
     try:
         kept = _whole(read_object(folder / "scene.json"))
     except (OSError, ValueError):

@@ -12,12 +12,13 @@ Where the result's own closure has no number (:mod:`fingerpad.reduced.closure_ba
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 from fingerpad.results.closures import KNOWN, known_in_words, why_not_known
 from fingerpad.results.quantities import FINGER, QUANTITIES, Output
 from fingerpad.results.states import LoadResult, called
+from fingerpad.scene.fingers import FINGERS
 
 if TYPE_CHECKING:
     from fingerpad.results.answer import Answer
@@ -54,7 +55,9 @@ class Headline:
     ends: tuple[float, float] = (math.nan, math.nan)
     """Least and largest value (SI) over time, where the number is a range."""
     known: str = ""
-    """How far the number is known, in words; empty where that is not estimated."""
+    """The likely range of the number, a sentence a line; empty where there is none."""
+    remark: str = ""
+    """What a reader must know of the finger's name, a sentence; empty for none."""
 
     @property
     def symbol(self) -> str:
@@ -93,12 +96,16 @@ class Headline:
         lines = [self.sentence]
         if self.number:
             lines.append(f"  {self.symbol} of the {self.of} {self.number}, {self.at}.")
-        lines += [f"  {text[0].upper()}{text[1:]}." for text in (self.solved, self.known) if text]
-        return "\n".join(lines)
+        lines += [f"  {self.solved[0].upper()}{self.solved[1:]}."] if self.solved else []
+        return "\n".join([*lines, *(f"  {line}" for line in (*self.known.splitlines(), self.remark) if line)])
 
 
 def headline(result: "Answer") -> Headline:
-    """Return the headline of a result."""
+    """Return the headline of a result, with the remark of its finger's name."""
+    return replace(_of_result(result), remark=FINGERS[result.scene.finger].remark)
+
+
+def _of_result(result: "Answer") -> Headline:
     slip, finger = result.full_slip if result.scene.friction != 0 else None, result.finger
     if (load := _timed(result)) is not None:
         return _over_time(load, slip)
@@ -200,7 +207,7 @@ def _timed(result: "Answer") -> LoadResult | None:
 
 
 def _known(result: "Answer", of: str) -> str:
-    """Return how far friction is known, in words; empty where the band of the record is of something else."""
+    """Return the likely range of friction, in words; empty where the band of the record is of something else."""
     kept = result.record.get(KNOWN, {})
     return known_in_words(kept) if kept and kept["whole"] == (of == WHOLE) else ""
 

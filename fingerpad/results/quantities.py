@@ -6,7 +6,7 @@ of :data:`OUTPUTS`; one of a user is the same, given to ``fingerpad.run(scene, o
 
 import math
 import re
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, MutableMapping, Sequence
 from dataclasses import dataclass, fields, replace
 from typing import Any
 
@@ -219,7 +219,7 @@ FINGER = _listed(
     ("f_electrostatic", "N", "electrostatic attraction of the whole finger", "attraction F_el", 4),
     ("gross_area", "mm²", "area between the outermost touching ridges of the slices", "gross area", 1),
     ("contact_area", "mm²", "area in contact, of the ridges", "ridge contact area", 2),
-    ("indentation", "mm", "lowering of the bone at z = 0", "indentation δ", 3),
+    ("indentation", "mm", "lowering of the bone since the finger first touched", "indentation δ", 3),
     (
         "effective_width", "mm", "external force of the finger over that of its centre, the slice that touches first",
         "F_ext over f_ext of the centre", 2,
@@ -284,9 +284,30 @@ def checked(outputs: Any) -> tuple[Output, ...]:
     return every
 
 
-def valued(state: ContactState, outputs: Iterable[Output]) -> ContactState:
-    """Return a state with the values of outputs."""
-    return replace(state, own={**state.own, **{each.name: each.of(state) for each in outputs if each.compute}})
+def valued(
+    state: ContactState, outputs: Iterable[Output], lost: MutableMapping[str, str] | None = None
+) -> ContactState:
+    """Return a state with the values of outputs.
+
+    Args:
+        state: the state.
+        outputs: what is computed from it.
+        lost: takes by name why an output has no value, which is NaN then; without it that is an error.
+
+    Raises:
+        SceneError: an output cannot be computed.
+    """
+
+    def value(each: Output) -> float:
+        try:
+            return each.of(state)
+        except SceneError as error:
+            if lost is None:
+                raise
+            lost.setdefault(each.name, str(error))
+            return math.nan
+
+    return replace(state, own={**state.own, **{each.name: value(each) for each in outputs if each.compute}})
 
 
 def read(kept: Sequence[dict[str, Any]]) -> tuple[Output, ...]:

@@ -9,28 +9,16 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from fingerpad import launcher
-from fingerpad.results import dataset
+from fingerpad.results import dataset, printing
 from fingerpad.results.answer import Answer, Cost
-from fingerpad.results.closures import RECORD, in_words
 from fingerpad.results.files import read_object
-from fingerpad.results.headline import Headline, headline, missing_slip
-from fingerpad.results.quantities import (
-    CHANGES,
-    PER_LENGTH,
-    PLUS_MINUS,
-    QUANTITIES,
-    STABILITY,
-    Output,
-    cell,
-    checked,
-    head_rows,
-    side_by_side,
-    valued,
-)
+from fingerpad.results.headline import Headline, headline
+from fingerpad.results.quantities import CHANGES, STABILITY, Output, checked, valued
 from fingerpad.results.quantities import read as read_outputs
-from fingerpad.results.states import STATES, LoadResult, called, load_results
+from fingerpad.results.states import STATES, LoadResult, load_results
+from fingerpad.scene.law_code import foreign
 from fingerpad.scene.messages import SceneError, clip
-from fingerpad.scene.reading import DEFAULT_MODEL
+from fingerpad.scene.reading import DEFAULT_MODEL, model_name
 from fingerpad.scene.remarks import coefficient
 from fingerpad.scene.scene import as_kept
 from variational.files import read
@@ -46,7 +34,6 @@ if TYPE_CHECKING:
 
 KINDS = ("surface", "finger", "history", "footprint", "time", "field", "solid")
 """Pictures of a result."""
-_SECTION = "Middle section of the finger"
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -149,9 +136,10 @@ class Result(Answer):
         """Return the names of the quantities of a named state in ``summary.json``."""
         return *CONDITIONS, *RESULTS, *STABILITY, *(each.name for each in self.outputs)
 
-    def to_dict(self) -> dict[str, Any]:
-        """Return the content of ``summary.json``, ready for JSON; SI units."""
-        found = {"headline": self.headline.to_dict(), **self._numbers(), **self.record}
+    def to_dict(self, headline: bool = True) -> dict[str, Any]:
+        """Return the content of ``summary.json``, ready for JSON, by default with the headline; SI units."""
+        found: dict[str, Any] = {"headline": self.headline.to_dict()} if headline else {}
+        found |= self._numbers() | self.record
         found |= {name: text for name in ("failure", "interrupted") if (text := getattr(self, name))}
         found |= {name: list(kept) for name in ("notes", "cautions") if (kept := getattr(self, name))}
         found |= {"outputs": [each.to_dict() for each in self.outputs]} if self.outputs else {}
@@ -188,7 +176,7 @@ class Result(Answer):
         from fingerpad.slices.finger import WholeFinger  # it takes names of this module's wing
 
         parameters, named = summary["parameters"], summary.get("states", {})
-        bare = cls(as_kept(parameters), summary.get("model", DEFAULT_MODEL), None, None, None)
+        bare = cls(as_kept(parameters), model_name(summary.get("model", DEFAULT_MODEL)), None, None, None)
         states: dict[str, Any] = {name: _state(name, named[name]) for name in STATES if name in named}
         bare = replace(
             bare,
@@ -220,6 +208,7 @@ class Result(Answer):
             SceneError: the folder holds no result that can be read.
         """
         folder, name = Path(folder), clip(str(folder), 80)
+        foreign(folder)
         try:
             summary = read_object(folder / "summary.json")
             if set(summary) == {"failure"}:
@@ -244,10 +233,14 @@ class Result(Answer):
 
     def __str__(self) -> str:
         """Return the text *Result* at the end of a run: the named states side by side, with units and errors."""
-        return _text(self)
+        return printing.text(self)
 
     __repr__ = __str__
-    """In a notebook, too: the values of all steps are hundreds of pages."""
+    """In a console, too: the values of all steps are hundreds of pages."""
+
+    def _repr_html_(self) -> str:
+        """Return the text for a notebook: headline, tables, and remarks to unfold."""
+        return printing.page(self)
 
 
 def _loads(scene: "Scene", steps: Sequence[ContactState], stable: Sequence[bool | None]) -> tuple[LoadResult, ...]:
@@ -282,64 +275,3 @@ def _state(name: str, kept: Mapping[str, Any]) -> ContactState:
     more |= {key: values.pop(key) for key in (*STABILITY, "reached") if key in values}
     slip = {"all_slip": True, "slip_held": True} if name == "full_slip" else {}
     return replace(ContactState.from_row({"mu_app": math.nan} | values | slip), **more)
-
-
-# -- text ------------------------------------------------------------------------------------------------
-def _text(result: Result) -> str:
-    """Return the text *Result* at the end of a run: headline, whole finger, and named states with units and errors."""
-    shown = result.named
-    lines = ["Result" if result.finger is None else _SECTION]
-    lines[0] += f" (model '{result.model}')" if result.model != DEFAULT_MODEL else ""
-    if shown:
-        rows = head_rows([called(name, state.voltage) for name, state in shown.items()])
-        values = ((quantity.title, result.cells(key)) for key, quantity in result.printed.items())
-        rows += [[title, *each] for title, each in values if set(each) - {"–"}]
-        if any(state.stable is not None for state in shown.values()):
-            verdicts = {True: "yes", False: "no", None: "–"}
-            rows.append(["stable", *(verdicts[state.stable] for state in shown.values())])
-        lines += side_by_side(rows)
-    least = result.record.get("force_error") or 0.0
-    lines += [f"  {_in_time(load, least)}" for load in result.loads if load.over_time is not None]
-    lines += [f"  {note}" for note in _remarks(result)]
-    finger = [f"{result.finger}"] if result.finger is not None else []
-    return "\n".join([f"{result.headline}", *finger, *lines])
-
-
-def _remarks(result: Result) -> list[str]:
-    """Return the lines after the table: failure, missing full slip, meaning of ± and N/m, effect of the penalty."""
-    found = [f"Not finished: {result.failure}"] if result.failure else []
-    if (how := missing_slip(result)) and not result.failure:
-        found.append(f"Full slip was {how}.")
-    if any(state.error.known() for state in result.named.values()):
-        found.append(PLUS_MINUS)
-    sizes = {name: state.mesh_contact for name, state in result.named.items() if not math.isnan(state.mesh_contact)}
-    if len(set(sizes.values())) > 1:  # with an accuracy
-        each = (f"{1e6 * size:.3g} µm ({called(name, result.named[name].voltage)})" for name, size in sizes.items())
-        found.append(f"Facets of {', '.join(each)}: differences between these states have the errors of both meshes.")
-    share = math.nan if result.full_slip is None else result.full_slip.penalty.contact_length
-    if not math.isnan(share):
-        found.append(f"Penalty: a rigid screen would change the contact length at full slip by {1e3 * share:+.2g} mm.")
-    band = in_words(result.record.get(RECORD, {}))
-    found += [f"{band[0].upper()}{band[1:]}."] if band else []
-    cautions = [f"! {caution}" for caution in result.cautions]
-    return [*found, *([PER_LENGTH] if result.named else []), *result.notes, *cautions]
-
-
-def _in_time(load: LoadResult, least: float) -> str:
-    """Return range and mean of friction in a load over time, and its largest amplitude; of L_R without friction.
-
-    Args:
-        load: over time.
-        least: friction force (N/m) up to which there is none.
-    """
-    passed, rubs = load.over_time, load.rubs(least)
-    assert passed is not None
-    key = "contact_length" if not rubs else "mu_app" if "mu_app" in load.extremes else "f_t"
-    quantity, ends, mean = QUANTITIES[key], load.extremes[key], passed.mean[key]
-    unit = f" {quantity.unit}" if quantity.unit else ""
-    words = f"{load.name}: {quantity.words.split()[-1]} {cell(key, ends.min)} to {cell(key, ends.max)}{unit}"
-    words += "" if math.isnan(mean) else f", mean {cell(key, mean)}{unit}"
-    if rubs and passed.periods:
-        most, frequency = max(zip(passed.f_t_amplitude, passed.frequency, strict=True))
-        words += f"; amplitude of f_T at {frequency:.4g} Hz {cell('f_t', most)} N/m"
-    return f"{words}; {load.sticking}" if rubs and load.sticking else words

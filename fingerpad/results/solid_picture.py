@@ -49,7 +49,7 @@ def solid(whole: "WholeFinger", section: Profiles, path: Path | None, state: Con
     s = np.linspace(-half, half, 1 + 2 * round(_MM * half / _APART))
     edge = _MM * section.point(s, section.skin(s))
     edge = edge[edge[:, 1] <= _UPPER]
-    lift = _MM * (finger.rise(z) - finger.lowest[1] - total.delta)
+    lift = _MM * (finger.rise(z) - total.delta)
     shown = np.maximum(edge[None, :, 1] + lift[:, None], 0.0)
     x = np.broadcast_to(edge[:, 0], shown.shape)
     norm = Normalize(0, _KPA * float(total.pressure.max()))

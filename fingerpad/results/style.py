@@ -35,6 +35,7 @@ WIDTH = 9.0  # in, of a page
 _MM = 1e3
 _NOTHING = 1e-9  # N/m, V or mm: what a title calls zero
 DPI = 150
+_PAGE = 96  # pixels of an inch of a page
 _COLOURS = 256  # of a PNG file
 _LEVEL = 3  # of compression: the next one takes twice as long and saves a tenth
 _ROWS = 4  # of pixels, one of which is counted for the colours of a PNG file
@@ -52,6 +53,18 @@ _LOOK = {
 }
 
 
+class Picture(Figure):
+    """A figure that a notebook shows as the last value of a cell, without pyplot."""
+
+    def _repr_png_(self) -> tuple[bytes, dict[str, float]]:
+        """Return the picture as PNG and its width and height on the page (pixels)."""
+        data = BytesIO()
+        with look():
+            _write_png(self, data)
+        width, height = self.get_size_inches()
+        return data.getvalue(), {"width": _PAGE * width, "height": _PAGE * height}
+
+
 @contextmanager
 def look() -> Iterator[None]:
     """Give the figures of the block the common fonts, sizes and resolution, whatever a matplotlibrc of the user has."""
@@ -63,7 +76,7 @@ def look() -> Iterator[None]:
 
 def figure(height: float, width: float = WIDTH) -> Figure:
     """Return an empty figure of a size (in); its parts keep clear of each other."""
-    return Figure(figsize=(width, height), layout="constrained")
+    return Picture(figsize=(width, height), layout="constrained")
 
 
 def sheet(height: float, title: str) -> Figure:
@@ -75,7 +88,7 @@ def sheet(height: float, title: str) -> Figure:
         height: of a figure whose title has one line (in).
         title: of one line or several.
     """
-    drawn = Figure(figsize=(WIDTH, height + _LINE * title.count("\n")))
+    drawn = Picture(figsize=(WIDTH, height + _LINE * title.count("\n")))
     head(drawn, title)
     return drawn
 

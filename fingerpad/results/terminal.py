@@ -12,13 +12,14 @@ import time
 from collections.abc import Callable, Collection
 from typing import TYPE_CHECKING, TextIO
 
-from fingerpad import launcher
+from fingerpad import launcher, notebook
 from fingerpad.results.quantities import PER_LENGTH, cell
 from variational.state import ContactState, StepRecord
 
 if TYPE_CHECKING:
     from mpi4py import MPI
 
+OnStep = Callable[[ContactState, float], None]
 _TERMINAL = r"/dev/(pts/\d+|tty\w*|console)"
 _LEGEND = (
     "f_ext: external force on the bone; U: voltage; bone x, bone y: its place; f_T: friction; µ_app = f_T / f_ext",
@@ -130,17 +131,19 @@ def about(value: float) -> str:
 class Console:
     """Prints the lines of a run, or nothing but the progress bar, or nothing."""
 
-    def __init__(self, comm: "MPI.Comm", lines: bool = True, bar: bool = True) -> None:
-        """Start the progress bar, where a person watches.
+    def __init__(self, comm: "MPI.Comm", lines: bool = True, bar: bool = True, on_step: "OnStep | None" = None) -> None:
+        """Start the progress bar, where a person watches: in a terminal, or in the cell of a notebook.
 
         Args:
             comm: communicator of the run.
             lines: whether to print lines; a program of one's own prints its own.
             bar: whether to show the bar.
+            on_step: called with each accepted state and the part of the run that is done, on every rank.
         """
         from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn  # not for those who only read
 
-        self._lines = lines and comm.rank == 0
+        self._lines, self._on_step = lines and comm.rank == 0, on_step
+        self._cell = notebook.Bar() if bar and comm.rank == 0 and notebook.running() else None
         self._progress = Progress(
             TextColumn("{task.description}"),
             BarColumn(),
@@ -188,7 +191,7 @@ class Console:
         left = "" if not part else f"time left: {self._pace.left()}"
         if self._progress.disable:
             self.show("; ".join(filter(None, (text, left))))
-        self._progress.update(self._task, completed=self._pace.part, description=text, left=left)
+        self._update(text, left)
 
     def head(self) -> None:
         """Print legend and head of the table of steps."""
@@ -214,10 +217,20 @@ class Console:
         )
         loads = f"{s.load}: {s.f_ext:.1f} N/m, {s.voltage:.0f} V, x {s.bone_x * 1e3:.2f} mm"
         words = loads if math.isnan(s.mu_app) else f"{loads}, µ_app {s.mu_app:z.3f}"
-        self._progress.update(self._task, completed=self._pace.part, description=words, left=f"path left: {left}")
+        self._update(words, f"path left: {left}")
+        if self._on_step is not None:
+            self._on_step(s, self._pace.part)
+
+    def _update(self, words: str, left: str) -> None:
+        """Show in the bar what is being done, and the time left in words."""
+        self._progress.update(self._task, completed=self._pace.part, description=words, left=left)
+        if self._cell is not None:
+            self._cell.update(self._pace.part, " ".join(filter(None, (words, left))))
 
     def close(self) -> None:
         """Take the progress bar away."""
+        if self._cell is not None:
+            self._cell.close()
         if not self._progress.disable:
             self._progress.stop()
 

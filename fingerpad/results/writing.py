@@ -2,20 +2,21 @@
 
 import logging
 import logging.handlers
+import sys
 from collections.abc import Iterator, Mapping
+from contextlib import suppress
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from mpi4py import MPI
 
 from fingerpad.results import dataset
 from fingerpad.results.files import Table, replace_json
-from fingerpad.results.folder import Folder
+from fingerpad.results.folder import Folder, Serial
 from fingerpad.results.quantities import STIMULI
 from variational.state import ContactState
 
 if TYPE_CHECKING:
-    from fingerpad.results.result import Result
+    from mpi4py import MPI
 
 _LOG = "run.log"
 
@@ -24,19 +25,20 @@ class Writer:
     """Writes into a folder, or nothing where there is none.
 
     Attributes:
+        comm: communicator of the run.
         log: takes what is to be logged; kept in memory until the folder is taken.
         folder: where files go; None where nothing is written.
         earlier_log: with which the log begins, of a run that this one goes on from.
     """
 
-    def __init__(self, place: Folder | None, comm: MPI.Comm) -> None:
+    def __init__(self, place: Folder | None, comm: "MPI.Comm | Serial") -> None:
         """Write nothing before :meth:`take`.
 
         Args:
             place: the folder, locked; None to write nothing at all.
             comm: communicator of the run.
         """
-        self._place, self._comm, self._taken = place, comm, False
+        self._place, self.comm, self._taken = place, comm, False
         self.folder = None if place is None else place.folder
         self._tables: dict[str, Table] = {}
         self.earlier_log = ""
@@ -49,34 +51,41 @@ class Writer:
             return
         self._taken = True
         self._place.take()
-        if self._comm.rank == 0:
-            file = _LogFile(self._place.folder / _LOG, mode="x", encoding="utf-8")
-            file.stream.write(self.earlier_log)
+        if self.comm.rank == 0:
+            file = _LogFile(self._place.folder / _LOG, mode="x", encoding="utf-8", delay=not self.earlier_log)
+            if self.earlier_log:
+                file.stream.write(self.earlier_log)
             _send(self.log, file)
 
     def log_text(self) -> str:
         """Return the log so far, on rank 0; empty where there is none."""
-        if self._place is None or self._comm.rank != 0:
+        if self._place is None or self.comm.rank != 0:
             return ""
         return (self._place.folder / _LOG).read_text(encoding="utf-8")
 
     def row(self, name: str, row: Mapping[str, Any]) -> None:
         """Append a row to a table, on rank 0."""
-        if self._place is not None and self._comm.rank == 0:
+        if self._place is not None and self.comm.rank == 0:
             if name not in self._tables:
                 self._tables[name] = Table(self._place.folder / f"{name}.csv", row)
             self._tables[name].write(row)
 
     def summary(self, found: Mapping[str, Any]) -> None:
         """Write ``summary.json``, on rank 0."""
-        if self._place is not None and self._comm.rank == 0:
+        if self._place is not None and self.comm.rank == 0:
             replace_json(self._place.folder / "summary.json", found)
 
-    def dataset(self, result: "Result") -> str:
-        """Write ``result.nc`` on rank 0; return on every rank why it is missing, empty where it is not; collective."""
-        if self._place is None:
-            return ""
-        return str(self._comm.bcast(dataset.save(result) if self._comm.rank == 0 else None))
+    def lost(self, why: str, trace: str) -> None:
+        """Print and log, on rank 0, what a result has to do without.
+
+        Args:
+            why: in one sentence.
+            trace: of the error.
+        """
+        if self.comm.rank == 0:
+            print(f"fingerpad: {why}", file=sys.stderr, flush=True)
+            with suppress(OSError):  # a full disk; what is there stays
+                self.log.warning("%s\n%s", why, trace)
 
     def restart(self) -> None:
         """Delete tables, to be started anew."""

@@ -1,7 +1,6 @@
 """One attempt at a run: the path of its loads on one mesh, and the errors of its states."""
 
 from collections.abc import Sequence
-from contextlib import suppress
 from dataclasses import asdict, dataclass, replace
 from typing import Any
 
@@ -10,28 +9,25 @@ from fingerpad.accuracy.refinement import Refinement
 from fingerpad.accuracy.solves import Solves
 from fingerpad.accuracy.states import StateRecorder
 from fingerpad.accuracy.whole_path import WholePath
-from fingerpad.model import breakdown, cautions
-from fingerpad.model.adhesion import lost, without_slip
+from fingerpad.model.adhesion import lost
 from fingerpad.model.finger import Step, meshed
 from fingerpad.model.options import FingerModel
 from fingerpad.model.report import Clock, Report
 from fingerpad.model.simulation import RestartRequired, Simulation
 from fingerpad.model.state import broken, force_error
-from fingerpad.reduced.closure_band import with_band
 from fingerpad.results.checkpoint import Checkpoint, CheckpointError, Growing
 from fingerpad.results.interrupt import Interrupt, Interrupted
-from fingerpad.results.over_time import NOTE
 from fingerpad.results.provenance import provenance, refuse_unread
 from fingerpad.results.quantities import Output, valued
 from fingerpad.results.result import Result
-from fingerpad.results.states import long_steps
 from fingerpad.results.terminal import Console, in_words
 from fingerpad.results.writing import Writer
+from fingerpad.runs import post
+from fingerpad.runs.context import RunContext
 from fingerpad.runs.restarts import Restarts, finer, hint
 from fingerpad.scene import Scene
 from fingerpad.scene.reading import DEFAULT_MODEL
-from fingerpad.scene.remarks import coefficient, leakage, remarks, used
-from fingerpad.slices.estimate import with_newtons
+from fingerpad.scene.remarks import coefficient, used
 from fingerpad.startup import MPI
 from geometry.profiles import GeometryError
 from variational.solvers.checkpoint import OtherBody
@@ -204,78 +200,77 @@ class Attempt:
             return None
         return restart
 
-    def result(self, scene: Scene, restarts: Restarts) -> Result:
-        """Return the result, and write it and the pictures; collective.
+    def result(self, scene: Scene, context: RunContext) -> Result:
+        """Return the result with all that follows from it, and write it; collective.
 
         Args:
             scene: as it was given.
-            restarts: before this attempt.
+            context: of the run.
         """
         estimate, finger, record = self._estimate, self.simulation.finger, self.report.record
-        self._writer.take()
         final = {} if estimate is None else estimate.base.views
         named = record.named(final, [load.name for load in scene.loads()])
-        unknowns, notes, more = finger.unknowns, [*restarts.notes], dict[str, Any]()
-        notes += [*leakage(scene), *([NOTE] if any(load.takes_time for load in scene.loads()) else [])]
+        unknowns, more = finger.unknowns, dict[str, Any]()
         if estimate is not None:
-            named = with_errors(estimate, named)
             unknowns, more["accuracy"] = estimate.base.unknowns, estimate.summary()
-            notes += estimate.notes
-            self.report.final(final)
-        named = {name: valued(state, self._outputs) for name, state in named.items()}
         self.report.load_reached()
-        failure = self._ended.get("failure", "" if estimate is None else estimate.failure)
-        mu_0 = coefficient(scene)
-        with self._clock.phase("output"):
-            size = self._model.mesh.contact if final else None
-            drawing = record.drawing(mu_0, final, size, named)
-            if drawing is not None and self._writer.folder is not None:
-                drawing.write(self._writer.folder, scene.output.each_load)
-            if self._writer.folder is not None and scene.output.each_load:
-                self.report.write_motion(self._writer.folder)
-        totals = record.totals()
+        mu_0, totals = coefficient(scene), record.totals()
         left = max(self._model.numerics.tolerance, totals["floor"])
         error = force_error(unknowns, left, finger.solver.force_scale)
         more |= self._comm.bcast(self._path() | totals | {"force_error": error})
-        loads = tuple(record.loads(scene.loads(), mu_0))
-        lacks_slip = "full_slip" not in named and any(load.until_full_slip for load in scene.loads())
-        more |= {"restarts": restarts.table, "laws": used(scene), "provenance": provenance()}
-        result = Result(
+        more |= {"restarts": self._restarts.table, "laws": used(scene), "provenance": provenance()}
+        bare = Result(
             scene,
             DEFAULT_MODEL,
             named.get("uncharged"),
             named.get("charged"),
             named.get("full_slip"),
             steps=tuple(record.states),
-            loads=loads,
+            loads=tuple(record.loads(scene.loads(), mu_0)),
             cost=self._clock.cost(finger.solver.counts, unknowns),
-            failure=failure or broken(named.get("full_slip"), error, mu_0),
+            failure=self._ended.get("failure", "" if estimate is None else estimate.failure),
             interrupted=self._ended.get("interrupted", ""),
-            notes=tuple(notes),
-            cautions=(
-                *remarks(scene),
-                *cautions.on_states(record.states, scene.closure(), self._model.contact),
-                *breakdown.of_states(scene, record.states),
-                *long_steps(loads, error),
-                *([] if estimate is None else estimate.cautions()),
-                *(without_slip(record.states, self._model.closure) if lacks_slip and not failure else []),
-            ),
+            notes=tuple(self._restarts.notes),
             record=more,
-            folder=self._writer.folder,
-            drawing=drawing,
+            drawing=record.drawing(mu_0, final, self._model.mesh.contact if final else None, named),
             outputs=tuple(self._outputs),
         )
-        result = with_band(with_newtons(result))
-        if result.failure:
-            self._writer.log.error(result.failure)
-        self._writer.summary(result.to_dict())
-        missing = self._writer.dataset(result)
-        if missing:
-            result = replace(result, notes=(*result.notes, missing))
-            with suppress(OSError):  # the same full disk; what is there stays
-                self._writer.log.warning(missing)
-                self._writer.summary(result.to_dict())
-        return result
+        motion = self.report.motion() if self._writer.folder is not None and scene.output.each_load else None
+
+        def with_estimate(result: Result) -> Result:
+            found = result.named if estimate is None else with_errors(estimate, result.named)
+            drawing = None if result.drawing is None else replace(result.drawing, named=found)
+            result = replace(result, drawing=drawing, **found)  # type: ignore[arg-type]
+            failure = result.failure or broken(result.full_slip, error, mu_0)
+            notes = (*result.notes, *([] if estimate is None else estimate.notes))
+            cautions = [] if estimate is None else estimate.cautions()
+            return post.with_cautions(replace(result, failure=failure, notes=notes), cautions)
+
+        def with_outputs(result: Result) -> Result:
+            states = {name: valued(state, self._outputs, self.report.lost) for name, state in result.named.items()}
+            return replace(result, notes=(*result.notes, *self.report.lost.values()), **states)  # type: ignore[arg-type]
+
+        def with_pictures(result: Result) -> Result:
+            with self._clock.phase("output"):
+                self.report.final(final)
+                if result.folder is not None and result.drawing is not None:
+                    result.drawing.write(result.folder, scene.output.each_load)
+                if result.folder is not None and motion is not None:
+                    motion(result.folder)
+            return result
+
+        def with_cost(result: Result) -> Result:  # collective, and never fails on one rank alone
+            cost, seconds = self._clock.cost(finger.solver.counts, unknowns), self._clock.seconds["output"]
+            return replace(result, cost=cost, record=result.record | {"seconds_output": self._comm.bcast(seconds)})
+
+        own = {
+            "errors of the named states": with_estimate,
+            "outputs": with_outputs,
+            "pictures": with_pictures,
+            "cost": with_cost,
+        }
+        entries = [post.Entry(name, lambda *_: True, compute) for name, compute in own.items()]
+        return post.completed(bare, context, self._writer, entries)
 
     def _path(self) -> dict[str, Any]:
         """Return what the summary holds of the mesh, the options and the times of the path, ready for JSON."""

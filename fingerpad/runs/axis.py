@@ -3,11 +3,10 @@
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cache
 
 from fingerpad.scene import Scene
 from fingerpad.scene.dotted import value_of, with_values
-from fingerpad.scene.keys import Key, every
+from fingerpad.scene.keys import by_name
 from fingerpad.scene.messages import SceneError, clip, show
 
 RANGES = {
@@ -69,7 +68,7 @@ def axis(scene: Scene, key: str, between: Sequence[float | str] | None = None) -
     """
     if not isinstance(key, str) or "=" in key or not key:
         raise SceneError(f"over is {show(key)}; it must be the name of one key, such as 'voltage' or 'electric.d_i'")
-    found = _keys().get(key)
+    found = by_name(Scene).get(key)
     if found is None:
         with_values(scene, {key: 1.0})  # refuses an unknown one, with the nearest
     if found is None or found.limits is None or found.choices:
@@ -92,11 +91,6 @@ def axis(scene: Scene, key: str, between: Sequence[float | str] | None = None) -
     if not low < high:
         raise SceneError(f"the range of {key} is {low:g} to {high:g}; the last value must be above the first")
     return Axis(key, low, high, found.unit)
-
-
-@cache
-def _keys() -> dict[str, Key]:
-    return {key.name: key for key in every(Scene)}
 
 
 def _present(scene: Scene, key: str) -> float:

@@ -23,14 +23,13 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from fingerpad.reduced.closure_band import with_band
 from fingerpad.results.files import below
 from fingerpad.results.result import Result
 from fingerpad.runs import batch
 from fingerpad.runs.context import RunContext
 from fingerpad.runs.points import Point, of_run, one, with_other
+from fingerpad.runs.post import kept
 from fingerpad.runs.processes import limit_processor_time
-from fingerpad.runs.solve import kept
 from fingerpad.scene import Scene, from_data
 from fingerpad.scene.reading import DEFAULT_MODEL
 from variational.state import ContactState
@@ -238,7 +237,7 @@ def main(asked: Path, folder: Path) -> None:
     scenes = [from_data(each) for each in data["scenes"]]
     chain = Chain(scenes, data["half_arc"], MPI.COMM_WORLD)
     for k in chain.follow():
-        kept(with_band(chain.results[k]), RunContext(below(folder, batch.key(scenes[k])), report=False))
+        kept(chain.results[k], RunContext(below(folder, batch.key(scenes[k])), report=False))
 
 
 if __name__ == "__main__":

@@ -1,6 +1,6 @@
 """What a run has beside its scene: ranks, folder, console, report, and where it goes on."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass
 from pathlib import Path
@@ -10,6 +10,7 @@ from fingerpad import launcher
 from fingerpad.results.folder import Folder, Serial
 from fingerpad.results.quantities import Output
 from fingerpad.scene import Scene
+from variational.state import ContactState
 
 if TYPE_CHECKING:
     from fingerpad.startup import MPI
@@ -31,6 +32,8 @@ class RunContext:
     """Whether ``report.html`` is written beside the results. A model without a path has bands of its friction then."""
     resume: bool = False
     """Whether the run goes on from the checkpoint in its folder."""
+    on_step: Callable[[ContactState, float], None] | None = None
+    """Called with each accepted state and the part of the run that is done, on every rank; None for nothing."""
     outputs: Sequence[Output] = ()
     """Further quantities, each computed from every state."""
 

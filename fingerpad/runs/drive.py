@@ -166,7 +166,7 @@ def thresholds(scene: Scene, frequencies: Sequence[float] = FREQUENCIES) -> list
         reference = detection.of_wave(circuit, "sine", detection.REFERENCE, layers)
         found = []
         for f in frequencies:
-            sine, square = (detection.of_wave(circuit, wave, f, layers) for wave in detection.WAVES)
+            sine, square = (detection.of_wave(circuit, wave, f, layers) for wave in ("sine", "square"))
             marked = sine.extrapolated or square.extrapolated
             found.append(Threshold(f, sine.relative_to(reference), square.relative_to(sine), marked))
     except ValueError as error:

@@ -6,6 +6,7 @@ from contextlib import closing
 from typing import Any
 
 import fingerpad.startup  # noqa: F401
+from fingerpad.model import breakdown
 from fingerpad.model.options import FingerModel, by_rule, plan
 from fingerpad.model.report import Clock
 from fingerpad.results.interrupt import Interrupt, all_together, no_room
@@ -17,6 +18,7 @@ from fingerpad.results.writing import Writer
 from fingerpad.runs.attempt import Attempt, Session
 from fingerpad.runs.checkpoints import checkpoint_of, read
 from fingerpad.runs.context import RunContext
+from fingerpad.runs.post import in_words
 from fingerpad.runs.restarts import Restarts
 from fingerpad.scene import Scene, SceneError
 from fingerpad.scene.reading import DEFAULT_MODEL
@@ -56,7 +58,7 @@ def run(scene: Scene, context: RunContext) -> Result:
     check_options(comm, scene.numerics.element)
     try:
         with (
-            closing(Console(comm, context.lines, context.bar)) as console,
+            closing(Console(comm, context.lines, context.bar, context.on_step)) as console,
             context.place(scene, DEFAULT_MODEL) as place,
         ):
             checkpoint = None if place is None else checkpoint_of(scene, place.folder, outputs)
@@ -64,17 +66,19 @@ def run(scene: Scene, context: RunContext) -> Result:
             writer = Writer(place, comm)
             restarts = Restarts(writer.log, console)
             session = Session(comm, writer, console, Clock(comm), Interrupt(comm), outputs, restarts, checkpoint)
-            return _run(scene, session, kept)
+            return _run(scene, session, kept, context)
     except GeometryError as error:
         what = "the finger cannot be meshed" if scene.geometry.file is None else "mesh"
         raise SceneError(f"{what}: {error}") from error
 
 
-def _run(scene: Scene, session: Session, kept: dict[str, Any] | None) -> Result:
+def _run(scene: Scene, session: Session, kept: dict[str, Any] | None, context: RunContext) -> Result:
     """Run a scene until nothing must be added to its model; go on from what an earlier run kept, if it did."""
     comm, writer, console = session.comm, session.writer, session.console
     clock, restarts, checkpoint = session.clock, session.restarts, session.checkpoint
     writer.log.info("scene %s", json.dumps(scene.parameters()))
+    for caution in breakdown.ahead(scene):
+        writer.log.warning(caution)
     model = FingerModel(by_rule(scene), plan(scene)).of_path()
     if kept is not None:
         clock.earlier(*kept["seconds"])
@@ -98,8 +102,8 @@ def _run(scene: Scene, session: Session, kept: dict[str, Any] | None) -> Result:
                 restarts.record(restart, attempt.report.record.states, attempt.simulation.finger, clock)
                 writer.restart()
                 model = restart.model
-            result = attempt.result(scene, restarts)
-            console.show(f"\n{result}\n{_work(result)}")
+            result = attempt.result(scene, context)
+            console.show(f"\n{in_words(result)}\n{_work(result)}")
             writer.close()
             if checkpoint is not None and comm.rank == 0 and not result.interrupted:
                 checkpoint.delete()

@@ -16,7 +16,7 @@ from typing import Any
 
 import fingerpad.startup  # noqa: F401
 from fingerpad.accuracy.solves import solve_again
-from fingerpad.model import breakdown, cautions, followed
+from fingerpad.model import followed
 from fingerpad.model.finger import Step
 from fingerpad.model.options import FingerModel, by_rule, plan
 from fingerpad.model.report import Clock
@@ -30,9 +30,11 @@ from fingerpad.results.terminal import Console
 from fingerpad.runs.branches import Again, Branches, Followed
 from fingerpad.runs.checkpoints import checkpoint_of, read
 from fingerpad.runs.context import RunContext
+from fingerpad.runs.post import Entry, cautions_on, kept
 from fingerpad.scene import Scene, SceneError
+from fingerpad.scene.messages import counted
 from fingerpad.scene.reading import DEFAULT_MODEL
-from fingerpad.scene.remarks import coefficient, leakage, remarks, used
+from fingerpad.scene.remarks import coefficient, used
 from fingerpad.slices import errors, traces
 from fingerpad.slices.correction import Pair, corrected, correction_errors, mesh_errors
 from fingerpad.slices.total import BeyondTrace, at_force, profile
@@ -72,10 +74,10 @@ def run(scene: Scene, context: RunContext) -> Result:
     all_together(comm)
     check_options(comm, scene.numerics.element)
     checkpoint = None if context.folder is None else checkpoint_of(scene, context.folder, ())
-    with closing(Console(comm, context.lines, context.bar)) as console, Interrupt(comm) as interrupt:
+    with closing(Console(comm, context.lines, context.bar, context.on_step)) as console, Interrupt(comm) as interrupt:
         made = _Newtons(scene, comm, console, interrupt, checkpoint)
         try:
-            return made.result()
+            bare, cautions = made.result()
         except Interrupted as stopped:
             failure = f"{str(stopped).partition(';')[0]} of the {made.doing}; the same command goes on with it"
             bare = Result(scene, DEFAULT_MODEL, None, None, None, failure=failure, interrupted=stopped.signal.name)
@@ -86,6 +88,10 @@ def run(scene: Scene, context: RunContext) -> Result:
             raise
         except (StepFailed, GeometryError, ValueError) as error:
             raise Unsuited(str(error)) from error
+        result = kept(bare, context, [cautions])
+        if checkpoint is not None and comm.rank == 0:
+            checkpoint.delete()
+        return result
 
 
 class _Newtons:
@@ -105,8 +111,8 @@ class _Newtons:
         self._restarts, self._steps = list[str](), 0
         self.branches = Branches(scene, comm, self._on_step, self._on_trace, self._earlier())
 
-    def result(self) -> Result:
-        """Return the result; collective."""
+    def result(self) -> tuple[Result, Entry]:
+        """Return the result, and the entry of the cautions on all of its states; collective."""
         section, states = self.branches.section, traces.states(self._scene)
         model = FingerModel(by_rule(section), replace(plan(section), receptors=False, errors=False))
         loads = model.loads[: 1 + bool(self._scene.volts) + ("full_slip" in states)]
@@ -123,10 +129,7 @@ class _Newtons:
                 self._restarts.append(again.restart.reason)
                 self._console.show(f"fingerpad: {again.restart.reason}; all traces again")
                 self.branches.kept, model = {}, again.restart.model
-        result = self._corrected(model)
-        if self._checkpoint is not None and self._comm.rank == 0:
-            self._checkpoint.delete()
-        return result
+        return self._corrected(model)
 
     # -- on the way ------------------------------------------------------------------------------------
     def _on_step(self, step: Step, done: float) -> None:
@@ -156,8 +159,8 @@ class _Newtons:
         return found
 
     # -- on the scene's own mesh -----------------------------------------------------------------------
-    def _corrected(self, model: FingerModel) -> Result:
-        """Return the result of the traces; collective.
+    def _corrected(self, model: FingerModel) -> tuple[Result, Entry]:
+        """Return :meth:`result` of the traces; collective.
 
         Args:
             model: with their mesh.
@@ -179,27 +182,22 @@ class _Newtons:
         for words, (name, state) in anchors.items():
             own = fine.states[words]
             pairs[name].append(Pair(state.state, own.state, (state.facet, own.facet)))
-        notes, unknowns = [*leakage(self._scene)], fine.unknowns
         found = {name: self._total(branches.found[name], each, degree) for name, each in pairs.items()}
-        notes += [text for name, each in pairs.items() for text in _differences(name, each)]
+        notes = [text for name, each in pairs.items() for text in _differences(name, each)]
         least = branches.force_error
         states = [state for each in found.values() for state in each.states]
         slip = found["full_slip"].end if "full_slip" in found else None
-        return Result(
+        result = Result(
             self._scene,
             DEFAULT_MODEL,
             **traces.sections(self._scene, found),
-            cost=self.clock.cost(branches.counts, unknowns),
+            cost=self.clock.cost(branches.counts, fine.unknowns),
             failure=broken(slip, least, coefficient(self._scene)),
             notes=tuple(notes),
-            cautions=(
-                *remarks(self._scene),
-                *cautions.on_states(states, self._scene.closure(), model.contact),
-                *breakdown.of_states(self._scene, states),
-            ),
             record=self._record(model) | {"force_error": least},
             finger=traces.summed(self._scene, _WORDS, found),
         )
+        return result, cautions_on(states)
 
     def _total(self, each: Traced, pairs: Sequence[Pair], degree: int) -> Traced:
         """Return a trace as on the scene's own mesh, with the finger on it and its errors."""
@@ -222,8 +220,8 @@ class _Newtons:
 def _differences(name: str, pairs: Sequence[Pair]) -> list[str]:
     """Return notes on states in which other ridges touch on the two meshes."""
     return [
-        f"{WORDS[name].capitalize()} at {fine.f_ext:.3g} N/m has {fine.ridges_in_contact} ridges in contact on the "
-        f"scene's mesh, and {coarse.ridges_in_contact} on that of the traces."
+        f"{WORDS[name].capitalize()} at {fine.f_ext:.3g} N/m has {counted(fine.ridges_in_contact, 'ridge')} in contact "
+        f"on the scene's mesh, and {coarse.ridges_in_contact} on that of the traces."
         for coarse, fine in ((pair.coarse, pair.fine) for pair in pairs)
         if fine.ridges_in_contact != coarse.ridges_in_contact
     ]

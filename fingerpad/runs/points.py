@@ -9,8 +9,8 @@ from fingerpad.results.result import Result
 from fingerpad.runs.context import RunContext
 from fingerpad.runs.sweep_columns import OTHER
 from fingerpad.scene import Scene
+from fingerpad.scene.messages import counted
 from fingerpad.scene.reading import DEFAULT_MODEL
-from fingerpad.slices.estimate import with_newtons
 from variational.state import PATH, ContactState
 
 if TYPE_CHECKING:
@@ -37,17 +37,16 @@ class Point:
     """The state on the scene's own mesh, where that is another one."""
 
     def result(self, cost: Cost, before: "Counts", notes: Sequence[str]) -> Result:
-        """Return the result, with its whole finger where the closed form knows a press of it.
+        """Return the result.
 
         Args:
             cost: of all states on the mesh of the chain so far.
             before: counts of their solver before this one.
             notes: on how the state was found.
         """
-        from fingerpad.model import breakdown, cautions
         from fingerpad.model.state import broken
         from fingerpad.results.provenance import provenance
-        from fingerpad.scene.remarks import coefficient, remarks
+        from fingerpad.scene.remarks import coefficient
 
         finger, state, solve = self.finger, self.state, None
         newton, factorisations = cost.newton_iterations - before.newton, cost.factorisations - before.factorisations
@@ -62,8 +61,7 @@ class Point:
             )
             record = {"path_mesh": finger.size.model_dump(), "accuracy": {"mesh": solve.mesh.model_dump()}}
         record |= {"reached": state.reached, "force_error": finger.force_error, "provenance": provenance()}
-        formulation = finger.problem.interface.formulation
-        found = Result(
+        return Result(
             self.scene,
             DEFAULT_MODEL,
             None,
@@ -72,21 +70,17 @@ class Point:
             cost=replace(cost, newton_iterations=newton, factorisations=factorisations, unknowns=unknowns),
             failure=broken(state, finger.force_error, coefficient(self.scene)),
             notes=(f"This is full slip alone, {words}: {state.reached}.", *notes),
-            cautions=(
-                *remarks(self.scene),
-                *self._differences(),
-                *cautions.on_states([state], self.scene.closure(), formulation),
-                *breakdown.of_states(self.scene, [state]),
-            ),
+            cautions=tuple(self._differences()),
             record=record,
         )
-        return with_newtons(found)
 
     def _differences(self) -> list[str]:
         """Return a caution where other ridges touch on the two meshes."""
         if self.final is None or self.final.state.ridges_in_contact == self.state.ridges_in_contact:
             return []
-        larger, own = (f"{s.f_t:.6g} N/m with {s.ridges_in_contact} ridges" for s in (self.state, self.final.state))
+        larger, own = (
+            f"{s.f_t:.6g} N/m with {counted(s.ridges_in_contact, 'ridge')}" for s in (self.state, self.final.state)
+        )
         return [f"full slip has f_T {own} on the scene's mesh, and {larger} on larger elements: the error has both"]
 
 
@@ -105,7 +99,7 @@ def of_run(scene: Scene, why: str, clock: "Clock", comm: "MPI.Comm") -> Result:
     found = run(scene, RunContext(comm=comm, bar=False, report=False))
     note = f"This is full slip of a run of its own, since it was not found from a state on larger elements: {why}."
     counts = Counts(found.cost.newton_iterations, found.cost.factorisations)
-    point = Result(
+    return Result(
         scene,
         DEFAULT_MODEL,
         None,
@@ -117,7 +111,6 @@ def of_run(scene: Scene, why: str, clock: "Clock", comm: "MPI.Comm") -> Result:
         cautions=found.cautions,
         record={key: found.record[key] for key in _OF_RUN if key in found.record} | {"reached": PATH},
     )
-    return with_newtons(point)
 
 
 def one(a: ContactState, b: ContactState) -> bool:
@@ -130,7 +123,7 @@ def with_other(result: Result, other: ContactState) -> Result:
     mine = result.full_slip
     assert mine is not None
     names = ("f_t", "mu_app", "contact_length", "f_electrostatic", "ridges_in_contact", "reached")
-    said = [f"f_T {s.f_t:.6g} N/m with {s.ridges_in_contact} ridges ({s.reached})" for s in (mine, other)]
+    said = [f"f_T {s.f_t:.6g} N/m with {counted(s.ridges_in_contact, 'ridge')} ({s.reached})" for s in (mine, other)]
     caution = f"there are two states of full slip: {said[0]} and {said[1]}"
     record = result.record | {OTHER: {name: getattr(other, name) for name in names}}
     return replace(result, record=record, cautions=(*result.cautions, caution))

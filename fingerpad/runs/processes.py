@@ -21,6 +21,8 @@ from pathlib import Path
 from types import FrameType
 from typing import Generic, TypeVar
 
+from fingerpad.scene.law_code import LAWS, entries
+
 _ROOT = Path(__file__).resolve().parents[2]
 _LAUNCHERS = ("OMPI_", "PMIX_", "PMI_", "PRTE_", "MV2_")  # by whose variables MPI takes a process for a rank of theirs
 _STUCK = 20  # times its limit that a job may take by the clock
@@ -55,11 +57,11 @@ def run(module: str, arguments: Sequence[str], limit: float, folders: Sequence[s
         module: calls :func:`limit_processor_time`.
         arguments: of its command line.
         limit: what it calls it with; a twentieth of the time it may take by the clock.
-        folders: of modules of one's own.
+        folders: of laws of one's own.
     """
-    path = os.pathsep.join([str(_ROOT), *filter(None, [os.environ.get("PYTHONPATH")]), *folders])
+    path, laws = os.pathsep.join([str(_ROOT), *entries("PYTHONPATH")]), os.pathsep.join([*entries(LAWS), *folders])
     alone = {name: value for name, value in os.environ.items() if not name.startswith(_LAUNCHERS)}
-    env = alone | {"PYTHONPATH": path, "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
+    env = alone | {"PYTHONPATH": path, LAWS: laws, "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
     command = [sys.executable, "-P", "-m", module, *arguments]  # -P: no modules of the current folder
     if _STOPPED.is_set():  # while the job waited for its turn
         return End(-signal.SIGTERM, "STOPPED", "a signal came before it began", "")

@@ -4,27 +4,28 @@ import json
 import os
 import signal
 import warnings
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from fingerpad import launcher
 from fingerpad.installed import needed_by, source, version
-from fingerpad.reduced.closure_band import with_band
+from fingerpad.model import breakdown
 from fingerpad.reduced.registry import find
-from fingerpad.results import dataset
-from fingerpad.results.files import below, read_object, replace_json
+from fingerpad.results.files import below, read_object
 from fingerpad.results.folder import Serial, identity, on_rank_0
 from fingerpad.results.quantities import Output
 from fingerpad.results.quantities import checked as checked_outputs
 from fingerpad.results.result import Result
 from fingerpad.runs.context import RunContext
+from fingerpad.runs.post import BEGUN, Entry, kept, of_outputs
 from fingerpad.scene import Scene
 from fingerpad.scene.messages import SceneError, show
 from fingerpad.scene.reading import DEFAULT_MODEL, flat
 from fingerpad.scene.supply import REFERENCE
 from variational.coefficients import LawError
+from variational.state import ContactState
 
 if TYPE_CHECKING:
     from fingerpad.reduced.model import Model
@@ -43,6 +44,7 @@ def run(
     comm: "MPI.Comm | None" = None,
     resume: bool = False,
     outputs: Sequence[Output] = (),
+    on_step: Callable[[ContactState, float], None] | None = None,
     **changes: Any,
 ) -> Result:
     """Return what a model answers to a scene; collective.
@@ -57,10 +59,13 @@ def run(
         comm: communicator; by default of all ranks.
         resume: go on from where a run of the same scene in ``out`` was cut short; only of the full model.
         outputs: further quantities, each computed from every state: see :class:`fingerpad.results.quantities.Output`.
+        on_step: called after each step of a path with its state and the part of the run that is done, from 0 to 1; on
+            every rank. A closed form has no steps.
         changes: values of the scene by key, as :meth:`fingerpad.scene.Scene.replace` takes them.
 
     Returns:
         The result. A load that could not be reached is its ``failure``, with a warning; the states before are in it.
+        A voltage that breaks down air has a warning before the full model's minutes.
 
     Raises:
         SceneError: the scene cannot be run, in one sentence.
@@ -75,7 +80,9 @@ def run(
         raise SceneError(
             f"resume is true, out is {show(out)} and model {show(model)}; only a full run in a folder can go on"
         )
-    context = RunContext(None if out is None else Path(out), comm, resume=resume, outputs=outputs)
+    for caution in breakdown.ahead(scene.resolved()) if way.path and launcher.rank() == 0 else ():
+        warnings.warn(caution, stacklevel=2)
+    context = RunContext(None if out is None else Path(out), comm, resume=resume, outputs=outputs, on_step=on_step)
     result = solved(scene, way, context)
     if result.interrupted:
         raise stopped(result)
@@ -118,16 +125,9 @@ def solved(scene: Scene, model: "Model", context: RunContext) -> Result:
     if context.resume:
         scene.refuse_laws_of_program("a run that goes on")
     try:
-        result = _section(scene, model, context) if scene.force is None else _whole(scene, model, context)
+        return _section(scene, model, context) if scene.force is None else _whole(scene, model, context)
     except LawError as error:
         raise SceneError(str(error)) from error
-    whole = not (result.interrupted and scene.force is not None)  # a force without all of its traces is no result
-    if context.report and whole and context.folder is not None and context.ranks.rank == 0:
-        from fingerpad.report.write import attempt, draw_whole
-
-        draw_whole(result)
-        attempt(context.folder)
-    return result
 
 
 def _section(scene: Scene, model: "Model", context: RunContext) -> Result:
@@ -135,11 +135,14 @@ def _section(scene: Scene, model: "Model", context: RunContext) -> Result:
     result = _solved(scene, model, context)
     if model.path:
         return result
-    if model.sums:
+
+    def with_sum(result: Result) -> Result:
         from fingerpad.slices import traces
 
-        result = traces.with_sum(result, model, lambda each, _: _solved(each, model, replace(context, folder=None)))
-    return kept(with_band(result) if context.report else result, context)
+        return traces.with_sum(result, model, lambda each, _: _solved(each, model, replace(context, folder=None)))
+
+    own = [Entry("newtons of the whole finger", lambda *_: model.sums, with_sum), of_outputs(context.outputs)]
+    return kept(result, context, own)
 
 
 def _solved(scene: Scene, model: "Model", context: RunContext) -> Result:
@@ -155,8 +158,7 @@ def _solved(scene: Scene, model: "Model", context: RunContext) -> Result:
     if model.path:
         return result
     versions = {"versions": {"fingerpad": version(), "source": source()}}
-    result = replace(result, record={**result.record, "provenance": versions})
-    return result.with_outputs(context.outputs)
+    return replace(result, record={**result.record, "provenance": versions})
 
 
 def _refuse_different(scene: Scene, comm: "MPI.Comm | Serial") -> None:
@@ -199,8 +201,7 @@ def _whole(scene: Scene, model: "Model", context: RunContext) -> Result:
         _refuse_different(scene, context.ranks)
         model.check(scene)
         try:
-            found = newtons.run(scene, context)
-            return found if found.interrupted else kept(with_band(found), context)
+            return newtons.run(scene, context)
         except newtons.Unsuited as why:
             notes = [f"The traces are runs of their own: {why}."]
             if followed.share(scene) is not None:
@@ -215,8 +216,7 @@ def _whole(scene: Scene, model: "Model", context: RunContext) -> Result:
 
     found = traces.whole(scene, model, solve)
     found = replace(found, notes=(*found.notes, *notes))
-    banded = model.path or context.report
-    return found if found.interrupted else kept(with_band(found) if banded else found, context)
+    return found if found.interrupted else kept(found, context, [] if model.path else [of_outputs(context.outputs)])
 
 
 def gone_on(scene: Scene, model: "Model", context: RunContext) -> Result:
@@ -242,8 +242,8 @@ def finished(scene: Scene, place: Path) -> Summary | None:
 
 
 def ended(found: Summary | None) -> Summary | None:
-    """Return a summary but for one of a run that was stopped, or had too little memory."""
-    again = found is None or found.get("interrupted") or OF_THE_MACHINE in str(found.get("failure"))
+    """Return a summary but for one of a run that was stopped or killed, or had too little memory."""
+    again = found is None or found.get("interrupted") or BEGUN in found or OF_THE_MACHINE in str(found.get("failure"))
     return None if again else found
 
 
@@ -253,25 +253,3 @@ def summary(place: Path) -> Summary | None:
         return read_object(place / "summary.json")
     except (OSError, ValueError):
         return None
-
-
-def kept(result: Result, context: RunContext) -> Result:
-    """Return the result of a model without a path, written into the folder if there is one; collective.
-
-    A note says what could not be written.
-
-    Raises:
-        FolderError: the folder is in use, holds results of another scene or model, or cannot be written to.
-    """
-    with context.place(result.scene, result.model) as place:
-        if place is None:
-            return result
-        place.take()
-        folder, here = place.folder, replace(result, folder=place.folder)
-
-        def write() -> str:
-            replace_json(folder / "summary.json", here.to_dict())
-            return dataset.save(here)
-
-        missing = on_rank_0(context.ranks, write)
-        return replace(here, notes=(*here.notes, missing)) if missing else here

@@ -20,6 +20,7 @@ from fingerpad.results.quantities import Output
 from fingerpad.results.quantities import checked as checked_outputs
 from fingerpad.results.result import Result
 from fingerpad.runs.context import RunContext
+from fingerpad.runs.post import applied, of_outputs
 from fingerpad.runs.solve import checked, solved
 from fingerpad.runs.sweep_results import FILE, Sweep
 from fingerpad.scene import Scene
@@ -105,7 +106,7 @@ def sweep(
         found = _in_processes(scenes, values, folder, jobs, way, quiet, states)
     else:
         found = [_here(each, way) for each in scenes]
-    done = Sweep(values, tuple(each.with_outputs(outputs) for each in found), folder)
+    done = Sweep(values, tuple(applied(each, [of_outputs(outputs)]) for each in found), folder)
     for name in FILES[:-1]:  # else that of an earlier sweep may stay beside this one's
         (folder / name).unlink(missing_ok=True)
     asked = {"version": version(), "model": model, "parameters": scene.parameters()}

@@ -15,7 +15,7 @@ from fingerpad.results.headline import SECTION, WHOLE
 from fingerpad.results.quantities import FINGER, FRICTION, QUANTITIES, SWEPT, Output, cell
 from fingerpad.results.states import STATES, LoadResult
 from fingerpad.scene import Scene
-from fingerpad.scene.keys import Key, every
+from fingerpad.scene.keys import Key, by_name
 from fingerpad.slices.finger import WholeFinger
 
 if TYPE_CHECKING:
@@ -199,4 +199,4 @@ def head_of(key: str, kind: str = "head") -> str:
 
 def described(key: str) -> Key | None:
     """Return what is known of a dotted key of a scene; None of a table."""
-    return next((each for each in every(Scene) if each.name == re.sub(r"\[\d+\]", "[]", key)), None)
+    return by_name(Scene).get(re.sub(r"\[\d+\]", "[]", key))

@@ -4,7 +4,6 @@ import csv
 import io
 import itertools
 import json
-import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -13,13 +12,15 @@ from typing import TYPE_CHECKING, Any, overload
 import numpy as np
 from numpy.typing import NDArray
 
-from fingerpad.reduced.closure_band import with_band
+from fingerpad import notebook
 from fingerpad.results import dataset, netcdf
 from fingerpad.results.closures import KNOWN
 from fingerpad.results.files import replace
 from fingerpad.results.quantities import FINGER, PER_LENGTH, Output
 from fingerpad.results.states import STATES, WORDS
+from fingerpad.runs import post
 from fingerpad.runs.sweep_columns import described, head_of, of_finger, printed, row, said_of, shown, tables
+from fingerpad.scene.messages import alike
 from fingerpad.slices.errors import remarks
 from variational.state import CONDITIONS, RESULTS
 
@@ -69,7 +70,7 @@ class Sweep:
         if isinstance(k, slice):
             return tuple(self[place] for place in range(len(self))[k])
         result = self.results[k]
-        return result if KNOWN in result.record else with_band(result)
+        return result if KNOWN in result.record else post.applied(result, [post.BANDS])
 
     @property
     def whole(self) -> bool:
@@ -124,9 +125,8 @@ class Sweep:
         """
         found = dict[str, list[str]]()
         for result in self.results:
-            mine = {_alike(text): text for text in result.cautions}
-            for alike, text in mine.items():
-                found.setdefault(alike, []).append(text)
+            for form, text in {alike(text): text for text in result.cautions}.items():
+                found.setdefault(form, []).append(text)
         return [
             f"{texts[0]} ({len(texts)} of {len(self)} points{', numbers of the first' * (len(set(texts)) > 1)})"
             for texts in found.values()
@@ -169,6 +169,21 @@ class Sweep:
 
         The first columns are of the whole finger, where it is known, and those of the middle section follow.
         """
+        found, notes = self._printed()
+        lines = [line for title, table in found for line in (title, *_aligned(table))]
+        return "\n".join([*lines, *notes, *(f"! {caution}" for caution in self.cautions()), *self.notes])
+
+    __repr__ = __str__
+
+    def _repr_html_(self) -> str:
+        """Return the text for a notebook, with remarks to unfold."""
+        (title, first), *more = ((title, notebook.table(table[0], table[1:])) for title, table in self._printed()[0])
+        cautions = notebook.lines(f"! {caution}" for caution in self.cautions())
+        remarks = notebook.folded("Remarks", [*self._printed()[1], *self.notes])
+        return notebook.page(title, first, *(notebook.page(*each) for each in more), cautions, remarks)
+
+    def _printed(self) -> tuple[list[tuple[str, list[list[str]]]], list[str]]:
+        """Return the tables with their titles, and the remarks on their columns."""
         rows, axes = self.rows(), {key: head_of(key) for key in self.axes}
         state, columns = shown((column for each in rows for column in each), self.whole, self.outputs)
         table = [[*axes.values(), *(each.head for each in columns.values())]]
@@ -182,15 +197,11 @@ class Sweep:
             cells = [of.shown(values[column], errors[column]) for column, of in columns.items()]
             table.append([*first, *cells])
         of = said_of(columns)
-        lines = [f"{of[0].upper()}{of[1:]}, at {WORDS[state]}", *_aligned(table)]
-        for name, over_time in tables(rows, axes):
-            lines += [f"Over time, in the load {name}", *_aligned(over_time)]
+        found = [(f"{of[0].upper()}{of[1:]}, at {WORDS[state]}", table)]
+        found += [(f"Over time, in the load {name}", over_time) for name, over_time in tables(rows, axes)]
         forces = {each.finger.f_ext for each in self.results if each.finger is not None}
         known = remarks(forces, {column.rpartition("finger_")[2] for column in columns})
-        notes = [*known, *([] if any(map(of_finger, columns)) else [PER_LENGTH])]
-        return "\n".join([*lines, *notes, *(f"! {caution}" for caution in self.cautions()), *self.notes])
-
-    __repr__ = __str__
+        return found, [*known, *([] if any(map(of_finger, columns)) else [PER_LENGTH])]
 
 
 def _aligned(table: Sequence[Sequence[str]]) -> list[str]:
@@ -198,11 +209,6 @@ def _aligned(table: Sequence[Sequence[str]]) -> list[str]:
     whole = [line for line in table if len(line) == len(table[0])]
     widths = [max(map(len, column)) for column in zip(*whole, strict=True)]
     return ["   ".join(cell.rjust(width) for cell, width in zip(line, widths, strict=False)) for line in table]
-
-
-def _alike(caution: str) -> str:
-    """Return a caution without its numbers, which differ from point to point."""
-    return re.sub(r"[-+]?\d[\d.]*(e[-+]?\d+)?(, (?=\d))?", "", caution)
 
 
 def _variables(sweep: Sweep) -> tuple[dataset.Variables, tuple[str, ...], dict[str, Any]]:

@@ -53,7 +53,8 @@ def read(text: str, newtons: bool) -> Target:
     """Return the target that a text means.
 
     Args:
-        text: ``QUANTITY=VALUE``; the value is a number in SI, with a unit, in per cent, or followed by ``x``.
+        text: ``QUANTITY=VALUE``; the value is a number in SI, with a unit, or followed by ``x``, a contrast also in
+            per cent.
         newtons: whether a force on the whole finger is given: a name of both is then that of the whole finger.
 
     Raises:
@@ -76,8 +77,9 @@ def read(text: str, newtons: bool) -> Target:
     if unit in ("x", "×") and name != CONTRAST:
         return Target(name, *found[0], number, True)
     if not found[0][0].unit:
-        if unit not in ("", "%"):
-            allowed = "a number or in %" if name == CONTRAST else 'a number, in %, or a multiple such as "2x"'
+        if unit != "" and (unit != "%" or name != CONTRAST):
+            less = f"; for a rise by the voltage it is contrast={parts[1]} %" if unit == "%" else ""
+            allowed = "a number or in %" if name == CONTRAST else f'a number, or a multiple such as "2x"{less}'
             raise SceneError(f"target {clip(name)} is {show(given)}; it must be {allowed}")
         number = number / 100 if unit else number
         return Target(name, *found[0], number + (name == CONTRAST), name == CONTRAST)

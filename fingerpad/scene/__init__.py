@@ -6,7 +6,7 @@ from fingerpad.scene.materials import CLOSURES, FRICTION_LAWS, MATERIALS
 from fingerpad.scene.messages import SceneError
 from fingerpad.scene.parameters import CONTACT, Accuracy, Contact, Numerics, Output
 from fingerpad.scene.reading import override
-from fingerpad.scene.scene import Scene, as_kept, from_data, load
+from fingerpad.scene.scene import Scene, as_kept, changed_keys, from_data, load
 
 
 def law_name(law: object) -> str:
@@ -32,6 +32,7 @@ __all__ = [
     "from_data",
     "laws_by_name",
     "as_kept",
+    "changed_keys",
     "load",
     "override",
     "start",

@@ -8,9 +8,19 @@ from pydantic import BaseModel
 
 from fingerpad.scene.fingers import ADULT, DEFAULTS, FINGERS
 from fingerpad.scene.law_keys import keys_of
+from geometry.parameters import Fingertip
 
 DEFAULT_HISTORY = ("f_ext", "voltage", "slide_length")
 """Keys of the default loads, which a history replaces."""
+_SHAPE = (*(name for name in Fingertip.model_fields if name != "sc_thickness"), "file_sha256")
+REPLACED = {
+    "history": (*DEFAULT_HISTORY, "force"),
+    "force": ("f_ext",),
+    "f_ext": ("force",),
+    "slices.height": ("slices.radius", "slices.length"),
+    "geometry.file": tuple(f"geometry.{name}" for name in _SHAPE),
+}
+"""Keys that another one makes meaningless: those of a finger's name, and of a scene that is changed, give way to it."""
 _START = {"contact": 20e-6, "receptor": 40e-6, "interface": 120e-6, "growth": 0.5}  # m, but for the growth
 _START_AT_SITES = 10e-6  # m; coarser elements do not resolve the tips of 6 µm: halving them does not show the error
 
@@ -29,13 +39,15 @@ def changed(
     if "accuracy" in changes and accuracy is not None:
         coarse = start(accuracy)
         present["mesh"] = {key: size for key, size in present.get("mesh", {}).items() if coarse.get(key) != size}
-    replaced = {"history": (*DEFAULT_HISTORY, "force"), "force": ("f_ext",), "f_ext": ("force",)}
-    gone = {other for key, others in replaced.items() if changes.get(key) is not None for other in others}
-    present = {key: value for key, value in present.items() if key not in gone}
-    shape = changes.get("geometry")
-    if isinstance(shape, Mapping) and "file" in shape:
-        present["geometry"] = {k: value for k, value in present.get("geometry", {}).items() if k != "file_sha256"}
+    for key in _replaced(changes):
+        if _at(present, key.split(".")) is not None:
+            present = _put(present, key.split("."), None)
     return _merged(present, changes)
+
+
+def _replaced(data: Mapping[str, Any]) -> set[str]:
+    """Return the keys that others of nested tables make meaningless."""
+    return {key for given, keys in REPLACED.items() if _at(data, given.split(".")) is not None for key in keys}
 
 
 def _merged(present: Mapping[str, Any], changes: Mapping[str, Any]) -> dict[str, Any]:
@@ -72,8 +84,8 @@ def start(asked: Mapping[str, Any]) -> dict[str, float]:
 def with_finger(data: Mapping[str, Any], laws: Mapping[str, type]) -> tuple[Mapping[str, Any], list[str]]:
     """Return the data of a scene with the values of its finger, and the keys of these.
 
-    A key that is given wins. So does a law that is given as an object, of one's own, or without such a parameter, and
-    the shape of a mesh in ``geometry.file``.
+    A key that is given wins, and so does one that makes it meaningless (:data:`REPLACED`), or a law that is given as
+    an object, of one's own, or without such a parameter.
 
     Args:
         data: nested tables.
@@ -81,10 +93,10 @@ def with_finger(data: Mapping[str, Any], laws: Mapping[str, type]) -> tuple[Mapp
     """
     name = data.get("finger")
     values = FINGERS[name].values if isinstance(name, str) and name in FINGERS else {}
-    taken, found = list[str](), data
+    taken, found, gone = list[str](), data, _replaced(data)
     for key, value in values.items():
         parts = key.split(".")
-        if _takes(found, parts, laws):
+        if key not in gone and _takes(found, parts, laws):
             found = _put(found, parts, value)
             taken.append(key)
     return found, taken
@@ -136,8 +148,6 @@ def _takes(table: Any, parts: Sequence[str], laws: Mapping[str, type]) -> bool:
         return False
     if len(parts) > 1:
         return _takes(table.get(parts[0], {}), parts[1:], laws)
-    if table.get("file") is not None:  # of a mesh
-        return parts[0] == "sc_thickness" and "sc_thickness" not in table
     law = table.get("law")
     law = laws.get(law) if isinstance(law, str) else law
     known = "law" not in table or (isinstance(law, type) and is_dataclass(law) and parts[0] in keys_of(law))

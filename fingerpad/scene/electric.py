@@ -105,14 +105,13 @@ class Electric(Table):
         """
         tissue = self.tissue.tissue() if isinstance(self.tissue, TissueTable) else self.tissue
         if isinstance(self.leak, PeakLeak):
-            leak: str | float | None = fit_leak(
-                self.leak.peak,
-                GapCircuit(tissue, eps_sc=self.eps_sc).dielectric,
-                self.leak.gap,
-                self.d_i,
-                self.eps_i,
-                d_sc,
-            )
+            dielectric = GapCircuit(tissue, eps_sc=self.eps_sc).dielectric
+            try:
+                leak: str | float | None = fit_leak(
+                    self.leak.peak, dielectric, self.leak.gap, self.d_i, self.eps_i, d_sc
+                )
+            except ValueError as error:
+                raise ValueError(f"electric.leak.{error}; give another tissue, or a leak in ohm m^2") from None
         else:
             leak = None if self.leak == "none" else self.leak
         return GapCircuit(tissue, leak, self.eps_sc)

@@ -52,6 +52,13 @@ _MOISTURE = "Yuan and Verma 2006, Colloids and Surfaces B 48, 6 to 12, abstract"
 _FRICTION = "Buchholz, Frederick and Armstrong 1988, Ergonomics 31, 317 to 325, as tabled on a page of the authors"
 
 
+NOT_MEASURED = "This finger was not measured: its values are from several sources, and assumptions (docs/fingers.md)."
+MOISTURE = (
+    "No finger was measured for these values, and they contradict a measurement. Here moisture raises the attraction "
+    "of a voltage; people with moist fingers needed a higher voltage to feel it (arXiv 2409.16936)."
+)
+
+
 @dataclass(frozen=True)
 class Trait:
     """Some keys of a finger that have one source."""
@@ -69,6 +76,8 @@ class NamedFinger:
     words: str
     """Who it is."""
     traits: tuple[Trait, ...] = ()
+    remark: str = NOT_MEASURED
+    """What a reader must know of its numbers, a sentence; empty for none."""
 
     @property
     def values(self) -> dict[str, Any]:
@@ -119,7 +128,7 @@ def _surface(values: Mapping[str, Any]) -> tuple[Trait, ...]:
 
 FINGERS = MappingProxyType(
     {
-        ADULT: NamedFinger("the default finger, with the geometry and the materials of the paper"),
+        ADULT: NamedFinger("the default finger, with the geometry and the materials of the paper", remark=""),
         "woman": NamedFinger(
             "a woman, 18 years or older",
             (
@@ -169,6 +178,7 @@ FINGERS = MappingProxyType(
                 ),
                 _DRY_CIRCUIT,
             ),
+            MOISTURE,
         ),
         "callused": NamedFinger(
             "a finger with calluses, of manual work or strings",
@@ -180,8 +190,10 @@ FINGERS = MappingProxyType(
                 ),
             ),
         ),
-        "dry": NamedFinger("a dry finger", (*_surface(_DRY), _DRY_CIRCUIT)),
-        "moist": NamedFinger("a moist finger, by sweat or after a while on glass", (*_surface(_MOIST), _MOIST_CIRCUIT)),
+        "dry": NamedFinger("a dry finger", (*_surface(_DRY), _DRY_CIRCUIT), MOISTURE),
+        "moist": NamedFinger(
+            "a moist finger, by sweat or after a while on glass", (*_surface(_MOIST), _MOIST_CIRCUIT), MOISTURE
+        ),
     }
 )
 """Fingers by name."""

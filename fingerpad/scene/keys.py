@@ -73,6 +73,15 @@ def every(scene: type[BaseModel]) -> Iterator[Key]:
     yield from _of(scene, "", None)
 
 
+@cache
+def by_name(scene: type[BaseModel]) -> dict[str, Key]:
+    """Return every key by its name; of one that several laws read in their own ways that of the first law."""
+    found = dict[str, Key]()
+    for key in every(scene):
+        found.setdefault(key.name, key)
+    return found
+
+
 def tables(model: type[BaseModel]) -> Iterator[type[BaseModel]]:
     """Yield the model of a table and of every table in it; one that is there twice comes twice."""
     yield model
@@ -119,22 +128,20 @@ def _of_law(table: str, key: LawKey, meaning: str) -> Iterator[Key]:
     table = table.removesuffix("law.") if key.flat else table
     text = f"{meaning or 'Name of the law.'} A law of your own has its import path here (docs/laws.md)."
     yield Key(table + (key.flat or "law"), None if key.number else name, text, choices=f"{names} or module:Class")
-    seen = set[str]()
+    readers = dict[Key, list[str]]()  # of what has one range and meaning, under one name
     for law in dict.fromkeys([type(default), *(key.kind.laws.values() if key.several else ())]):
         for field in keys_of(law).values():
-            if field.name in seen:
-                continue
-            seen.add(field.name)
             value = None if key.number or field.default is MISSING else field.default
             value = value if key.number or law is not type(default) else getattr(default, field.name)
             kind = "true or false" if field.type in (bool, "bool") else "text" if field.type in (str, "str") else ""
             choices = ", ".join(map(str, field.metadata.get("allowed", ()))) or kind
-            of = "" if law is type(default) else key.kind.name(law)
-            meaning = docstrings(law).get(field.name, "")
-            readers = [each for each, other in key.kind.laws.items() if field.name in keys_of(other)]
-            if key.several and len(readers) < len(key.kind.laws):
-                meaning += f" Of {' and '.join(readers)} alone."
-            yield Key(table + field.name, value, meaning, range_of(field), choices, law=of)
+            found = Key(table + field.name, value, docstrings(law).get(field.name, ""), range_of(field), choices)
+            same = next((each for each in readers if replace(each, default=value) == found), found)
+            readers.setdefault(same, []).append(key.kind.name(law))
+    for found, laws in readers.items():
+        alone = f" Of {' and '.join(laws)} alone." if key.several and len(laws) < len(key.kind.laws) else ""
+        of = "" if key.kind.name(type(default)) in laws else laws[0]
+        yield replace(found, meaning=found.meaning + alone, law=of)
     for each in key.tables(type(default)):  # that a law may have, and the default law has not
         yield from (replace(k, default=None) for k in _of(each, f"{table}{each.__name__.lower()}.", None))
 

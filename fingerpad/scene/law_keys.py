@@ -7,9 +7,9 @@ law of the package or the import path of one's own::
     friction = {law = "mylaws:Mine", k = 2}
 
 Without ``law`` the parameters are those of the key's default law, and those left out are the default's. Units and
-ranges are the metadata of the dataclass (:func:`variational.coefficients.parameter`). Modules are those on Python's
-path alone: the current folder and the scene's are left out unless ``PYTHONPATH`` names them, so that no file beside a
-scene runs code. What is written of a law of one's own has a hash of the file it stands in.
+ranges are the metadata of the dataclass (:func:`variational.coefficients.parameter`). Modules are those of
+installed packages and of folders that the user names (:mod:`fingerpad.scene.law_code`), so that no file beside a scene
+runs code. What is written of a law of one's own has a hash of the file it stands in.
 """
 
 import re
@@ -178,7 +178,7 @@ class LawKey:
         Raises:
             ValueError: in one sentence.
         """
-        if self.kind.name(type(law)) not in self.kind.laws:
+        if law != self.default and not _KEPT.get():  # which both have been computed with
             self.kind.check(law)
 
     def _kind_of(self, law: Any) -> type:

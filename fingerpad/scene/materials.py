@@ -147,7 +147,7 @@ class Topography(Table):
     """Lengths of a pixel along x and y (m), in place of the map's lengths."""
     missing: str | None = None
     """Mark of missing pixels besides nan and empty places: a number, in a plain matrix also a word. Without it a value
-    far from all other heights is refused; "nan" takes all values as measured."""
+    far from all other heights is refused; "nan" takes all values and lines as measured."""
 
     def roughness(self, law: type[BearingArea | TabulatedClosure]) -> dict[str, Any]:
         """Return the parameters of a law that the map gives.
@@ -219,9 +219,12 @@ class RoughnessKey(LawKey):
 
     def check(self, law: Any) -> None:
         """Refuse a floor of the pressure that is no floor, or holds the gap of an unloaded ridge at over a metre."""
+        if isinstance(law, BearingArea | TabulatedClosure) and not reading_results():
+            self._refuse_floor(law)  # results are read where a measured map's table is not
         super().check(law)
-        if reading_results() or not isinstance(law, BearingArea | TabulatedClosure):
-            return  # results are read where a measured map's table is not
+
+    @staticmethod
+    def _refuse_floor(law: BearingArea | TabulatedClosure) -> None:
         most, where = (
             (law.full_pressure, "at zero separation")
             if isinstance(law, BearingArea)

@@ -1,7 +1,7 @@
 """Messages about an impossible scene, also of the first error of a validation: dotted key, value, what is allowed.
 
-A message has one sentence and at most :data:`MOST` characters, whatever a user wrote. Texts of the user are shortened
-where they are quoted, and their control characters are written out.
+A message has one sentence, whatever a user wrote: texts of the user are shortened where they are quoted, and their
+control characters are written out.
 """
 
 import re
@@ -12,7 +12,7 @@ from typing import Any, get_args
 
 from pydantic import BaseModel, ValidationError
 
-MOST = 280  # characters of a message; with the name of the program before it less than 300
+MOST = 1000  # characters of a message, which no sentence has
 _MAX_VALUE = 60  # of a value that is quoted
 MOST_KEY = 40  # of a key
 
@@ -49,6 +49,11 @@ class SceneError(ValueError):
         super().__init__(clip(message, MOST))
 
 
+def alike(caution: str) -> str:
+    """Return a caution without its numbers, which differ from state to state."""
+    return re.sub(r"[-+]?\d[\d.]*(e[-+]?\d+)?(, (?=\d))?", "", caution)
+
+
 def refuse_type(name: str, value: object, allowed: Any, words: str) -> None:
     """Refuse an argument that is of none of the types allowed.
 
@@ -82,6 +87,11 @@ def ends(value: Any, most: int = 80) -> str:
     text = clip(str(value), len(str(value)) * len("\\U0010ffff"))
     half = most // 2 - 2
     return text if len(text) <= most else f"{text[:half]}…{text[-half:]}"
+
+
+def counted(count: int, one: str, many: str = "") -> str:
+    """Return a number of things in words, of which there may be one; ``many`` is ``one`` with an s by default."""
+    return f"{count} {one if count == 1 else many or one + 's'}"
 
 
 def show(value: Any) -> str:

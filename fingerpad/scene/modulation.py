@@ -1,4 +1,4 @@
-r"""What a waveform is modulated by: a carrier, and bursts; and how large the modulated wave is.
+r"""Waves of amplitude 1, what modulates them, a carrier or bursts, and how large the modulated wave is.
 
 With a carrier the wave is the envelope of a sine of higher frequency, with the depth m of ``modulation``:
 
@@ -10,7 +10,10 @@ twice the carrier's frequency. A burst is a number of whole periods of the wave,
 
 from typing import Annotated, Any
 
-from pydantic import Field
+import numpy as np
+from annotated_types import Ge, Le
+from numpy.typing import ArrayLike, NDArray
+from pydantic import Strict
 
 from fingerpad.scene.messages import show
 from geometry.units import Finite, Table, within
@@ -20,7 +23,21 @@ SQUARE_MEAN = {"sine": 0.5, "square": 1.0, "triangle": 1 / 3}
 """Mean square of each wave of amplitude 1."""
 FASTEST_CARRIER = 2000.0
 """Largest number of a carrier's periods in one of the wave and its burst, of which samples are taken."""
-_Count = Annotated[int, Field(strict=True, ge=1, le=500)]
+_Count = Annotated[int, Strict(), Ge(1), Le(500)]
+
+
+def shape(waveform: str, part: ArrayLike, parts: float = 1.0) -> NDArray[np.float64]:
+    """Return a wave of amplitude 1, at a jump the value behind it; its quarters are the same to the last bit.
+
+    Args:
+        waveform: a name of :data:`SQUARE_MEAN`.
+        part: place in time, in parts of the period.
+        parts: of a period.
+    """
+    quarter, rest = np.divmod(part, parts / 4)
+    rise = np.where(quarter % 2 == 0, rest, parts / 4 - rest) / (parts / 4)
+    size = {"sine": np.sin(np.pi / 2 * rise), "square": np.ones_like(rise), "triangle": rise}[waveform]
+    return np.where(quarter % 4 < 2, size, -size)
 
 
 class Carrier(Table):

@@ -285,11 +285,11 @@ class Slices(Table):
         for name, values in tables.items():
             if len(values) != len(self.z):
                 raise ValueError(f"{name} has {len(values)} values and z has {len(self.z)}; each place needs one value")
-        if self.height is not None:
-            for name in {"radius", "length"} & self.model_fields_set:
-                raise ValueError(
-                    f"{name} is {show(getattr(self, name))} and height is given too; leave out one of them"
-                )
+        given = [name for name in ("radius", "length") if name in self.model_fields_set]
+        if self.height is not None and given:
+            raise ValueError(
+                f"{given[0]} is {show(getattr(self, given[0]))} and height is given too; leave out one of them"
+            )
         return self
 
 

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 from pydantic import BaseModel
 
+from fingerpad.scene.law_code import foreign
 from fingerpad.scene.law_keys import table
 from fingerpad.scene.messages import SceneError, clip, key_of, show
 from variational import files
@@ -90,12 +91,25 @@ def read_study(path: Path) -> dict[str, Any]:
     Raises:
         SceneError: the file cannot be read, or is of a run that was given more than a scene.
     """
+    foreign(path.parent)
+    foreign(path.resolve().parent)
     if path.suffix.lower() == ".json":
         return {key: value for key, value in _kept(path).items() if key != "model"}
     data: dict[str, Any] = plain(read(path))
     _beside(data, path.parent)
     _beside(data.get("sweep"), path.parent)
     return data
+
+
+def model_name(name: Any) -> str:
+    """Return the name of a model in files of results, which may be of one that is not registered here.
+
+    Raises:
+        SceneError: it is no name.
+    """
+    if not (isinstance(name, str) and re.fullmatch(r"[^\W\d][\w .-]{0,59}", name)):
+        raise SceneError(f"model is {show(name)}; it must be the name of a model: letters, digits and dots")
+    return name
 
 
 def model_of(path: Path | None) -> str:
@@ -106,7 +120,7 @@ def model_of(path: Path | None) -> str:
     """
     if path is None or path.suffix.lower() != ".json":
         return DEFAULT_MODEL
-    return str(_kept(path).get("model", DEFAULT_MODEL))
+    return model_name(_kept(path).get("model", DEFAULT_MODEL))
 
 
 def _kept(path: Path) -> dict[str, Any]:

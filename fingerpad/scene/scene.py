@@ -3,6 +3,7 @@
 A number is in SI units, or a text with its unit (:mod:`geometry.units`).
 """
 
+import json
 import math
 from collections.abc import Mapping
 from dataclasses import is_dataclass
@@ -11,6 +12,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 from pydantic import BeforeValidator, Field, ValidationError, model_validator
 
+from fingerpad import notebook
 from fingerpad.scene.changes import DEFAULT_HISTORY, changed, forget, with_coarse_start, with_finger, without_finger
 from fingerpad.scene.electric import Electric
 from fingerpad.scene.fingers import ADULT, FingerName
@@ -39,7 +41,7 @@ from fingerpad.scene.parameters import (
     centre_force,
     refuse_beside_mesh,
 )
-from fingerpad.scene.reading import plain, put_all, read_scene
+from fingerpad.scene.reading import flat, plain, put_all, read_scene
 from fingerpad.scene.supply import Supply, refuse_drives, supply_of
 from fingerpad.scene.viscosity import elastic, refuse_beside, viscous_layers
 from fingerpad.scene.waveform import Waveform
@@ -274,14 +276,25 @@ class Scene(Table):
             found["geometry"] = {key: found["geometry"][key] for key in ("file", "file_sha256", "sc_thickness")}
         else:
             found["geometry"] = {key: x for key, x in found["geometry"].items() if not key.startswith("file")}
+        if self.slices.height is not None:
+            del found["slices"]["radius"], found["slices"]["length"]
         return found
+
+    def _repr_html_(self) -> str:
+        """Return what differs from the default scene, for a notebook."""
+        rows = [(key, *map(show, values)) for key, values in changed_keys(self.parameters()).items()]
+        return notebook.page("Scene: keys unlike the default (SI)", notebook.table(("", "scene", "default"), rows))
+
+
+def changed_keys(parameters: Mapping[str, Any]) -> dict[str, tuple[Any, Any]]:
+    """Return the parameters that are not those of the default scene, by dotted key: their values and the default's."""
+    default, given = (flat(json.loads(json.dumps(each))) for each in (Scene().parameters(), parameters))
+    return {k: (x, default.get(k)) for k, x in given.items() if default.get(k) != x}  # None: of a table that is given
 
 
 def _known(key: str, law: Any) -> Any:
     """Return the law of a key; refuse one whose code is not known."""
-    if isinstance(law, Kept):
-        law.refuse(key)
-    return law
+    return law.refuse(key) if isinstance(law, Kept) else law
 
 
 # -- files ---------------------------------------------------------------------------------------------

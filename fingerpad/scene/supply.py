@@ -19,10 +19,12 @@ from numpy.typing import ArrayLike, NDArray
 
 from fingerpad.scene.electric import Electric
 from fingerpad.scene.messages import show
+from fingerpad.scene.modulation import shape
 from fingerpad.scene.waveform import Waveform
-from variational.attraction.circuit import BREAKDOWN_FIELD, BREAKDOWN_PLATEAU, LEAKS, GapCircuit, breakdown_voltage
+from variational.attraction.circuit import LEAKS, GapCircuit
 from variational.attraction.dielectric import VACUUM_PERMITTIVITY
 from variational.attraction.network import Network
+from variational.roughness.statistics import BREAKDOWN_FIELD, BREAKDOWN_PLATEAU, breakdown_voltage
 
 Array = NDArray[np.float64]
 SAMPLES = 4096
@@ -92,7 +94,7 @@ class Supply:
         u = self.voltages
         low, high = float(u.min()), float(u.max())
         rms, sigma = float(np.sqrt(np.mean(u**2))), float(self.attraction(REFERENCE).mean())
-        mean = float(u.mean())
+        mean = self.wave.mean
         return Measures((high - low) / 2, high - low, rms, 0.0 if abs(mean) < 1e-9 * rms else mean, sigma)
 
     @cached_property
@@ -150,7 +152,7 @@ def supply_of(wave: Waveform, electric: Electric, d_sc: float) -> Supply:
 
 
 def refuse_drives(drives: Mapping[str, Waveform], electric: Electric, d_sc: float) -> None:
-    """Refuse a drive with an offset that breaks down every gap, or of a frequency at which the tissue is not known.
+    """Refuse insulators without a circuit, and drives that break down every gap or whose frequency no tissue has.
 
     Args:
         drives: of a scene, by key.
@@ -160,6 +162,7 @@ def refuse_drives(drives: Mapping[str, Waveform], electric: Electric, d_sc: floa
     Raises:
         ValueError: in one sentence.
     """
+    electric.circuit(d_sc)
     for key, wave in drives.items():
         supply = supply_of(wave, electric, d_sc)
         if abs(wave.offset) > (highest := _widest(supply.h_0)):
@@ -182,48 +185,30 @@ def _widest(h_0: float) -> float:
 def one_period(wave: Waveform) -> Array:
     """Return the voltages of a drive at equal times over the period with which it repeats itself, from its start on.
 
-    At a jump it is the mean of the two sides, as a Fourier series has it.
+    At a jump it is the voltage behind it. A sample between the two sides would attract less than either.
 
     Returns:
         A power of two of voltages (V), at least :data:`SAMPLES`.
     """
     if wave.times is not None and wave.voltages is not None:
         shortest = min(after - before for before, after in zip(wave.times, wave.times[1:], strict=False))
-        t = np.arange(_count(_OF_PIECE * wave.period / shortest)) / _count(_OF_PIECE * wave.period / shortest)
-        found = np.interp(t * wave.period, wave.times, wave.voltages)
-        found[0] = (wave.voltages[0] + wave.voltages[-1]) / 2
-        return np.asarray(found)
+        n = _count(_OF_PIECE * wave.period / shortest)
+        return np.asarray(np.interp(np.arange(n) / n * wave.period, wave.times, wave.voltages))
     periods = round(wave.period * (wave.frequency or 1.0))
     carried = 0 if wave.carrier is None else round(wave.carrier.frequency * wave.period)
     n = _count(max(_OF_WAVE * periods, _OF_CARRIER * carried))
-    t = np.arange(n) / n
-    phase = t * periods % 1.0
-    shape = {"sine": _sine, "square": _square, "triangle": _triangle}[wave.waveform](phase)
+    k = np.arange(n)
+    found = shape(wave.waveform, periods * k, n)
     if wave.carrier is not None:
         depth = 1.0 if wave.carrier.modulation is None else wave.carrier.modulation
-        shape = (1 + depth * shape) / (1 + depth) * _sine(t * carried % 1.0)
+        found = (1 + depth * found) / (1 + depth) * shape("sine", carried * k, n)
     if wave.burst is not None:
-        part = t * periods
-        shape = np.where(part < wave.burst.on, shape, 0.0)
-        shape[part == wave.burst.on] = (wave.waveform == "square") * -0.5 if wave.carrier is None else 0.0
-        shape[0] = (wave.waveform == "square") * 0.5 if wave.carrier is None else 0.0
-    return np.asarray(wave.offset + wave.height * shape)
+        found = np.where(periods * k < wave.burst.on * n, found, 0.0)
+    return np.asarray(wave.offset + wave.height * found)
 
 
 def _count(least: float) -> int:
     return min(max(SAMPLES, 1 << int(np.ceil(np.log2(max(least, 1))))), _MOST)
-
-
-def _sine(phase: Array) -> Array:
-    return np.asarray(np.sin(2 * np.pi * phase))
-
-
-def _square(phase: Array) -> Array:
-    return np.where(phase % 0.5 == 0, 0.0, np.where(phase < 0.5, 1.0, -1.0))
-
-
-def _triangle(phase: Array) -> Array:
-    return np.asarray(1 - np.abs((4 * phase + 1) % 4 - 2))
 
 
 # -- a constant voltage ----------------------------------------------------------------------------------------

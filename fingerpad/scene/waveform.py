@@ -18,10 +18,11 @@ from collections.abc import Iterator
 from itertools import count, pairwise
 from typing import Annotated, Any, Literal
 
+import numpy as np
 from pydantic import BeforeValidator, Field, model_validator
 
 from fingerpad.scene.messages import show
-from fingerpad.scene.modulation import Burst, Carrier, refuse_carrier, square_mean
+from fingerpad.scene.modulation import Burst, Carrier, refuse_carrier, shape, square_mean
 from fingerpad.scene.wavefile import HIGHEST, POINTS, Probe, Seconds, Volts, or_zero, range_of, table
 from geometry.units import Finite, Switch, Table, within
 
@@ -194,6 +195,8 @@ class Waveform(Table):
     # -- samples -----------------------------------------------------------------------------------------
     def count(self, seconds: float, step_scale: float) -> float:
         """Return how many samples a load of some seconds has; zeros of a periodic voltage come on top."""
+        if math.isinf(step_scale):
+            return 0.0
         if self.times is not None:
             periods = max(seconds / self.period, 1.0) if self.repeat else 1.0
             return periods * len(self.samples(seconds / periods, step_scale))
@@ -224,7 +227,13 @@ class Waveform(Table):
     def between(self, before: Sample, after: Sample, time: float) -> float:
         """Return the voltage (V) at a time (s) between two samples, one next to the other."""
         (t0, u0), (t1, u1) = before, after
-        return self._sine(time) if self.waveform == "sine" else u0 + min((time - t0) / (t1 - t0), 1.0) * (u1 - u0)
+        if self.waveform != "sine" or self._in_pause(time):
+            return u0 + min((time - t0) / (t1 - t0), 1.0) * (u1 - u0)
+        return self._value(float(shape("sine", time * (self.frequency or 0.0))))
+
+    def _in_pause(self, time: float) -> bool:
+        phase = time % self.period * (self.frequency or 0.0)
+        return self.burst is not None and phase > self.burst.on * (1 + _TIME_TOLERANCE)
 
     def corners(self, seconds: float) -> list[float]:
         """Return the times (s) at which the voltage bends sharply, up to some seconds; jumps are not among them."""
@@ -234,10 +243,9 @@ class Waveform(Table):
             return [time for time in found if time <= seconds]
         if self.waveform != "triangle":
             return []
-        return [(k + 0.5) / 2 * self.period for k in range(math.ceil(2 * seconds / self.period))]
-
-    def _sine(self, time: float) -> float:
-        return self._value(math.sin(2 * math.pi * math.fmod(time * (self.frequency or 0.0), 1.0)))
+        half = 0.5 / (self.frequency or math.nan)
+        turns = ((k + 0.5) * half for k in range(math.ceil(seconds / half)))
+        return [time for time in turns if not self._in_pause(time)]
 
     def _value(self, shape: float) -> float:
         value = self.offset + self.height * shape
@@ -253,22 +261,25 @@ class Waveform(Table):
                 jump = [table[0][1]] if self.repeat and table[0][1] != table[-1][1] else []
                 yield (period + 1) * self.period, table[-1][1], *jump
             return
-        one = self._one_period(n)
+        one, periods = self._one_period(n), round(self.period * (self.frequency or math.nan))
+        if self.burst is not None:
+            on, off, pause = self.burst.on, self.burst.off, self.offset
+            waves = [(k + phase, *values) for k in range(on) for phase, *values in one]
+            parts = [(on + off * k / (n // 2), pause) for k in range(1, n // 2)]
+            one = [(0.0, pause, one[0][-1]), *waves[1:], (float(on), one[0][1], pause), *parts]
         for period in count():
             for phase, *values in one:
-                yield (period + phase) / (self.frequency or math.nan), *values
+                yield (period * periods + phase) / (self.frequency or math.nan), *values
 
     def _one_period(self, n: int) -> list[tuple[float, ...]]:
         """Return phases from 0 to below 1 and the voltages there."""
-        low, high = self._value(-1.0), self._value(1.0)
+        values = [self._value(float(value)) for value in shape(self.waveform, np.arange(n), n)]
         if self.waveform == "square":
-            values = {0: (low, high), n // 2: (high, low)}
-            return [(k / n, *values.get(k, (high if k < n // 2 else low,))) for k in range(n)]
-        sine = self.waveform == "sine"
-        found = [(k / n, self._value(_quarters(k, n) if sine else _triangle(4 * k / n))) for k in range(n)]
+            return [(k / n, *([values[k - 1]] if k in (0, n // 2) else []), values[k]) for k in range(n)]
+        found: list[tuple[float, ...]] = [(k / n, value) for k, value in enumerate(values)]
         ratio = -self.offset / self.height
         if abs(ratio) < 1:
-            first = math.asin(ratio) / (2 * math.pi) if sine else ratio / 4
+            first = math.asin(ratio) / (2 * math.pi) if self.waveform == "sine" else ratio / 4
             for zero in (first % 1.0, 0.5 - first):
                 if all(min(d := abs(zero - phase), 1 - d) > _TIME_TOLERANCE for phase, _ in found):
                     found.append((zero, 0.0))
@@ -278,18 +289,6 @@ class Waveform(Table):
 def _per_period(step_scale: float) -> int:
     """Return the samples of a period: a multiple of 4, so that the turning points are among them."""
     return 4 * math.ceil(SAMPLES / 4 / step_scale)
-
-
-def _quarters(k: int, n: int) -> float:
-    """Return the sine of k of n parts of a turn, to the last bit the same in each quarter."""
-    quarter = n // 4
-    turn, k = divmod(k, quarter)
-    value = math.sin(math.pi / 2 * (k if turn % 2 == 0 else quarter - k) / quarter)
-    return value if turn < 2 else -value
-
-
-def _triangle(quarters: float) -> float:
-    return quarters if quarters < 1 else 2 - quarters if quarters < 3 else quarters - 4
 
 
 def _refined(times: tuple[float, ...], voltages: tuple[float, ...], most: float, behind: int) -> Iterator[Sample]:

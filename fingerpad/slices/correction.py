@@ -89,7 +89,7 @@ def correction_errors(
     value, *others = (
         at_force(finger, each, force, count).values for each in (corrected(trace, pairs, wavelength), *other)
     )
-    names = {*TOTALS, "mu_app", "indentation"} - {"f_ext"}
+    names = {*TOTALS, "mu_app", "indentation", "effective_width"} - {"f_ext"}
     return {name: max(abs(o[name] / value[name] - 1) for o in others) for name in sorted(names) if value[name]}
 
 

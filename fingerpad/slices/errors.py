@@ -18,8 +18,8 @@ from itertools import groupby
 
 import numpy as np
 
-from fingerpad.slices.total import TOTALS, Profile, Total, at_indentation
-from fingerpad.slices.trace import LEAST, Trace
+from fingerpad.slices.total import TOTALS, Array, Profile, Total, at_indentation
+from fingerpad.slices.trace import LEAST, Trace, gross_width
 from variational.state import ContactState
 
 _OF_SECTION = {  # whose relative error each has; the external force is prescribed
@@ -46,11 +46,14 @@ Those of the indentation are twice as large as there, because they grow the most
 """
 
 
-def discretisation(state: ContactState | None) -> dict[str, float]:
+def discretisation(state: ContactState | None, wavelength: float) -> dict[str, float]:
     """Return the relative discretisation errors that a sum takes over from its cross-section.
+
+    The gross width ends with half of a ridge's length on either side, and has the error of that length.
 
     Args:
         state: of the cross-section, with estimated errors; None where there is none.
+        wavelength: of a ridge (m).
     """
     found = dict[str, float]()
     if state is None:
@@ -59,6 +62,9 @@ def discretisation(state: ContactState | None) -> dict[str, float]:
         value, error = getattr(state, of), getattr(state.error, of)
         if value and not math.isnan(error):
             found[name] = abs(error / value)
+    if "contact_area" in found:
+        ridge = state.error.contact_length / state.ridges_in_contact
+        found["gross_area"] = ridge / gross_width(state, wavelength)
     return found
 
 
@@ -67,18 +73,25 @@ def estimate(name: str, total: Total) -> dict[str, float]:
     return _with_friction(ESTIMATE[name], total) if name in ESTIMATE else {}
 
 
-def lighter(known: dict[str, float], total: Total, ratio: float) -> dict[str, float]:
-    """Return the errors of an estimate under another force: they grow away from the run's own state at the centre.
+def lighter(carried: Mapping[str, dict[str, float]], total: Total, ratio: float) -> dict[str, dict[str, float]]:
+    """Return the parts of an error under another force, which itself is exact.
 
-    *Assumption*: with the root of the ratio of forces. ``tests/test_slices_errors.py`` compares some kept runs with it,
-    together with the error of the interpolation.
+    *Assumption*: those of the estimate, and of the coarser mesh, grow with the root of the ratio of forces, away from
+    the run's own state at the centre. ``tests/test_slices_errors.py`` compares some kept runs with it, together with
+    the error of the interpolation.
 
     Args:
-        known: the errors of the estimate.
+        carried: relative errors by part and quantity.
         total: the sum under the other force.
-        ratio: force of the estimate over that of the sum.
+        ratio: force of these errors over that of the sum.
     """
-    return _with_friction({key: error * math.sqrt(ratio) for key, error in known.items()}, total)
+    found = {part: {key: error for key, error in known.items() if key != "f_ext"} for part, known in carried.items()}
+    for part in (ESTIMATED, COARSE):
+        if part in found:
+            found[part] = {key: error * math.sqrt(ratio) for key, error in found[part].items()}
+    if ESTIMATED in found:
+        found[ESTIMATED] = _with_friction(found[ESTIMATED], total)
+    return found
 
 
 def _with_friction(known: dict[str, float], total: Total) -> dict[str, float]:
@@ -112,7 +125,8 @@ def interpolation(finger: Profile, trace: Trace, total: Total, count: int) -> di
         count: slices in each stretch of contact.
 
     Returns:
-        Of friction, attraction, areas and indentation; empty for a trace of two points, of which none can be left out.
+        Of friction, attraction, areas, indentation and effective width; empty for a trace of two points, of which none
+        can be left out.
     """
     if len(trace.depth) < LEAST:
         return {}
@@ -123,16 +137,36 @@ def interpolation(finger: Profile, trace: Trace, total: Total, count: int) -> di
     def change(coarse: Trace) -> dict[str, float]:
         other = at_indentation(finger, coarse, total.delta, count)
         moved = {name: other.columns[column] - total.columns[column] for name, column in TOTALS.items()}
-        moved["indentation"] = 0 * total.z
-        sums = {name: total.thickness @ abs(each - slope[name] * moved["f_ext"]) for name, each in moved.items()}
-        return {name: float(each / values[name]) if values[name] else 0.0 for name, each in sums.items()}
+        return _at_equal_force(total, moved, slope, values)
 
     one, other, below = (change(coarse) for coarse in (*trace.halves(), trace.later()))
     between = {name: max(one[name], other[name]) for name in below}
     if trace.ridges is not None:
         between |= _between(finger, trace, total, count, slope)
-    found = {name: between[name] + below[name] for name in below if name != "f_ext"}
+    found = {name: between[name] + below[name] for name in below}
     return found | {"mu_app": found["f_t"]}
+
+
+def _at_equal_force(
+    total: Total, moved: Mapping[str, Array], slope: Mapping[str, float], values: Mapping[str, float]
+) -> dict[str, float]:
+    """Return the relative changes of sums at equal force from those of the slices at equal indentation.
+
+    The effective width has that of the force at equal force of the centre, and that of the centre.
+
+    Args:
+        total: the slices.
+        moved: changes of the slices by the names of :data:`fingerpad.slices.total.TOTALS`, shape (slices,).
+        slope: of each quantity over the force.
+        values: of the sum.
+    """
+    force = moved["f_ext"]
+    sums = {name: total.thickness @ abs(each - slope[name] * force) for name, each in moved.items() if name != "f_ext"}
+    sums["indentation"] = slope["indentation"] * total.thickness @ abs(force)
+    found = {name: float(each / values[name]) if values[name] else 0.0 for name, each in sums.items()}
+    deepest = int(total.depth.argmax())
+    centre = abs(force[deepest]) / total.columns["f_ext"][deepest]
+    return found | {"effective_width": float(total.thickness @ abs(force) / values["f_ext"] + centre)}
 
 
 def _between(finger: Profile, trace: Trace, total: Total, count: int, slope: Mapping[str, float]) -> dict[str, float]:
@@ -151,14 +185,14 @@ def _between(finger: Profile, trace: Trace, total: Total, count: int, slope: Map
     k = np.clip(np.searchsorted(trace.depth, depth, side="right") - 1, 0, len(trace.depth) - 2)
     jumps, above = trace.ridges[k] != trace.ridges[k + 1], depth >= trace.depth[0]
     at, points = np.log(np.maximum(depth, trace.depth[0])), np.log(trace.depth)
-    moved = dict[str, np.ndarray]()
+    moved = dict[str, Array]()
     for name, column in TOTALS.items():
         values, width = trace.columns[column], finger.width(fine.z)
         linear = np.exp(np.interp(at, points, np.log(np.maximum(values, _TINY)))) * width
         half = (values[k + 1] - values[k]) / 2 * width
         moved[name] = np.where(above, np.where(jumps, half, linear - fine.columns[column]), 0.0)
-    sums = {name: fine.thickness @ abs(each - slope[name] * moved["f_ext"]) for name, each in moved.items()}
-    return {name: float(each / total.values[name]) if total.values[name] else 0.0 for name, each in sums.items()}
+    found = _at_equal_force(fine, moved, slope, total.values)
+    return {name: share for name, share in found.items() if name != "indentation"}
 
 
 def add(*parts: dict[str, float]) -> dict[str, float]:

@@ -1,14 +1,16 @@
 """Newtons of a run at no cost: one press, one full slip, and charged cylinders in between.
 
 A run of press, charge and slide has the cross-section's whole press without voltage, and one charged state and one full
-slip, at the scene's force. The slices away from the centre bear less. Their attraction and contact length are those
-of the model "cylinders" (:mod:`fingerpad.reduced.cylinders`) over the contact lengths of the run's own press, scaled to
+slip, at the scene's force. The press is on the path's mesh, whose elements are larger, and is scaled to its end on the
+final mesh. The slices away from the centre bear less. Their attraction and contact length are those
+of the model "cylinders" (:mod:`fingerpad.reduced.cylinders`) over the contact lengths of this press, scaled to
 the run's own state at the centre; their indentation is that of the press, scaled to its own. Full slip alone, as in a
 sweep of it, has no press; then it is the closed form's, of the default finger or of one similar to it.
 ``docs/newtons.md`` has the error of this estimate beside traces of the full model. A scene with a ``force`` computes
 the traces.
 """
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
@@ -21,7 +23,7 @@ from fingerpad.scene.messages import SceneError
 from fingerpad.scene.remarks import coefficient
 from fingerpad.slices import errors
 from fingerpad.slices.finger import WholeFinger, in_order
-from fingerpad.slices.total import profile, under_one_force
+from fingerpad.slices.total import Profile, profile, under_one_force
 from fingerpad.slices.trace import LEAST, Trace, TraceError, columns, trace
 from fingerpad.slices.traces import LIGHT
 from variational.state import ContactState
@@ -32,6 +34,7 @@ if TYPE_CHECKING:
 OF_SLIP = "estimated from full slip at its centre by charged cylinders; a force in newtons computes traces"
 SOURCE = "estimated from the run's press and its centre by charged cylinders; a force in newtons computes traces"
 _MAX_POINTS = 12  # of the trace
+_ACCIDENT = 0.25  # of a facet of the path's mesh, in the length of a ridge
 
 
 def with_newtons(result: "Result") -> "Result":
@@ -63,17 +66,81 @@ def estimate(scene: Scene, press: Sequence[ContactState], named: Mapping[str, Co
         TraceError: the press has too few states.
     """
     finger, count, wavelength = profile(scene.slices), scene.slices.count, scene.geometry.ridge_wavelength
-    pressed = _thinned(press)
-    traces = {name: _scaled(scene, pressed, name, state, wavelength) for name, state in named.items()}
-    if "uncharged" in named and "charged" in named and named["charged"].voltage == 0:  # one state, with one trace
-        traces["uncharged"], named = traces["charged"], {**named, "uncharged": named["charged"]}
+    presses = _on_final_mesh(_thinned(press), named.get("uncharged"))
+    traces, *others = (_traces(scene, each, named, wavelength) for each in presses)
+    if "charged" in named and traces.get("uncharged") is traces["charged"]:
+        named = {**named, "uncharged": named["charged"]}
     found = under_one_force(finger, traces, count)
+    away = _away(finger, [traces, *others], count)
     carried = {}
     for name, total in found.items():
         estimated = name != "uncharged" and traces[name] is not traces.get("uncharged")
-        carried[name] = {errors.MESH: errors.discretisation(named[name])}
+        between = errors.interpolation(finger, traces[name], total, count).get("effective_width", 0.0)
+        carried[name] = {errors.MESH: errors.discretisation(named[name], wavelength), errors.COARSE: away[name]}
         carried[name] |= {errors.ESTIMATED: errors.estimate(name, total)} if estimated else {}
+        carried[name] |= {errors.POINTS: {"f_ext": between}}
     return WholeFinger(in_order(found), SOURCE, carried, traces, scene.slices)
+
+
+def _on_final_mesh(press: Sequence[ContactState], end: ContactState | None) -> list[Sequence[ContactState]]:
+    """Return a press as on the final mesh, and twice more, as its mesh leaves it open under less than the whole force.
+
+    Lengths and indentations are scaled to the end as it is on the final mesh. First, the facets may take the same
+    length off each ridge instead, and not the same part. Second, where contact ends between two facets is an accident:
+    the length of a ridge may be off by :data:`_ACCIDENT` of a facet, those of several by its root of squares.
+
+    Args:
+        press: on the mesh of the path.
+        end: its end on the final mesh; None of a press that has no mesh.
+    """
+    if end is None or math.isnan(press[-1].mesh_contact):
+        return [press]
+    now = press[-1]
+    length, lower = (_ratio(getattr(end, key), getattr(now, key)) for key in ("contact_length", "bone_height"))
+    facet, ridge = now.mesh_contact, now.contact_length / now.ridges_in_contact
+
+    def scaled(state: ContactState, part: float, more: float, deeper: float) -> ContactState:
+        """Return a state with a part of the change at the end, a length (m) besides, and indented by more."""
+        changed = state.contact_length * (1 + part * (length - 1)) + more
+        return replace(state, contact_length=changed, bone_height=state.bone_height * lower * (1 + deeper))
+
+    alike, accident = [], []
+    for state in press[:-1]:
+        part = ridge / (state.contact_length / state.ridges_in_contact)
+        alike.append(scaled(state, part, 0.0, (part - 1) * (lower - 1)))
+        accident.append(scaled(state, 1.0, _ACCIDENT * facet * state.ridges_in_contact**0.5, part * (lower - 1)))
+    last = scaled(now, 1.0, 0.0, 0.0)
+    return [[scaled(state, 1.0, 0.0, 0.0) for state in press], [*alike, last], [*accident, last]]
+
+
+def _traces(
+    scene: Scene, press: Sequence[ContactState], named: Mapping[str, ContactState], wavelength: float
+) -> dict[str, Trace]:
+    """Return the trace of each named state; at 0 V normal contact is one state, with one trace."""
+    found = {name: _scaled(scene, press, name, state, wavelength) for name, state in named.items()}
+    if "uncharged" in found and "charged" in found and named["charged"].voltage == 0:
+        found["uncharged"] = found["charged"]
+    return found
+
+
+def _away(finger: Profile, traces: Sequence[Mapping[str, Trace]], count: int) -> dict[str, dict[str, float]]:
+    """Return the relative changes of sums by other traces, added up, by state and quantity.
+
+    The force changes as much as its ratio to that of the centre.
+
+    Args:
+        finger: along its axis.
+        traces: by state, those of the sums first.
+        count: slices in each stretch of contact.
+    """
+    every = {f"{name} {k}": trace for k, each in enumerate(traces) for name, trace in each.items()}
+    found = {key: total.values for key, total in under_one_force(finger, every, count).items()}
+    away = dict[str, dict[str, float]]()
+    for name in traces[0]:
+        own, *others = (found[f"{name} {k}"] for k in range(len(traces)))
+        away[name] = {key: sum(abs(each[key] / value - 1) for each in others) for key, value in own.items() if value}
+        away[name]["f_ext"] = away[name]["effective_width"]
+    return away
 
 
 def _closed_form(scene: Scene) -> list[ContactState]:
@@ -104,8 +171,6 @@ def _thinned(press: Sequence[ContactState]) -> list[ContactState]:
 
 def _scaled(scene: Scene, press: Sequence[ContactState], name: str, end: ContactState, wavelength: float) -> Trace:
     """Return the trace of a named state: the press changed as the cylinders are, and scaled to the state itself."""
-    if name == "uncharged":
-        return trace(press, wavelength)
     states = _charged(scene, press, name, end.voltage)
     law, now = scene.friction_law(), states[-1]
     shape = {key: _ratio(getattr(end, key), getattr(now, key)) for key in ("f_electrostatic", "contact_length")}

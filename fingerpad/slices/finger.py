@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from fingerpad import notebook
 from fingerpad.results.quantities import FINGER, FRICTION, head_rows, side_by_side
 from fingerpad.results.states import STATES, WORDS, called
 from fingerpad.scene import Scene, SceneError
@@ -16,9 +17,10 @@ from fingerpad.slices.total import Total, at_force, profile
 from fingerpad.slices.trace import NAMES, Trace
 
 _ROUNDOFF = 1e-9
+_TITLE = "Whole finger, as a sum of slices"
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class WholeFinger:
     """A whole finger under one force in its named states; SI units."""
 
@@ -59,10 +61,13 @@ class WholeFinger:
                 the force that it was made for, and down to its first point at the centre of the finger.
 
         Raises:
-            SceneError: no force, or one that a trace does not reach.
+            SceneError: no force, one that a trace does not reach, or a finger without traces.
         """
         value, finger = Scene(force=force).force, profile(self.shape)
-        assert value is not None
+        if value is None:
+            raise SceneError("force is None; it must be a number in N, or a text such as '0.3 N'")
+        if missing := [WORDS[name] for name in self.states if name not in self.traces]:
+            raise SceneError(f"the finger has no trace of {missing[0]}, from which another force could be read; run it")
         states = {name: at_force(finger, self.traces[name], value, self.shape.count) for name in self.states}
         for name, total in states.items():
             first = finger.centre_scale * float(self.traces[name].columns["f_ext"][0])
@@ -72,10 +77,8 @@ class WholeFinger:
                     f"and its trace in {WORDS[name]} begins at {first:.3g} N/m; "
                     "give a larger force, or run this one"
                 )
-        carried = {name: dict(each) for name, each in self.carried.items()}
-        for name, each in carried.items():
-            if errors.ESTIMATED in each:
-                each[errors.ESTIMATED] = errors.lighter(each[errors.ESTIMATED], states[name], self.f_ext / value)
+        ratio = self.f_ext / value
+        carried = {name: errors.lighter(each, states[name], ratio) for name, each in self.carried.items()}
         return replace(self, states=states, carried=carried)
 
     def values(self, name: str) -> dict[str, float]:
@@ -137,7 +140,7 @@ class WholeFinger:
         """Return what the errors of states are made of; of all states by default."""
         every = (self.carried.get(name, {}) for name in names or self.states)
         parts = dict.fromkeys(part for each in every for part, known in each.items() if known)
-        return (*parts, *[errors.POINTS] * bool(self.traces))
+        return tuple(dict.fromkeys([*parts, *[errors.POINTS] * bool(self.traces)]))
 
     def remarks(self) -> list[str]:
         """Return what a reader of the numbers must be told."""
@@ -148,7 +151,16 @@ class WholeFinger:
     def __str__(self) -> str:
         """Return the text *Whole finger* at the end of a run: the states side by side."""
         lines = side_by_side([*head_rows(self.heads()), *self.rows()])
-        return "\n".join(["Whole finger, as a sum of slices", *lines, *(f"  {each}" for each in self.remarks())])
+        return "\n".join([_TITLE, *lines, *(f"  {each}" for each in self.remarks())])
+
+    __repr__ = __str__
+    """In a console, too: the values of all slices are many pages."""
+
+    def _repr_html_(self) -> str:
+        """Return the text for a notebook."""
+        return notebook.page(
+            _TITLE, notebook.table(["", *self.heads()], self.rows()), notebook.folded("Remarks", self.remarks())
+        )
 
 
 def in_order(states: Mapping[str, Total]) -> dict[str, Total]:

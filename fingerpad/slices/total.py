@@ -46,7 +46,10 @@ class Profile:
     """Whether all heights are 0: then the ends may touch."""
 
     def rise(self, z: Floats | float) -> Floats:
-        """Return how far slices stand above the bone's lowest place, s + θ z (m)."""
+        """Return how far slices (m) stand above the one that touches first, s + θ z less its least value (m)."""
+        return self._above(z) - self._lowest[1]
+
+    def _above(self, z: Floats | float) -> Floats:
         return np.asarray(self.height(z) + self.tilt * z, dtype=float)
 
     @cached_property
@@ -56,36 +59,36 @@ class Profile:
         return z, self.rise(z)
 
     @cached_property
-    def lowest(self) -> tuple[float, float]:
-        """The place (m) where the finger first touches, and the rise (m) there, the least one.
+    def _lowest(self) -> tuple[float, float]:
+        """The place (m) where the finger first touches, and s + θ z (m) there, the least one.
 
         Raises:
             SceneError: it is at an end of the finger, whose pad then touches nothing.
         """
-        z, rise = self._searched
-        k = int(np.argmin(rise))
+        z = np.linspace(*self.ends, _SEARCHED)
+        k = int(np.argmin(self._above(z)))
         if k in (0, len(z) - 1) and not (self.straight and self.tilt == 0):
             raise SceneError(
                 f"slices.tilt is {self.tilt:g} rad, with which the finger is lowest at its end, at z = {z[k]:.3g} m, "
                 "and its pad has no contact; give a smaller tilt, a smaller radius or a longer finger"
             )
         fine = np.linspace(z[max(k - 1, 0)], z[min(k + 1, len(z) - 1)], _SEARCHED)
-        found = self.rise(fine)
+        found = self._above(fine)
         return float(fine[found.argmin()]), float(found.min())
 
     @cached_property
     def centre_scale(self) -> float:
         """The scale of the slice where the finger first touches."""
-        return float(self.width(np.array([self.lowest[0]]))[0])
+        return float(self.width(np.array([self._lowest[0]]))[0])
 
     def contact(self, delta: float) -> list[tuple[float, float]]:
         """Return the stretches (m) of the finger that touch, from one end of contact to the other.
 
         Args:
-            delta: lowering of the bone (m).
+            delta: lowering of the bone since the finger first touched (m).
 
         Raises:
-            SceneError: the contact reaches an end of the finger.
+            SceneError: the contact reaches an end of the finger, or the finger is lowest there.
         """
         z, rise = self._searched
         touches = delta - rise > 0
@@ -140,7 +143,7 @@ class Total:
     """A whole finger in one state, and its slices; arrays have shape (slices,)."""
 
     delta: float
-    """Lowering of the bone at z = 0 (m)."""
+    """Indentation of the slice that touches first (m): how far the bone was lowered since then."""
     z: Array
     """Places of the slices (m)."""
     thickness: Array
@@ -190,7 +193,7 @@ def at_indentation(profile: Profile, trace: Trace, delta: float, count: int) -> 
     Args:
         profile: the finger along its axis.
         trace: of a slice on the scale 1.
-        delta: lowering of the bone (m).
+        delta: lowering of the bone since the finger first touched (m).
         count: slices in each stretch of contact.
 
     Raises:
@@ -205,8 +208,8 @@ def at_indentation(profile: Profile, trace: Trace, delta: float, count: int) -> 
             f"a slice is indented by {relative.max():.3g} m, and the trace of the cross-section ends at {deepest:.3g} "
             f"m under {force:.4g} N/m; give a trace to a larger force"
         )
-    (_, lowest), scale = profile.lowest, profile.centre_scale
-    values = trace.at(np.clip([*relative, (delta - lowest) / scale], 0.0, deepest))  # the last one is the deepest place
+    scale = profile.centre_scale
+    values = trace.at(np.clip([*relative, delta / scale], 0.0, deepest))  # the last one is the deepest place
     columns = {name: width * values[name][:-1] for name in NAMES}
     return Total(delta, z, thickness, depth, scale * float(values["f_ext"][-1]), columns)
 
@@ -236,16 +239,16 @@ def at_force(profile: Profile, trace: Trace, force: float, count: int) -> Total:
         BeyondTrace: the trace ends before the force is reached; the message has the largest force.
         SceneError: the pad has no contact, or more of it than the finger has.
     """
-    (_, touch), most = profile.lowest, deepest(profile, trace)
+    most = deepest(profile, trace)
     totals = dict[float, Total]()
 
     def excess(x: float) -> float:
         """Return the logarithm of the force over the one looked for, nearly a straight line over that of the depth."""
         if x not in totals:
-            totals[x] = at_indentation(profile, trace, touch + math.exp(x), count)
+            totals[x] = at_indentation(profile, trace, math.exp(x), count)
         return math.log(max(totals[x].totals["f_ext"], _TINY) / force)
 
-    high = math.log(most - touch)
+    high = math.log(most)
     try:
         above = excess(high)
     except SceneError:  # the finger ends before its trace: from the first touch on, as far as there is a finger
@@ -280,7 +283,7 @@ def under_one_force(profile: Profile, traces: Mapping[str, Trace], count: int) -
 
 
 def deepest(profile: Profile, trace: Trace) -> float:
-    """Return the lowering (m) at which the first slice comes to the end of the trace."""
+    """Return the lowering since the first touch (m) at which the first slice comes to the end of the trace."""
 
     def lowered(z: NDArray[Any]) -> NDArray[Any]:
         return np.asarray(profile.rise(z) + trace.end[0] * profile.width(z))

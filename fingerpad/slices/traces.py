@@ -171,7 +171,8 @@ def summed(scene: Scene, words: str, found: Mapping[str, Traced]) -> WholeFinger
         found: the traces by state.
     """
     totals = {name: each.total for name, each in found.items() if each.total is not None}
-    known = {name: dict(each.carried) or {errors.MESH: _shares(each, name)} for name, each in found.items()}
+    wavelength = scene.geometry.ridge_wavelength
+    known = {name: dict(each.carried) or {errors.MESH: _shares(each, name, wavelength)} for name, each in found.items()}
     of = {name: each.trace for name, each in found.items()}
     tops = (f"{each.trace.end[1]:.4g} N/m ({name.replace('_', ' ')})" for name, each in found.items())
     if not scene.volts:  # normal contact is one state then, with two names
@@ -202,9 +203,9 @@ def _of_path(scene: Scene, finger: WholeFinger, found: dict[str, Traced]) -> Res
 
 def sections(scene: Scene, found: Mapping[str, Traced]) -> dict[str, Any]:
     """Return the section at the centre of the finger by state; None in states without a trace."""
-    lowest, scale = profile(scene.slices).lowest[1], profile(scene.slices).centre_scale
+    scale, wavelength = profile(scene.slices).centre_scale, scene.geometry.ridge_wavelength
     named = {
-        name: _section(each, name, (each.total.delta - lowest) / scale)
+        name: _section(each, name, each.total.delta / scale, wavelength)
         for name, each in found.items()
         if each.total is not None
     }
@@ -213,18 +214,19 @@ def sections(scene: Scene, found: Mapping[str, Traced]) -> dict[str, Any]:
     return {name: named.get(name) for name in WORDS}
 
 
-def _section(traced: Traced, name: str, depth: float) -> ContactState:
+def _section(traced: Traced, name: str, depth: float, wavelength: float) -> ContactState:
     """Return the section at the centre of the finger, interpolated between the points of its trace.
 
     Args:
         traced: the trace.
         name: of the state.
         depth: indentation of the section (m).
+        wavelength: of a ridge (m).
     """
     at: dict[str, Any] = {key: float(values[0]) for key, values in traced.trace.at(np.array([depth])).items()}
     near = min(traced.states, key=lambda state: abs(state.bone_height + depth))
     mu_app = at["f_t"] / at["f_ext"]
-    shares, end = _shares(traced, name), _end(traced, name)
+    shares, end = _shares(traced, name, wavelength), _end(traced, name)
     known = {key: shares[key] * at[key] for key in ("f_t", "f_electrostatic") if key in shares}
     known |= {"mu_app": shares["mu_app"] * mu_app} if "mu_app" in shares else {}
     known |= {"contact_length": shares["contact_area"] * at["contact_length"]} if "contact_area" in shares else {}
@@ -253,9 +255,9 @@ def _end(traced: Traced, name: str) -> ContactState | None:
     return named.get("charged" if name == "uncharged" else name)
 
 
-def _shares(traced: Traced, name: str) -> dict[str, float]:
+def _shares(traced: Traced, name: str, wavelength: float) -> dict[str, float]:
     """Return the relative errors of a sum by the mesh of the cross-section."""
-    return traced.carried.get(errors.MESH) or errors.discretisation(_end(traced, name))
+    return traced.carried.get(errors.MESH) or errors.discretisation(_end(traced, name), wavelength)
 
 
 def _together(costs: Iterable[Cost]) -> Cost:

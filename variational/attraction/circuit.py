@@ -16,12 +16,11 @@ a peak.
 :math:`R_{gap}` is the one constant that no source gives. :func:`fit_leak` takes it from the frequency of that peak.
 :data:`LEAKS` has presets with the range in which each is likely.
 
-**Breakdown.** Air breaks down by the local field: 350 V/µm in gaps below 1 µm, and 330 to 350 V across gaps of 1 to 4
-µm, a plateau (A. Peschot et al. 2014, "Deviations from the Paschen's law at short gap distances from 100 nm to 10 µm in
-air and nitrogen"). :func:`breakdown_voltage` takes the lower end.
+Air breaks down by the local field (:func:`variational.roughness.statistics.breakdown_voltage`).
 """
 
 from dataclasses import dataclass
+from functools import cache
 from typing import NamedTuple
 
 import numpy as np
@@ -33,10 +32,6 @@ from variational.attraction.dielectric import TISSUES, VACUUM_PERMITTIVITY, Cole
 Complex = NDArray[np.complex128]
 Array = NDArray[np.float64]
 LOSSLESS = "lossless"
-BREAKDOWN_FIELD = 350e6
-"""Field (V/m) at which air in a gap below 1 µm breaks down."""
-BREAKDOWN_PLATEAU = 330.0
-"""Voltage (V) across a wider gap at which air breaks down; 330 to 350 V were measured."""
 _PEAKS = (1.0, 1e5)  # Hz, among which a peak is looked for
 _LEAKS = (1e-3, 1e9)  # ohm m²
 
@@ -60,11 +55,6 @@ LEAKS: dict[str, Leak] = {
     "moist": Leak(30.0, 3.0, 100.0, "assumed: ten times less than dry skin; no source"),
 }
 """Presets of the leak by name."""
-
-
-def breakdown_voltage(gap: ArrayLike) -> Array:
-    """Return the voltage (V) across air gaps (m) at which air breaks down, of their shape."""
-    return np.asarray(np.minimum(BREAKDOWN_FIELD * np.asarray(gap, dtype=float), BREAKDOWN_PLATEAU))
 
 
 @dataclass(frozen=True)
@@ -185,6 +175,7 @@ class GapCircuit:
         return np.asarray(np.fft.irfft(spectrum * gains, len(u)))
 
 
+@cache
 def fit_leak(peak: float, tissue: str | Tissue, gap: float, d_i: float, eps_i: float, d_sc: float) -> float:
     """Return R_gap (ohm m²) with which the share of the gap is largest at a frequency ``peak`` (Hz).
 
@@ -197,5 +188,7 @@ def fit_leak(peak: float, tissue: str | Tissue, gap: float, d_i: float, eps_i: f
 
     low, high = (float(np.log(end)) for end in _LEAKS)
     if not (peak > 0 and beyond(low) > 0 > beyond(high)):
-        raise ValueError(f"peak is {peak:g} Hz; no leak through a gap of {gap:g} m has its peak there")
+        raise ValueError(
+            f"peak is {peak:g} Hz; no leak through a gap of {gap:g} m has its peak there behind this tissue"
+        )
     return float(np.exp(scipy.optimize.brentq(beyond, low, high, xtol=1e-6)))

@@ -31,7 +31,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Self
 import numpy as np
 from numpy.typing import NDArray
 
-from variational.coefficients import LawError, refuse_not_positive, said
+from variational.coefficients import LawError, Named, refuse_not_positive, said
 
 if TYPE_CHECKING:
     from variational.contact.friction import Friction
@@ -194,7 +194,7 @@ class SurfaceState:
     """What the state leaves in the fields of the skin when it is accepted."""
 
 
-class Formulation(ABC):
+class Formulation(Named, ABC):
     """How contact and friction enter the weak form: a frozen dataclass, importable without UFL.
 
     What a run, a check or a report must consider of a formulation is an attribute here; none of them compares names.

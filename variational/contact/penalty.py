@@ -24,13 +24,10 @@ class Penalty(Formulation):
     """Stiffness of the screen, normal and tangential (Pa/m of reference area)."""
 
     eps_n: float = parameter(1e7, 1e17, "Pa/m", default=1.5e12)
-    """Normal stiffness of the penalty and of the augmented Lagrangian (Pa/m of reference area). *Assumption*: the
-    default keeps the penetration below a tenth of d_eq. The augmented Lagrangian's default is ten times as large,
-    which saves coupling iterations. Range: at 1e7 the finger sinks in by millimetres; at 1e17 the roundoff of a
-    length of 1 mm is 20 kPa."""
+    """Normal stiffness (Pa/m of reference area). *Assumption*: the default keeps the penetration below a tenth of d_eq.
+    Range: at 1e7 the finger sinks in by millimetres; at 1e17 the roundoff of a length of 1 mm is 20 kPa."""
     eps_t: float = parameter(1e6, 1e17, "Pa/m", default=5e10)
-    """Tangential stiffness of both (Pa/m of reference area) (*assumption*). The augmented Lagrangian's default is
-    ten times as large."""
+    """Tangential stiffness (Pa/m of reference area) (*assumption*)."""
 
     less_penetration: ClassVar[str] = "a larger eps_n of the contact reduces it"
 

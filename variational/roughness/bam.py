@@ -17,7 +17,7 @@ import numpy as np
 import scipy  # its parts are imported where they are used first: to read a scene needs none
 from numpy.typing import ArrayLike, NDArray
 
-from variational.coefficients import OF_SCENE, parameter, refuse_not_positive
+from variational.coefficients import OF_SCENE, Named, parameter, refuse_not_positive
 from variational.roughness.closure import PAST_THE_FOLD, AirGap, Closure, Progress
 from variational.roughness.statistics import Slopes, Statistics, breaking_gaps
 
@@ -35,7 +35,7 @@ voltage would be that of a stress of zero, which tails of the repulsion reach at
 
 
 @dataclass(frozen=True)
-class BearingArea(Closure):
+class BearingArea(Named, Closure):
     """A self-affine Gaussian roughness on stratum corneum (Table 3); SI units."""
 
     h_0: float = field(metadata=OF_SCENE)

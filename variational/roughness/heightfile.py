@@ -5,29 +5,29 @@ Zygo, Bruker and others, and text with a header: ``pip install fingerpad[topogra
 
 A plain matrix is a text of four or more columns of numbers and nothing else, separated by commas, semicolons, tabs or
 spaces, with decimal points; a pixel is missing where the place is empty or holds ``nan``. It has no unit and no size,
-so that both must be given, as for NumPy's files. Files that are ambiguous are refused: those in which a reader finds no
-unit though they have a header, those that contradict what is given, and those with the numbers of rows or columns among
-the heights.
+so that both must be given, as for NumPy's files.
+
+Maps with values that are no heights are refused (:mod:`variational.roughness.mapchecks`).
 """
 
 import io
 import re
 from contextlib import redirect_stderr
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from variational import files
-from variational.roughness.topography import HeightMap, filled, mark
+from variational.roughness.mapchecks import refuse_mark, refuse_numbering, refuse_uneven
+from variational.roughness.topography import HeightMap, filled
 
 Array = NDArray[np.float64]
 UNITS = {"m": 1.0, "cm": 1e-2, "mm": 1e-3, "um": 1e-6, "µm": 1e-6, "μm": 1e-6, "nm": 1e-9, "pm": 1e-12}
 """Units of length in m."""
 _HIGHEST = 1.0  # m, of what can be roughness
 _WIDEST = 0.1  # m, of a map of skin: five fingertips
-_SPACING_TOLERANCE = 0.01  # relative difference of lengths that are the same
 _POINTS = 3  # columns of a text of points x, y, z
 # What separates numbers in SurfaceTopography's formats of text, whose readers skip lines that they do not understand.
 _TEXTS = {"asc": r"\s+", "xyz": r"[\s,;]+"}
@@ -72,20 +72,20 @@ def scan(
             that has no size of its own.
         pixel: lengths (m) of a pixel along x and y, in place of ``size``.
         missing: mark of missing pixels besides empty places and ``nan``; a number, in a plain matrix also a word. Where
-            a mark is given, ``nan`` for example, a value far from all others is taken as measured.
+            a mark is given a value far from all others is taken as measured, and with ``nan`` every line too.
 
     Raises:
-        ValueError: the file is no height map, is ambiguous, or has what is given too. Keys to give or to change are in
-            quotation marks in the message: 'unit', 'size', 'pixel', 'missing'.
+        ValueError: the file is no height map, holds values that are none, or has what is given too. Keys to give or to
+            change are in quotation marks in the message: 'unit', 'size', 'pixel', 'missing'.
         ImportError: SurfaceTopography is needed and not installed.
         OSError: the file cannot be opened.
     """
     path = Path(file)
     found = _read(path, missing)
     heights, (nx, ny) = found.heights, found.heights.shape
-    _refuse_numbering(path, heights)
+    refuse_numbering(path, heights)
     if missing is None:
-        _refuse_mark(path, heights)
+        refuse_mark(path, heights)
     if found.has_unit and unit is not None:
         raise ValueError(f"{path} has a unit of its own; give no 'unit'")
     if not found.has_unit and unit is None:
@@ -98,9 +98,7 @@ def scan(
             f"{path} has {nx} x {ny} pixels, which are not square where 'size' is {size[0]:g} m x {size[1]:g} m; "
             "exchange the lengths, or give 'pixel'"
         )
-    if pixel is not None:
-        size = pixel[0] * nx, pixel[1] * ny
-    x, y = found.size or size or (0.0, 0.0)
+    x, y = found.size or size or (pixel[0] * nx, pixel[1] * ny)  # type: ignore[index]
     if max(x, y) > _WIDEST:
         raise ValueError(f"{path} is {x:.3g} m x {y:.3g} m large, at most {_WIDEST:g} m is allowed; check the unit")
     heights = heights * (UNITS[unit] if unit else 1.0)
@@ -111,46 +109,13 @@ def scan(
         whole = HeightMap(filled(heights), (x, y))
     except ValueError as error:
         raise ValueError(f"{path}: {error}") from None
+    if missing != "nan":
+        refuse_uneven(path, whole.heights)
     return Found(whole, heights.size - known.size, found.layout)
 
 
 def _square(size: tuple[float, float], shape: tuple[int, int]) -> bool:
     return 0.98 < size[0] / shape[0] * shape[1] / size[1] < 1.02
-
-
-# -- values that are no heights ----------------------------------------------------------------------------
-def _refuse_numbering(path: Path, heights: Array) -> None:
-    """Refuse numbers or coordinates of rows or columns, as pandas and instruments write them beside the heights.
-
-    The first line or column is one of them where it has equal steps and most others do not. No measured heights are.
-
-    Raises:
-        ValueError: there seem to be such numbers.
-    """
-    for lines, name in ((heights[:, 1:], "line"), (heights[1:].T, "column")):
-        steps = np.diff(lines, axis=1)
-        even = (steps[:, 0] != 0) & (np.ptp(steps, axis=1) < _SPACING_TOLERANCE * np.abs(steps[:, 0]))
-        if even[0] and even.mean() < 0.5:
-            raise ValueError(
-                f"{path} has values at equal steps in its first {name}, from {lines[0, 0]:g} to {lines[0, -1]:g}, "
-                "which number or place the others; save the heights alone, in pandas with header=False, index=False"
-            )
-
-
-def _refuse_mark(path: Path, heights: Array) -> None:
-    """Refuse a value far from all other heights, of which the spectrum would make roughness.
-
-    Raises:
-        ValueError: there is one.
-    """
-    value = mark(heights)
-    if value is not None:
-        count, text = int(np.count_nonzero(heights == value)), repr(value).removesuffix(".0")
-        pixels = "1 pixel" if count == 1 else f"{count} pixels"
-        raise ValueError(
-            f"{path} has {text} at {pixels}, far from all other heights, as a mark of missing pixels; give "
-            f"'missing'=\"{text}\", or 'missing'=\"nan\" if it was measured"
-        )
 
 
 # -- reading -----------------------------------------------------------------------------------------------
@@ -207,14 +172,7 @@ def _matrix(text: str, missing: str | None) -> tuple[Array | None, str]:
 
 
 def _foreign(path: Path, content: bytes, text: str | None, why: str) -> _Read:
-    """Return what SurfaceTopography finds: the first map of heights.
-
-    Args:
-        path: of the file.
-        content: of the file.
-        text: of the file, None of a binary one.
-        why: it is no plain matrix.
-    """
+    """Return what SurfaceTopography finds: the first map of heights; ``why`` the file is no plain matrix."""
     try:
         from SurfaceTopography import open_topography
         from SurfaceTopography.Exceptions import CannotDetectFileFormat, ReadFileError
@@ -231,7 +189,8 @@ def _foreign(path: Path, content: bytes, text: str | None, why: str) -> _Read:
             channel = next((each for each in reader.height_channels if each.dim == 2), None)
             if channel is None:
                 raise ReadFileError("it holds no map of heights")
-            read = _channel(channel, form)
+            has_size = channel.physical_sizes is not None
+            found = channel.topography(**({} if has_size else {"physical_sizes": (1.0, 1.0)}))
     except CannotDetectFileFormat:
         raise ValueError(
             f"{path} has no format that SurfaceTopography reads, and is no plain matrix of numbers with decimal points "
@@ -242,18 +201,10 @@ def _foreign(path: Path, content: bytes, text: str | None, why: str) -> _Read:
         raise ValueError(
             f"{path} cannot be read by SurfaceTopography as {form} ({words}); export the heights as a plain matrix"
         ) from error
-    if text is not None and reader.format() in _TEXTS:
-        _refuse_unread(path, text, _TEXTS[reader.format()], read.has_unit)
-    return read
-
-
-def _channel(channel: Any, form: str) -> _Read:
-    """Return a channel of a reader of SurfaceTopography, whose format is called ``form``."""
-    has_size = channel.physical_sizes is not None
-    found = channel.topography(**({} if has_size else {"physical_sizes": (1.0, 1.0)}))
     has_unit = found.unit is not None
-    if has_unit:
-        found = found.to_unit("m")
+    found = found.to_unit("m") if has_unit else found
+    if text is not None and reader.format() in _TEXTS:
+        _refuse_unread(path, text, _TEXTS[reader.format()], has_unit)
     heights = np.ma.filled(found.heights().astype(float), np.nan)
     layout = f"{form}, channel {_words(channel.name)}, {' x '.join(map(str, heights.shape))} pixels"
     x, y = found.physical_sizes
@@ -266,24 +217,12 @@ def _words(error: object) -> str:
 
 
 def _refuse_unread(path: Path, text: str, separator: str, has_unit: bool) -> None:
-    """Refuse a text of which SurfaceTopography has skipped lines: with words, or with units that it does not know.
-
-    Args:
-        path: of the file.
-        text: of the file.
-        separator: of its numbers, a regular expression.
-        has_unit: whether a unit was found in it.
-
-    Raises:
-        ValueError: the line, and what to do.
-    """
+    """Refuse lines that SurfaceTopography has skipped in a text: words, or a head without a unit that it knows."""
     begun = False
-    for k, line in enumerate(text.splitlines(), start=1):
+    for k, line in enumerate(filter(str.strip, text.splitlines()), start=1):
         words = re.split(separator, line.strip())
         numbers = all(files.is_number(word) or word.lower() in _NO_NUMBERS for word in words)
-        if not line.strip() or (begun and line.startswith("#")):
-            continue
-        if not numbers and (begun or not has_unit):
+        if not numbers and not (begun and line.startswith("#")) and (begun or not has_unit):
             remedy = "export one map of numbers alone" if begun else "delete the lines above the numbers"
             place = "among its numbers" if begun else "and no unit of heights that SurfaceTopography knows"
             raise ValueError(f"{path} has {line.strip()[:40]!r} in line {k} {place}; {remedy}")

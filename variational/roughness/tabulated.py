@@ -17,7 +17,7 @@ import numpy as np
 import scipy  # its parts are imported where they are used first: to read a scene needs none
 from numpy.typing import ArrayLike, NDArray
 
-from variational.coefficients import OF_SCENE, parameter, refuse_not_positive
+from variational.coefficients import OF_SCENE, Named, parameter, refuse_not_positive
 from variational.roughness.closure import PAST_THE_FOLD, AirGap, Closure, Progress
 from variational.roughness.gaps import GapTable
 from variational.roughness.statistics import Slopes, Statistics, breaking_gaps
@@ -53,7 +53,7 @@ class Curve:
 
 
 @dataclass(frozen=True)
-class TabulatedClosure(Closure):
+class TabulatedClosure(Named, Closure):
     """A rough ridge whose gaps over pressure are a table; SI units."""
 
     h_0: float = field(metadata=OF_SCENE)

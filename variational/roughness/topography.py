@@ -15,12 +15,6 @@ curvature, by least squares, a missing height is the mean of its neighbours: the
 measured heights around as values on its boundary and no slope across the map's own edge. Without the curvature a hole
 at an edge of a curved map would be filled flat, a step of which the spectrum makes roughness. The filling is smoother
 than the surface: it takes away roughness that is finer than a hole, about in proportion to the missing part of the map.
-
-A mark of missing pixels that nobody named, as -9999, or a saturated pixel, is a value far from all other heights. The
-smallest height is one where nothing lies between it and the next one over more than 20 interquartile ranges of the
-others, 27 standard deviations of Gaussian heights; and so is the largest. A groove, however deep, is measured at many
-depths, so that its deepest pixel has others near. Pixels of the two extreme values do not count among the others, as
-they may be many. Where half of the others are equal, their whole range stands for that of the quartiles.
 """
 
 from dataclasses import dataclass
@@ -37,7 +31,6 @@ Trend = Literal["mean", "tilt", "curvature"]
 _DEGREE: dict[Trend, int] = {"mean": 0, "tilt": 1, "curvature": 2}
 MOST = 0.25  # of a map that may be missing
 _FLAT = 1e-12  # rms height over the largest height, at which what is left of a map is roundoff
-_FAR = 20.0  # interquartile ranges without a height
 
 
 @dataclass(frozen=True, eq=False)
@@ -146,26 +139,6 @@ def distribution(*maps: HeightMap, bins: int = 60) -> Distribution:
     gaussian = ndtr(z)
     distance = max(np.max(below[1:] - gaussian), np.max(gaussian - below[:-1]))
     return Distribution(edges, density, h_rms, float(np.mean(z**3)), float(np.mean(z**4)), float(distance))
-
-
-def mark(heights: Array) -> float | None:
-    """Return the height that seems to mark missing pixels, None without one.
-
-    Args:
-        heights: in any unit and shape, NaN where they are known to be missing.
-    """
-    known = heights[np.isfinite(heights)]
-    if not known.size:
-        return None
-    low, high = float(known.min()), float(known.max())
-    others = known[(known > low) & (known < high)]
-    if not others.size:
-        return None
-    lower, upper = np.percentile(others, [25, 75])
-    far = _FAR * float((upper - lower) or np.ptp(others))
-    gaps = {low: float(others.min()) - low, high: high - float(others.max())}
-    value = max(gaps, key=lambda height: gaps[height])
-    return value if 0 < far < gaps[value] else None
 
 
 def filled(heights: Array) -> Array:

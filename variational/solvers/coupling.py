@@ -46,6 +46,7 @@ Array = NDArray[np.float64]
 _FIRST, _LATER = StopRule(0.1, most=1e-3), StopRule(0.03)  # so much of the force scale; or of what air gaps brought,
 _SETTLED = 1e-3  # until the air gaps' relative error is below this;
 _ON_ITS_WAY = StopRule(0.5)  # where a ridge comes down, whose next air gap is known already.
+_SURELY = 0.01  # of the tolerance: a larger error of a loop that may end is corrected once more
 _HASTE = 2  # iterations in which the residual must fall where a ridge lets go, as there is a remedy then
 
 
@@ -89,7 +90,8 @@ class Coupling:
             solver: the macroscale.
             observer: evaluates its surface.
             closure: the microscale; None where there is never a voltage.
-            tolerance: relative error of d_eq, r / (1 - gain), at which the loop ends; gains count up to 0.99.
+            tolerance: relative error of d_eq, r / (1 - gain), within which the loop ends, gains counting up to 0.99,
+                after one more iteration where the error is above a hundredth of it.
             cap: most iterations.
             by_gap: take the length below d_eq, not the length under pressure, as L_R of Eq. 4.
 
@@ -161,7 +163,7 @@ class Coupling:
         contact_history = problem.history.accepted
         free = np.inf if self.closure is None else float(air_gaps(self.closure, np.zeros(1))[0])
         secants, numbers = Secants(self.d_eq, self.gain, free), self.observer.surface.ridge_numbers
-        stop = _FIRST if charged else EXACT
+        stop, scales = _FIRST if charged else EXACT, False
         for iteration in range(self.cap):
             found, state = self._iterate(pseudo_transient, stop, secants if iteration else None)
             d = self.d_eq
@@ -174,9 +176,11 @@ class Coupling:
             self.history.ridges.append(numbers[worst])
             secants.record(d, r)
             self.history.jumped = {numbers[k] for k in np.flatnonzero(secants.jumped())}
+            again = scales
             scales = not charged or (stop == EXACT and secants.settled(self.tolerance))
             contact = self.history.errors[-1] <= formulation.tolerance
-            if scales and contact:
+            last = not charged or again or secants.settled(_SURELY * self.tolerance) or iteration == self.cap - 1
+            if scales and contact and last:
                 if charged:
                     self.gain = secants.gain
                 else:

@@ -1,0 +1,60 @@
+r"""A whole finger as a sum of slices: Johnson's elastic foundation, level and tilted.
+
+A paraboloid of radii R_x and R_z on a foundation that bears k per depth has the contact of the plane's cut through it,
+an ellipse of semi-axes a and b (Johnson, Contact Mechanics, 1985, sec. 4.3, doi 10.1017/CBO9781139171731):
+
+.. math:: a = \sqrt{2 R_x \delta}, \quad b = \sqrt{2 R_z \delta}, \qquad F = \tfrac12 \pi k a b\, \delta, \qquad
+          A = \pi a b.
+
+A slice bears :math:`\frac23 k\, 2a\, \delta`. Tilted by a slope theta, the parabola along the axis is lowest at
+:math:`z = -\theta R_z`, by :math:`\theta^2 R_z / 2` lower than at z = 0, and else the same.
+"""
+
+import numpy as np
+
+from benchmarks.verification.case import Case, Row
+from fingerpad.scene.parameters import Slices
+from fingerpad.slices.total import at_indentation, profile
+from fingerpad.slices.trace import Trace
+
+_R_X, _R_Z, _K, _DEPTH, _TILT = 7e-3, 28e-3, 1e7, 0.8e-3, 0.05
+_PARTS = 48
+
+
+def _trace() -> Trace:
+    depth = np.geomspace(2e-6, 2e-3, 24)
+    width = 2 * np.sqrt(2 * _R_X * depth)
+    force = 2 / 3 * _K * width * depth
+    return Trace(
+        depth,
+        {
+            "f_ext": force,
+            "f_t": 0.3 * force,
+            "f_electrostatic": 0 * force,
+            "contact_length": width / 3,
+            "gross_width": width,
+        },
+    )
+
+
+def foundation(small: bool) -> list[Row]:
+    """Force, gross area and place of the sum, level and tilted."""
+    a, b = (np.sqrt(2 * radius * _DEPTH) for radius in (_R_X, _R_Z))
+    force, area = np.pi / 2 * _K * a * b * _DEPTH, np.pi * a * b
+    why, mesh, rows = "the rule's error at an edge whose width begins as a root", f"{_PARTS} slices", []
+    for tilt in (0.0, _TILT):
+        finger = profile(Slices(radius=_R_Z, tilt=tilt))
+        found, words = at_indentation(finger, _trace(), _DEPTH - tilt**2 * _R_Z / 2, _PARTS), f", tilted by {tilt:g}"
+        words = words if tilt else ""
+        rows += [
+            Row(f"force (N){words}", found.totals["f_ext"], force, 1e-6, why, mesh),
+            Row(f"gross area (mm²){words}", 1e6 * found.totals["gross_area"], 1e6 * area, 1e-6, why, mesh),
+        ]
+    place = float(found.thickness @ (found.z * found.columns["f_ext"])) / found.totals["f_ext"]
+    return [
+        *rows,
+        Row(f"centre of the force (mm), tilted by {_TILT:g}", 1e3 * place, -1e3 * _TILT * _R_Z, 1e-6, why, mesh),
+    ]
+
+
+CASES = (Case("Sum of slices on a foundation", "Johnson, Contact Mechanics, 1985, sec. 4.3", foundation),)

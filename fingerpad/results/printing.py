@@ -1,0 +1,99 @@
+"""A result as text for a console and as HTML for a notebook: headline, whole finger, named states side by side."""
+
+import math
+from typing import TYPE_CHECKING
+
+from fingerpad import notebook
+from fingerpad.results.closures import RECORD, in_words
+from fingerpad.results.headline import headline, missing_slip
+from fingerpad.results.quantities import PER_LENGTH, PLUS_MINUS, QUANTITIES, cell, head_rows, side_by_side
+from fingerpad.results.states import LoadResult, called
+from fingerpad.scene.reading import DEFAULT_MODEL
+
+if TYPE_CHECKING:
+    from fingerpad.results.answer import Answer
+
+_SECTION = "Middle section of the finger"
+
+
+def text(result: "Answer") -> str:
+    """Return the text *Result* at the end of a run: headline, whole finger, and named states with units and errors."""
+    lines = [_title(result)]
+    if result.named:
+        heads, rows = _table(result)
+        lines += side_by_side([*head_rows(heads[1:]), *rows])
+    lines += [f"  {note}" for note in (*_timed(result), *_remarks(result))]
+    lines += [f"  ! {caution}" for caution in result.cautions]
+    finger = [f"{result.finger}"] if result.finger is not None else []
+    return "\n".join([f"{headline(result)}", *finger, *lines])
+
+
+def page(result: "Answer") -> str:
+    """Return the same for a notebook, with remarks to unfold."""
+    title, *known = map(str.strip, f"{headline(result)}".splitlines())
+    parts = [] if result.finger is None else [result.finger._repr_html_()]
+    parts += [notebook.page(_title(result), notebook.table(*_table(result)))] if result.named else []
+    cautions = notebook.lines(f"! {each}" for each in result.cautions)
+    remarks = notebook.folded("Remarks", [*_timed(result), *_remarks(result)])
+    return notebook.page(title, notebook.lines(known), *parts, cautions, remarks)
+
+
+def _title(result: "Answer") -> str:
+    model = f" (model '{result.model}')" if result.model != DEFAULT_MODEL else ""
+    return ("Result" if result.finger is None else _SECTION) + model
+
+
+def _table(result: "Answer") -> tuple[list[str], list[list[str]]]:
+    """Return the heads and the rows of the named states side by side, the first of which are words."""
+    shown = result.named
+    values = ((quantity.title, result.cells(key)) for key, quantity in result.printed.items())
+    rows = [[title, *each] for title, each in values if set(each) - {"–"}]
+    if any(state.stable is not None for state in shown.values()):
+        verdicts = {True: "yes", False: "no", None: "–"}
+        rows.append(["stable", *(verdicts[state.stable] for state in shown.values())])
+    return ["", *(called(name, state.voltage) for name, state in shown.items())], rows
+
+
+def _timed(result: "Answer") -> list[str]:
+    """Return a line for each load over time."""
+    least = result.record.get("force_error") or 0.0
+    return [_in_time(load, least) for load in result.loads if load.over_time is not None]
+
+
+def _remarks(result: "Answer") -> list[str]:
+    """Return the lines after the table: failure, missing full slip, meaning of ± and N/m, effect of the penalty."""
+    found = [f"Not finished: {result.failure}"] if result.failure else []
+    if (how := missing_slip(result)) and not result.failure:
+        found.append(f"Full slip was {how}.")
+    if any(state.error.known() for state in result.named.values()):
+        found.append(PLUS_MINUS)
+    sizes = {name: state.mesh_contact for name, state in result.named.items() if not math.isnan(state.mesh_contact)}
+    if len(set(sizes.values())) > 1:  # with an accuracy
+        each = (f"{1e6 * size:.3g} µm ({called(name, result.named[name].voltage)})" for name, size in sizes.items())
+        found.append(f"Facets of {', '.join(each)}: differences between these states have the errors of both meshes.")
+    share = math.nan if result.full_slip is None else result.full_slip.penalty.contact_length
+    if not math.isnan(share):
+        found.append(f"Penalty: a rigid screen would change the contact length at full slip by {1e3 * share:+.2g} mm.")
+    band = in_words(result.record.get(RECORD, {}))
+    found += [band] if band else []
+    return [*found, *([PER_LENGTH] if result.named else []), *result.notes]
+
+
+def _in_time(load: LoadResult, least: float) -> str:
+    """Return range and mean of friction in a load over time, and its largest amplitude; of L_R without friction.
+
+    Args:
+        load: over time.
+        least: friction force (N/m) up to which there is none.
+    """
+    passed, rubs = load.over_time, load.rubs(least)
+    assert passed is not None
+    key = "contact_length" if not rubs else "mu_app" if "mu_app" in load.extremes else "f_t"
+    quantity, ends, mean = QUANTITIES[key], load.extremes[key], passed.mean[key]
+    unit = f" {quantity.unit}" if quantity.unit else ""
+    words = f"{load.name}: {quantity.words.split()[-1]} {cell(key, ends.min)} to {cell(key, ends.max)}{unit}"
+    words += "" if math.isnan(mean) else f", mean {cell(key, mean)}{unit}"
+    if rubs and passed.periods:
+        most, frequency = max(zip(passed.f_t_amplitude, passed.frequency, strict=True))
+        words += f"; amplitude of f_T at {frequency:.4g} Hz {cell('f_t', most)} N/m"
+    return f"{words}; {load.sticking}" if rubs and load.sticking else words

@@ -1,0 +1,209 @@
+"""What follows from the states of a result: newtons, bands, cautions, pictures, dataset and report, as one list.
+
+A result is written as soon as its states are known. :data:`POST` is applied to it then, once, where the result is made,
+and the result is written again. An entry that fails costs itself alone: a line on the console, a note in the result,
+and its traceback in ``run.log``. An entry that has no answer raises :class:`SceneError`, whose sentence is the note.
+
+A new entry is a line of :data:`POST`. No entry makes a collective call: one that fails on one rank alone would leave
+the others waiting. Ranks agree after each entry whether it failed on any of them.
+"""
+
+import traceback
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import replace
+from pkgutil import resolve_name
+from typing import NamedTuple
+
+from fingerpad.results import dataset
+from fingerpad.results.folder import Serial
+from fingerpad.results.quantities import Output
+from fingerpad.results.result import Result
+from fingerpad.results.writing import Writer
+from fingerpad.runs.context import RunContext
+from fingerpad.scene.messages import SceneError, alike, clip
+from variational.state import ContactState
+
+BEGUN = "begun"
+"""Key of a summary that was written before the entries, for runs that end in between."""
+_BEGUN = "The run ended before what follows from its states was computed: no newtons, bands, cautions or pictures."
+
+
+class Entry(NamedTuple):
+    """One thing that follows from the states of a result."""
+
+    name: str
+    """In notes, with its article where it has one."""
+    needs: Callable[[Result, RunContext], bool]
+    """Whether a result has it, and a run wants it."""
+    compute: str | Callable[[Result], object]
+    """Takes the result, and returns it with what is new; what makes a file returns nothing of use. A text is the place
+    of a function, ``module:function``, which is imported when it is needed."""
+    files: bool = False
+    """Whether it makes a file, of a result that is written: after all others, and on rank 0 alone."""
+
+
+# -- values ------------------------------------------------------------------------------------------------
+def with_cautions(result: Result, found: Iterable[str]) -> Result:
+    """Return a result with further cautions, but for those that it has with other numbers."""
+    known = {alike(text) for text in result.cautions}
+    return replace(result, cautions=(*result.cautions, *(text for text in found if alike(text) not in known)))
+
+
+def _cautions(result: Result, states: Sequence[ContactState]) -> Result:
+    """Return a result of the full model with the notes on its drives, and the cautions on scene, states and loads."""
+    from fingerpad.model import breakdown, cautions
+    from fingerpad.model.adhesion import without_slip
+    from fingerpad.results.over_time import NOTE
+    from fingerpad.results.states import long_steps
+    from fingerpad.scene.remarks import leakage, remarks
+
+    scene, loads = result.scene, result.scene.loads()
+    notes = [*leakage(scene), *([NOTE] if any(load.takes_time for load in loads) else [])]
+    lacks_slip = result.full_slip is None and any(load.until_full_slip for load in loads) and not result.failure
+    found = [
+        *remarks(scene),
+        *cautions.on_states(states, scene.closure(), scene.contact.law),
+        *breakdown.of_states(scene, states),
+        *long_steps(result.loads, result.record.get("force_error", 0.0)),
+        *(without_slip(states, scene.closure()) if lacks_slip else []),
+    ]
+    return with_cautions(replace(result, notes=tuple(dict.fromkeys((*result.notes, *notes)))), found)
+
+
+def cautions_on(states: Sequence[ContactState] = ()) -> Entry:
+    """Return the entry of the cautions on a result of the full model.
+
+    Args:
+        states: that it was computed from; by default its steps, or its named states.
+    """
+    return Entry("cautions", _followed, lambda each: _cautions(each, states or each.steps or [*each.named.values()]))
+
+
+def _words(result: Result) -> Result:
+    """Return the result itself, once it was put into words."""
+    str(result)
+    return result
+
+
+# -- files -------------------------------------------------------------------------------------------------
+def _dataset(result: Result) -> None:
+    if missing := dataset.save(result):
+        raise SceneError(missing)
+
+
+def _picture(kind: str) -> Callable[[Result], None]:
+    def draw(result: Result) -> None:
+        assert result.folder is not None
+        result.plot(kind, result.folder / f"{kind}.png")
+
+    return draw
+
+
+def _followed(result: Result, context: RunContext) -> bool:
+    return bool(resolve_name("fingerpad.reduced.registry:follows_path")(result.model))
+
+
+def _page(result: Result, context: RunContext) -> bool:
+    return context.report and result.folder is not None
+
+
+WORDS = Entry("headline", lambda result, _: True, _words)
+BANDS = Entry(
+    "bands of friction",
+    lambda result, context: context.report or _followed(result, context),
+    "fingerpad.reduced.closure_band:with_band",
+)
+POST: list[Entry] = [
+    Entry(
+        "newtons of the whole finger",
+        lambda result, c: _followed(result, c) and result.finger is None,
+        "fingerpad.slices.estimate:with_newtons",
+    ),
+    BANDS,
+    cautions_on(),
+    WORDS,
+    Entry("result.nc", lambda result, _: result.folder is not None, _dataset, files=True),
+    Entry("footprint.png", lambda r, c: _page(r, c) and r.finger is not None, _picture("footprint"), files=True),
+    Entry("solid.png", lambda r, c: _page(r, c) and r.finger is not None and r.whole, _picture("solid"), files=True),
+    Entry("report", _page, "fingerpad.report.write:of_result", files=True),
+]
+"""What follows from the states of a result, in order."""
+
+
+def of_outputs(outputs: Sequence[Output]) -> Entry:
+    """Return the entry of outputs of one's own, for results whose states do not have them yet."""
+    return Entry("outputs", lambda *_: True, lambda result: result.with_outputs(outputs))
+
+
+# -- where a result is made --------------------------------------------------------------------------------
+def kept(result: Result, context: RunContext, own: Sequence[Entry] = ()) -> Result:
+    """Return a result with what follows from it, written into the folder if there is one; collective.
+
+    Args:
+        result: its states.
+        context: ranks and folder.
+        own: entries of this result, before those of :data:`POST`.
+
+    Raises:
+        FolderError: the folder is in use, holds results of another scene or model, or cannot be written to.
+    """
+    with context.place(result.scene, result.model) as place:
+        writer = Writer(place, context.ranks)
+        try:
+            return completed(result, context, writer, own)
+        finally:
+            writer.close()
+
+
+def completed(result: Result, context: RunContext, writer: Writer, own: Sequence[Entry] = ()) -> Result:
+    """Write a result, compute what follows from it, and write it again; collective; see :func:`kept`."""
+    writer.take()
+    written = result = replace(result, folder=writer.folder)
+    writer.summary(_unfinished(result).to_dict(headline=False))
+    in_words = True
+    for entry in sorted((*own, *POST), key=lambda each: each.files):
+        if entry.files and result is not written:
+            writer.summary(result.to_dict(headline=in_words))
+            written = result
+        result, done = _tried(entry, result, context, writer)
+        in_words &= done or entry is not WORDS
+    if result is not written:
+        writer.summary(result.to_dict(headline=in_words))
+    return result
+
+
+def _unfinished(result: Result) -> Result:
+    return replace(result, notes=(*result.notes, _BEGUN), record=result.record | {BEGUN: True})
+
+
+def _tried(entry: Entry, result: Result, context: RunContext, writer: Writer) -> tuple[Result, bool]:
+    """Return a result with what an entry computes, or with a note why it has none, and whether it has; collective."""
+    found, why, trace = None, "", ""
+    try:
+        if (writer.comm.rank == 0 or not entry.files) and entry.needs(result, context):
+            compute = resolve_name(entry.compute) if isinstance(entry.compute, str) else entry.compute
+            found = compute(result)
+    except Exception as error:  # whatever it is, the result stays
+        words = f"{entry.name}: {type(error).__name__}: {error}"
+        why = str(error) if isinstance(error, SceneError) else clip(words)
+        trace = traceback.format_exc()
+    why, trace = next((each for each in writer.comm.allgather((why, trace)) if each[0]), ("", ""))
+    if not why:
+        return found if isinstance(found, Result) else result, True
+    writer.lost(why, trace)
+    return replace(result, notes=(*result.notes, why)), False
+
+
+def applied(result: Result, entries: Iterable[Entry]) -> Result:
+    """Return a result that is written already, or is not to be, with what further entries compute; on one rank."""
+    for entry in entries:
+        result, _ = _tried(entry, result, RunContext(), Writer(None, Serial()))
+    return result
+
+
+def in_words(result: Result) -> str:
+    """Return the text of a result; its notes alone where it cannot be put into words, which is one of them."""
+    try:
+        return str(result)
+    except Exception:
+        return "\n".join(result.notes)
