@@ -64,7 +64,10 @@ def test_friction_under_a_record_is_that_of_its_sine(tmp_path):
         ("X_Value\tVoltage\n\t0,000\n\t2,500\n\t5,000\n", "has no two columns of numbers"),
         ("0,0\n1,2\n2,0\n", "has no heads above its numbers; write 'time (s),voltage (V)' there"),
         ("a,b\n0,0\n1,2\n2,0\n", "has nothing named or united as time among 'a', 'b'"),
-        ("time (s),CH1 (Vpp)\n0,0\n1,2\n2,0\n", "has 'CH1 (Vpp)' in 'Vpp', which is not known; it must be in V"),
+        (
+            "time (s),CH1 (Vpp)\n0,0\n1,2\n2,0\n",
+            "has 'CH1 (Vpp)' in 'Vpp', which is V, and pp is a measure of a drive; it must",
+        ),
         ("time (s),I/mA\n0,0\n1,2\n2,0\n", "has 'I/mA' in 'mA', which is not a unit of voltage; it must be in V"),
         ("time (V),U (V)\n0,0\n1,2\n2,0\n", "has 'time (V)' in 'V', which is not a unit of time; it must be in s"),
         ("time (s),delay (s),U\n0,1,0\n1,2,2\n", None),

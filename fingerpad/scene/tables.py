@@ -71,7 +71,7 @@ class Column:
         try:
             unit = factor(self.unit, si)
         except ValueError as error:
-            why = str(error).partition(";")[0].removeprefix("its unit ")
+            why = re.split("[;:]", str(error))[0].removeprefix("its unit ")
             given = f"has {show(self.head)} in {show(self.unit)}, which {why}"
             raise ValueError(f"{given}; it must be in {allowed or si}") from None
         found = self.cells.where(pd.to_numeric(self.cells, errors="coerce").notna()).astype(float) * unit
