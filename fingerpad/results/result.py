@@ -1,6 +1,7 @@
 """Result of a model: the states of a run by name and in order, their errors and costs, as values, files and text."""
 
 import csv
+import io
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass, fields, replace
@@ -20,6 +21,7 @@ from fingerpad.scene.messages import SceneError, clip
 from fingerpad.scene.reading import DEFAULT_MODEL, model_name
 from fingerpad.scene.remarks import coefficient
 from fingerpad.scene.scene import as_kept
+from variational.files import read
 from variational.state import CONDITIONS, PATH, RESULTS, ContactState, Errors
 
 if TYPE_CHECKING:
@@ -257,8 +259,8 @@ def steps_of(folder: Path) -> tuple[ContactState, ...]:
         OSError: there is no such file.
         ValueError: it is not of a run.
     """
-    with (folder / "steps.csv").open(encoding="utf-8", newline="") as file:
-        return tuple(ContactState.from_row(row) for row in csv.DictReader(file) if None not in row.values())
+    rows = csv.DictReader(io.StringIO(read(folder / "steps.csv").decode(), newline=""))
+    return tuple(ContactState.from_row(row) for row in rows if None not in row.values())
 
 
 def _state(name: str, kept: Mapping[str, Any]) -> ContactState:
