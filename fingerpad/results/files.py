@@ -19,6 +19,8 @@ from uuid import uuid4
 
 from fingerpad.scene.messages import SceneError, clip
 
+FORMAT = 2
+"""Number of the format of ``summary.json`` and ``sweep.json``; one more where older files are read otherwise."""
 _MAX_BYTES = 200_000_000  # of a file that is read; a summary of a thousand loads has two millions
 _FILES = 160  # bytes that the longest name of a file in a folder of results takes of a path
 _PATH = 80  # characters of a path in a sentence
@@ -65,6 +67,35 @@ def read_object(file: Path) -> dict[str, Any]:
     if not isinstance(found, dict) or not _is_shallow(found, _MAX_DEPTH):
         raise ValueError(f"{file.name} holds no object, or one that is nested too deep")
     return found
+
+
+def has_other_format(kept: Mapping[str, Any]) -> bool:
+    """Return whether a summary has another format, or none."""
+    return "parameters" in kept and kept.get("format") != FORMAT
+
+
+def refuse_other_format(kept: Mapping[str, Any], name: str) -> None:
+    """Refuse a summary of another format.
+
+    Args:
+        kept: content of the file.
+        name: of its folder.
+
+    Raises:
+        SceneError: it has another format, or none; with the version that wrote it.
+    """
+    if not has_other_format(kept):
+        return
+    found, known = kept.get("format"), kept.get("provenance")
+    versions = known.get("versions") if isinstance(known, Mapping) else None
+    versions = versions if isinstance(versions, Mapping) else {"fingerpad": kept.get("version")}
+    parts = (versions.get("fingerpad") or "of an unknown version", versions.get("source"))
+    by = " ".join(clip(str(part), 16) for part in parts if part)
+    was = "before formats had numbers" if found is None else f"format {clip(str(found), 16)}"
+    raise SceneError(
+        f"{name} was written by fingerpad {by}, {was}; this fingerpad reads format {FORMAT}; run it again, or use that "
+        "version"
+    )
 
 
 def _is_shallow(data: Any, depth: int) -> bool:

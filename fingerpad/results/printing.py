@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 
 from fingerpad import notebook
 from fingerpad.results.closures import RECORD, in_words
-from fingerpad.results.quantities import PER_LENGTH, PLUS_MINUS, QUANTITIES, cell, head_rows, side_by_side
+from fingerpad.results.quantities import PER_LENGTH, QUANTITIES, cell, head_rows, plus_minus_of, side_by_side
 from fingerpad.results.states import LoadResult, called
 from fingerpad.scene.reading import DEFAULT_MODEL
 
@@ -68,7 +68,7 @@ def _remarks(result: "Answer") -> list[str]:
     if (how := result.missing_slip) and not result.failure:
         found.append(f"Full slip was {how}.")
     if any(state.error.known() for state in result.named.values()):
-        found.append(PLUS_MINUS)
+        found.append(plus_minus_of(result.parts()))
     sizes = {name: state.mesh_contact for name, state in result.named.items() if not math.isnan(state.mesh_contact)}
     if len(set(sizes.values())) > 1:  # with an accuracy
         each = (f"{1e6 * size:.3g} µm ({called(name, result.named[name].voltage)})" for name, size in sizes.items())

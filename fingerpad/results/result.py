@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 from fingerpad import launcher
 from fingerpad.results import dataset, printing
 from fingerpad.results.answer import Answer, Cost
-from fingerpad.results.files import read_object
+from fingerpad.results.files import FORMAT, read_object, refuse_other_format
 from fingerpad.results.headline import Headline, headline
 from fingerpad.results.quantities import CHANGES, STABILITY, Output, checked, valued
 from fingerpad.results.quantities import read as read_outputs
@@ -153,6 +153,7 @@ class Result(Answer):
             for name, state in self.named.items()
         }
         return {
+            "format": FORMAT,
             "model": self.model,
             "f_ext": 0.0 if last is None else last.f_ext,
             "voltage": 0.0 if last is None else last.voltage,
@@ -189,7 +190,8 @@ class Result(Answer):
             finger=WholeFinger.from_dict(summary["finger"], bare.scene.slices) if "finger" in summary else None,
         )
         used = {*bare._numbers(), "headline", "failure", "interrupted", "notes", "cautions", "outputs", "finger"}
-        used |= {f"{name}_{each.name}_{kind}" for name in STATES for each in fields(Errors) for kind in CHANGES}
+        changed = [*(each.name for each in fields(Errors)), *(each.name for each in bare.outputs)]
+        used |= {f"{name}_{key}_{kind}" for name in STATES for key in changed for kind in CHANGES}
         record = {key: value for key, value in summary.items() if key not in used}
         if "laws" in parameters:  # objects of Python, of which only the names are kept
             record["parameters"] = parameters
@@ -211,6 +213,7 @@ class Result(Answer):
             summary = read_object(folder / "summary.json")
             if set(summary) == {"failure"}:
                 raise SceneError(f"the run in {name} was refused and has no results: {summary['failure']}")
+            refuse_other_format(summary, f"the run in {name}")
             found = cls.from_dict(summary, folder)
             if (kept := dataset.read(folder, [each.name for each in found.outputs])) is not None:
                 ways = {name: state.reached for name, state in found.named.items()}
@@ -269,7 +272,7 @@ def _state(name: str, kept: Mapping[str, Any]) -> ContactState:
     texts = ("load", "reached")
     if wrong := [key for key, value in values.items() if not isinstance(value, int | float) and key not in texts]:
         raise TypeError(f"{wrong[0]} of {name} is no number")
-    more: dict[str, Any] = {kind: Errors(**kept.get(kind, {})) for kind in CHANGES}
+    more: dict[str, Any] = {kind: Errors.of(kept.get(kind, {})) for kind in CHANGES}
     more |= {key: values.pop(key) for key in (*STABILITY, "reached") if key in values}
     slip = {"all_slip": True, "slip_held": True} if name == "full_slip" else {}
     return replace(ContactState.from_row({"mu_app": math.nan} | values | slip), **more)
