@@ -7,7 +7,7 @@ from mpi4py import MPI
 from benchmarks.peers import at_equal_error, equal, ours, plain
 from benchmarks.peers.__main__ import half_width
 from benchmarks.peers.at_equal_error import CURVED, OURS
-from benchmarks.peers.exchange import Answer, Case, Load, Ridge, State, cases
+from benchmarks.peers.exchange import Answer, Case, Load, Ridge, State
 from geometry.bodies import ridge as one_ridge
 from geometry.mesh import load
 
