@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from fingerpad import launcher
-from fingerpad.results import dataset, printing
+from fingerpad.results import dataset
 from fingerpad.results.answer import Answer, Cost
 from fingerpad.results.files import FORMAT, read_object, refuse_other_format
 from fingerpad.results.headline import Headline, headline
@@ -233,14 +233,18 @@ class Result(Answer):
 
     def __str__(self) -> str:
         """Return the text *Result* at the end of a run: the named states side by side, with units and errors."""
-        return printing.text(self)
+        from fingerpad.results.printing import text
+
+        return text(self)
 
     __repr__ = __str__
     """In a console, too: the values of all steps are hundreds of pages."""
 
     def _repr_html_(self) -> str:
         """Return the text for a notebook: headline, tables, and remarks to unfold."""
-        return printing.page(self)
+        from fingerpad.results.printing import page
+
+        return page(self)
 
 
 def _loads(scene: "Scene", steps: Sequence[ContactState], stable: Sequence[bool | None]) -> tuple[LoadResult, ...]:

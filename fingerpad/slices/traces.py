@@ -119,9 +119,8 @@ def with_sum(result: Result, model: "Model", solve: Solve) -> Result:
     scene = result.scene
     try:
         found = {name: of_points(scene, model, solve, name, scene.f_ext) for name in states(scene)}
-        totals = under_one_force(
-            profile(scene.slices), {name: each.trace for name, each in found.items()}, scene.slices.count
-        )
+        of = {name: each.trace for name, each in found.items()}
+        totals = under_one_force(profile(scene.slices), of, scene.slices.count)
         found = {name: each._replace(total=totals[name]) for name, each in found.items()}
         return replace(result, finger=summed(scene, model.traces, found))
     except SceneError as error:
