@@ -103,6 +103,7 @@ viscosity:
 	$(run) python3 -m benchmarks.viscosity
 
 loads:
+	$(run) python3 -m benchmarks.loads.fresh
 	$(run) python3 -m benchmarks.loads
 
 feel:

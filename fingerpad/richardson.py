@@ -66,9 +66,9 @@ highest pressure, were chosen on the same scenes.
 ``docs/two_meshes.md``, and ``tests/test_calibration.py`` holds the factors to it.
 """
 RECEPTOR = 5e-6
-"""Largest element (m) at a receptor site with which an energy density there is of second order: the tips of the
-intermediate ridges have a radius of 6 µm. With 20 µm an error of second order missed it by up to a factor of 2.6."""
-_ROUNDOFF = 1e-9
+"""Largest element (m) at a receptor site with which the error of an energy density there is estimated. The tips of the
+intermediate ridges have a radius of 6 µm. With 20 µm two meshes gave too small an error in six of seven scenes, by a
+factor of up to 4.1."""
 FEW_FACETS = 4
 """Facets in contact on a ridge below which its length changes by accident with the mesh, and the effect of a rigid
 screen is doubtful: at two or three, a few Gauss points bear the contact, and their number changes."""
@@ -131,7 +131,6 @@ def of_two_meshes(
     safety: float = TWO,
     sites: float = SITES,
     short: bool = True,
-    receptor: float = 0.0,
 ) -> dict[str, float]:
     r"""Return the error of each quantity on the finer of two meshes, one with all elements twice as large, in its unit.
 
@@ -140,8 +139,7 @@ def of_two_meshes(
     Lengths in contact have the error of the facets where contact ends, of first order in these, and r is how much
     shorter they are. All else has that of all elements, r = 2, with p = 2 (1 with linear elements), and p = 3/2 for the
     highest pressure, which means over facets give. Where facets are not shorter where contact ends, friction has the
-    order and the ratio of lengths, since attraction depends on the edge of contact. Energy densities are of first order
-    where elements at their sites are larger than :data:`RECEPTOR`.
+    order and the ratio of lengths, since attraction depends on the edge of contact.
 
     The change of a single number may come out small by accident. So the relative error at a site in the skin is at
     least a part of the median of all sites' of its state. Lengths and friction are sums over ridges, whose changes are
@@ -156,16 +154,13 @@ def of_two_meshes(
         safety: factor of safety s.
         sites: that part of the median.
         short: whether facets are shorter where contact ends than elsewhere.
-        receptor: size of the elements at receptor sites on the finer mesh (m).
     """
     found, first_order = {}, ("contact_length", *(() if short else ("f_t", "mu_app")))
-    of_sites = 1 if receptor > RECEPTOR * (1 + _ROUNDOFF) else 2
     for name in (name for name in fine if name in coarse):
         of_ends = name.endswith(first_order)
         state = next((prefix for prefix in facets if name.startswith(f"{prefix}_")), None)
         ratio = facets[state][0] / facets[state][1] if of_ends and state else 2.0
-        other = 1.5 if name.endswith("p_max") else of_sites if "_sed_" in name else 2
-        order = 1 if of_ends else min(degree, other)
+        order = 1 if of_ends else min(degree, 1.5 if name.endswith("p_max") else 2)
         found[name] = safety * _change(name, coarse[name], fine[name]) / (ratio**order - 1)
     for names in _sites(found):
         values = np.array([value(name, fine[name]) for name in names])

@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 
-import fingerpad
 from fingerpad.accuracy import solves
 from fingerpad.model.options import FingerModel, by_rule, plan
 from fingerpad.results.interrupt import Interrupted
@@ -15,7 +14,7 @@ from fingerpad.richardson import SITES, TWO, of_two_meshes, value
 from fingerpad.runs import restarts
 from fingerpad.scene import from_data
 from tests.runs import run
-from tests.small_finger import NINE, small
+from tests.small_finger import NINE
 from tests.test_accuracy import change, known, model_of, mu_app, refinement, search
 from variational.solvers.continuation import StepFailed
 from variational.solvers.outcome import NotConverged
@@ -42,26 +41,15 @@ def test_estimate_is_of_the_path_and_the_final_mesh(monkeypatch):
     assert found.summary()["quantities"]["full_slip_mu_app"]["estimate"] == pytest.approx(error / TWO, rel=1e-12)
 
 
-@pytest.mark.parametrize(("receptor", "order"), [(5e-6, 2), (20e-6, 1)])
-def test_energy_density_on_large_elements_has_an_error_of_first_order(receptor, order):
-    """Elements larger than the tips at the sites, of a radius of 6 µm: by the whole change, not by a third of it."""
-    coarse, fine = {"full_slip_sed_0": 80.0, "full_slip_f_t": 39.0}, {"full_slip_sed_0": 100.0, "full_slip_f_t": 39.3}
-    found = of_two_meshes(coarse, fine, {}, receptor=receptor)
-    expected = {"full_slip_sed_0": TWO * 20.0 / (2**order - 1), "full_slip_f_t": TWO * 0.1}
-    assert found == pytest.approx(expected, rel=1e-9)
-
-
-@pytest.mark.long
-def test_energy_densities_with_receptors_of_20_um_are_within_their_errors():
-    """At all sites of a finger that one ridge bears, beside receptors of 2.5 µm: an error of second order is too small."""
-    output, found = {"receptors": True}, []
-    for size in (20e-6, 2.5e-6):
-        given = small(output=output).replace(mesh={"receptor": size})
-        found.append(fingerpad.run(given).record["accuracy"]["quantities"])
-    sites = [name for name in found[0] if "_sed_" in name]
-    apart = {name: abs(found[0][name]["value"] - found[1][name]["value"]) for name in sites}
-    assert len(sites) > 20 and [name for name in sites if apart[name] > found[0][name]["error"]] == []
-    assert any(apart[name] > found[0][name]["error"] / 3 for name in sites)
+@pytest.mark.parametrize(("receptor", "estimated"), [(5e-6, True), (20e-6, False)])
+def test_energy_densities_on_large_elements_have_no_error(monkeypatch, receptor, estimated):
+    """On elements larger than the tips at the sites, of a radius of 6 µm, two meshes do not show it."""
+    monkeypatch.setattr(solves, "solve_again", lambda model, states, comm, *more: known(model, states, comm))
+    model = model_of({"mesh": {"receptor": receptor}})
+    found = refinement(model, known(model, {}, MPI.COMM_SELF))
+    found.run()
+    sites = [name for name in found.estimates() if "_sed_" in name]
+    assert bool(sites) is estimated and found.estimates()["full_slip_mu_app"] > 0
 
 
 def test_signal_before_the_final_mesh_stops_the_run_and_is_no_reason_for_another_path():

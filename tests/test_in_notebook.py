@@ -1,12 +1,10 @@
 """What a notebook shows of results: tables, pictures and a progress bar, in a kernel of its own."""
 
-import os
+import json
 import sys
 from dataclasses import replace
 from types import SimpleNamespace
 
-import nbclient
-import nbformat
 import pytest
 from mpi4py import MPI
 
@@ -14,7 +12,7 @@ import fingerpad as fp
 from fingerpad import notebook
 from fingerpad.results import style
 from fingerpad.results.terminal import Console
-from tests.commands import ROOT, python
+from tests.commands import python
 from tests.small_finger import small
 
 pytestmark = pytest.mark.slow
@@ -30,21 +28,26 @@ fp.Body(fp.geometry.ridge(size=40e-6), fp.Ogden(86.76e3, -14.53, 0.48), friction
 """
 
 
+EXECUTE = """
+import json, sys, nbclient, nbformat
+book = nbformat.v4.new_notebook(cells=[nbformat.v4.new_code_cell(text) for text in sys.argv[1].splitlines()])
+nbclient.NotebookClient(book, timeout=300, kernel_name="python3").execute()
+print(json.dumps([[out["data"] for out in cell["outputs"] if "data" in out] for cell in book.cells]))
+"""
+
+
 @pytest.fixture(scope="module")
 def shown(tmp_path_factory) -> list[dict[str, str]]:
     """What a kernel shows of the last value of each cell, by type."""
-    book = nbformat.v4.new_notebook(cells=[nbformat.v4.new_code_cell(text) for text in CELLS.strip().splitlines()])
-    path = os.pathsep.join(filter(None, [str(ROOT), os.environ.get("PYTHONPATH", "")]))
-    resources = {"metadata": {"path": str(tmp_path_factory.mktemp("notebook"))}}
-    client = nbclient.NotebookClient(book, timeout=300, kernel_name="python3", resources=resources)
-    client.execute(env={**os.environ, "PYTHONPATH": path})
-    found = [[out["data"] for out in cell["outputs"] if out["output_type"] == "execute_result"] for cell in book.cells]
-    assert found[0] == []
-    return [each for (each,) in found[1:]]
+    done = python("-c", EXECUTE, CELLS.strip(), cwd=tmp_path_factory.mktemp("notebook"), JUPYTER_PLATFORM_DIRS="1")
+    assert done.returncode == 0, done.stderr
+    first, *others = json.loads(done.stdout)
+    assert first == []
+    return [each for (each,) in others]
 
 
 def test_values_are_tables(shown):
-    """A scene has what it changes, a result its headline, a finger its newtons, a sweep its points, a body its state."""
+    """A scene has what it changes, a result its headline, a finger newtons, a sweep its points, a body its state."""
     words = ("<td style", "raise the friction force", "friction force F_T (N)", "at full slip", "ridges in contact")
     for found, sentence in zip((*shown[:4], shown[6]), words, strict=True):
         assert sentence in found["text/html"] and found["text/html"].count("<table>") >= 1
@@ -59,12 +62,9 @@ def test_figure_is_a_picture(shown, cell):
 
 # -- without a kernel ------------------------------------------------------------------------------------------
 def test_words_are_escaped():
-    """A caution, a note, a load and a key of anybody's."""
-    found = replace(fp.run(model="cylinders"), cautions=("<script>a",), notes=("<b>note",))
-    found = found._repr_html_()
+    """Cautions and notes may have words of anybody's."""
+    found = replace(fp.run(model="cylinders"), cautions=("<script>a",), notes=("<b>note",))._repr_html_()
     assert "&lt;script&gt;a" in found and "&lt;b&gt;note" in found and "<script>" not in found
-    load = {"name": "<i>", "f_ext": 1.0}
-    assert "<i>" not in fp.Scene(history=[load])._repr_html_()
     sweep = fp.sweep(model="cylinders", voltage=[100.0], quiet=True)
     assert "&lt;i&gt;" in replace(sweep, notes=("<i>",))._repr_html_()
 
@@ -107,6 +107,6 @@ def test_each_step_is_passed_on():
     result = fp.run(scene, on_step=lambda state, part: seen.append((state, part)))
     assert [state.step for state, _ in seen] == [state.step for state in result.steps]
     parts = [part for _, part in seen]
-    assert parts == sorted(parts) and 0 < parts[0] < parts[-1] <= 1
+    assert 0 <= min(parts) == parts[0] < 0.9 < max(parts) <= 1
     with pytest.raises(ZeroDivisionError):
         fp.run(scene, on_step=lambda state, part: 1 / 0)

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from fingerpad import run
 from benchmarks import harness, models, newtons
+from fingerpad import run
 from fingerpad.reduced import cylinder_errors, cylinders, uncharged
 from fingerpad.scene import Scene, from_data
 from fingerpad.scene.dotted import with_values

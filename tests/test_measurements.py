@@ -150,24 +150,45 @@ HEADS = "force (N/m), friction (1)\n"
     ("text", "words"),
     [
         ("force, friction (1)\n1, 2\n", "has 'force' without a unit; write 'force (N/m)' in the head or by columns"),
-        ("force (furlong), friction (1)\n1, 2\n", "has 'force (furlong)' in 'furlong', which is not a unit of force per length; it must be in N/m, or in N for"),
+        (
+            "force (furlong), friction (1)\n1, 2\n",
+            "has 'force (furlong)' in 'furlong', which is not a unit of force per length; it must be in N/m, or in N for",
+        ),
         ("force (N/m), friction force (N)\n1, 2\n", "it must be in N, as another column is of a whole finger"),
-        ("voltage (g), friction (1)\n1, 2\n", "has 'voltage (g)' in 'g', which is not a unit of voltage; it must be in V"),
+        (
+            "voltage (g), friction (1)\n1, 2\n",
+            "has 'voltage (g)' in 'g', which is not a unit of voltage; it must be in V",
+        ),
         ("voltage (V), friction (N)\n1, 2\n", "has 'friction (N)' in 'N', which is not a number; it must be in 1 or %"),
         ("force (N), contact length (mm)\n1, 2\n", "has contact length, and a whole finger, which has a column in new"),
         (HEADS + "1, 2\n3,\n", "has nothing in line 4 of 'friction (1)'; it must be a finite number"),
         (HEADS + ", 2\n", "has nothing in line 3 of 'force (N/m)'; it must be a finite number"),
         (HEADS + "1, 0\n", "has '0' in line 3 of 'friction (1)'; it must be a finite number other than 0"),
-        ("force (N/m), contact length (mm)\n1, -2\n", "has '-2' in line 3 of 'contact length (mm)'; it must be greater than 0"),
-        ("force (N/m); friction (1)\n1; 1.000,5\n", "has '1.000,5' in line 3 of 'friction (1)'; it must be a finite number; decimals have points"),
-        ("force (N/m); friction (1)\n1; 2; 3\n", "has more cells in line 3 than its 2 heads; each cell must have a head"),
-        ("voltage (V), attraction (N/m)\n5, 0\n", "has '0' in line 3 of 'attraction (N/m)'; it must be other than 0 but at 0 V"),
+        (
+            "force (N/m), contact length (mm)\n1, -2\n",
+            "has '-2' in line 3 of 'contact length (mm)'; it must be greater than 0",
+        ),
+        (
+            "force (N/m); friction (1)\n1; 1.000,5\n",
+            "has '1.000,5' in line 3 of 'friction (1)'; it must be a finite number; decimals have points",
+        ),
+        (
+            "force (N/m); friction (1)\n1; 2; 3\n",
+            "has more cells in line 3 than its 2 heads; each cell must have a head",
+        ),
+        (
+            "voltage (V), attraction (N/m)\n5, 0\n",
+            "has '0' in line 3 of 'attraction (N/m)'; it must be other than 0 but at 0 V",
+        ),
         ('friction (1)\n"0.2\n', "is no table in CSV: a quotation in line 3 does not end there"),
         ("participant, friction (1)\n, 2\n", "has nothing in line 3 of 'participant'; it must be a name in each row"),
         (HEADS + "1, 1_0\n", "has '1_0' in line 3 of 'friction (1)'; it must be a finite number"),
         (HEADS + "1, 0,2\n", "has more cells in line 3 than its 2 heads; decimals have points"),
         ("voltage (V), friction (1)\ninf, 0.2\n", "has 'inf' in line 3 of 'voltage (V)'; it must be a finite number"),
-        ("force (N/m), friction (1), spread (mm)\n1, 2, 3\n", "has 'spread (mm)' in 'mm', which is not a number; it must be in 1 or %"),
+        (
+            "force (N/m), friction (1), spread (mm)\n1, 2, 3\n",
+            "has 'spread (mm)' in 'mm', which is not a number; it must be in 1 or %",
+        ),
         ("# state: sideways\n" + HEADS + "1, 2\n", "has the state 'sideways'; it must be one of uncharged, ch"),
         ("# State: Charged\nforce (N/m), friction force (N/m)\n1, 2\n", "has friction force at the state charged; bef"),
         ("", "has no numbers below a header"),
@@ -274,7 +295,7 @@ def test_errors_of_a_sweep_count_with_the_spread(folder, table, tmp_path, capsys
     out = capsys.readouterr().out
     assert re.search(r"^ *25.000 +86.6 +0.3300 +0.0110 +0.3750 +0.0350 +0.0450 +13.6$", out, re.MULTILINE)
     assert re.search(r"^ *25.000 +200.0 +0.5100 +0.0200 +0.5000 +– +-0.0100 +-2.0$", out, re.MULTILINE)
-    assert "±: estimated discretisation error of the computed value, of the mesh alone.\n" in out
+    assert "±: whole known error of the computed value.\n" in out
     assert "Within the spread plus the error of the computed value: 3 of 4.\n" in out
 
 

@@ -23,7 +23,7 @@ from fingerpad.slices.total import BeyondTrace, Profile, at_force, at_indentatio
 from fingerpad.slices.trace import Trace, TraceError, gross_width, trace
 from geometry.profiles import Profiles
 from tests.measures import contact_state
-from variational.state import ContactState, RidgeStates
+from variational.state import ContactState, Errors, RidgeStates
 
 R_X, R_Z = 14e-3, 28e-3  # m
 FOUNDATION = 1e9  # Pa/m
@@ -259,7 +259,7 @@ def test_finger_in_three_dimensions_has_the_ridges_of_its_slices(tmp_path):
 def slip_alone(**changes: object) -> fp.Result:
     """Full slip at the centre, as a point of a sweep of full slip alone has it."""
     slip = fp.run(model="cylinders").full_slip
-    slip = replace(slip, bone_height=-indentation(slip.f_ext, "full_slip"))
+    slip = replace(slip, bone_height=-indentation(slip.f_ext, "full_slip"), error=Errors())
     return with_newtons(fp.Result(fp.Scene(**changes), "full", None, None, slip))
 
 

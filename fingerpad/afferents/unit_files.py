@@ -32,7 +32,9 @@ def read_units(file: str | Path) -> dict[str, tuple[FilteredUnit, ...]]:
         text = files.text(files.read(file, files.MOST_OF_TEXT)) or ""
     except OSError as error:
         raise SceneError(f"the parameter file {name} cannot be read: {error.strerror or error}") from None
-    return {each: tuple(FilteredUnit(row, site) for row in _rows(text, key, name)) for each, (key, site) in NAMES.items()}
+    return {
+        each: tuple(FilteredUnit(row, site) for row in _rows(text, key, name)) for each, (key, site) in NAMES.items()
+    }
 
 
 def _rows(text: str, key: str, name: str) -> list[tuple[float, ...]]:

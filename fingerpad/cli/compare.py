@@ -16,7 +16,7 @@ from fingerpad.reduced.cylinders import Cylinders
 from fingerpad.reduced.model import STATES, Model
 from fingerpad.reduced.registry import MODELS
 from fingerpad.results.files import below, check_folder
-from fingerpad.results.quantities import PLUS_MINUS, QUANTITIES, Output, cell
+from fingerpad.results.quantities import QUANTITIES, Output, cell, plus_minus_of
 from fingerpad.results.result import Result
 from fingerpad.results.states import WORDS, called
 from fingerpad.runs.context import RunContext
@@ -123,7 +123,7 @@ def _footprint(scene: Scene, length: float | None, ridges: int | None, run: Path
 
 
 def table(results: Sequence[Result]) -> str:
-    """Return results of one scene side by side, ± their estimated discretisation errors, and their notes."""
+    """Return results of one scene side by side, with their errors and their notes."""
     rows = [["", *(result.model for result in results)]]
     for name in STATES:
         for key in RESULTS:
@@ -141,8 +141,9 @@ def table(results: Sequence[Result]) -> str:
     said = [(result.model, (*result.notes, *result.cautions, _failure(result))) for result in results]
     shared = [note for note in said[0][1] if note and len(said) > 1 and all(note in each for _, each in said)]
     notes = [f"{model}: {note}" for model, each in said for note in each if note and note not in shared]
-    if any(state.error.known() for result in results for state in result.named.values()):
-        notes.insert(0, PLUS_MINUS)
+    known = [result for result in results if any(state.error.known() for state in result.named.values())]
+    if known:
+        notes.insert(0, plus_minus_of(f"{part} ({each.model})" for each in known for part in each.parts()))
     return "\n".join(lines + notes + shared)
 
 
@@ -221,7 +222,7 @@ def _lines(compared: "pd.DataFrame") -> Iterator[str]:
     if about["ignored"]:
         yield f"Columns not read: {clip(', '.join(about['ignored']), 200)}."
     if errors:
-        yield "±: estimated discretisation error of the computed value, of the mesh alone."
+        yield "±: whole known error of the computed value."
     if about["turned"]:
         rows = f"{about['turned']} of {len(compared)} rows have a friction below 0"
         yield f"{rows}, of the other direction; its magnitude is compared."

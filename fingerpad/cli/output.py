@@ -96,11 +96,18 @@ def panels(file: Path, title: str, count: int = 1) -> "Iterator[tuple[Figure, li
         style.save(figure, file)
 
 
-def curve(ax: "Axes", k: int, x: ArrayLike, y: ArrayLike, label: str, colour: Any = None) -> None:
-    """Draw curve number k, with markers where its points are few; ``colour`` takes the place of the palette's."""
+def curve(
+    ax: "Axes", k: int, x: ArrayLike, y: ArrayLike, label: str, colour: Any = None, error: ArrayLike = 0.0
+) -> None:
+    """Draw curve number k, with markers where its points are few; ``colour`` takes the place of the palette's.
+
+    A band is drawn of an ``error`` above and below; none where it is 0.
+    """
     from fingerpad.results import style
 
     marked = np.size(x) <= _MAX_MARKERS
     marker: dict[str, Any] = {"marker": style.MARKERS[k % len(style.MARKERS)], "ms": 5} if marked else {}
     colour = style.CATEGORIES[k % len(style.CATEGORIES)] if colour is None else colour
+    if np.any(error):
+        ax.fill_between(x, np.subtract(y, error), np.add(y, error), color=colour, alpha=0.15, linewidth=0)
     ax.plot(x, y, color=colour, ls=_DASHES[k % len(_DASHES)], label=label, **marker)

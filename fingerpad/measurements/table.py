@@ -49,7 +49,8 @@ _NAMES = (*CONDITIONS, *QUANTITIES, "spread", PERSON)
 _PERCENT = ("%", "percent")
 _COMMENT = re.compile(r"(source|doi|url|people|state)\s*:(.*)", re.IGNORECASE)
 _SINE = re.compile(
-    r"(?:^|(?<=[vu])|[ _-]+)(?:(rms|eff(?:ective)?)|(pp|p-p|pk-?pk|peak[ -]to[ -]peak)|(amplitude|peak))$", re.IGNORECASE
+    r"(?:^|(?<=[vu])|[ _-]+)(?:(rms|eff(?:ective)?)|(pp|p-p|pk-?pk|peak[ -]to[ -]peak)|(amplitude|peak))$",
+    re.IGNORECASE,
 )
 _EFFECTIVE = {None: ("", 1.0), 1: ("", 1.0), 2: (" peak to peak", 8**-0.5), 3: (" amplitude", 2**-0.5)}
 """How a voltage is given, behind the V, and the effective value of a sine over it; by the group of the expression."""
@@ -141,7 +142,9 @@ def _measured(table: str | Path | pd.DataFrame, name: str, given: Mapping[str, s
         raise ValueError(f"has {quantity} at the state {asked}; before the finger slides it has none")
     if (known := QUANTITIES[quantity][whole]) is None:
         kind = "a whole finger, which has a column in newtons or of an area," if whole else "a cross-section"
-        raise ValueError(f"has {quantity}, and {kind} has {', '.join(of for of in QUANTITIES if QUANTITIES[of][whole])}")
+        raise ValueError(
+            f"has {quantity}, and {kind} has {', '.join(of for of in QUANTITIES if QUANTITIES[of][whole])}"
+        )
     units = {quantity: known[1], "spread": known[1], "force": "N" if whole else "N/m", "voltage": "V"}
     rows = {of: _numbers(each, units[of]) for of, each in used.items() if of != PERSON}
     turned = int((rows[quantity] < 0).sum())
@@ -184,7 +187,9 @@ def _named(heads: Sequence[Column], given: Mapping[str, str]) -> dict[str, Colum
     """Return columns by their names in this program, with their units."""
     found = dict[str, Column]()
     if unknown := given.keys() - {column.head for column in heads}:
-        raise ValueError(f"has no column {show(min(unknown))}; it has {clip(', '.join(each.head for each in heads), 200)}")
+        raise ValueError(
+            f"has no column {show(min(unknown))}; it has {clip(', '.join(each.head for each in heads), 200)}"
+        )
     for column in heads:
         of, unit = parts(given[column.head]) if column.head in given else (column.name, column.unit)
         of, unit, cells = of.lower(), unit or column.unit, column.cells

@@ -235,7 +235,7 @@ def _titled(column: str, quantity: Output) -> str:
 def _study(table: Table) -> str:
     state, columns = table.shown
     drawn = [(place, words) for place, (column, words) in _charts(table).items() if column in columns]
-    note = "Bars are estimated discretisation errors, where a run has them."
+    note = "Bars are the whole known errors, where a point has them."
     without = (
         '<noscript><p class="note">The charts need JavaScript; the table below has the same numbers.</p></noscript>'
     )

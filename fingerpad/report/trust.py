@@ -101,7 +101,7 @@ def _mesh(result: "Result") -> Iterator[Finding]:
     yield from _facets(result, state)
     name = max(shares, key=lambda each: shares[each])
     share = shares[name]
-    yield _of_share(share, f"The estimated discretisation error of {name} is {100 * share:.2g} % of its value.")
+    yield _of_share(share, f"The error of {name} by mesh and penalty is {100 * share:.2g} % of its value.")
 
 
 def _over_time(result: "Result") -> Iterator[Finding]:

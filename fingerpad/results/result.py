@@ -190,7 +190,8 @@ class Result(Answer):
             finger=WholeFinger.from_dict(summary["finger"], bare.scene.slices) if "finger" in summary else None,
         )
         used = {*bare._numbers(), "headline", "failure", "interrupted", "notes", "cautions", "outputs", "finger"}
-        used |= {f"{name}_{each.name}_{kind}" for name in STATES for each in fields(Errors) for kind in CHANGES}
+        changed = [*(each.name for each in fields(Errors)), *(each.name for each in bare.outputs)]
+        used |= {f"{name}_{key}_{kind}" for name in STATES for key in changed for kind in CHANGES}
         record = {key: value for key, value in summary.items() if key not in used}
         if "laws" in parameters:  # objects of Python, of which only the names are kept
             record["parameters"] = parameters
@@ -275,7 +276,7 @@ def _state(name: str, kept: Mapping[str, Any]) -> ContactState:
     texts = ("load", "reached")
     if wrong := [key for key, value in values.items() if not isinstance(value, int | float) and key not in texts]:
         raise TypeError(f"{wrong[0]} of {name} is no number")
-    more: dict[str, Any] = {kind: Errors(**kept.get(kind, {})) for kind in CHANGES}
+    more: dict[str, Any] = {kind: Errors.of(kept.get(kind, {})) for kind in CHANGES}
     more |= {key: values.pop(key) for key in (*STABILITY, "reached") if key in values}
     slip = {"all_slip": True, "slip_held": True} if name == "full_slip" else {}
     return replace(ContactState.from_row({"mu_app": math.nan} | values | slip), **more)

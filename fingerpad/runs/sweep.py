@@ -19,6 +19,7 @@ from fingerpad.results.files import FORMAT, below, check_folder, replace_json
 from fingerpad.results.quantities import Output
 from fingerpad.results.quantities import checked as checked_outputs
 from fingerpad.results.result import Result
+from fingerpad.runs.axis import refuse_many
 from fingerpad.runs.context import RunContext
 from fingerpad.runs.post import applied, of_outputs
 from fingerpad.runs.solve import checked, solved
@@ -37,7 +38,6 @@ FILES = ("table.csv", FILE, "report.html", "sweep.json")
 """What a sweep writes into its folder beside its points."""
 STATES = ("all", "full_slip")
 """Of the points of a sweep: the first is the default."""
-_MAX_POINTS = 10_000  # of a sweep
 _LIMIT = 4 * 3600.0  # s of processor time for one point
 
 
@@ -169,9 +169,7 @@ def _refuse_axes(axes: Mapping[str, Sequence[Any]]) -> None:
             raise SceneError(
                 f"{key} of the sweep is {show(values)}; it must be a list of at least one value, none a list"
             )
-    count = int(np.prod([len(values) for values in axes.values()]))
-    if count > _MAX_POINTS:
-        raise SceneError(f"the sweep has {count} points; at most {_MAX_POINTS} are allowed")
+    refuse_many(math.prod(len(values) for values in axes.values()))
 
 
 def _values(scenes: Sequence[Scene], axes: Mapping[str, Sequence[Any]]) -> dict[str, tuple[Any, ...]]:

@@ -15,7 +15,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from fingerpad.scene.messages import clip, show
+from fingerpad.scene.messages import show
 from geometry.units import is_unit, to_si
 from variational import files
 
@@ -72,7 +72,9 @@ class Column:
         try:
             unit = factor(self.unit, si)
         except ValueError as error:
-            given = f"has {show(self.head)} in {show(self.unit)}, which {error}".partition(";")[0].replace("its unit ", "")
+            given = f"has {show(self.head)} in {show(self.unit)}, which {error}".partition(";")[0].replace(
+                "its unit ", ""
+            )
             raise ValueError(f"{given}; it must be in {allowed or si}") from None
         found = self.cells.where(pd.to_numeric(self.cells, errors="coerce").notna()).astype(float) * unit
         self.refuse(~np.isfinite(found) & ((self.cells != "") | (not optional)), "a finite number")
@@ -163,7 +165,9 @@ def read(file: str | Path, header: str) -> Table:
     comments = [line.strip().lstrip("# ") for line in lines if line.lstrip().startswith("#")]
     lines = ["" if line.lstrip().startswith("#") or (named and k == 0) else line for k, line in enumerate(lines)]
     last = [line for line in lines if line.strip()][-_LAST:]
-    mark = named[1] if named else next((mark for mark in "\t;" if 2 * sum(mark in line for line in last) > len(last)), ",")
+    mark = (
+        named[1] if named else next((mark for mark in "\t;" if 2 * sum(mark in line for line in last) > len(last)), ",")
+    )
     frame = _parted(lines, mark)
     numbers = frame.apply(lambda cells: pd.to_numeric(cells.str.rstrip("% "), errors="coerce").notna())
     counts = numbers.sum()
@@ -214,7 +218,10 @@ def _heads(above: pd.DataFrame, places: Sequence[int]) -> list[tuple[str, str, s
     bare = [cell.strip("()[] ") for cell in last]
     if len(names) > 1 and (
         all(cell[0] in "([" for cell in last if cell)
-        or (any(map(_BARE.fullmatch, bare)) and all(not u or u in NUMBERS or is_unit(u) or is_unit(u.lower()) for u in bare))
+        or (
+            any(map(_BARE.fullmatch, bare))
+            and all(not u or u in NUMBERS or is_unit(u) or is_unit(u.lower()) for u in bare)
+        )
     ):
         return [(head, parts(head)[0], unit) for head, unit in zip(names[-1], bare, strict=True)]
     if len(names) > 1 and any(files.is_number(last[k]) for k in places):

@@ -7,6 +7,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import PchipInterpolator
+from scipy.optimize import brentq
 
 from fingerpad.scene.messages import SceneError
 from variational.state import ContactState
@@ -108,6 +109,14 @@ class Trace:
         values = np.where(there & touches, values * np.exp(slopes * np.minimum(at - first, 0.0)), 0.0)
         found = dict(zip(_INTERPOLATED, values, strict=True))
         return found | {"f_t": found.pop("grip") * (found["f_ext"] + found["f_electrostatic"])}
+
+    def under(self, force: float) -> float:
+        """Return the indentation (m) at an external force (N/m) between the first point and the end."""
+
+        def excess(x: float) -> float:
+            return float(np.log(self.at(np.exp([x]))["f_ext"][0] / force))
+
+        return float(np.exp(brentq(excess, *np.log(self.depth[[0, -1]]), xtol=1e-14)))
 
     @cached_property
     def _powers(self) -> tuple[PchipInterpolator, Array, NDArray[np.bool_]]:

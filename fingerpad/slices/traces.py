@@ -3,8 +3,9 @@
 The full model follows three histories. The finger is pressed without voltage. It is pressed lightly, charged and
 pressed on. It is pressed lightly, charged, slid to full slip and pressed on while it slides. Where full slip does not
 depend on the path, one simulation has all of them (``fingerpad.runs.newtons``). Elsewhere they are ordinary scenes,
-and every accepted step at full slip is a point of the trace. A model without a path has :data:`FORCES` points. A trace
-that ends before the force is reached is made again to a larger one.
+and every accepted step at full slip is a point of the trace. A model without a path has points at fixed forces
+(:mod:`fingerpad.slices.grid`), so that a sum over them does not depend on the way to it. A trace that ends before the
+force is reached is made again to a larger one.
 """
 
 from collections.abc import Callable, Iterable, Mapping
@@ -22,8 +23,10 @@ from fingerpad.scene.messages import SceneError
 from fingerpad.scene.parameters import LINE, POINT, POWER
 from fingerpad.slices import errors
 from fingerpad.slices.finger import WholeFinger, in_order
+from fingerpad.slices.grid import LIGHT as LIGHT
+from fingerpad.slices.grid import PER_OCTAVE, of_points
 from fingerpad.slices.total import BeyondTrace, Total, at_force, profile, under_one_force
-from fingerpad.slices.trace import Trace, TraceError, refuse_floating, trace
+from fingerpad.slices.trace import Trace, TraceError, trace
 from geometry.units import computed
 from variational.state import ContactState, Errors
 
@@ -32,10 +35,8 @@ if TYPE_CHECKING:
 
 Solve = Callable[[Scene, str], Result]
 """Returns the result of a scene; takes a name for the folder of its files."""
-FORCES = 8
-"""Points of a trace of a model without a path."""
-LIGHT = 1 / 30
-"""Force under which a finger is charged, and slid to full slip, over the largest of its trace."""
+NO_NEWTONS = "no newtons of the whole finger"
+"""Beginning of a note that says why."""
 SMALLEST, _LARGEST = 1e-3, 5e3
 """Forces (N/m) of a scene."""
 _SHORTEST = 1.01 * SMALLEST / LIGHT  # N/m, largest force of a trace whose light one a scene can have
@@ -44,7 +45,7 @@ _MORE = 1.8  # factor on the largest force of the next try
 MARGIN = 1.1
 """Largest force of a trace over the one expected at the centre."""
 CONSTANTS = {
-    "light": LIGHT, "forces": FORCES, "margin": MARGIN, "more": _MORE, "tries": _TRIES,
+    "light": LIGHT, "per_octave": PER_OCTAVE, "margin": MARGIN, "more": _MORE, "tries": _TRIES,
     "shortest": _SHORTEST, "smallest": SMALLEST, "largest": _LARGEST,
     "start": {"line": LINE, "point": POINT, "power": POWER},
 }  # fmt: skip
@@ -82,16 +83,13 @@ def whole(scene: Scene, model: "Model", solve: Solve) -> Result:
     Raises:
         SceneError: a profile that does not fit, or a force that no trace reached.
     """
-    here = scene.replace(force=None)
 
-    def made(name: str, top: float, tries: int) -> Traced:
-        if model.path:
-            return _run(here, scene.force or 0.0, solve, name, top, tries)
-        return of_points(here, model, solve, name, top)
+    def reach() -> Reach:
+        return Reach(scene, lambda name, top, tries: _made(scene, model, solve, name, top, tries))
 
-    reach = Reach(scene, made)
+    shared = reach()  # a trace of runs is made to the force of the one before; the others do not depend on each other
     try:
-        found = {name: reach.follow(name) for name in states(scene)}
+        found = {name: (shared if model.path else reach()).follow(name) for name in states(scene)}
     except _Stopped as stopped:
         return stopped.result
     finger = summed(scene, model.traces, found)
@@ -118,13 +116,14 @@ def with_sum(result: Result, model: "Model", solve: Solve) -> Result:
     """
     scene = result.scene
     try:
-        found = {name: of_points(scene, model, solve, name, scene.f_ext) for name in states(scene)}
-        of = {name: each.trace for name, each in found.items()}
-        totals = under_one_force(profile(scene.slices), of, scene.slices.count)
+        f_ext = scene.f_ext
+        found = {name: Traced(*of_points(scene, model, solve, name, f_ext, f_ext)) for name in states(scene)}
+        traces = {name: each.trace for name, each in found.items()}
+        totals = under_one_force(profile(scene.slices), traces, scene.slices.count, f_ext)
         found = {name: each._replace(total=totals[name]) for name, each in found.items()}
-        return replace(result, finger=summed(scene, model.traces, found))
+        return model.of_finger(scene, result, summed(scene, model.traces, found))
     except SceneError as error:
-        return replace(result, notes=(*result.notes, f"no newtons of the whole finger: {error}"))
+        return replace(result, notes=(*result.notes, f"{NO_NEWTONS}: {error}"))
 
 
 def history(scene: Scene, name: str, top: float, part: float = LIGHT) -> Scene:
@@ -178,7 +177,7 @@ def summed(scene: Scene, words: str, found: Mapping[str, Traced]) -> WholeFinger
     """
     totals = {name: each.total for name, each in found.items() if each.total is not None}
     wavelength = scene.geometry.ridge_wavelength
-    known = {name: dict(each.carried) or {errors.MESH: _shares(each, name, wavelength)} for name, each in found.items()}
+    known = {name: dict(e.carried) or errors.of_section(_end(e, name), wavelength) for name, e in found.items()}
     of = {name: each.trace for name, each in found.items()}
     tops = (f"{each.trace.end[1]:.4g} N/m ({name.replace('_', ' ')})" for name, each in found.items())
     if not scene.volts:  # normal contact is one state then, with two names
@@ -232,7 +231,8 @@ def _section(traced: Traced, name: str, depth: float, wavelength: float) -> Cont
     at: dict[str, Any] = {key: float(values[0]) for key, values in traced.trace.at(np.array([depth])).items()}
     near = min(traced.states, key=lambda state: abs(state.bone_height + depth))
     mu_app = at["f_t"] / at["f_ext"]
-    shares, end = _shares(traced, name, wavelength), _end(traced, name)
+    end, mesh = _end(traced, name), traced.carried.get(errors.MESH)
+    shares = mesh or errors.add(*errors.of_section(end, wavelength).values())
     known = {key: shares[key] * at[key] for key in ("f_t", "f_electrostatic") if key in shares}
     known |= {"mu_app": shares["mu_app"] * mu_app} if "mu_app" in shares else {}
     known |= {"contact_length": shares["contact_area"] * at["contact_length"]} if "contact_area" in shares else {}
@@ -259,11 +259,6 @@ def _end(traced: Traced, name: str) -> ContactState | None:
         return traced.end
     named = {} if traced.result is None else traced.result.named
     return named.get("charged" if name == "uncharged" else name)
-
-
-def _shares(traced: Traced, name: str, wavelength: float) -> dict[str, float]:
-    """Return the relative errors of a sum by the mesh of the cross-section."""
-    return traced.carried.get(errors.MESH) or errors.discretisation(_end(traced, name), wavelength)
 
 
 def _together(costs: Iterable[Cost]) -> Cost:
@@ -327,6 +322,14 @@ class Reach:
         raise AssertionError("every try returns or raises")
 
 
+def _made(scene: Scene, model: "Model", solve: Solve, name: str, top: float, tries: int) -> Traced:
+    """Return a trace as ordinary scenes have it; arguments as of :class:`Reach` and :func:`whole`."""
+    here = scene.replace(force=None)
+    if model.path:
+        return _run(here, scene.force or 0.0, solve, name, top, tries)
+    return Traced(*of_points(here, model, solve, name, scene.centre_force, top))
+
+
 def _run(scene: Scene, force: float, solve: Solve, name: str, top: float, tries: int) -> Traced:
     """Return a trace of a run; each try has a folder of its own, from which another command goes on."""
     result = solve(history(scene, name, top), f"{name}_{tries + 1}" if tries else name)
@@ -338,13 +341,3 @@ def _run(scene: Scene, force: float, solve: Solve, name: str, top: float, tries:
     except TraceError as error:
         why = f": {result.failure}" if result.failure else ""
         raise SceneError(f"the force on the finger is {force:.4g} N; {error}{why}") from None
-
-
-def of_points(scene: Scene, model: "Model", solve: Solve, name: str, top: float) -> Traced:
-    """Return a trace of a model without a path; refuse states without a bone, and such that are none."""
-    forces = [float(each) for each in np.geomspace(top * LIGHT, top, FORCES)]
-    kind = "full_slip" if name == "full_slip" else "charged"
-    scene = scene.model_copy(update={"voltage": 0.0}) if name == "uncharged" else scene
-    found = model.over_forces(scene, forces, kind, lambda each: solve(each, name))
-    refuse_floating(found, model.name)
-    return Traced(trace(found, scene.geometry.ridge_wavelength), found)
