@@ -30,8 +30,8 @@ if TYPE_CHECKING:
 
 NOTE = (
     "Loads over time are quasi-static: no inertia. Time acts in layers with a viscosity, in friction of the laws "
-    "Occlusion and Speed, and in the circuit of electric.tissue and electric.leak. In a scene without these a frequency "
-    "sets how far the finger slides in a period, and nothing else."
+    "Occlusion and Speed, and in the circuit of electric.tissue and electric.leak. In a scene without these a "
+    "frequency sets how far the finger slides in a period, and nothing else."
 )
 """What a result with a load over time says of it."""
 HARMONICS, SAMPLED = 6, 4
