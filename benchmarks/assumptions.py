@@ -143,9 +143,11 @@ _KEYS = ("mu_app", "f_t", "contact_length")
 
 
 def _row(summary: Summary) -> dict[str, float | None]:
-    """Return the numbers of a summary at full slip, and the contact length of normal contact; SI."""
+    """Return the numbers of a summary at full slip, of the whole finger µ_app, and the length of normal contact; SI."""
     found = {key: summary[f"full_slip_{key}"] for key in _KEYS}
-    return found | {"error": summary.get("full_slip_mu_app_error"), "charged": summary["charged_contact_length"]}
+    whole = (summary.get("finger") or {}).get("states", {}).get("full_slip", {}).get("mu_app")
+    more = {"error": summary.get("full_slip_mu_app_error"), "charged": summary["charged_contact_length"]}
+    return found | more | {"whole": whole}
 
 
 def compute(args: argparse.Namespace) -> None:
@@ -200,9 +202,9 @@ def sentences(found: Mapping[str, Any]) -> dict[str, Any]:
         """Return by how much a run differs from another (%)."""
         return float(100 * (rows[name][key] / rows[other][key] - 1))
 
-    def growth(name: str, bare: str | None) -> float:
+    def growth(name: str, bare: str | None, key: str = "mu_app") -> float:
         """Return how many times a voltage multiplies friction; without a run without voltage, by Coulomb's law."""
-        return float(rows[name]["mu_app"] / (rows[bare]["mu_app"] if bare else _MU_0))
+        return float(rows[name][key] / (rows[bare][key] if bare else _MU_0))
 
     def gaps(name: str) -> Array:
         """Return the air gaps of both states (m)."""

@@ -15,6 +15,7 @@ from typing import Any
 
 from matplotlib.figure import Figure
 
+import fingerpad as fp
 from benchmarks import harness
 from fingerpad.reduced.registry import find
 from fingerpad.reduced.similarity import Similar, similar
@@ -27,6 +28,9 @@ from fingerpad.scene.fingers import ADULT, FINGERS, Trait
 
 FORCE = 0.5  # N, about, on each finger
 VOLTAGE = 200.0  # V
+FREQUENCY = 100.0  # Hz, of the one drive of all fingers, a sine with VOLTAGE as rms
+CONTRAST = 50  # %, rise of µ_app by the voltage
+_UP_TO = 600.0  # V
 _COARSE = {"contact": 20e-6, "receptor": 40e-6, "interface": 120e-6, "growth": 0.5}  # m, but for the growth
 _LIMIT = 1800.0  # s of processor time of a run
 
@@ -53,11 +57,20 @@ def _closed(name: str) -> dict[str, Any]:
     """Return the friction of a finger by the closed form, None where that has no contact of it."""
     scene = Scene(finger=name, force=FORCE, voltage=VOLTAGE)
     found: dict[str, Any] = {"mu_0": scene.friction, "h_0": scene.h_0, "closed": None}
+    found |= {"leak": str(scene.electric.leak), "driven": None, "needs": None, "needs_driven": None}
     if isinstance(similar(scene), Similar):
-        whole = solved(scene, find("cylinders"), RunContext()).finger
-        assert whole is not None
-        found["closed"] = whole.states["full_slip"].mu_app
+        drive = scene.replace(voltage={"waveform": "sine", "rms": VOLTAGE, "frequency": FREQUENCY})
+        found |= {"closed": _friction(scene), "driven": _friction(drive)}
+        for key, over, each in (("needs", "voltage", scene), ("needs_driven", "voltage.rms", drive)):
+            (found[key],) = fp.solve(each, f"contrast={CONTRAST} %", over, between=[1.0, _UP_TO]).values
     return found
+
+
+def _friction(scene: Scene) -> float:
+    """Return µ_app of the whole finger by the closed form."""
+    whole = solved(scene, find("cylinders"), RunContext()).finger
+    assert whole is not None
+    return whole.states["full_slip"].mu_app
 
 
 def _full(summary: Summary | None) -> dict[str, Any] | None:

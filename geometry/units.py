@@ -100,7 +100,7 @@ def to_si(text: str, unit: str) -> float:
     if not given:
         raise ValueError(f"it has no unit; {wanted}")
     if (power := _power(given, unit)) is not None:
-        return float(Decimal(number).scaleb(power))
+        return finite(Decimal(number).scaleb(power))
     try:
         found = _root(given)
     except ImportError:
@@ -117,7 +117,19 @@ def to_si(text: str, unit: str) -> float:
     (factor, root), (one, wanted_root) = found, _root(unit) or found
     if root != wanted_root:
         raise ValueError(f"its unit is not a unit of {QUANTITIES[unit]}; {wanted}")
-    return float(Decimal(number) * factor / one)
+    return finite(Decimal(number) * factor / one)
+
+
+def finite(number: str | Decimal) -> float:
+    """Return a number that was written.
+
+    Raises:
+        ValueError: it is none, or too large for a floating-point number; to follow the text and a semicolon.
+    """
+    found = float(number)
+    if not math.isfinite(found):
+        raise ValueError("it must be a finite number, at most 1.8e308")
+    return found
 
 
 def _power(given: str, unit: str) -> int | None:

@@ -15,6 +15,7 @@ from fingerpad.accuracy.solves import Solves
 from fingerpad.accuracy.states import Solve, State
 from fingerpad.model.options import FingerModel, by_rule, plan
 from fingerpad.results.interrupt import Interrupted
+from fingerpad.results.quantities import Output
 from fingerpad.richardson import MORE, ONCE, ORDER
 from fingerpad.scene import from_data
 from tests.measures import contact_state
@@ -154,7 +155,7 @@ def springs(model, states, comm, views=False, stiffer=None) -> Solve:
 
 
 def test_what_the_penalty_changes_is_told_beside_the_error(monkeypatch):
-    """A rigid screen takes off what the springs put on, and no part of that is in the error of the mesh."""
+    """A rigid screen takes off what the springs put on, which is the whole error where that of the mesh is nothing."""
     monkeypatch.setattr(solves, "solve_again", springs)
     model, lines = model_of({}), list[str]()
     path = springs(model, {}, MPI.COMM_SELF)
@@ -163,9 +164,24 @@ def test_what_the_penalty_changes_is_told_beside_the_error(monkeypatch):
     state = with_errors(found, {"full_slip": contact()})["full_slip"]
     assert state.penalty.contact_length == pytest.approx(-1e-5, rel=1e-9)
     assert found.summary()["quantities"]["full_slip_contact_length"]["penalty"] == state.penalty.contact_length
-    assert state.error.contact_length == 0
+    assert state.error.contact_length == -state.penalty.contact_length
     assert "penalty: a rigid screen would change" in lines[-1]
     assert all("estimated discretisation error" in line for line in lines if "±" in line)
+
+
+def test_output_of_ones_own_has_its_error_from_the_same_two_meshes(monkeypatch):
+    """Of first order: on elements half as large as much again is left as the last halving changed, times two."""
+    monkeypatch.setattr(solves, "solve_again", known)
+    model, twice = model_of({}), Output("twice", "", lambda state: 2 * state.mu_app)
+    skin = Output("skin", "Pa", lambda state: state.skin.p_n.max())
+    path = known(model, {}, MPI.COMM_SELF)
+    found = refinement(model, path)
+    found.run()
+    state = with_errors(found, {"full_slip": contact()}, [twice, skin])["full_slip"]
+    meshes = [mu_app(each.mesh) for each in (path, found.base)]
+    assert path.mesh.contact == 2 * found.base.mesh.contact
+    assert state.error.twice == pytest.approx(2 * 2 * abs(meshes[1] - meshes[0]), rel=1e-12)
+    assert "skin" not in state.error.known(), "not of the states that are solved again"
 
 
 @pytest.mark.parametrize("formulation", ["nitsche", "augmented"])

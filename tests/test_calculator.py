@@ -293,7 +293,8 @@ def test_command_writes_the_page(tmp_path, capsys, whole):
 
 
 def test_errors_of_the_script_are_those_of_python(tmp_path):
-    """And the keys for which none is known, at the ends of all ranges, beyond them, and for each field."""
+    """Whole ones, with the points of the traces; and the keys for which none is known, at the ends of all ranges,
+    beyond them, and for each field."""
     some = [values for values in sets() if "length" not in values]
     for key, (low, high) in cylinder_errors.REGIONS[-1].ranges.items():
         per = FIELDS[key].per if key in FIELDS else 0.0
@@ -312,13 +313,16 @@ def test_errors_of_the_script_are_those_of_python(tmp_path):
         for key, value in in_si(values).items():
             put(data, key, value)
         found = fp.run(Scene(**data), model="cylinders")
-        known = found.record["model_error"].get(cylinder_errors.WHOLE if "force" in values else "full_slip", {})
+        whole = "force" in values
+        known = found.record["model_error"].get(cylinder_errors.WHOLE if whole else "full_slip", {})
+        numbers = {key: found.number("full_slip", key, whole) for key in known}
+        whole_errors = {key: each.error / each.value if each.value else known[key] for key, each in numbers.items()}
         assert found.full_slip is not None
         force, pull = found.scene.f_ext, found.full_slip.f_electrostatic
         if "force" in values:
             force, pull = found.finger.f_ext, found.finger.values("full_slip")["f_electrostatic"]
         keys = {each.key for each in cylinder_errors.outside(found.scene, pull / force)}
         assert {each["key"] for each in outside} == keys and bool(keys) == (not known), values
-        assert (error or {}) == pytest.approx(known, rel=3e-3 if "force" in values else SAME), values
+        assert (error or {}) == pytest.approx(whole_errors, rel=1e-6 if whole else SAME), values
         inside += bool(error)
     assert 0 < inside < len(some)

@@ -38,15 +38,15 @@ def scenes(**axis):
 
 
 def test_each_point_is_beside_the_one_before():
-    """From the largest voltage and the least force on, one axis and one value at a time; voltages are the fastest."""
+    """From the least voltage and force on, one axis and one value at a time; voltages are the fastest."""
     axes = {"voltage": (0.0, 200.0, -100.0), "f_ext": (10.0, 30.0, 20.0, 40.0), "numerics.element": ("P1", "P2")}
     along = _neighbours(axes)
     assert sorted(along) == list(range(24))
     places = np.array(np.unravel_index(along, (3, 4, 2))).T
-    ranks = np.column_stack([np.argsort([1, 2, 0])[places[:, 0]], np.array([3, 1, 2, 0])[places[:, 1]], places[:, 2]])
+    ranks = np.column_stack([np.array([0, 2, 1])[places[:, 0]], np.array([0, 2, 1, 3])[places[:, 1]], places[:, 2]])
     assert (np.abs(np.diff(ranks, axis=0)).sum(axis=1) == 1).all()
     assert (np.diff(ranks[:, 0]) != 0).sum() == 8 * 2
-    assert (axes["voltage"][places[0, 0]], axes["f_ext"][places[0, 1]]) == (200.0, 10.0)
+    assert (axes["voltage"][places[0, 0]], axes["f_ext"][places[0, 1]]) == (0.0, 10.0)
 
 
 def test_chains_share_a_mesh_and_a_law():
@@ -170,9 +170,6 @@ def test_point_not_found_from_its_neighbour_has_a_path(monkeypatch):
     assert "It was not found from its neighbour: not found." in results[2].notes
     assert results[3].full_slip.reached == "full slip from voltage 75 V"
     assert results[3].notes[0].endswith("it was reached by: full slip from voltage 75 V.")
-    assert results[3].notes[-1].startswith("no newtons of the whole finger: full slip alone has no press"), (
-        "of nine ridges"
-    )
     assert skin.paths == 2
 
 

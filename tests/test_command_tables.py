@@ -6,7 +6,7 @@ import shlex
 import pytest
 
 import fingerpad as fp
-from fingerpad.cli import main, ranges, roughness, sweep
+from fingerpad.cli import estimate, main, ranges, roughness, sweep
 from fingerpad.reduced import cylinders
 from fingerpad.runs.sweep import sweep as run_sweep
 from fingerpad.scene import Scene, from_data, keys, load
@@ -20,7 +20,7 @@ def test_estimate_is_the_closed_form(tmp_path, capsys):
     file = tmp_path / "mu.csv"
     assert main(["estimate", "--f-ext", "50,75", "--voltage", "0:100:2", "--csv", str(file)]) == 0
     out = capsys.readouterr().out
-    assert "Known error of the section (±), at most: µ_app and friction 1.2 %, attraction 5.3 %." in out
+    assert "\n±: error by closed form, points of the traces; what the finger and the model assume is not in it" in out
     rows = rows_of(tmp_path, "mu")
     loads = [(float(r["f_ext_of_section"]), float(r["voltage"])) for r in rows]
     assert loads == [(50, 0), (50, 100), (75, 0), (75, 100)]
@@ -36,10 +36,29 @@ def test_estimate_has_the_whole_finger_first(tmp_path, capsys):
     _, charged = rows_of(tmp_path, "one")
     assert main(["estimate", "--force", charged["force"], "--voltage", "200", "--csv", str(tmp_path / "two.csv")]) == 0
     (again,) = rows_of(tmp_path, "two")
-    assert charged["mu_app"] == again["mu_app"] and float(charged["mu_app"]) > float(charged["mu_app_of_section"])
+    assert float(charged["mu_app"]) == pytest.approx(float(again["mu_app"]), rel=1e-9)
+    assert float(charged["mu_app"]) > float(charged["mu_app_of_section"])
     finger = fp.run(Scene(force=float(charged["force"])), model="cylinders").finger
     assert float(again["mu_app"]) == pytest.approx(finger.states["full_slip"].mu_app, rel=1e-12)
     assert fp.run(Scene(), model="cylinders").finger.f_ext == pytest.approx(float(charged["force"]), rel=1e-4)
+
+
+def test_errors_are_drawn_and_forces_have_their_unit(tmp_path, monkeypatch):
+    """A band about each curve, as high as the ± of the table, and N in the legend."""
+    figures = []
+    monkeypatch.setattr("fingerpad.results.style.save", lambda figure, file: figures.append(figure))
+    rows, _ = estimate.grid(Scene(), [0.3, 0.5], [0.0, 100.0, 200.0], "force")
+    estimate.draw("force", tmp_path / "mu.png", rows)
+    (ax,) = figures[0].axes
+    bands = [each.get_paths()[0].vertices for each in ax.collections]
+    assert len(bands) == 2
+    for band, force in zip(bands, (0.3, 0.5), strict=True):
+        (row,) = (each for each in rows if each["force"] == force and each["voltage"] == 200.0)
+        heights = band[band[:, 0] == 200.0, 1]
+        assert heights.max() - heights.min() == pytest.approx(2 * row["mu_app_error"], rel=1e-9)
+    legend = ax.get_legend()
+    assert [text.get_text() for text in legend.get_texts()] == ["0.3 N", "0.5 N"]
+    assert "band: ± error" in legend.get_title().get_text()
 
 
 def test_estimate_without_a_whole_finger_has_the_section(capsys):
@@ -71,7 +90,6 @@ def test_estimate_says_where_its_error_is_not_known(capsys):
         ("mesh --out finger.stl", "finger.stl cannot be a mesh; its name must end with .msh"),
         ("sweep --over model=full,cylinders", "model is varied and is no key of a scene; a sweep has one model"),
         ("sweep --over out=1,2 --model cylinders", "out is varied and is no key of a scene"),
-        ("paper 7 --jobs=", "argument --jobs: an empty text is not allowed; it must be a whole"),
         ("compare --ridges 3", "one of --contact-length and --ridges is given without the other"),
         ("compare --run none --model cylinders", "none is not a folder of a finished run"),
         ("compare --contact-length 1.58 --ridges 16", "--contact-length is 1580 mm, longer than 16 ridges, 7.73 mm"),

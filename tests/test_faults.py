@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from mpi4py import MPI
+from petsc4py import PETSc
 
 from fingerpad.runs import restarts
 from fingerpad.scene import from_data
@@ -130,6 +131,24 @@ def test_mumps_out_of_memory(scene, tmp_path, before_solves):
     before_solves(act)
     ends(scene(), tmp_path, "step 3 (charge", "MUMPS_OUT_OF_MEMORY (INFOG(1) = -", "try a larger mesh.contact")
     assert (tmp_path / "run.log").read_text(encoding="utf-8").count(" cut: ") == 0
+
+
+def test_mumps_out_of_workspace_gets_more(scene, tmp_path, before_solves):
+    """Each factorisation begins with a tenth of its estimate: the same states, and no smaller step."""
+    expected = run(scene(), tmp_path / "expected", MPI.COMM_WORLD)
+    option = "fingerpad_mat_mumps_icntl_14"
+
+    def act(solver):
+        if not PETSc.Options().hasName(option):  # it has run out of it
+            solver.iteration.snes.getKSP().getPC().getFactorMatrix().setMumpsIcntl(14, -90)
+            solver.iteration.tangent.stale = True
+
+    before_solves(act)
+    found = run(scene(), tmp_path / "found", MPI.COMM_WORLD)
+    assert PETSc.Options().getInt(option) == 100
+    PETSc.Options().delValue(option)
+    assert "failure" not in found and found["steps"] == expected["steps"] and found["cutbacks"] == 0
+    assert found["charged_f_electrostatic"] == pytest.approx(expected["charged_f_electrostatic"], rel=1e-8)
 
 
 def test_fixed_point_at_its_cap(scene, tmp_path):

@@ -41,6 +41,17 @@ def test_estimate_is_of_the_path_and_the_final_mesh(monkeypatch):
     assert found.summary()["quantities"]["full_slip_mu_app"]["estimate"] == pytest.approx(error / TWO, rel=1e-12)
 
 
+@pytest.mark.parametrize(("receptor", "estimated"), [(5e-6, True), (20e-6, False)])
+def test_energy_densities_on_large_elements_have_no_error(monkeypatch, receptor, estimated):
+    """On elements larger than the tips at the sites, of a radius of 6 µm, two meshes do not show it."""
+    monkeypatch.setattr(solves, "solve_again", lambda model, states, comm, *more: known(model, states, comm))
+    model = model_of({"mesh": {"receptor": receptor}})
+    found = refinement(model, known(model, {}, MPI.COMM_SELF))
+    found.run()
+    sites = [name for name in found.estimates() if "_sed_" in name]
+    assert bool(sites) is estimated and found.estimates()["full_slip_mu_app"] > 0
+
+
 def test_signal_before_the_final_mesh_stops_the_run_and_is_no_reason_for_another_path():
     def pause() -> None:
         raise Interrupted(signal.SIGTERM, 12)

@@ -9,10 +9,11 @@ import pytest
 import fingerpad as fp
 from fingerpad.report import trust
 from fingerpad.report.trust import head as page_head
-from fingerpad.results.quantities import PLUS_MINUS
+from fingerpad.results.quantities import plus_minus_of
 from fingerpad.results.result import Result
 from fingerpad.results.states import load_result
 from fingerpad.scene import from_data
+from fingerpad.slices import errors
 from tests.measures import contact_state
 from tests.test_slices import whole
 from variational.state import ContactState, Errors
@@ -104,8 +105,9 @@ def test_unknown_error_of_a_cheaper_model_is_not_claimed():
 
 def test_plus_minus_is_explained_where_it_is_printed():
     shown = str(Result(fp.Scene(), "full", None, None, state(error=Errors(mu_app=0.0026))))
-    assert PLUS_MINUS in shown and "what the finger and the model assume is not in it" in PLUS_MINUS
-    assert PLUS_MINUS not in str(Result(fp.Scene(), "full", None, None, state()))
+    words = plus_minus_of(["mesh"])
+    assert words in shown and "by mesh; what the finger and the model assume is not in it" in words
+    assert "±:" not in str(Result(fp.Scene(), "full", None, None, state()))
 
 
 # -- what a result prints --------------------------------------------------------------------------------------------
@@ -146,7 +148,7 @@ def sentence(model: str = "cylinders", **scene) -> str:
         ({"force": "0.5 N"}, "At 0.5 N, 200 V raise the friction force from 0.13 to 0.30 N."),
         ({}, "At 0.54 N, 200 V raise the friction force from 0.13 to 0.32 N."),
         ({"voltage": 0.0}, "At 0.54 N and 0 V the friction force is 0.13 N."),
-        ({"voltage": 1.0}, "At 0.54 N, 1 V leaves the friction force at 0.1347 N."),
+        ({"voltage": 1.0}, "At 0.54 N, 1 V leaves the friction force at 0.1344 N."),
         ({"friction": 0.0}, "At 0.54 N, 200 V raise the ridge contact area from 11 to 16 mm²."),
         ({"friction": fp.Derjaguin(0.2, 1e4)}, "At 0.54 N and 200 V the friction force is 0.39 N."),
         (
@@ -171,7 +173,7 @@ def test_number_is_the_first_line_of_all_that_is_written(tmp_path):
     found = fp.run(fp.Scene(force="0.5 N"), model="cylinders", out=tmp_path)
     words = found.headline.sentence
     kept = json.loads((tmp_path / "summary.json").read_text(encoding="utf-8"))["headline"]
-    assert str(found).startswith(f"{words}\n  µ_app of the whole finger = 0.606")
+    assert str(found).startswith(f"{words}\n  µ_app of the whole finger = 0.605 ± 0.021")
     assert kept["sentence"] == words and kept["of"] == "whole finger" and kept["value"] == found.headline.value
     assert fp.Result.load(tmp_path).headline.to_dict() == kept
     assert head(found).startswith(f"<header><h1>{words}</h1>")
@@ -179,14 +181,17 @@ def test_number_is_the_first_line_of_all_that_is_written(tmp_path):
 
 
 def test_solved_has_the_penalty():
-    """Its effect on the section is added to the error of the mesh, and to that of the whole finger in proportion."""
-    slip = state(error=Errors(mu_app=0.004), penalty=Errors(mu_app=-0.002))
+    """It is a part of the section's error, and of the whole finger's in proportion."""
+    slip = state(error=Errors(mu_app=0.006), penalty=Errors(mu_app=-0.002))
     section = fp.Result(fp.Scene(), "full", None, None, slip).headline
-    assert section.error == pytest.approx(0.006, rel=1e-12) and section.parts == ("mesh", "penalty")
-    finger = whole()
-    found = fp.Result(fp.Scene(), "full", None, None, slip, finger=finger).headline
-    mesh = finger.error["full_slip"]["mu_app"]
-    assert found.error == pytest.approx(mesh + 0.002 / 0.4 * found.value, rel=1e-9)
+    assert section.error == 0.006 and section.parts == ("mesh", "penalty")
+    carried = errors.of_section(slip, 5e-4)
+    assert carried["penalty"]["mu_app"] == pytest.approx(0.002 / slip.mu_app)
+    assert carried[errors.MESH]["mu_app"] == pytest.approx(0.004 / slip.mu_app)
+    alone, both = (replace(whole(), carried={"full_slip": each}) for each in ({}, carried))
+    found = fp.Result(fp.Scene(), "full", None, None, slip, finger=both).headline
+    more = found.error - alone.error["full_slip"]["mu_app"]
+    assert more == pytest.approx(0.006 / slip.mu_app * found.value, rel=1e-9) and "penalty" in found.parts
 
 
 def test_cheaper_models_say_what_computed_them(tmp_path):

@@ -9,7 +9,6 @@ from fingerpad.cli import compare
 from fingerpad.reduced import cylinders
 from fingerpad.reduced.cylinder_errors import REGIONS
 from fingerpad.reduced.model import STATES
-from fingerpad.results.quantities import PLUS_MINUS
 from fingerpad.results.result import Result
 from fingerpad.scene import SceneError, from_data
 from tests.test_laws import Held
@@ -173,9 +172,14 @@ def test_errors_of_a_run_stand_beside_its_values(tmp_path):
     assert next(line for line in lines if line.startswith("charged normal contact: contact length")).endswith(
         "  1.7000"
     )
-    assert PLUS_MINUS in lines
+    assert any(line.startswith("±: error by mesh (full); ") for line in lines)
 
 
-def test_closed_form_has_no_discretisation_error(default):
-    assert [state.error.known() for state in default.named.values()] == [{}, {}]
+def test_closed_form_has_the_error_that_it_is_known_to(default):
+    """Beside full runs, and none of a mesh, which it has not."""
+    known = default.record["model_error"]
+    for name, state in default.named.items():
+        found = {key: error / abs(getattr(state, key)) for key, error in state.error.known().items()}
+        assert {key: found[key] for key in known[name]} == pytest.approx(known[name], rel=1e-12)
+    assert default.parts() == ("closed form",)
     assert any("no discretisation error" in note for note in default.notes)

@@ -149,7 +149,7 @@ def test_region_ends_where_the_full_model_has_no_result():
 
 def test_a_bound_that_is_too_small_does_not_cover(reached):
     """So that the count above can fail: a third of an error leaves more than a tenth of the states outside."""
-    error = compared.bound(reached)
+    error = compared.bound(each.error for each in reached)
     assert compared.covered(reached, error) >= compared.PART * len(reached) - 1
     assert compared.covered(reached, error / 3) < COVERED * len(reached)
 

@@ -10,6 +10,9 @@ import pytest
 from mpi4py import MPI
 
 import geometry
+from fingerpad.cli.mesh import section
+from fingerpad.model.options import plan
+from fingerpad.scene import SceneError, from_data
 from geometry.mesh import load
 from geometry.profiles import GeometryError
 
@@ -32,9 +35,9 @@ def block(upper: int = 4) -> tuple[list[tuple[float, float]], list[list[int]]]:
     return places, cells
 
 
-def by_hand(file: Path, places, cells, rim) -> Path:
-    """Write a file of version 2.2 with the lower edges as ridge 0; ``rim`` are pairs of nodes."""
-    skin = [[k, k + 1] for k in range(1, 5)]
+def by_hand(file: Path, places, cells, rim, more=()) -> Path:
+    """Write a file of version 2.2 with the lower edges and some more as ridge 0; ``rim`` are pairs of nodes."""
+    skin = [*([k, k + 1] for k in range(1, 5)), *more]
     lines = [f"1 2 1 1 {a} {b}" for a, b in skin] + [f"1 2 2 2 {a} {b}" for a, b in rim]
     elements = [*lines, *(f"2 2 3 3 {' '.join(map(str, cell))}" for cell in cells)]
     file.write_text(
@@ -63,6 +66,20 @@ def test_block_by_hand_is_a_body(tmp_path):
     places, cells = block()
     made = load(MPI.COMM_WORLD, geometry.file(by_hand(tmp_path / "mine.msh", places, cells, rim_of(places))))
     assert made.mesh.topology.index_map(2).size_global == 16
+
+
+def test_corner_is_refused_by_check_and_run(tmp_path):
+    """One function makes the mesh of both."""
+    places, cells = block()
+    corner = [places.index((1.0, 0.0)) + 1, places.index((1.0, 0.25)) + 1]
+    file = by_hand(tmp_path / "mine.msh", places, cells, rim_of(places), [corner])
+    scene = from_data({"geometry": {"file": str(file), "sc_thickness": 3e-4}})
+    for error, door in (
+        (GeometryError, lambda: load(MPI.COMM_WORLD, geometry.file(file))),
+        (SceneError, lambda: section(scene, plan(scene))),
+    ):
+        with pytest.raises(error, match="has two sides on the skin that can touch, and one is allowed"):
+            door()
 
 
 @pytest.mark.parametrize(

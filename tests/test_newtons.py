@@ -7,6 +7,7 @@ import pytest
 from mpi4py import MPI
 
 import fingerpad as fp
+from fingerpad.accuracy.solves import StateSolver
 from fingerpad.model.simulation import Simulation
 from fingerpad.results.folder import full_scene
 from fingerpad.results.states import WORDS
@@ -115,27 +116,27 @@ def test_more_ridges_are_added_where_they_must_touch():
     assert result.finger.values("full_slip")["f_ext"] == pytest.approx(FORCE, rel=1e-9)
 
 
-@pytest.mark.parametrize("last", [False, True])
-def test_force_that_was_interrupted_goes_on(tmp_path, last):
+@pytest.mark.parametrize(
+    ("of", "method", "words"),
+    [
+        (Simulation, "_accepted", "light press"),
+        (Simulation, "slip_to", "trace of full slip"),
+        (StateSolver, "re_equilibrate", "correction of the traces"),
+    ],
+)
+def test_force_that_was_interrupted_goes_on(tmp_path, of, method, words):
     """Whichever trace it was in, by the same command or by --resume, with the traces that were finished."""
-    out, before, slips = tmp_path / "out", Simulation._accepted, Simulation.slip_to
+    out, before, last = tmp_path / "out", getattr(of, method), method != "_accepted"
 
-    def accepted(self, *given):
-        if not last:
-            signal.raise_signal(signal.SIGTERM)
+    def signalled(self, *given):
+        signal.raise_signal(signal.SIGTERM)
         return before(self, *given)
 
-    def slip_to(self, target):
-        signal.raise_signal(signal.SIGTERM)
-        return slips(self, target)
-
     with tables_alone(), pytest.MonkeyPatch.context() as patch, pytest.raises(SystemExit) as stop:
-        patch.setattr(Simulation, "_accepted", accepted)
-        patch.setattr(Simulation, "slip_to", slip_to)
+        patch.setattr(of, method, signalled)
         fp.run(scene(), out=out)
     assert stop.value.code == 143
     assert stop.value.result.finger is None
-    words = "trace of full slip" if last else "light press"
     assert stop.value.result.failure.startswith("stopped by SIGTERM after step ")
     assert stop.value.result.failure.endswith(f" of the {words}; the same command goes on with it")
     assert not (out / "summary.json").exists() and full_scene(out) == scene()

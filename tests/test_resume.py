@@ -224,20 +224,23 @@ def test_checkpoint_of_another_mesh(cut_short, monkeypatch):
         fp.run(scene(), out=cut_short, resume=True)
 
 
-def test_full_disk_under_the_checkpoint(tmp_path, monkeypatch):
-    """What is there stays whole, and the run goes on from it when there is room."""
+@pytest.mark.parametrize(
+    ("last", "words"), [(2, "fingerpad run --resume FOLDER goes on"), (0, "the same command starts again")]
+)
+def test_full_disk_under_the_checkpoint(tmp_path, monkeypatch, last, words):
+    """What is there stays whole, and the run goes on from it when there is room, or starts again without one."""
     write = Checkpoint.write
 
     def full(self, state):
-        if self.number == 2:
+        if self.number == last:
             raise OSError(28, "No space left on device")
         write(self, state)
 
     monkeypatch.setattr(Checkpoint, "write", full)
-    with pytest.raises(OSError, match="fingerpad run --resume FOLDER goes on when there is room"):
+    with pytest.raises(OSError, match=f"{words} when there is room"):
         fp.run(scene(), out=tmp_path)
     monkeypatch.setattr(Checkpoint, "write", write)
-    assert fp.run(scene(), out=tmp_path, resume=True).full_slip is not None
+    assert fp.run(scene(), out=tmp_path, resume=last > 0).full_slip is not None
 
 
 # -- sweeps ---------------------------------------------------------------------------------------------

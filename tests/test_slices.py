@@ -23,7 +23,7 @@ from fingerpad.slices.total import BeyondTrace, Profile, at_force, at_indentatio
 from fingerpad.slices.trace import Trace, TraceError, gross_width, trace
 from geometry.profiles import Profiles
 from tests.measures import contact_state
-from variational.state import ContactState, RidgeStates
+from variational.state import ContactState, Errors, RidgeStates
 
 R_X, R_Z = 14e-3, 28e-3  # m
 FOUNDATION = 1e9  # Pa/m
@@ -204,6 +204,11 @@ def test_finger_under_another_force_is_read_from_its_traces():
         finger.under(50.0)
     with pytest.raises(SceneError, match="force is -1 N"):
         finger.under(-1.0)
+    for none, words in ((None, "force is None; it must be"), (float("nan"), "force is nan"), ("0.3", "has no unit")):
+        with pytest.raises(SceneError, match=words):
+            finger.under(none)
+    with pytest.raises(SceneError, match="the finger has no trace of full slip"):
+        replace(finger, traces={}).under(0.3)
     with pytest.raises(SceneError, match="the force is 0.0001 N, under which the centre of the finger bears"):
         finger.under(1e-4)
 
@@ -254,7 +259,7 @@ def test_finger_in_three_dimensions_has_the_ridges_of_its_slices(tmp_path):
 def slip_alone(**changes: object) -> fp.Result:
     """Full slip at the centre, as a point of a sweep of full slip alone has it."""
     slip = fp.run(model="cylinders").full_slip
-    slip = replace(slip, bone_height=-indentation(slip.f_ext, "full_slip"))
+    slip = replace(slip, bone_height=-indentation(slip.f_ext, "full_slip"), error=Errors())
     return with_newtons(fp.Result(fp.Scene(**changes), "full", None, None, slip))
 
 

@@ -73,8 +73,8 @@ def test_repeated_states_are_one_point():
 # -- discretisation, interpolation, estimate -------------------------------------------------------------
 def test_discretisation_is_that_of_the_section():
     state = contact_state(f_t=40.0, error=Errors(f_t=0.4), ridges_in_contact=1, contact_length=1e-3)
-    assert errors.discretisation(state, 5e-4) == {"f_t": pytest.approx(0.01)}
-    assert errors.discretisation(None, 5e-4) == {}
+    assert errors.of_section(state, 5e-4) == {errors.MESH: {"f_t": pytest.approx(0.01)}}
+    assert errors.of_section(None, 5e-4) == {errors.MESH: {}}
 
 
 def test_power_law_has_no_error_of_interpolation():
@@ -210,7 +210,7 @@ def test_everything_that_is_printed_and_kept_has_the_whole_error():
     error, shown = result.finger.error["full_slip"]["gross_area"], result.finger.shown("full_slip", "gross_area")
     printed, drawn = str(result), page(result).replace("\u00a0", " ")
     assert error > 1e-7 and "±" in shown and shown in printed and shown in drawn
-    words = "±: estimated error, by mesh of the cross-section, points of the traces."
+    words = "±: error by mesh of the cross-section, points of the traces; what the finger and"
     assert words in printed and words in drawn
     assert row(result)["full_slip_finger_gross_area_error"] == error
     assert result.finger.to_dict()["states"]["full_slip"]["error"]["gross_area"] == error

@@ -42,7 +42,7 @@ def test_all_rows_differ_by_no_more_than_their_errors(runs):
 
 
 def test_part_of_the_coarser_mesh_falls(runs):
-    """From 20 to 5 µm by half or more, of the area in contact: it covers, and it informs. Facets fall by a factor of 4."""
+    """Of the area in contact, by half or more from 20 to 5 µm: it covers, and it informs."""
     for name in runs[0].finger.states:
         first, last = (run.finger.carried[name][COARSE]["contact_area"] for run in (runs[0], runs[-1]))
         assert last < 0.5 * first, name

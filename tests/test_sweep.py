@@ -3,7 +3,10 @@
 import contextlib
 import fcntl
 import json
+import os
 import signal
+import subprocess
+import sys
 import threading
 import time
 from concurrent.futures import ThreadPoolExecutor
@@ -123,6 +126,35 @@ def test_run_out_of_time_is_named(tmp_path):
     """A second of processor time is not enough to mesh the default finger and compile its forms."""
     summary = sweep({"slow": from_data({})}, tmp_path, limit=1.0)["slow"]
     assert summary == {"failure": "TIME_LIMIT: not done after 1 s of processor time"}
+
+
+JOB = """
+import os, time
+from pathlib import Path
+from fingerpad.runs.processes import limit_processor_time
+limit_processor_time(100)
+Path("pid").write_text(str(os.getpid()))
+time.sleep(100)
+"""
+
+
+def test_program_that_is_killed_leaves_no_job(tmp_path):
+    """Its job gets SIGTERM from the system, and is gone at once; it sleeps for longer than the test waits."""
+    (tmp_path / "job.py").write_text(JOB, encoding="utf-8")
+    code = f"from fingerpad.runs.processes import run; run('job', [], 100.0, [{str(tmp_path)!r}])"
+    environment = {**os.environ, "PYTHONPATH": str(Path(__file__).parents[1])}
+
+    def until(done):
+        end = time.monotonic() + 60
+        while not done():
+            assert time.monotonic() < end
+            time.sleep(0.05)
+
+    with subprocess.Popen([sys.executable, "-c", code], cwd=tmp_path, env=environment) as program:
+        until(lambda: (tmp_path / "pid").exists() and (tmp_path / "pid").read_text())
+        program.kill()
+    job = Path("/proc", (tmp_path / "pid").read_text(), "stat")
+    until(lambda: not job.exists() or job.read_text().rpartition(") ")[2].startswith("Z"))
 
 
 @pytest.fixture

@@ -63,7 +63,8 @@ def test_table_text_and_dataset_are_of_the_whole_finger(found):
     assert not [key for key in rows[0] if re.match(r"(slip|normal|uncharged)_(?!finger_)", key)]
     assert float(rows[4]["full_slip_finger_f_t"]) == found.array("f_t")[1, 1]
     title, heads, *lines = str(found).splitlines()
-    assert title == "Whole finger, at full slip" and heads.split()[2:7] == ["force", "(N)", "µ_app", "F_T", "(N)"]
+    assert title == "Whole finger, at full slip, under a voltage without losses (Eq. 3)"
+    assert heads.split()[2:7] == ["force", "(N)", "µ_app", "F_T", "(N)"]
     assert lines[4].split()[:2] == ["200", "0.2"] and found[4].finger.shown("full_slip", "f_t") in lines[4]
     data = found.to_xarray()
     assert data["force"].attrs["units"] == "N" and data["finger_f_t"].dims == ("voltage", "force", "state")
@@ -241,7 +242,9 @@ def test_newtons_of_a_whole_finger(tmp_path):
     assert row["full_slip_finger_f_t"] == totals["f_t"] and row["charged_finger_f_ext"] == pytest.approx(0.5)
     assert "charged_finger_f_t" not in row
     title, heads, line = str(done).splitlines()[:3]
-    assert title == "Whole finger, and middle section per metre of finger, at full slip"
+    assert title.startswith(
+        "Whole finger, and middle section per metre of finger, at full slip, under a voltage without"
+    )
     assert heads.index("F_T (N)") < heads.index("µ_app of section") < heads.index("f_T of section (N/m)")
     assert re.search(rf" {re.escape(result.finger.shown('full_slip', 'mu_app'))} ", line)
     data = done.to_xarray()

@@ -89,6 +89,13 @@ def test_target_that_is_not_reached_is_said(capsys, tmp_path, target, said):
     assert ("mu_app = 900 is not reached at any point." in out) == said and not err
 
 
+def test_progress_goes_through_every_point():
+    """As a bar counts them, in the order of the table."""
+    seen = []
+    two_keys(fp.Scene(force=0.5), SMALL, watch=lambda points: (seen.append(each) or each for each in points))
+    assert seen == [(j, k) for j in range(3) for k in range(2)]
+
+
 @pytest.mark.parametrize(
     ("line", "words"),
     [
@@ -109,6 +116,11 @@ def test_target_that_is_not_reached_is_said(capsys, tmp_path, target, said):
         ("--over f_ext --over voltage --target 'F_T=1 N'", "F_T is a quantity of the whole finger, and the map is of"),
         ("--over voltage --over force=-1,1", "force is -1 N"),
         ("--target mu_app=2x", "--target is given without --over"),
+        ("--over voltage=0:200:101 --over friction=0.1:1:100", "the map has 10100 points; at most 10000 are allowed"),
+        ("--voltage 0:200:101 --force 0.1:1:100", "the table has 10100 points; at most 10000 are allowed"),
+        ("--voltage 0:1e400:3", "--voltage is 0:1e400:3; each value must be a finite number"),
+        ("--force 0.1,1e400", "--force is 0.1,1e400; each value must be a finite number"),
+        ("--voltage 1e308,1e308kV", "voltage is '1e+308 kV'; it must be a finite number"),
     ],
 )
 def test_impossible_maps_are_refused_in_one_sentence(capsys, line, words):

@@ -105,7 +105,7 @@ def test_error_covers_the_change_on_a_finer_mesh():
     finest = finer.record["accuracy"]["quantities"]
     errors = {name: each["error"] for name, each in quantities.items() if "sed" not in name}
     changes = {name: abs(finest[name]["value"] - quantities[name]["value"]) for name in errors}
-    assert len(errors) == 6 and {name for name, error in errors.items() if error < changes[name]} == set()
+    assert len(errors) == 10 and {name for name, error in errors.items() if error < changes[name]} == set()
     known = differences(own.steps, finer.steps)
     assert {"f_t"} < set(known) and {name for name in known if over_time[name]["error"] < known[name]} == set()
 

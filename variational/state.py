@@ -28,10 +28,27 @@ class Errors:
     f_contact: float = math.nan
     f_electrostatic: float = math.nan
     bone_height: float = math.nan
+    own: Mapping[str, float] = field(default_factory=dict)
+    """Of outputs that are computed from a state, by name; each is an attribute too."""
 
     def known(self) -> dict[str, float]:
         """Return the changes that were estimated, by quantity."""
-        return {f.name: value for f in fields(self) if not math.isnan(value := getattr(self, f.name))}
+        every = {f.name: getattr(self, f.name) for f in fields(self) if f.name != "own"} | dict(self.own)
+        return {name: value for name, value in every.items() if not math.isnan(value)}
+
+    @classmethod
+    def of(cls, changes: Mapping[str, float]) -> "Errors":
+        """Return changes by quantity; those of other names are of outputs that are computed from a state."""
+        names = {f.name for f in fields(cls)}
+        own = {name: value for name, value in changes.items() if name not in names}
+        return cls(**{name: value for name, value in changes.items() if name in names}, own=own)
+
+    def __getattr__(self, name: str) -> float:
+        """Return the change of an output of one's own by its name."""
+        own = self.__dict__.get("own", {})  # not yet there while a copy is made
+        if name in own:
+            return float(own[name])
+        raise AttributeError(f"there is no change of {name!r}")
 
 
 @dataclass(frozen=True, eq=False)
@@ -191,7 +208,7 @@ class ContactState:
     own: Mapping[str, float] = field(default_factory=dict)
     """Values by name of outputs that are computed from a state; each is an attribute too."""
     error: Errors = Errors()
-    """Estimated discretisation errors."""
+    """Whole known errors: by the mesh and the penalty, or of a cheaper model beside the full one."""
     penalty: Errors = Errors()
     """What a rigid screen in place of the penalty's springs would change."""
     stable: bool | None = None

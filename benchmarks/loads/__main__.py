@@ -23,6 +23,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from benchmarks import harness
+from benchmarks.loads import fresh
 from benchmarks.loads.compared import (
     BANDS,
     LEAST,
@@ -140,7 +141,7 @@ def spread(compared: Sequence[Compared]) -> list[float]:
 
 def draw(docs: Path) -> Path:
     """Draw the page and its picture from the kept numbers."""
-    numbers = harness.kept("loads", docs).numbers
+    numbers, drawn = harness.kept("loads", docs).numbers, harness.kept("fresh", docs).numbers
     mesh = errors(numbers["mesh"], harness.kept("models", docs).numbers["scenes"])
     better = without(numbers["scenes"], mesh)
     compared, whole = sections(better), fingers(better)
@@ -164,10 +165,12 @@ def draw(docs: Path) -> Path:
         "ridges": most_ridges_fewer(both_have),
         "LEAST": LEAST, "MARGIN": MARGIN, "PART": PART, "MESHES": MESHES,
         "WITHOUT": WITHOUT, "PULLED": PULLED, "LOWEST": LOWEST, "FIRST": FIRST, "WORK": WORK,
+        "fresh": {key: fresh.beside(drawn["scenes"], key, mesh) for key in ("mu_app", "contact_length")},
+        "drawn": drawn,
         "known": [REGIONS[0].errors[key]["f_electrostatic"] for key in ("full_slip", WHOLE)],
         "lost": [each for each in states if "failure" in each], "parts": parts,
     }  # fmt: skip
-    return harness.page(docs, "loads", "python3 -m benchmarks.loads", globals() | names, "models")
+    return harness.page(docs, "loads", "python3 -m benchmarks.loads", globals() | names, "models", "fresh")
 
 
 def lost_words(lost: Iterable[Data]) -> str:

@@ -47,6 +47,8 @@ class Compared(NamedTuple):
     """Of the scene by key."""
     whole: bool = False
     """Whether it is a finger."""
+    length: float = math.nan
+    """The full model's contact length over that of the closed form, less 1; of a finger its ridge contact area."""
 
     @property
     def share(self) -> float:
@@ -71,7 +73,8 @@ def sections(kept: Iterable[Data]) -> list[Compared]:
             if own:
                 f_el = own[0].f_electrostatic
                 error = state.get("f_electrostatic", math.nan) / f_el - 1
-                found.append(Compared(each["scene"], state["f_ext"], f_el, error, each["values"]))
+                length = state.get("contact_length", math.nan) / own[0].contact_length - 1
+                found.append(Compared(each["scene"], state["f_ext"], f_el, error, each["values"], length=length))
     return found
 
 
@@ -104,8 +107,9 @@ def fingers(kept: Iterable[Data]) -> list[Compared]:
             continue
         most = [at_indentation(finger, made, deepest(finger, made), count).totals["f_ext"] for made in traces]
         force = min(data["force"], *(each * (1 - _ROUNDOFF) for each in most))
-        one, full = (at_force(finger, made, force, count).totals["f_electrostatic"] for made in traces)
-        found.append(Compared(each["scene"], force, one, full / one - 1, data, True))
+        one, full = (at_force(finger, made, force, count).totals for made in traces)
+        error, area = (full[key] / one[key] - 1 for key in ("f_electrostatic", "contact_area"))
+        found.append(Compared(each["scene"], force, one["f_electrostatic"], error, data, True, area))
     return found
 
 
@@ -224,8 +228,15 @@ def region_of(band: Band) -> dict[str, Any] | None:
     """Return the region of a band; None with fewer than :data:`LEAST` states to make the error or to test it."""
     if min(len(band.made), len(band.tests)) < LEAST:
         return None
-    error, of_finger = (bound(each for each in every if fits(each)) for every in (band.some, band.whole + band.some))
-    errors = {"full_slip": {"f_electrostatic": error}, WHOLE: {"f_electrostatic": of_finger}}
+    errors = dict[str, dict[str, float]]()
+    for state, length, every in (
+        ("full_slip", "contact_length", band.some),
+        (WHOLE, "contact_area", band.whole + band.some),
+    ):
+        some = [each for each in every if fits(each)]
+        lengths = [each.length for each in some if not math.isnan(each.length)]
+        errors[state] = {"f_electrostatic": bound(each.error for each in some)}
+        errors[state] |= {length: bound(lengths)} if lengths else {}
     return {"runs": len(band.some), "ranges": hull(band.some, band.whole), "errors": errors}
 
 
@@ -264,9 +275,9 @@ def fits(one: OfScene) -> bool:
     return one.scene // BLOCK % 2 == 0
 
 
-def bound(compared: Iterable[Compared]) -> float:
-    """Return the relative error that covers :data:`PART` of the attractions, with the margin, rounded up to 0.1 %."""
-    return float(np.ceil(1e3 * MARGIN * np.quantile([abs(each.error) for each in compared], PART) - 1e-9) / 1e3)
+def bound(errors: Iterable[float]) -> float:
+    """Return the relative error that covers :data:`PART` of some, with the margin, rounded up to 0.1 %."""
+    return float(np.ceil(1e3 * MARGIN * np.quantile(np.abs([*errors]), PART) - 1e-9) / 1e3)
 
 
 def covered(compared: Sequence[Compared], error: float) -> int:

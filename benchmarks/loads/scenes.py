@@ -1,5 +1,6 @@
 """The seeded scenes of people's loads, the forces of their traces, and the meshes of the full model."""
 
+from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
@@ -8,6 +9,8 @@ from scipy.stats import qmc
 from fingerpad.scene import Scene, from_data
 
 Data = dict[str, Any]
+Tasks = dict[str, tuple[int, list[tuple[Data, float]]]]
+"""By name: the mesh, and scenes with a force of the section (N/m)."""
 COUNT, SEED = 64, 2026
 AXES = {  # key: ends in SI, and whether the sequence is even in the logarithm
     "force": (0.05, 3.0, True),
@@ -35,9 +38,9 @@ LADDER = (  # N/m, V and µ_0 of further starts
 FAR = (150.0, 200.0, 280.0, 400.0)  # N/m, of the default finger without voltage
 
 
-def scenes() -> list[Data]:
+def scenes(seed: int = SEED, count: int = COUNT) -> list[Data]:
     """Return the values of the scenes by key, four digits each, in the order of the sequence."""
-    places = qmc.Sobol(len(AXES), seed=SEED).random(COUNT)
+    places = qmc.Sobol(len(AXES), seed=seed).random(count)
     return [{key: _on(axis, x) for (key, axis), x in zip(AXES.items(), row, strict=True)} for row in places]
 
 
@@ -80,12 +83,16 @@ def checked(which: int) -> list[tuple[float, float]]:
     return [each for each in CHECKED if (each[0] > LIMIT) == bool(which)]
 
 
-def tasks() -> dict[str, tuple[int, list[tuple[Data, float]]]]:
-    """Return what is solved for, in this order, by name: the mesh, and scenes with a force of the section (N/m)."""
-    found: dict[str, tuple[int, list[tuple[Data, float]]]] = {}
+def tasks() -> Tasks:
+    """Return what is solved for, in this order."""
+    found: Tasks = {}
     for which in range(len(MESHES)):
         found[f"mesh {which}"] = which, [({"voltage": u} | DEFAULT, f_ext) for f_ext, u in checked(which)]
     found["far"] = 1, [({"voltage": 0.0} | DEFAULT, f_ext) for f_ext in FAR]
-    for k, data in sorted(enumerate(scenes()), key=lambda each: -mesh_of(each[1])):
-        found[f"scene {k}"] = mesh_of(data), [(data, f_ext) for f_ext in forces(data)]
-    return found
+    return found | of_scenes(scenes())
+
+
+def of_scenes(every: Iterable[Data]) -> Tasks:
+    """Return the tasks of scenes, those on the coarser mesh first."""
+    some = sorted(enumerate(every), key=lambda each: -mesh_of(each[1]))
+    return {f"scene {k}": (mesh_of(data), [(data, f_ext) for f_ext in forces(data)]) for k, data in some}

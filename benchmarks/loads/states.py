@@ -26,6 +26,7 @@ from benchmarks.loads.scenes import (
     RISE,
     WORK,
     Data,
+    Tasks,
     meshed,
     tasks,
 )
@@ -169,17 +170,18 @@ def _kept(state: ContactState, f_ext: float) -> Data:
     return {"f_ext": f_ext} | {key: value for key, value in values.items() if isinstance(value, int | float)}
 
 
-def solved(folder: Path, minutes: float) -> dict[str, list[Data]]:
+def solved(folder: Path, minutes: float, of: Tasks | None = None) -> dict[str, list[Data]]:
     """Return the states of tasks by name, computing those that are missing; each task is a file in the folder.
 
     Args:
         folder: of the tasks.
         minutes: of processor time after which no task is begun.
+        of: the tasks; by default all of :func:`benchmarks.loads.scenes.tasks`.
     """
     folder.mkdir(parents=True, exist_ok=True)
     pools: dict[int, Pool] = {}
     found = {}
-    for name, (which, points) in tasks().items():
+    for name, (which, points) in (tasks() if of is None else of).items():
         text = json.dumps([points, MESHES[which]], sort_keys=True)
         file = folder / f"{sha256(text.encode()).hexdigest()[:12]}.json"
         if not file.exists():

@@ -120,7 +120,7 @@ def draw(docs: Path) -> Path:
     """Write docs/measured.md and its picture from docs/measured.json."""
     picture(docs / "measured.png", (11, 4), lambda figure: _paint(figure, kept("measured", docs).numbers))
     every = judged(docs)
-    names = {"judged": every, "others": with_keys(docs)}
+    names: dict[str, Any] = {"judged": every, "others": with_keys(docs)}
     names |= {"left_out": sum(row.verdict == rules.MISS for row in every if row.key in _LEFT_OUT)}
     names |= {"found": [row.verdict for row in every if row.kind != "simulated"]}
     return page(docs, "measured", "make measured", globals() | names)

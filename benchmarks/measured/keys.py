@@ -45,7 +45,7 @@ def held(out: Path) -> dict[str, list[float]]:
     """Return contact length (m) over time (s) of the finger that is held, from its run in a folder."""
     steps = Run(scene(), out).steps
     last = int(np.flatnonzero(steps["load"] == "press")[-1])
-    return {name: steps[column][last:].tolist() for name, column in (("time", "time"), ("length", "contact_length"))}
+    return {"time": list(steps["time"][last:]), "length": list(steps["contact_length"][last:])}
 
 
 def _time(held: Mapping[str, list[float]]) -> Row:
@@ -106,11 +106,12 @@ def _flat(runs: Mapping[str, Any]) -> dict[str, Row]:
         shares.append(run["length"] / fingers.gross(run))
         points = np.array(run["place"]), np.array(run["pressure"])
         fits.append([rules.of_largest(form, *points).misfit for form in (rules.paraboloid, rules.ellipse)])
-    fine = runs[fingers.name("flat", fingers.SIZES[-1])]
-    borne = fingers.FORCE / fine["length"]
+    coarse, fine = (runs[fingers.name("flat", size)] for size in fingers.SIZES)
     law, each = BoundaryElements(Scene().h_0, field_in_contact=False), fine["length"] / fine["ridges"]
+    borne, of_coarse = (fingers.FORCE / run["length"] for run in (fine, coarse))
     most = width * float(np.max(fine["pressure"])) / each
     gaps = [1e6 * _gap(law, p, u) for p in (borne, most) for u in EFFECTIVE]
+    error = abs(1e6 * _gap(law, of_coarse, EFFECTIVE[0]) - gaps[0])
     return {
         "ridges": (
             {"share": shares[-1], "error": abs(shares[-1] - shares[0])},
@@ -121,7 +122,7 @@ def _flat(runs: Mapping[str, Any]) -> dict[str, Row]:
             by_form((fits[-1][0],), (fits[-1][1],)),
         ),
         "gap": (
-            {"low": min(gaps), "high": max(gaps), "mean": borne / 1e3, "most": most / 1e3},
+            {"low": min(gaps), "high": max(gaps), "error": error, "mean": borne / 1e3, "most": most / 1e3},
             by_factor(min(gaps), max(gaps), 1.5, 2.5),
         ),
     }

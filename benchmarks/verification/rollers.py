@@ -47,8 +47,8 @@ def roller(small: bool) -> list[Row]:
     half, facets = 0.5e-3, 10 if small else 40
     size, e_star = half / (facets + 0.5), _YOUNG / (1 - _NU**2)
     shape, contact = pad(size, int(np.ceil(1.5 * facets)), _RADIUS, 50 * half), fp.Penalty(100 * _YOUNG / size)
-    options = {"contact": contact, "touch_depth": 0.5e-6, "step_scale": 7.5, "comm": MPI.COMM_SELF}
-    body = fp.Body(shape, fp.SaintVenant(_YOUNG, _NU), **options)
+    solid, comm = fp.SaintVenant(_YOUNG, _NU), MPI.COMM_SELF
+    body = fp.Body(shape, solid, contact=contact, touch_depth=0.5e-6, step_scale=7.5, comm=comm)
     rows, why = [], "half a facet at either edge"
     for part in (0.5, 1.0, 1.3):
         force = np.pi * e_star * (part * half) ** 2 / (4 * _RADIUS)

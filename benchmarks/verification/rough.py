@@ -17,6 +17,7 @@ pressed surfaces of the same spectrum; its means and scatter over six of them we
 """
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.integrate import cumulative_trapezoid
 from scipy.special import erf
 
@@ -26,11 +27,12 @@ from fingerpad.scene import Scene
 from variational.roughness.boundary_elements import BoundaryElements
 from variational.roughness.persson import Spectrum, contact_area, separation
 
+Array = NDArray[np.float64]
 _HURST, _RATIO, _GAMMA = 0.75, 16.0, 0.45
 _SPECTRUM = Spectrum(_HURST, _RATIO)
 
 
-def _slope_squared(q: np.ndarray) -> np.ndarray:
+def _slope_squared(q: Array) -> Array:
     """Return the mean square slope of waves from 1 to q, by the trapezoidal rule, of an rms height of 1."""
     x = np.geomspace(1.0, q[-1], 200001)
     density = x ** (-1 - 2 * _HURST)  # q C, of which the mean square height is the integral
@@ -60,11 +62,13 @@ def theory(small: bool) -> list[Row]:
     rows, steps = [], 4000
     why = "a step of the walk beside the pressure, squared"
     for pressure in (0.05, 0.5):
-        ours = float(contact_area(np.array([pressure]), _SPECTRUM, q)[0, 0])
+        area_left = float(contact_area(np.array([pressure]), _SPECTRUM, q)[0, 0])
         walked = _walked(pressure, variance, steps)
-        rows.append(Row(f"area in contact at {pressure:g} E* q_0 h_rms", ours, walked, 5e-3, why, f"{steps} steps"))
-    p = np.geomspace(0.02, 0.5, 2001)
-    x = np.geomspace(1.0 + 1e-9, _RATIO, 4001)
+        rows.append(
+            Row(f"area in contact at {pressure:g} E* q_0 h_rms", area_left, walked, 5e-3, why, f"{steps} steps")
+        )
+    p: Array = np.geomspace(0.02, 0.5, 2001, dtype=np.float64)
+    x: Array = np.geomspace(1.0 + 1e-9, _RATIO, 4001, dtype=np.float64)
     level = x ** (-2 - 2 * _HURST)
     level /= 2 * np.pi * np.trapezoid(x * level, x)
     area = erf(np.sqrt(2) * p[:, None] / np.sqrt(_slope_squared(x)))
@@ -88,6 +92,7 @@ def tables(small: bool) -> list[Row]:
     for ours, theirs, quantity in zip(found, known, words, strict=False):
         for k in (0, 2, 4):
             mean, scatter = theirs[k]
+            assert scatter is not None  # of the wide surfaces all are known
             why = "scatter of one surface in that program"
             rows.append(Row(f"{quantity}, {p[k] / 1e3:g} kPa", float(ours[k]), mean, scatter, why, absolute=True))
     return rows

@@ -7,7 +7,7 @@ an ellipse of semi-axes a and b (Johnson, Contact Mechanics, 1985, sec. 4.3, doi
           A = \pi a b.
 
 A slice bears :math:`\frac23 k\, 2a\, \delta`. Tilted by a slope theta, the parabola along the axis is lowest at
-:math:`z = -\theta R_z`, by :math:`\theta^2 R_z / 2` lower than at z = 0, and else the same.
+:math:`z = -\theta R_z`, and the same about that place: delta counts from where it touches first.
 """
 
 import numpy as np
@@ -22,7 +22,7 @@ _PARTS = 48
 
 
 def _trace() -> Trace:
-    depth = np.geomspace(2e-6, 2e-3, 24)
+    depth = np.geomspace(2e-6, 2e-3, 24, dtype=np.float64)
     width = 2 * np.sqrt(2 * _R_X * depth)
     force = 2 / 3 * _K * width * depth
     return Trace(
@@ -44,7 +44,7 @@ def foundation(small: bool) -> list[Row]:
     why, mesh, rows = "the rule's error at an edge whose width begins as a root", f"{_PARTS} slices", []
     for tilt in (0.0, _TILT):
         finger = profile(Slices(radius=_R_Z, tilt=tilt))
-        found, words = at_indentation(finger, _trace(), _DEPTH - tilt**2 * _R_Z / 2, _PARTS), f", tilted by {tilt:g}"
+        found, words = at_indentation(finger, _trace(), _DEPTH, _PARTS), f", tilted by {tilt:g}"
         words = words if tilt else ""
         rows += [
             Row(f"force (N){words}", found.totals["f_ext"], force, 1e-6, why, mesh),

@@ -10,6 +10,7 @@ al. 2021, doi 10.1109/TBME.2020.3007397) were computed apart too.
 import math
 
 import numpy as np
+from numpy.typing import NDArray
 
 from benchmarks.verification.case import IDENTITY, Case, Row
 from fingerpad.afferents.filtered import FilteredUnit
@@ -17,6 +18,7 @@ from fingerpad.afferents.linear import threshold
 from fingerpad.afferents.pin import DEPTH, force, stress
 from fingerpad.afferents.sa1 import SA1
 
+Array = NDArray[np.float64]
 _STEP = 1e-4  # s
 _RAMPS = {5e3: (1, 261.7), 10e3: (6, 181.0), 20e3: (33, 151.0)}  # Pa: spikes in 5 s, and the first (ms)
 _THRESHOLDS = {"SA1": (24.38, 110.98), "RA1": (6.995, 2.524), "PC": (36.87, 0.0836)}  # µm at 10 and 250 Hz
@@ -55,9 +57,9 @@ def _low_pass(values: list[float], cut: float, step: float) -> list[float]:
     return [each.real for each in found]
 
 
-def _filtered(p: tuple[float, ...], s: list[float], rate: list[float]) -> int:
+def _filtered(p: tuple[float, ...], stress: Array, rate: Array) -> int:
     """Return the spikes of a unit under a stress (MPa) and a dynamic input, 0.2 ms apart."""
-    s, d = (_low_pass(each, 10 * p[0], 2e-4) for each in (s, rate))
+    s, d = (_low_pass([float(value) for value in each], 10 * p[0], 2e-4) for each in (stress, rate))
     kappa, v, since, count = 0.75 * math.pi / math.log(3), 0.0, 10**6, 0
     for n in range(len(s) - 1):
         a = d[n + 1] - d[n]
@@ -87,7 +89,7 @@ def pins(small: bool) -> list[Row]:
         gain = force(1.0) / (2 * 1e-3 * z**2) / one
         found = len(FilteredUnit(_UNITS[name], dynamic_gain=gain).spikes(one * moved, 2e-4))
         rate = 2 * 0.05 * np.gradient(1e3 * moved, 2e-4) / 0.84 / (2 * (1e3 * z) ** 2)  # (dP/dt) / (2 a z^2), MPa, mm
-        expected = _filtered(_UNITS[name], (1e-6 * one * moved).tolist(), rate.tolist())
+        expected = _filtered(_UNITS[name], 1e-6 * one * moved, rate)
         at = f"{frequency:g} Hz" if frequency else "held"
         quantity, why = f"spikes of {name}, {1e3 * amplitude:g} mm, {at}", "one that comes at an end, by roundoff"
         rows.append(Row(quantity, found, expected, 1.0, why, absolute=True))

@@ -1,13 +1,15 @@
 """Estimated discretisation errors of named states: what a result, a summary and a console have of them."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from dataclasses import fields, replace
 from typing import TYPE_CHECKING, Any
 
 from fingerpad.accuracy.states import Solve, with_values
 from fingerpad.results.quantities import QUANTITIES, Output
 from fingerpad.results.states import WORDS
-from fingerpad.richardson import TWO, of_two_meshes, plus_minus
+from fingerpad.richardson import RECEPTOR, TWO, of_two_meshes, plus_minus
+from fingerpad.scene.messages import SceneError
 from variational.element import ELEMENTS
 from variational.state import ContactState, Errors
 
@@ -23,6 +25,7 @@ class Estimate:
     Attributes:
         model: with the mesh of the path.
         base: the states that the errors are of.
+        coarse: the same on a coarser mesh; None where there is none.
         solves: all that was solved.
         failure: why the accuracy asked for is not reached, else empty.
         notes: remarks on the estimate.
@@ -38,6 +41,7 @@ class Estimate:
         """
         self.solves, self._show, self.model = solves, solves.show, solves.model
         (self.base,) = solves.found
+        self.coarse: Solve | None = None
         self.failure, self.notes = "", list[str]()
         self.penalty: dict[str, float] = {}
         self.degree = ELEMENTS[self.model.numerics.element].degree
@@ -92,8 +96,11 @@ class Estimate:
             for name, state in fine.states.items()
             if name in coarse.states
         }
-        self._two = of_two_meshes(coarse.parts(), fine.parts(), facets, self.degree, short=short)
-        self.base = fine
+        parts = fine.parts()
+        if fine.mesh.receptor > RECEPTOR:  # of densities there is no estimate
+            parts = {name: part for name, part in parts.items() if "_sed_" not in name}
+        self._two = of_two_meshes(coarse.parts(), parts, facets, self.degree, short=short)
+        self.base, self.coarse = fine, coarse
 
     def _shares(self, name: str, error: float) -> dict[str, float]:
         """Return the parts of a quantity's estimate, without factors of safety, by mesh parameter."""
@@ -115,27 +122,48 @@ class Estimate:
             self._show(f"{words}: {number} (estimated discretisation error){limit}")
 
 
-def with_errors(estimate: Estimate, path: Mapping[str, ContactState]) -> dict[str, ContactState]:
-    """Return the named states of a path with their results on the final mesh, their errors and the penalty's share.
+def with_errors(
+    estimate: Estimate, path: Mapping[str, ContactState], outputs: Sequence[Output] = ()
+) -> dict[str, ContactState]:
+    """Return the named states of a path with their results on the final mesh, and their errors.
 
     Args:
         estimate: of the path's states.
         path: the states by name, as the path has them.
+        outputs: computed from each state, whose errors come from the same two meshes.
     """
     estimates, found = estimate.estimates(), dict(path)
     for name, kept in estimate.base.states.items():
         if name in found:
-            parts = (errors_of(name, estimates), errors_of(name, estimate.penalty))
-            found[name] = replace(with_values(found[name], kept), error=parts[0], penalty=parts[1])
+            mesh, penalty = (errors_of(name, each) for each in (estimates, estimate.penalty))
+            whole = {key: value + abs(penalty.get(key, 0.0)) for key, value in mesh.items()}
+            error = Errors.of(whole | _of_outputs(estimate, name, outputs))
+            found[name] = replace(with_values(found[name], kept), error=error, penalty=Errors.of(penalty))
     if {"uncharged", "charged"} <= set(found) and path["uncharged"].step == path["charged"].step:  # at 0 V one state
         found["uncharged"] = found["charged"]
     return found
 
 
-def errors_of(name: str, changes: Mapping[str, float]) -> Errors:
+def _of_outputs(estimate: Estimate, name: str, outputs: Sequence[Output]) -> dict[str, float]:
+    """Return the errors of outputs in a state, of first order in the sizes of two meshes, by name.
+
+    One that is not computed from the forces, ridges and sites of a state alone has none.
+    """
+    coarse, base, found = estimate.coarse, estimate.base, dict[str, float]()
+    if coarse is None or name not in coarse.states or coarse.mesh.contact <= base.mesh.contact:
+        return found
+    ratio = coarse.mesh.contact / base.mesh.contact
+    for each in outputs:
+        with suppress(SceneError):
+            change = each.of(base.states[name].state) - each.of(coarse.states[name].state)
+            found[each.name] = TWO * abs(change) / (ratio - 1)
+    return found
+
+
+def errors_of(name: str, changes: Mapping[str, float]) -> dict[str, float]:
     """Return the changes of a named state's quantities, of those by key; densities at receptors are left out."""
     known = {field.name for field in fields(Errors)}
-    return Errors(**{k: v for key, v in changes.items() if (k := key.removeprefix(f"{name}_")) in known and k != key})
+    return {k: v for key, v in changes.items() if (k := key.removeprefix(f"{name}_")) in known and k != key}
 
 
 def of_key(key: str) -> tuple[Output, str]:

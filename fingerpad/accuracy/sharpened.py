@@ -16,7 +16,7 @@ from fingerpad.model.options import FingerModel
 from fingerpad.model.simulation import Simulation
 from fingerpad.richardson import of_two_meshes
 from variational.element import ELEMENTS
-from variational.state import ContactState
+from variational.state import ContactState, Errors
 
 _SLIP = "full_slip"
 
@@ -69,4 +69,4 @@ class Sharpener:
         facets = {_SLIP: (coarse.states[_SLIP].facet, fine.states[_SLIP].facet)}
         found = of_two_meshes(coarse.parts(), fine.parts(), facets, ELEMENTS[model.numerics.element].degree)
         final_state = with_values(state, fine.states[_SLIP])
-        return Sharpened(replace(final_state, error=errors_of(_SLIP, found)), fine)
+        return Sharpened(replace(final_state, error=Errors.of(errors_of(_SLIP, found))), fine)

@@ -155,6 +155,7 @@ def solve_again(
     views: bool = False,
     stiffer: Formulation | None = None,
     examined: Collection[str] = (),
+    pause: Callable[[], None] = lambda: None,
 ) -> Solve:
     """Solve for states of a finger on meshes that are finest where their contact ends; collective.
 
@@ -167,6 +168,7 @@ def solve_again(
         views: whether tables and pictures are to show the states (:attr:`Solve.views`).
         stiffer: the contact over a screen of twice the stiffness, where the states are wanted over that too.
         examined: names of the states whose stability is to be examined.
+        pause: called before each state; may raise to stop.
 
     Raises:
         StepFailed: see :meth:`StateSolver.re_equilibrate`.
@@ -174,7 +176,7 @@ def solve_again(
     normal = {name: state for name, state in states.items() if not state.direction}
     options = replace(model.options, both_halves=model.options.both_halves and not model.options.symmetric_start)
     slips = {name: state for name, state in states.items() if state.direction}
-    also = views, stiffer, examined
+    also = views, stiffer, examined, pause
     solves = [_solve(model.changed(options=options), normal, comm, *also)] if normal else []
     solves += [_solve(model, slips, comm, *also)] if slips else []
     return together(solves)
@@ -187,6 +189,7 @@ def _solve(
     views: bool,
     stiffer: Formulation | None,
     examined: Collection[str],
+    pause: Callable[[], None],
 ) -> Solve:
     profiles = Profiles(model.geometry)
     ends = ((edges.ends(state.snapshot, profiles.along_skin, state.facet), state.facet) for state in states.values())
@@ -195,12 +198,14 @@ def _solve(
     recorder, over, finger = StateRecorder(simulation), StateRecorder(simulation), simulation.finger
     springs, soft, viewer = finger.problem.interface.formulation, "", Viewer(finger) if views else None
     for name, state in states.items():
+        pause()
         simulation.re_equilibrate(state, WORDS.get(name, name))
         recorder.keep(name, state.direction != 0)
         if name in examined:
             recorder.examine(name)
         if viewer is not None:
-            recorder.views[name] = viewer.view(simulation.present(finger.ridge_loads()))
+            view = viewer.view(simulation.present(finger.ridge_loads()))
+            recorder.views[name] = view.at(state.state.bone_x)
         if stiffer is not None:
             try:
                 simulation.over_stiffer_screen(stiffer, WORDS.get(name, name), state.direction)

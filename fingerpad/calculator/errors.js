@@ -31,13 +31,15 @@ const modelErrors = (() => {
   /** Return the narrowest region of values, null where the error is not known. */
   const find = (values, answer) => regions.find((region) => beyond(region, values, answer).length === 0) || null;
 
-  /** Return the relative errors of an answer by quantity, null where they are not known. */
+  /** Return the whole relative errors of an answer by quantity, null where they are not known: of the model and, of a
+   * whole finger, of the points of its trace. */
   function of(values, answer) {
     const region = find(values, answer);
     if (!region) return null;
     const known = region.errors[values.newtons ? "finger" : "full_slip"], pull = pull_of(values, answer);
     const friction = (known.f_electrostatic * pull) / (1 + pull);
-    return { ...known, mu_app: friction, f_t: friction };
+    const found = { ...known, mu_app: friction, f_t: friction }, points = values.newtons && answer.points || {};
+    return Object.fromEntries(Object.entries(found).map(([key, error]) => [key, error + (points[key] || 0)]));
   }
 
   const distance = (keys) => keys.reduce((sum, each) => sum + each.far, 0);

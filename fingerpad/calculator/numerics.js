@@ -84,5 +84,12 @@ const numerics = (function () {
     };
   }
 
-  return { geomspace, root, erfc, show, pchip };
+  /** Return a value with its error to two digits; without one that reaches the digits after the point. */
+  function plus_minus(value, error, digits) {
+    if (!(error >= 0.5 * 10 ** -digits)) return value.toFixed(digits);
+    const after = Math.max(0, 1 - Math.floor(Math.log10(error)));
+    return `${value.toFixed(after)} ± ${error.toFixed(after)}`;
+  }
+
+  return { geomspace, root, erfc, show, pchip, plus_minus };
 })();

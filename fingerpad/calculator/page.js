@@ -45,8 +45,8 @@
   // -- the point -----------------------------------------------------------------------------------------
   function cell(found, row, error, before) {
     const [key, , unit, per, digits, quantity] = row, value = found[key] * per;
-    const band = error && quantity && error[quantity] ? ` ± ${(value * error[quantity]).toFixed(digits)}` : "";
-    const td = create("td", before ? {} : { id: "value_" + key }, `${value.toFixed(digits)}${band} ${unit}`.trim());
+    const known = error && quantity && error[quantity] ? value * error[quantity] : 0;
+    const td = create("td", before ? {} : { id: "value_" + key }, `${numerics.plus_minus(value, known, digits)} ${unit}`.trim());
     if (!before) td.dataset.value = found[key];
     return td;
   }
@@ -86,11 +86,11 @@
     const error = error_of(values, given, found);
     if (values.newtons) {
       const section = { ...values, newtons: false, f_ext: found.section.f_ext }, known = error_of(section, given, found.section);
-      const band = known ? ` ± ${(found.section.mu_app * known.mu_app).toFixed(3)}` : "";
-      parts.push(`Middle section, second: ${show(found.centre, 3)} N/m, where µ_app is ${found.section.mu_app.toFixed(3)}${band}.`);
+      const shown = numerics.plus_minus(found.section.mu_app, known ? found.section.mu_app * known.mu_app : 0, 3);
+      parts.push(`Middle section, second: ${show(found.centre, 3)} N/m, where µ_app is ${shown}.`);
     }
     if (given) parts.push("The contact is as given along both curves; the error of this answer is not known.");
-    else if (error) parts.push(`Known error, beside full runs: µ_app and friction within ${percent(error.mu_app)}, attraction within ${percent(error.f_electrostatic)}.`);
+    else if (error) parts.push(`Error, by closed form${values.newtons ? " and points of the traces" : ""}: µ_app and friction within ${percent(error.mu_app)}, attraction within ${percent(error.f_electrostatic)}.`);
     else {
       const beyond = modelErrors.outside(values, found).filter(({ low }) => !Number.isNaN(low)).map(span).join(", ");
       parts.push(`The error is not known here${beyond && `; it is known for ${beyond}`}.`);

@@ -16,6 +16,7 @@ from fingerpad.results.closures import KNOWN
 from fingerpad.results.files import check_folder
 from fingerpad.results.terminal import about
 from fingerpad.scene import Load, Scene, SceneError
+from fingerpad.scene.loads import ways
 from fingerpad.scene.messages import counted
 from fingerpad.scene.remarks import finger_in_words, leakage, remarks, used
 from geometry.profiles import GeometryError
@@ -68,7 +69,7 @@ def _mesh(scene: Scene, needed: ModelOptions) -> meshes.Section | None:
 
 
 def _verdict(scene: Scene) -> str:
-    """Return whether the scene can be run, and that nothing is known of loads that were never tried."""
+    """Return whether the scene can be run, that it may not slip fully, and what is not known of loads never tried."""
     force = voltage = 0.0
     for load in scene.loads():
         force = load.f_ext if load.f_ext is not None else force
@@ -79,12 +80,18 @@ def _verdict(scene: Scene) -> str:
                 f"The scene is valid; whether its loads can be reached is not known: {load.name} has {force:g} N/m and "
                 f"{voltage:g} V, and tried were {where(tried)}."
             )
+    if any(too_short(scene)):
+        return "The scene can be run, and may end without full slip: see above, under Model."
     return "The scene can be run."
 
 
 def _loads(scene: Scene) -> Iterator[str]:
-    for k, load in enumerate(scene.loads(), start=1):
-        yield f"{k}. {load.name}: {', '.join(_aims(load))}"
+    for k, (_, load, moved) in enumerate(ways(scene.loads()), start=1):
+        aims = [*_aims(load)]
+        if load.wave is not None and load.takes_time:
+            seconds = load.seconds(moved or 0.0)
+            aims.append(f"{load.wave.count(seconds, scene.numerics.step_scale):.0f} samples over {seconds:.4g} s")
+        yield f"{k}. {load.name}: {', '.join(aims)}"
 
 
 def _aims(load: Load) -> Iterator[str]:

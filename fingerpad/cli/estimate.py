@@ -1,5 +1,7 @@
 """``fingerpad estimate``: friction over force and voltage by the closed form, without finite elements."""
 
+import itertools
+import math
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
@@ -12,14 +14,19 @@ from fingerpad.cli.arguments import Parser, echo, scene_of, several
 from fingerpad.model import breakdown
 from fingerpad.model.cautions import on_states
 from fingerpad.reduced import cylinder_errors, cylinders
-from fingerpad.results.quantities import FINGER, PER_LENGTH, QUANTITIES, Output
+from fingerpad.results.answer import Number
+from fingerpad.results.quantities import FINGER, FRICTION, PER_LENGTH, QUANTITIES, Output, plus_minus_of
 from fingerpad.results.result import Result
+from fingerpad.results.terminal import watched
+from fingerpad.runs.axis import refuse_many
+from fingerpad.runs.batch import progress
 from fingerpad.runs.closed_form import ClosedForm
 from fingerpad.runs.drive import drive
 from fingerpad.scene import Scene
 from fingerpad.scene.messages import SceneError
 from fingerpad.scene.remarks import LEAKAGE, coefficient, remarks, used
 from fingerpad.slices import errors
+from fingerpad.slices.traces import NO_NEWTONS
 
 _WHOLE = ("mu_app", "f_t", "f_electrostatic", "contact_area", "gross_area")
 _SECTION = ("f_ext", "mu_app", "f_t", "f_electrostatic", "contact_length", "ridges_in_contact")
@@ -31,13 +38,22 @@ def _of_section(key: str) -> Output:
 
 
 _OF_SECTION = {key: _of_section(key) for key in _SECTION}
-_ERROR = "mu_app_error"
-_PLUS_MINUS = {key: replace(QUANTITIES["mu_app"], name=key, words="±") for key in (_ERROR, f"{_ERROR}_of_section")}
-_COLUMNS = (replace(FINGER["f_ext"], name="force"), QUANTITIES["voltage"], FINGER["mu_app"], _PLUS_MINUS[_ERROR],
-            *(FINGER[key] for key in _WHOLE[1:]), _OF_SECTION["f_ext"], _OF_SECTION["mu_app"],
-            _PLUS_MINUS[f"{_ERROR}_of_section"], *(_OF_SECTION[key] for key in _SECTION[2:]))  # fmt: skip
+_ERROR = "_error"
+
+
+_GIVEN = ("voltage", _OF_SECTION["f_ext"].name, _OF_SECTION["ridges_in_contact"].name)  # without an error
+
+
+def _with_error(quantity: Output) -> tuple[Output, ...]:
+    error = replace(quantity, name=quantity.name + _ERROR, words=f"± {quantity.symbol}")
+    return (quantity,) if quantity.name in _GIVEN else (quantity, error)
+
+
+_QUANTITIES = (*(FINGER[key] for key in _WHOLE), *_OF_SECTION.values())
+_COLUMNS = (replace(FINGER["f_ext"], name="force"), QUANTITIES["voltage"],
+            *(each for one in _QUANTITIES for each in _with_error(one)))  # fmt: skip
 _OF_FILES = ("f_t_of_section", "f_electrostatic_of_section", "ridges_in_contact_of_section")
-_SHOWN = tuple(each for each in _COLUMNS if each.name not in _OF_FILES)
+_SHOWN = tuple(each for each in _COLUMNS if each.name not in _OF_FILES and not each.name.endswith(_ERROR))
 _NAME = {"force": "force", "f_ext": "f_ext_of_section"}
 """Columns of the keys of forces."""
 _EXAMPLES = """
@@ -82,7 +98,7 @@ def main(argv: Sequence[str]) -> int:
     echo(" at full slip by a closed form, every ridge in contact the same charged cylinder.")
     mu_0 = coefficient(scene)
     echo(f"Friction coefficient {mu_0:g}.\n" if mu_0 is not None else f"Friction {used(scene)['friction']}.\n")
-    echo(output.text(_SHOWN, rows))
+    echo(output.text(_SHOWN, [row | _shown(row) for row in rows]))
     echo("\nµ_app is friction over force, at full slip: first of the whole finger, as a sum of slices, then of the")
     echo("section at its centre. L_R is the length of skin on the screen.")
     if key == "f_ext":
@@ -119,71 +135,70 @@ def grid(
     """
     rows, lost, form, unit = [], [], ClosedForm(cylinders.Cylinders()), "N/m" if key == "f_ext" else "N"
     scene = scene.resolved()
-    for force in forces:
-        newtons, why = _newtons(form, scene, force) if key == "f_ext" else (force, "")
-        lost += [f"At {force:g} {unit} there is no whole finger: {why}."] if why else []
-        for voltage in voltages:
+    refuse_many(len(forces) * len(voltages), "table")
+    with progress(not watched()) as bar:
+        for force, voltage in bar.track([*itertools.product(forces, voltages)], description="points"):
             changed = {} if scene.supply is not None and voltage == scene.volts else {"voltage": voltage}
             row: dict[str, Any] = {_NAME[key]: force, "voltage": voltage}
             try:
-                if newtons is not None:
-                    row |= {"force": newtons} | _row(form.result(scene.replace(force=newtons, **changed)))
-                if key == "f_ext":
-                    section = _row(form.result(scene.replace(force=None, f_ext=force, **changed)))
-                    row |= section | {"error": {**row.get("error", {}), **section["error"]}}
+                given: dict[str, Any] = {"force": force} if key == "force" else {"force": None, "f_ext": force}
+                row = _row(found := form.result(scene.replace(**given, **changed))) | row
+                at = f"At {force:g} {unit} there is no whole finger: "
+                lost += [at + note.partition(": ")[2] + "." for note in found.notes if note.startswith(NO_NEWTONS)]
             except SceneError as error:
                 lost.append(f"At {force:g} {unit} and {voltage:g} V: {error}.")
             rows.append(row)
     if not any("state" in row for row in rows):
         beyond = breakdown.ahead(scene if scene.supply is not None else scene.replace(voltage=max(voltages, key=abs)))
         raise SceneError("; ".join([*beyond, lost[-1].partition(": ")[2].rstrip(".")]))
-    return rows, lost
-
-
-def _newtons(form: ClosedForm, scene: Scene, f_ext: float) -> tuple[float | None, str]:
-    """Return the force (N) on the finger whose centre bears a force (N/m); None and why where there is none."""
-    try:
-        return float(f"{form.newtons(scene.replace(force=None, f_ext=f_ext)):.4g}"), ""
-    except SceneError as error:
-        return None, str(error)
+    return rows, list(dict.fromkeys(lost))
 
 
 def _row(found: Result) -> dict[str, Any]:
     """Return what the columns show of a result: of the whole finger where it has one, and of its section."""
-    section = found.full_slip or found.charged
-    assert section is not None
-    values: dict[str, Any] = {f"{key}_of_section": getattr(section, key) for key in _SECTION}
-    known, finger = found.record["model_error"], found.finger
-    force, pull = section.f_ext, section.f_electrostatic
-    if "full_slip" in known:
-        values[f"{_ERROR}_of_section"] = known["full_slip"]["mu_app"] * section.mu_app
-    if finger is not None:
-        total = finger.values(list(finger.states)[-1])
-        values |= {key: total[key] for key in _WHOLE if key in total}
-        if found.scene.force is not None:
-            force, pull = finger.f_ext, total["f_electrostatic"]
-    if cylinder_errors.WHOLE in known:
-        values[_ERROR] = known[cylinder_errors.WHOLE]["mu_app"] * values["mu_app"]
+    state = "charged" if found.full_slip is None else "full_slip"
+    values: dict[str, Any] = {"state": found.named[state]}
+    for key, column in _OF_SECTION.items():
+        values |= {column.name: getattr(found.named[state], key)} if column.name in _GIVEN else {}
+        values |= _numbers(column.name, found.number(state, key)) if column.name not in _GIVEN else {}
+    parts = found.parts()
+    if found.finger is not None:
+        last, values["force"] = list(found.finger.states)[-1], found.finger.f_ext
+        for key in _WHOLE:
+            values |= _numbers(key, found.number(last, key, whole=True)) if key not in FRICTION or last == state else {}
+        parts = (*found.finger.parts(last), *parts)
+    force, pull = found.named[state].f_ext, found.named[state].f_electrostatic
+    if found.scene.force is not None and found.finger is not None:
+        force, pull = found.finger.f_ext, values["f_electrostatic"]
     outside = cylinder_errors.in_short(cylinder_errors.outside(found.scene, pull / force))
-    return values | {"state": section, "error": known, "outside": outside}
+    return values | {"outside": outside, "parts": parts}
+
+
+def _numbers(name: str, number: Number) -> dict[str, float]:
+    """Return a value, and its error where that is known, by column."""
+    known = {} if math.isnan(number.error) else {name + _ERROR: number.error}
+    return {name: number.value} | known
+
+
+def _shown(row: Mapping[str, Any]) -> dict[str, str]:
+    """Return the values of a row that have an error with it, as they are printed."""
+    columns = {column.name: column for column in _COLUMNS}
+    names = [name.removesuffix(_ERROR) for name in row if name.endswith(_ERROR)]
+    return {name: columns[name].shown(row[name], row[name + _ERROR]) for name in names if name in row}
 
 
 def _known(rows: Sequence[Mapping[str, Any]]) -> list[str]:
-    """Return what is known of the error of these rows, and for which keys it is not."""
-    said = []
-    for state, words in ((cylinder_errors.WHOLE, "whole finger"), ("full_slip", "section")):
-        bands = [row["error"][state] for row in rows if state in row.get("error", {})]
-        if bands:
-            shown = ", ".join(
-                f"{name} {100 * max(band[key] for band in bands):.1f} %"
-                for key, name in (("mu_app", "µ_app and friction"), ("f_electrostatic", "attraction"))
-            )
-            said.append(f"Known error of the {words} (±), at most: {shown}.")
+    """Return what the errors of these rows are of, and for which keys they are not known."""
+    said = [plus_minus_of(part for row in rows for part in row.get("parts", ()))] if _has_errors(rows) else []
     beyond = Counter(each._replace(value="") for row in rows for each in row.get("outside", []))
     for each, count in beyond.items():
         points = f"At {count} of {len(rows)} points" if count < len(rows) else "Here"
         said.append(f"{points} the error is not known; it is known for {each.key} {each.known}.")
     return said
+
+
+def _has_errors(rows: Sequence[Mapping[str, Any]]) -> bool:
+    return any(name.endswith(_ERROR) for row in rows for name in row)
 
 
 def draw(key: str, file: Path, rows: Sequence[Mapping[str, Any]]) -> None:
@@ -211,7 +226,8 @@ def draw(key: str, file: Path, rows: Sequence[Mapping[str, Any]]) -> None:
         for k, value in enumerate(voltages if each == "voltage" else forces):
             points = [row for row in rows if row[each] == value and mu_app in row]
             colour = style.voltage(value, max(voltages, key=abs)) if each == "voltage" else None
-            x, mu = ([point[key] for point in points] for key in (over, mu_app))
-            output.curve(ax, k, x, mu, label[each].format(value), colour)
+            x, mu, error = ([point.get(key, 0.0) for point in points] for key in (over, mu_app, mu_app + _ERROR))
+            output.curve(ax, k, x, mu, label[each].format(value), colour, error)
         ax.set(xlabel=axis[over], ylabel=rf"apparent friction coefficient $\mu_{{app}}$ of the {of} (–)")
-        ax.legend(title={"f_ext_of_section": "$f_{ext}$", "force": "$F_{ext}$", "voltage": "U"}[each])
+        title = {"f_ext_of_section": "$f_{ext}$", "force": "$F_{ext}$", "voltage": "U"}[each]
+        ax.legend(title=f"{title}; band: ± error" if _has_errors(rows) else title)

@@ -11,7 +11,9 @@ import numpy as np
 from fingerpad.cli import output, ranges
 from fingerpad.cli.arguments import echo, refuse_twice, several
 from fingerpad.results.quantities import PER_LENGTH, Output
+from fingerpad.results.terminal import watched
 from fingerpad.runs.axis import Axis
+from fingerpad.runs.batch import progress
 from fingerpad.runs.two_keys import TwoKeys, two_keys
 from fingerpad.scene import Scene
 from fingerpad.scene.messages import SceneError, clip, show
@@ -47,7 +49,8 @@ def main(args: argparse.Namespace, scene: Scene) -> int:
         if len(values) > 1:
             raise SceneError(f"{option} has {len(values)} values beside --over; give one value, or --over {key}=RANGE")
         scene = scene.replace(**{key: values[0]})
-    found = two_keys(scene, over, args.target or "")
+    with progress(not watched()) as bar:
+        found = two_keys(scene, over, args.target or "", lambda points: bar.track(points, description="points"))
     echo(text(found))
     echo()
     notes = errors.remarks([found.scene.force]) if found.scene.force and "force" not in over else []

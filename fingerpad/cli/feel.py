@@ -18,9 +18,9 @@ def main(argv: Sequence[str]) -> int:
     parser = Parser("feel", _EXAMPLES)
     parser.add_argument("folder", type=path, metavar="DIR", help="folder of a run with a load over time")
     words = f"class of afferents, one --class for each: {', '.join(LAWS)} (default: {', '.join(DEFAULT)})"
-    parser.add_argument("--class", action="append", dest="laws", metavar="NAME", help=words)
+    parser.add_argument("--class", action="append", dest="classes", metavar="NAME", help=words)
     args = parser.read(argv)
-    spikes = Result.load(args.folder).afferents(args.laws)
+    spikes = Result.load(args.folder).afferents(args.classes)
     echo(str(spikes))
     spikes.to_csv(args.folder / CSV)
     spikes.to_netcdf(args.folder / NETCDF)

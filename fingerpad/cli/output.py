@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike
 from fingerpad.cli.arguments import PICTURE, Kind, Parser, echo
 from fingerpad.results.files import replace
 from fingerpad.results.quantities import Output
+from fingerpad.scene.messages import is_formula
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -38,11 +39,18 @@ def _cell(column: Output, value: str | float | None) -> str:
 
 
 def write(file: Path, columns: Sequence[Output], rows: Sequence[Mapping[str, Any]]) -> None:
-    """Write a table as CSV in SI units, unrounded; :mod:`fingerpad.cli.arguments` has rounded its values."""
+    """Write a table as CSV in SI units, unrounded; :mod:`fingerpad.cli.arguments` has rounded its values.
+
+    An apostrophe stands before a text of which a spreadsheet would make a formula.
+    """
     out = io.StringIO()
     writer = csv.DictWriter(out, [c.name for c in columns], extrasaction="ignore", lineterminator="\n")
-    writer.writerows(rows)
+    writer.writerows({key: f"'{cell}" if _is_formula(cell) else cell for key, cell in row.items()} for row in rows)
     replace(file, _head(columns) + out.getvalue())
+
+
+def _is_formula(cell: Any) -> bool:
+    return isinstance(cell, str) and is_formula(cell)
 
 
 def _head(columns: Sequence[Output]) -> str:
@@ -96,11 +104,18 @@ def panels(file: Path, title: str, count: int = 1) -> "Iterator[tuple[Figure, li
         style.save(figure, file)
 
 
-def curve(ax: "Axes", k: int, x: ArrayLike, y: ArrayLike, label: str, colour: Any = None) -> None:
-    """Draw curve number k, with markers where its points are few; ``colour`` takes the place of the palette's."""
+def curve(
+    ax: "Axes", k: int, x: ArrayLike, y: ArrayLike, label: str, colour: Any = None, error: ArrayLike = 0.0
+) -> None:
+    """Draw curve number k, with markers where its points are few; ``colour`` takes the place of the palette's.
+
+    A band is drawn of an ``error`` above and below; none where it is 0.
+    """
     from fingerpad.results import style
 
     marked = np.size(x) <= _MAX_MARKERS
     marker: dict[str, Any] = {"marker": style.MARKERS[k % len(style.MARKERS)], "ms": 5} if marked else {}
     colour = style.CATEGORIES[k % len(style.CATEGORIES)] if colour is None else colour
+    if np.any(error):
+        ax.fill_between(x, np.subtract(y, error), np.add(y, error), color=colour, alpha=0.15, linewidth=0)
     ax.plot(x, y, color=colour, ls=_DASHES[k % len(_DASHES)], label=label, **marker)

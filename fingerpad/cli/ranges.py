@@ -5,7 +5,9 @@ them, and ``1e3:1e6:4:log`` are four at equal ratios. Values between the ends ar
 0.3. A unit may follow, ``0:0.2:5 kV``, and in a list also each value: ``1 um, 5 um``.
 """
 
+import math
 import re
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -32,12 +34,13 @@ def read(name: str, text: str) -> list[float | str]:
     """
     each = [re.fullmatch(rf"({_NUMBER})\s*({_UNIT})", part.strip()) for part in text.split(",")]
     if len(each) > 1 and all(each):
-        return [f"{float(part[1])!r} {part[2]}" for part in each if part]
+        return [f"{part[1]} {part[2]}" for part in each if part]
     found = re.fullmatch(rf"([-+0-9.,:\seE]*?(?::log)?)\s*({_UNIT})?", text.strip())
     numbers, unit = (found[1].strip(), (found[2] or "").strip()) if found else ("", "")
     values = _range(name, numbers) if ":" in numbers else _list(numbers)
     if not values:
         raise SceneError(f"{name} is {clip(text) or 'empty'}; {_HOW}")
+    _refuse_infinite(name, text, values)
     return [f"{float(value)!r} {unit}" for value in values] if unit else [*values]
 
 
@@ -55,6 +58,7 @@ def _range(name: str, text: str) -> list[float]:
     if found is None:
         return []
     first, last, count = _number(found[1]), _number(found[2]), int(found[3][:9])
+    _refuse_infinite(name, text, (first, last))
     if not 1 <= count <= _MAX_VALUES:
         raise SceneError(f"{name} is {clip(text)}, of {count} values; it must be of 1 to {_MAX_VALUES}")
     if count == 1 and first != last:
@@ -65,3 +69,8 @@ def _range(name: str, text: str) -> list[float]:
     between = [_number(f"{value:.12g}") for value in space(first, last, count)][1:-1]
     values = [first, *between, last] if count > 1 else [first]
     return values if all(isinstance(value, int) for value in values) else [*map(float, values)]
+
+
+def _refuse_infinite(name: str, text: str, values: Sequence[float]) -> None:
+    if not all(map(math.isfinite, values)):
+        raise SceneError(f"{name} is {clip(text)}; each value must be a finite number, at most 1.8e308")

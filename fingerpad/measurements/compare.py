@@ -34,7 +34,7 @@ def compare(
 
     Returns:
         A row for each row of the table, in SI units, NaN where a value is not known: ``force``, ``voltage``,
-        ``measured``, ``spread``, ``computed``, ``error`` (estimated discretisation error of the computed value),
+        ``measured``, ``spread``, ``computed``, ``error`` (whole known error of the computed value),
         ``difference`` (computed less measured) and ``relative_difference`` (of the measured value), and ``participant``
         where the table has it. Computed friction is that of the coefficient of the rows at 0 V, where there are such
         (:mod:`fingerpad.measurements.fit`), in a column ``mu_0``. Its ``attrs`` hold the quantity, the units, the

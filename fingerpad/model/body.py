@@ -23,11 +23,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 import fingerpad.startup  # noqa: F401
-from fingerpad import notebook
 from fingerpad.model import cautions
 from fingerpad.model.state import contact_state, force_error, refuse_strained, steady, step_record
 from fingerpad.results.fields import Fields, of_snapshot
-from fingerpad.results.quantities import QUANTITIES, side_by_side
+from fingerpad.results.printing import StatePrinted
 from fingerpad.results.states import full_slip
 from fingerpad.scene.materials import refuse_thickness
 from fingerpad.startup import MPI
@@ -67,7 +66,7 @@ class Energy:
     """By jumps since then; on a smooth path the error of the steps' works."""
 
 
-class Body:
+class Body(StatePrinted):
     """A body pressed on the screen, charged and slid.
 
     Attributes:
@@ -246,8 +245,8 @@ class Body:
     def _reach(self, target: Target, seconds: Quantity | None) -> "Body":
         if seconds is None and self.problem.in_time:
             raise ValueError(
-                f"{target.name} takes seconds, how long the load lasts, 0 for at once: the state of a body with a viscous "
-                "material, or friction with a memory, depends on it"
+                f"{target.name} takes seconds, how long the load lasts, 0 for at once: the state of a body with a "
+                "viscous material, or friction with a memory, depends on it"
             )
         duration = 0.0 if seconds is None else _finite("seconds", seconds, "s")
         if duration < 0:
@@ -278,23 +277,6 @@ class Body:
         They are computed of all states so far; without ``roughness`` there are none.
         """
         return cautions.on_states(self.states, self._closure, self.problem.interface.formulation)
-
-    def _rows(self) -> list[tuple[str, str]]:
-        """Return the last accepted state in words: quantities with their units, and their values."""
-        found = [(quantity.title, quantity.shown(getattr(self.state, key))) for key, quantity in QUANTITIES.items()]
-        return [row for row in found if row[1] != "–"]
-
-    def __repr__(self) -> str:
-        """Return the last accepted state."""
-        return "\n".join([self._title(), *side_by_side(self._rows())])
-
-    def _repr_html_(self) -> str:
-        """Return the last accepted state for a notebook."""
-        return notebook.page(self._title(), notebook.table(("", "last state"), self._rows()))
-
-    def _title(self) -> str:
-        last = f"{self._load} in step {len(self.states)}" if self.states else "unloaded"
-        return f"Body of {len(self.triangles)} triangles, per metre of depth: {last}"
 
     @property
     def _d_eq(self) -> Array:

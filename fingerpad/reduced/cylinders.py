@@ -46,17 +46,19 @@ from fingerpad.reduced.footprint import from_run as from_run
 from fingerpad.reduced.footprint import given as given
 from fingerpad.reduced.model import STATES, Model, reduced_state, refuse_others
 from fingerpad.reduced.similarity import Similar, similar
-from fingerpad.results.answer import Cost
+from fingerpad.results.answer import MODEL_ERROR, Cost
+from fingerpad.results.quantities import MODEL
 from fingerpad.results.result import Result
 from fingerpad.results.states import WORDS
 from fingerpad.scene import Scene, SceneError
 from fingerpad.scene.fingers import ADULT
 from fingerpad.scene.messages import show
 from fingerpad.scene.remarks import coefficient, leakage, remarks, skin_modulus, used
+from fingerpad.slices import errors
 from geometry.parameters import Fingertip
 from geometry.profiles import Profiles
 from variational.attraction.cylinder import Cylinder, NoEquilibriumError, RidgeState, hertz_modulus
-from variational.state import ContactState
+from variational.state import ContactState, Errors
 
 if TYPE_CHECKING:
     from fingerpad.runs.context import RunContext
@@ -141,17 +143,22 @@ class Cylinders(Model):
 
     def of_finger(self, scene: Scene, section: Result, finger: "WholeFinger") -> Result:
         """Return the result with the known error of the whole finger, or a caution that it is not known."""
-        found = super().of_finger(scene, section, finger)
-        assert section.full_slip is not None and scene.force is not None
-        own = cylinder_errors.cautions(section.scene, _pull(section.full_slip))
-        known: Mapping[str, float] = {}
-        cautions = [each for each in section.cautions if each not in own]
+        known, cautions, carried = dict(section.record[MODEL_ERROR]), [*section.cautions], dict(finger.carried)
+        force = finger.f_ext
+        under = scene.replace(force=force) if scene.force is None else scene
         if "full_slip" in finger.states:
             attraction = finger.states["full_slip"].totals["f_electrostatic"]
-            known = cylinder_errors.at_full_slip(scene, attraction)
-            cautions += cylinder_errors.cautions(scene, attraction / scene.force)
-        errors = {**section.record["model_error"], **({cylinder_errors.WHOLE: known} if known else {})}
-        return replace(found, record={**section.record, "model_error": errors}, cautions=tuple(cautions))
+            known[cylinder_errors.WHOLE] = cylinder_errors.at_full_slip(under, attraction)
+            if scene.force is not None and section.full_slip is not None:
+                own = cylinder_errors.cautions(section.scene, _pull(section.full_slip))
+                cautions = [each for each in cautions if each not in own]
+                cautions += cylinder_errors.cautions(under, attraction / force)
+        for name, total in finger.states.items():
+            found = known.get(cylinder_errors.WHOLE if name == "full_slip" else name, {})
+            carried[name] = carried[name] | {MODEL: errors.of_model(found, total)}
+        record = {**section.record, MODEL_ERROR: {name: each for name, each in known.items() if each}}
+        finger = replace(finger, carried=carried)
+        return replace(section, scene=scene, finger=finger, record=record, cautions=tuple(cautions))
 
 
 def solve(scene: Scene, footprint: Footprint | None = None) -> Result:
@@ -170,12 +177,12 @@ def solve(scene: Scene, footprint: Footprint | None = None) -> Result:
         n, length = np.array([footprint.ridges[state]]), np.array([footprint.length[state]])
         ((found[state], states[state]),) = _solved(scene, [scene.f_ext], length, n, state, footprint.charged)
         cautions += _others(state, states[state])
-    errors = {} if footprint.charged else cylinder_errors.errors(scene, found)
+    known = {} if footprint.charged else cylinder_errors.errors(scene, found)
     cautions += [] if footprint.charged else cylinder_errors.cautions(scene, _pull(found["full_slip"]))
     notes = (
         footprint.source,
         exact,
-        cylinder_errors.in_words(errors),
+        cylinder_errors.in_words(known),
         "the bone's height is not in this model",
         *leakage(scene),
     )
@@ -184,7 +191,8 @@ def solve(scene: Scene, footprint: Footprint | None = None) -> Result:
     more: dict[str, Any] = {
         f"{state}_{name}": getattr(ridge, name) for state, ridge in states.items() for name in ("p_c", "d_eq")
     }
-    more |= {"laws": used(scene), "model_error": errors}
+    more |= {"laws": used(scene), MODEL_ERROR: known}
+    found = {name: replace(each, error=_errors(each, known.get(name, {}))) for name, each in found.items()}
     cost = Cost(processor_seconds=time.process_time() - start)
     return Result(
         scene, Cylinders.name, None, found["charged"], found["full_slip"],
@@ -279,6 +287,12 @@ def _stiffening(scene: Scene, state: str, shear: float) -> Callable[[Array], Arr
     if state != "full_slip" or law is None or known is None or coefficient(scene) == known:
         return None
     return lambda p_c: shear * np.maximum(np.asarray(law.limit(p_c), dtype=float) - known * p_c, 0.0)
+
+
+def _errors(state: ContactState, known: Mapping[str, float]) -> Errors:
+    """Return the errors of a state by its known relative ones."""
+    found = {key: share * abs(getattr(state, key)) for key, share in known.items()}
+    return Errors.of(found | ({"f_contact": found["f_electrostatic"]} if "f_electrostatic" in found else {}))
 
 
 def _pull(slip: ContactState) -> float:

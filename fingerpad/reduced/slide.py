@@ -53,19 +53,27 @@ def way(scene: Scene, f_ext: float, voltage: float) -> float:
 
 
 def too_short(scene: Scene) -> Iterator[str]:
-    """Yield a sentence for each waveform whose load may end before the finger slips fully; none where not known."""
-    force, farthest = 0.0, 0.0
+    """Yield a sentence for each slide that may end without full slip: one until full slip, or under a waveform.
+
+    None where the way is not known.
+    """
+    force, voltage, farthest = 0.0, 0.0, 0.0
     place: float | None = 0.0
     for _, load, moved in ways(scene.loads()):
         force = load.f_ext if load.f_ext is not None else force
-        place = None if place is None or moved is None or load.until_full_slip else place + moved
+        voltage = load.wave.peak if load.wave is not None else voltage if load.level is None else load.level
+        place = None if place is None or moved is None else place + moved
         if place is None or load.bone_height is not None:
             return
         farthest = max(farthest, abs(place))
-        if load.wave is None or not moved or not force:
+        if load.until_full_slip:
+            place = None
+        elif load.wave is None:
+            continue
+        if not moved or not force:
             continue
         try:
-            needed = way(scene, force, load.wave.peak)
+            needed = way(scene, force, voltage)
         except SceneError:
             return
         less = ", less of viscous skin" if viscous_layers(scene.materials) else ""

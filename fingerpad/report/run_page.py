@@ -15,7 +15,7 @@ from fingerpad.report.trust import head
 from fingerpad.results.arrays import arrays_of
 from fingerpad.results.closures import RECORD, in_words
 from fingerpad.results.over_time import HARMONICS, NOTE
-from fingerpad.results.quantities import PER_LENGTH, PLUS_MINUS, STEPS
+from fingerpad.results.quantities import PER_LENGTH, STEPS, plus_minus_of
 from fingerpad.results.result import Result
 from fingerpad.results.states import WORDS, before_sliding, called
 from variational.state import ContactState, Errors
@@ -131,7 +131,7 @@ def _numbers(result: Result) -> str:
     if result.whole:
         notes.append("Each state of the section is under its own part of the force on the whole finger.")
     if any(state.error.known() for state in result.named.values()):
-        notes.append(PLUS_MINUS)
+        notes.append(plus_minus_of(result.parts()))
     if slip is not None and not math.isnan(slip.penalty.contact_length):
         friction = f"µ_app at full slip by {slip.penalty.mu_app:+.2g}"
         if math.isnan(slip.penalty.mu_app):

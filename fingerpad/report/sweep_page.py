@@ -1,6 +1,7 @@
 """The table of a sweep and its report: friction and contact over what was varied, every point, and what failed."""
 
 import csv
+import io
 import itertools
 import math
 import shlex
@@ -13,7 +14,7 @@ from typing import Any
 
 from fingerpad.report import page as html
 from fingerpad.report.page import BAD, CARE, GOOD
-from fingerpad.results.files import read_object
+from fingerpad.results.files import read_object, refuse_other_format
 from fingerpad.results.headline import SECTION, WHOLE
 from fingerpad.results.quantities import PER_LENGTH, Output
 from fingerpad.results.quantities import read as read_outputs
@@ -34,6 +35,7 @@ from fingerpad.scene import SceneError, changed_keys
 from fingerpad.scene.messages import clip
 from fingerpad.scene.reading import DEFAULT_MODEL, model_name
 from fingerpad.slices.errors import remarks
+from variational.files import read
 
 _CHARTS = ("mu_app", "f_t", "contact_length", "contact_area")
 _MAX_CAUTIONS = 3  # in the headline
@@ -106,9 +108,8 @@ def table_of(folder: Path) -> Table:
     """
     name = clip(str(folder), 80)
     try:
-        with (folder / "table.csv").open(encoding="utf-8", newline="") as file:
-            reader = csv.DictReader(file)
-            texts, columns = list(reader), list(reader.fieldnames or ())
+        reader = csv.DictReader(io.StringIO(read(folder / "table.csv").decode(), newline=""))
+        texts, columns = list(reader), list(reader.fieldnames or ())
     except (OSError, UnicodeDecodeError, csv.Error) as error:
         raise SceneError(f"the table of {name} cannot be read: {error}") from None
     axes = tuple(key for key in columns if not key.startswith(_RESULTS) and key != "failure")
@@ -119,12 +120,15 @@ def table_of(folder: Path) -> Table:
     rows = tuple({key: text if key == "failure" else _value(text) for key, text in row.items()} for row in texts)
     try:
         asked = read_object(folder / "sweep.json")
+        refuse_other_format(asked, f"the sweep in {name}")
         more = model_name(asked["model"]), str(asked.get("version", ""))
         cautions, notes = (tuple(map(str, asked.get(name, ()))) for name in ("cautions", "notes"))
         outputs = read_outputs(asked.get("outputs", ()))
         return Table(folder, axes, rows, dict(asked["parameters"]), *more, cautions, notes, outputs)
     except KeyError as missing:
         raise SceneError(f"sweep.json in {name} has no {missing}; give the command of the sweep again") from None
+    except SceneError:
+        raise
     except (OSError, ValueError, TypeError) as error:
         raise SceneError(f"sweep.json in {name} cannot be read: {error}") from None
 
@@ -232,7 +236,7 @@ def _titled(column: str, quantity: Output) -> str:
 def _study(table: Table) -> str:
     state, columns = table.shown
     drawn = [(place, words) for place, (column, words) in _charts(table).items() if column in columns]
-    note = "Bars are estimated discretisation errors, where a run has them."
+    note = "Bars are the whole known errors, where a point has them."
     without = (
         '<noscript><p class="note">The charts need JavaScript; the table below has the same numbers.</p></noscript>'
     )

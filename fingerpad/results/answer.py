@@ -3,10 +3,10 @@
 import math
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from fingerpad.results.closures import KNOWN, RECORD
-from fingerpad.results.quantities import FRICTION, QUANTITIES, Output
+from fingerpad.results.quantities import FRICTION, MESH, MODEL, PENALTY, QUANTITIES, Output
 from fingerpad.results.states import STATES, LoadResult
 from variational.state import ContactState
 
@@ -17,6 +17,20 @@ if TYPE_CHECKING:
     from fingerpad.results.fields import StateFields
     from fingerpad.scene import Scene
     from fingerpad.slices.finger import WholeFinger
+
+
+MODEL_ERROR = "model_error"
+"""Key of a cheaper model's known errors in a result's record."""
+
+
+class Number(NamedTuple):
+    """A quantity with its whole known error; SI."""
+
+    value: float
+    error: float
+    """NaN where it is not known."""
+    parts: tuple[str, ...]
+    """What the error is made of, in words."""
 
 
 @dataclass(frozen=True)
@@ -85,6 +99,14 @@ class Answer:
         return {name: state for name in STATES if (state := getattr(self, name)) is not None}
 
     @property
+    def missing_slip(self) -> str:
+        """That a slide did not end in full slip, in words; empty where it did, or where nothing slides."""
+        if self.full_slip is not None or not any(load.until_full_slip or load.moves for load in self.scene.loads()):
+            return ""
+        held = any(load.full_slip_reached for load in self.loads)
+        return "not held over a further 0.2 mm" if held else "not reached"
+
+    @property
     def parameters(self) -> dict[str, Any]:
         """Parameters of the scene, as its files have them, with names of laws that are not read."""
         kept: dict[str, Any] = self.record.get("parameters") or self.scene.parameters()
@@ -122,6 +144,37 @@ class Answer:
     def printed(self) -> dict[str, Output]:
         """Quantities of a state that are printed, with outputs of one's own, by name."""
         return QUANTITIES | {each.name: each for each in self.outputs}
+
+    def number(self, state: str, key: str, whole: bool = False) -> Number:
+        """Return a quantity of a named state with its whole known error: the ± at every door.
+
+        Args:
+            state: a name of :data:`fingerpad.results.states.STATES`.
+            key: a quantity of a state or, of the whole finger, of :data:`fingerpad.results.quantities.FINGER`.
+            whole: whether it is of the whole finger.
+        """
+        if whole:
+            assert self.finger is not None
+            error = self.finger.error.get(state, {}).get(key, math.nan)
+            return Number(self.finger.values(state)[key], error, self.finger.parts(state))
+        section = self.named[state]
+        value, error = getattr(section, key), getattr(section.error, key, math.nan)
+        return Number(value, error, self.parts(state, key=key))
+
+    def parts(self, *states: str, key: str = "") -> tuple[str, ...]:
+        """Return what the errors of the section are made of, in words; by default of all named states and quantities.
+
+        Args:
+            states: names of states.
+            key: a quantity.
+        """
+        if MODEL_ERROR in self.record:
+            return (MODEL,)
+        named = [self.named[name] for name in states or self.named]
+        kinds = ([each.error for each in named], [each.penalty for each in named])
+        known = ({name for each in kind for name in each.known()} for kind in kinds)
+        mesh, penalty = (key in names if key else bool(names) for names in known)
+        return (*[MESH] * mesh, *[PENALTY] * (mesh and penalty))
 
     def cells(self, key: str) -> list[str]:
         """Return a printed quantity in each named state, with its error; a dash where it is not shown."""

@@ -189,7 +189,7 @@ def history(
         states: accepted states in order, from the last one before sliding on.
         title: what run it is, see :mod:`fingerpad.results.style`.
         mu_0: friction coefficient, drawn as the limit without attraction.
-        named: states by name; those with an estimated discretisation error are drawn with error bars.
+        named: states by name; those with a known error are drawn with error bars.
     """
 
     def column(name: str) -> Array:
@@ -236,7 +236,7 @@ def _draw_errors(ax: Axes, named: Mapping[str, ContactState], quantity: str, uni
         if np.isfinite(error) and np.isfinite(state.bone_x) and not (quantity == "f_t" and name != "full_slip"):
             ax.errorbar(
                 _MM * state.bone_x, unit * getattr(state, quantity), unit * error, fmt="D", ms=6, capsize=5,
-                color=style.STATE[name], label=f"{called(name, state.voltage)} ± discretisation error", zorder=4,
+                color=style.STATE[name], label=f"{called(name, state.voltage)} ± error", zorder=4,
             )  # fmt: skip
 
 

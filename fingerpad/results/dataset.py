@@ -34,6 +34,7 @@ Variables = dict[str, tuple[tuple[str, ...], Any, dict[str, str]]]
 OF_RIDGES = {name: "length" if name == "contact_length" else name for name in RIDGES}
 OF_SITES = {"merkel_sed": "merkel", "meissner_left": "left", "meissner_right": "right"}
 """Attribute of :class:`RidgeStates`, and of :class:`Sites`, by quantity."""
+_CHANGED = tuple(field.name for field in fields(Errors) if field.name != "own")
 
 
 def dataset(result: "Answer") -> "xarray.Dataset":
@@ -57,7 +58,7 @@ def variables(result: "Answer") -> Variables:
     numbers = sorted({int(j) for s in every for each in (s.ridges, s.sites) if each is not None for j in each.number})
     known = STEPS | {each.name: each for each in result.outputs}
     found: Variables = {"state": (("state",), np.array(STATES, object), _about("named state"))}
-    found |= _of_states(named, "state", "state_", known, numbers) | _verdicts(named)
+    found |= _of_states(named, "state", "state_", known, numbers) | _verdicts(named, known)
     if result.steps:
         found |= _of_states(result.steps, "step", "", known, numbers)
         found |= _coupling(result.steps) | _loads(result, known)
@@ -197,8 +198,8 @@ def _of_states(
     return found
 
 
-def _verdicts(named: Sequence[ContactState | None]) -> Variables:
-    """Return stability, and estimated errors and changes, of the named states."""
+def _verdicts(named: Sequence[ContactState | None], known: Mapping[str, Output]) -> Variables:
+    """Return stability, errors and changes of the named states; of outputs of one's own where they are known."""
     found: Variables = {}
     for name, output in quantities.STABILITY.items():
         given = [None if state is None else getattr(state, name) for state in named]
@@ -208,13 +209,10 @@ def _verdicts(named: Sequence[ContactState | None]) -> Variables:
             values = _column(given)
         found[f"state_{name}"] = ("state",), values, output.about()
     for kind, words in quantities.CHANGES.items():
-        for field in fields(Errors):
-            changes = [None if state is None else getattr(getattr(state, kind), field.name) for state in named]
-            found[f"state_{field.name}_{kind}"] = (
-                ("state",),
-                _column(changes),
-                STEPS[field.name].about(f"{words} of the "),
-            )
+        own = {key: None for state in named if state is not None for key in getattr(state, kind).own}
+        for key in (*_CHANGED, *own):
+            changes = [None if state is None else getattr(getattr(state, kind), key, None) for state in named]
+            found[f"state_{key}_{kind}"] = ("state",), _column(changes), known[key].about(f"{words} of the ")
     return found
 
 
@@ -332,7 +330,8 @@ def _named_state(arrays: Mapping[str, NDArray[Any]], k: int, own: Sequence[str])
     more: dict[str, Any] = {"stable": None if stable < 0 else bool(stable)}
     more |= {name: None if np.isnan(value) else float(value) for name, value in (("lambda_min", least), ("gain", gain))}
     for kind in quantities.CHANGES:
-        more[kind] = Errors(**{f.name: float(arrays[f"state_{f.name}_{kind}"][k]) for f in fields(Errors)})
+        names = {key: f"state_{key}_{kind}" for key in (*_CHANGED, *own)}
+        more[kind] = Errors.of({key: float(arrays[name][k]) for key, name in names.items() if name in arrays})
     if "skin_ridge" in arrays and (facets := np.isfinite(arrays["skin_ridge"][k])).any():
         points = np.isfinite(arrays["skin_x"][k]).any(axis=0)
         values = {name: arrays[f"skin_{name}"][k][facets][:, points] for name in SKIN}

@@ -42,6 +42,17 @@ class View:
     merkel: Array | None
     """Current places (m) of the Merkel sites, shape (sites, 2), None where they are not wanted."""
 
+    def at(self, bone_x: float) -> "View":
+        """Return the same with the bone elsewhere (m): in steady full slip the whole finger moves with it."""
+        by, found = np.array([bone_x - self.state.bone_x, 0.0]), dict[str, Any](vars(self))
+        found["state"] = replace(self.state, bone_x=bone_x)
+        for part, array in (("skin", "x"), ("snapshot", "u")):
+            if (each := found[part]) is not None:
+                kept = dict(each if isinstance(each, Mapping) else vars(each))
+                kept[array] = kept[array] + (by[0] if array == "x" else by)
+                found[part] = kept if isinstance(each, Mapping) else type(each)(**kept)
+        return View(**found | {"merkel": None if self.merkel is None else self.merkel + by})
+
 
 @dataclass(frozen=True)
 class Drawing:
@@ -194,7 +205,8 @@ class Drawing:
         """Return the fields inside the finger: at the end of each load by its name, and of named states by theirs."""
         views = {**self.ends, **self.finer}
         if self.starting_size is None:  # named states are those of the path
-            views |= {name: end for name, state in self.named.items() if (end := self._end_of(name, state)) is not None}
+            ends = {name: (self._end_of(name, state), state.bone_x) for name, state in self.named.items()}
+            views |= {name: end.at(bone_x) for name, (end, bone_x) in ends.items() if end is not None}
         found = {name: fields.of_snapshot(view.snapshot) for name, view in views.items() if view.snapshot is not None}
         return {name: each for name, each in found.items() if each is not None}
 

@@ -18,7 +18,10 @@ from typing import Any, BinaryIO
 from uuid import uuid4
 
 from fingerpad.scene.messages import SceneError, clip
+from variational.files import read
 
+FORMAT = 2
+"""Number of the format of ``summary.json`` and ``sweep.json``; one more where older files are read otherwise."""
 _MAX_BYTES = 200_000_000  # of a file that is read; a summary of a thousand loads has two millions
 _FILES = 160  # bytes that the longest name of a file in a folder of results takes of a path
 _PATH = 80  # characters of a path in a sentence
@@ -52,19 +55,45 @@ def read_object(file: Path) -> dict[str, Any]:
     """Return the object that a JSON file of a folder of results holds, whoever wrote it.
 
     Raises:
-        OSError: it cannot be read.
-        ValueError: it is no ordinary file, too large, or holds something else than an object of some depth.
+        OSError: it cannot be read, is no ordinary file or too large.
+        ValueError: it holds something else than an object of some depth.
     """
-    about = file.stat()
-    if not stat.S_ISREG(about.st_mode) or about.st_size > _MAX_BYTES:
-        raise ValueError(f"{file.name} is no ordinary file of at most {_MAX_BYTES} bytes")
     try:
-        found = json.loads(file.read_text(encoding="utf-8"))
+        found = json.loads(read(file, _MAX_BYTES).decode())
     except RecursionError:
         found = None
     if not isinstance(found, dict) or not _is_shallow(found, _MAX_DEPTH):
         raise ValueError(f"{file.name} holds no object, or one that is nested too deep")
     return found
+
+
+def has_other_format(kept: Mapping[str, Any]) -> bool:
+    """Return whether a summary has another format, or none."""
+    return "parameters" in kept and kept.get("format") != FORMAT
+
+
+def refuse_other_format(kept: Mapping[str, Any], name: str) -> None:
+    """Refuse a summary of another format.
+
+    Args:
+        kept: content of the file.
+        name: of its folder.
+
+    Raises:
+        SceneError: it has another format, or none; with the version that wrote it.
+    """
+    if not has_other_format(kept):
+        return
+    found, known = kept.get("format"), kept.get("provenance")
+    versions = known.get("versions") if isinstance(known, Mapping) else None
+    versions = versions if isinstance(versions, Mapping) else {"fingerpad": kept.get("version")}
+    parts = (versions.get("fingerpad") or "of an unknown version", versions.get("source"))
+    by = " ".join(clip(str(part), 16) for part in parts if part)
+    was = "before formats had numbers" if found is None else f"format {clip(str(found), 16)}"
+    raise SceneError(
+        f"{name} was written by fingerpad {by}, {was}; this fingerpad reads format {FORMAT}; run it again, or use that "
+        "version"
+    )
 
 
 def _is_shallow(data: Any, depth: int) -> bool:

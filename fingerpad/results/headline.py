@@ -16,7 +16,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 from fingerpad.results.closures import KNOWN, known_in_words, why_not_known
-from fingerpad.results.quantities import FINGER, QUANTITIES, Output
+from fingerpad.results.quantities import FINGER, MESH, MODEL, QUANTITIES, Output
 from fingerpad.results.states import LoadResult, called
 from fingerpad.scene.fingers import FINGERS
 
@@ -27,8 +27,6 @@ if TYPE_CHECKING:
 
 WHOLE, SECTION = "whole finger", "middle section"
 """What a headline is of."""
-MESH, PENALTY, MODEL = "mesh", "penalty", "closed form"
-"""Parts of the error of a section's solution; of a whole finger's, that of the mesh has a longer name."""
 _DIGITS = (2, 3, 4)  # of the numbers in a sentence: as few as tell them apart
 _ROUNDOFF = 1e-9  # by which a number is raised, so that one in the middle of two rounds up on every machine
 _SMALL = 1e-3  # of the largest number in a sentence, below which another is shown without digits of its own
@@ -119,14 +117,6 @@ def _of_result(result: "Answer") -> Headline:
     return found
 
 
-def missing_slip(result: "Answer") -> str:
-    """Return in words that a slide did not end in full slip; empty where it did, or where nothing slides."""
-    if result.full_slip is not None or not any(load.until_full_slip or load.moves for load in result.scene.loads()):
-        return ""
-    held = any(load.full_slip_reached for load in result.loads)
-    return "not held over a further 0.2 mm" if held else "not reached"
-
-
 # -- what a number is of ---------------------------------------------------------------------------------------
 def _of_finger(result: "Answer", finger: "WholeFinger") -> Headline:
     """Return the friction coefficient of the whole finger; its ridge contact area without full slip."""
@@ -137,7 +127,7 @@ def _of_finger(result: "Answer", finger: "WholeFinger") -> Headline:
         values, key = finger.values("full_slip"), "mu_app"
         before = _without(result, finger.f_ext)
         sentence = _change(result, force, volts, "friction force", before, abs(values["f_t"]), "N")
-        error, parts = _error_of_finger(result, finger, "full_slip", key)
+        _, error, parts = result.number("full_slip", key, whole=True)
         at = f"at full slip, {conditions}"
         return Headline(sentence, WHOLE, FINGER[key], values[key], at, error, parts, known=_known(result, WHOLE))
     name, quantity = list(finger.states)[-1], FINGER["contact_area"]
@@ -149,7 +139,7 @@ def _of_finger(result: "Answer", finger: "WholeFinger") -> Headline:
     attracts = volts and "uncharged" in finger.states and name == "charged"
     before = quantity.scale * finger.values("uncharged")["contact_area"] if attracts else None
     sentence = _change(result, force, volts, "ridge contact area", before, quantity.scale * area, "mm²")
-    error, parts = _error_of_finger(result, finger, name, "contact_area", "contact_length")
+    _, error, parts = result.number(name, "contact_area", whole=True)
     at = f"in {called(name, finger.states[name].totals['f_electrostatic'])}, {conditions}"
     return Headline(_stuck(result, f"{force} and {volts:.4g} V") or sentence, WHOLE, quantity, area, at, error, parts)
 
@@ -161,7 +151,7 @@ def _of_slip(result: "Answer", slip: "ContactState") -> Headline:
     sentence = _change(result, force, slip.voltage, what, before, abs(slip.f_t), "N/m")
     at = f"at full slip, {slip.f_ext:.4g} N/m and {slip.voltage:.4g} V"
     key = "f_t" if math.isnan(slip.mu_app) else "mu_app"
-    error, parts = _error_of_section(result, slip, key)
+    _, error, parts = result.number("full_slip", key)
     known = _known(result, SECTION)
     return Headline(sentence, SECTION, QUANTITIES[key], getattr(slip, key), at, error, parts, known=known)
 
@@ -178,7 +168,7 @@ def _of_contact(result: "Answer") -> Headline:
     after = quantity.scale * state.contact_length
     sentence = _change(result, force, state.voltage, f"contact length of the {SECTION}", before, after, "mm")
     at = f"in {called(name, state.voltage)}, {state.f_ext:.4g} N/m and {state.voltage:.4g} V"
-    error, parts = _error_of_section(result, state, "contact_length")
+    _, error, parts = result.number(name, "contact_length")
     sentence = _stuck(result, f"{force} and {state.voltage:.4g} V") or sentence
     return Headline(sentence, SECTION, quantity, state.contact_length, at, error, parts)
 
@@ -210,45 +200,6 @@ def _known(result: "Answer", of: str) -> str:
     """Return the likely range of friction, in words; empty where the band of the record is of something else."""
     kept = result.record.get(KNOWN, {})
     return known_in_words(kept) if kept and kept["whole"] == (of == WHOLE) else ""
-
-
-# -- errors ----------------------------------------------------------------------------------------------------
-def _error_of_section(result: "Answer", state: "ContactState", key: str) -> tuple[float, tuple[str, ...]]:
-    """Return the error of a quantity of a state by mesh and penalty, or by a model without a mesh, and its parts."""
-    share = _of_model(result, "full_slip" if state is result.full_slip else "charged", key)
-    if share is not None:
-        return share * abs(getattr(state, key)), (MODEL,)
-    mesh, penalty = (getattr(each, key, math.nan) for each in (state.error, state.penalty))
-    if math.isnan(mesh):
-        return mesh, ()
-    return (mesh, (MESH,)) if math.isnan(penalty) else (mesh + abs(penalty), (MESH, PENALTY))
-
-
-def _error_of_finger(
-    result: "Answer", finger: "WholeFinger", name: str, key: str, of: str = ""
-) -> tuple[float, tuple[str, ...]]:
-    """Return the error of a quantity of the whole finger, and its parts.
-
-    Args:
-        result: of the finger.
-        finger: in its states.
-        name: of the state.
-        key: of the quantity.
-        of: quantity of the section whose relative errors it has; by default that of the same name.
-    """
-    value, error, parts = finger.values(name)[key], finger.error.get(name, {}).get(key, math.nan), finger.parts(name)
-    of = of or key
-    share, section = _of_model(result, name, of), result.named.get(name)
-    if share is not None:
-        return error + share * value, (MODEL, *parts)
-    penalty = math.nan if section is None else getattr(section.penalty, of) / getattr(section, of)
-    return (error, parts) if math.isnan(penalty) else (error + abs(penalty * value), (*parts, PENALTY))
-
-
-def _of_model(result: "Answer", state: str, key: str) -> float | None:
-    """Return the known relative error of a cheaper model, NaN where it is not known; None of the full model."""
-    known = result.record.get("model_error")
-    return None if known is None else float(known.get(state, {}).get(key, math.nan))
 
 
 # -- sentences -------------------------------------------------------------------------------------------------
@@ -287,7 +238,7 @@ def _change(
 
 def _stuck(result: "Answer", load: str) -> str:
     """Return a sentence that full slip is missing; empty where it is not."""
-    how = missing_slip(result)
+    how = result.missing_slip
     return f"At {load} full slip was {how}, so there is no friction force of sliding." if how else ""
 
 

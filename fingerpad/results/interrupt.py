@@ -110,13 +110,19 @@ class DiskFull(OSError):
     """There is no room for results; what was written before is whole. One sentence."""
 
 
-def no_room(error: BaseException) -> DiskFull | None:
-    """Return the error of a run where a full disk, a quota or a limit of files' sizes is the reason, or None."""
+def no_room(error: BaseException, resumes: bool) -> DiskFull | None:
+    """Return the error of a run where a full disk, a quota or a limit of files' sizes is the reason, or None.
+
+    Args:
+        error: of the run.
+        resumes: whether there is a checkpoint to go on from.
+    """
     if isinstance(error, OSError) and error.errno in _FULL:
+        how = "fingerpad run --resume FOLDER goes on" if resumes else "the same command starts again"
         return DiskFull(
             error.errno,
-            f"{error.strerror}: no more results can be written; what was written before stays as it is, and fingerpad "
-            "run --resume FOLDER goes on when there is room",
+            f"{error.strerror}: no more results can be written; what was written before stays as it is, and {how} when "
+            "there is room",
         )
     return None
 

@@ -5,18 +5,20 @@ from typing import TYPE_CHECKING
 
 from fingerpad import notebook
 from fingerpad.results.closures import RECORD, in_words
-from fingerpad.results.headline import headline, missing_slip
-from fingerpad.results.quantities import PER_LENGTH, PLUS_MINUS, QUANTITIES, cell, head_rows, side_by_side
+from fingerpad.results.quantities import PER_LENGTH, QUANTITIES, cell, head_rows, plus_minus_of, side_by_side
 from fingerpad.results.states import LoadResult, called
 from fingerpad.scene.reading import DEFAULT_MODEL
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from fingerpad.results.answer import Answer
+    from variational.state import ContactState
 
 _SECTION = "Middle section of the finger"
 
 
-def text(result: "Answer") -> str:
+def text(result: "Answer", headline: str) -> str:
     """Return the text *Result* at the end of a run: headline, whole finger, and named states with units and errors."""
     lines = [_title(result)]
     if result.named:
@@ -25,12 +27,12 @@ def text(result: "Answer") -> str:
     lines += [f"  {note}" for note in (*_timed(result), *_remarks(result))]
     lines += [f"  ! {caution}" for caution in result.cautions]
     finger = [f"{result.finger}"] if result.finger is not None else []
-    return "\n".join([f"{headline(result)}", *finger, *lines])
+    return "\n".join([headline, *finger, *lines])
 
 
-def page(result: "Answer") -> str:
+def page(result: "Answer", headline: str) -> str:
     """Return the same for a notebook, with remarks to unfold."""
-    title, *known = map(str.strip, f"{headline(result)}".splitlines())
+    title, *known = map(str.strip, headline.splitlines())
     parts = [] if result.finger is None else [result.finger._repr_html_()]
     parts += [notebook.page(_title(result), notebook.table(*_table(result)))] if result.named else []
     cautions = notebook.lines(f"! {each}" for each in result.cautions)
@@ -63,10 +65,10 @@ def _timed(result: "Answer") -> list[str]:
 def _remarks(result: "Answer") -> list[str]:
     """Return the lines after the table: failure, missing full slip, meaning of ± and N/m, effect of the penalty."""
     found = [f"Not finished: {result.failure}"] if result.failure else []
-    if (how := missing_slip(result)) and not result.failure:
+    if (how := result.missing_slip) and not result.failure:
         found.append(f"Full slip was {how}.")
     if any(state.error.known() for state in result.named.values()):
-        found.append(PLUS_MINUS)
+        found.append(plus_minus_of(result.parts()))
     sizes = {name: state.mesh_contact for name, state in result.named.items() if not math.isnan(state.mesh_contact)}
     if len(set(sizes.values())) > 1:  # with an accuracy
         each = (f"{1e6 * size:.3g} µm ({called(name, result.named[name].voltage)})" for name, size in sizes.items())
@@ -97,3 +99,27 @@ def _in_time(load: LoadResult, least: float) -> str:
         most, frequency = max(zip(passed.f_t_amplitude, passed.frequency, strict=True))
         words += f"; amplitude of f_T at {frequency:.4g} Hz {cell('f_t', most)} N/m"
     return f"{words}; {load.sticking}" if rubs and load.sticking else words
+
+
+class StatePrinted:
+    """A body that a console and a notebook show by its last accepted state."""
+
+    state: "ContactState"
+    states: "Sequence[ContactState]"
+
+    def _rows(self) -> list[tuple[str, str]]:
+        """Return quantities with their units, and their values."""
+        found = [(quantity.title, quantity.shown(getattr(self.state, key))) for key, quantity in QUANTITIES.items()]
+        return [row for row in found if row[1] != "–"]
+
+    def _title(self) -> str:
+        where = f"{self.state.load}, step {len(self.states)}" if self.states else "unloaded"
+        return f"{type(self).__name__}, forces per metre of depth: {where}"
+
+    def __repr__(self) -> str:
+        """Return the last accepted state."""
+        return "\n".join([self._title(), *side_by_side(self._rows())])
+
+    def _repr_html_(self) -> str:
+        """Return the last accepted state for a notebook."""
+        return notebook.page(self._title(), notebook.table(("", "last state"), self._rows()))

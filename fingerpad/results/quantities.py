@@ -245,7 +245,9 @@ _SI = {"N/m", "V", "N", "m", "Pa", "J/m", "J/m^3", "s", "Hz", "Pa/m"}
 _PRINTED_FIRST = ("f_ext", "voltage", "mu_app", "f_t", "f_electrostatic", "f_contact", "contact_length", "p_max")
 QUANTITIES = {name: STEPS[name] for name in (*_PRINTED_FIRST, "ridges_in_contact", "bone_height")}
 """The quantities of a state that are printed, in this order."""
-CHANGES = {"error": "estimated discretisation error", "penalty": "estimated change for a rigid screen"}
+CHANGES = {"error": "whole known error", "penalty": "estimated change for a rigid screen"}
+MESH, PENALTY, MODEL = "mesh", "penalty", "closed form"
+"""Parts of the error of a section, in words; those of a whole finger are in :mod:`fingerpad.slices.errors`."""
 EXTREMES = ("mu_app", "f_t", "contact_length", "f_electrostatic")
 """Quantities of a load of which extremes and means are kept, beside outputs of one's own."""
 SWEPT = (*EXTREMES, "ridges_in_contact")
@@ -256,9 +258,13 @@ PER_LENGTH = (
     "N/m: force per metre of finger out of the plane of the cross-section; 75 N/m at its centre correspond to about "
     "0.5 N on the whole default finger."
 )
-PLUS_MINUS = (
-    "±: estimated discretisation error; what the finger and the model assume is not in it (docs/assumptions.md)."
-)
+
+
+def plus_minus_of(parts: Iterable[str]) -> str:
+    """Return what the ± beside numbers are of, a sentence; empty without a part."""
+    words = ", ".join(dict.fromkeys(parts))
+    said = f"±: error by {words}; what the finger and the model assume is not in it (docs/assumptions.md)."
+    return said if words else ""
 
 
 def checked(outputs: Any) -> tuple[Output, ...]:

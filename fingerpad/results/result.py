@@ -1,6 +1,7 @@
 """Result of a model: the states of a run by name and in order, their errors and costs, as values, files and text."""
 
 import csv
+import io
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass, fields, replace
@@ -10,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 from fingerpad import launcher
 from fingerpad.results import dataset, printing
 from fingerpad.results.answer import Answer, Cost
-from fingerpad.results.files import read_object
+from fingerpad.results.files import FORMAT, read_object, refuse_other_format
 from fingerpad.results.headline import Headline, headline
 from fingerpad.results.quantities import CHANGES, STABILITY, Output, checked, valued
 from fingerpad.results.quantities import read as read_outputs
@@ -20,6 +21,7 @@ from fingerpad.scene.messages import SceneError, clip
 from fingerpad.scene.reading import DEFAULT_MODEL, model_name
 from fingerpad.scene.remarks import coefficient
 from fingerpad.scene.scene import as_kept
+from variational.files import read
 from variational.state import CONDITIONS, PATH, RESULTS, ContactState, Errors
 
 if TYPE_CHECKING:
@@ -153,6 +155,7 @@ class Result(Answer):
             for name, state in self.named.items()
         }
         return {
+            "format": FORMAT,
             "model": self.model,
             "f_ext": 0.0 if last is None else last.f_ext,
             "voltage": 0.0 if last is None else last.voltage,
@@ -189,7 +192,8 @@ class Result(Answer):
             finger=WholeFinger.from_dict(summary["finger"], bare.scene.slices) if "finger" in summary else None,
         )
         used = {*bare._numbers(), "headline", "failure", "interrupted", "notes", "cautions", "outputs", "finger"}
-        used |= {f"{name}_{each.name}_{kind}" for name in STATES for each in fields(Errors) for kind in CHANGES}
+        changed = [*(each.name for each in fields(Errors)), *(each.name for each in bare.outputs)]
+        used |= {f"{name}_{key}_{kind}" for name in STATES for key in changed for kind in CHANGES}
         record = {key: value for key, value in summary.items() if key not in used}
         if "laws" in parameters:  # objects of Python, of which only the names are kept
             record["parameters"] = parameters
@@ -211,6 +215,7 @@ class Result(Answer):
             summary = read_object(folder / "summary.json")
             if set(summary) == {"failure"}:
                 raise SceneError(f"the run in {name} was refused and has no results: {summary['failure']}")
+            refuse_other_format(summary, f"the run in {name}")
             found = cls.from_dict(summary, folder)
             if (kept := dataset.read(folder, [each.name for each in found.outputs])) is not None:
                 ways = {name: state.reached for name, state in found.named.items()}
@@ -231,14 +236,14 @@ class Result(Answer):
 
     def __str__(self) -> str:
         """Return the text *Result* at the end of a run: the named states side by side, with units and errors."""
-        return printing.text(self)
+        return printing.text(self, f"{self.headline}")
 
     __repr__ = __str__
     """In a console, too: the values of all steps are hundreds of pages."""
 
     def _repr_html_(self) -> str:
         """Return the text for a notebook: headline, tables, and remarks to unfold."""
-        return printing.page(self)
+        return printing.page(self, f"{self.headline}")
 
 
 def _loads(scene: "Scene", steps: Sequence[ContactState], stable: Sequence[bool | None]) -> tuple[LoadResult, ...]:
@@ -254,8 +259,8 @@ def steps_of(folder: Path) -> tuple[ContactState, ...]:
         OSError: there is no such file.
         ValueError: it is not of a run.
     """
-    with (folder / "steps.csv").open(encoding="utf-8", newline="") as file:
-        return tuple(ContactState.from_row(row) for row in csv.DictReader(file) if None not in row.values())
+    rows = csv.DictReader(io.StringIO(read(folder / "steps.csv").decode(), newline=""))
+    return tuple(ContactState.from_row(row) for row in rows if None not in row.values())
 
 
 def _state(name: str, kept: Mapping[str, Any]) -> ContactState:
@@ -269,7 +274,7 @@ def _state(name: str, kept: Mapping[str, Any]) -> ContactState:
     texts = ("load", "reached")
     if wrong := [key for key, value in values.items() if not isinstance(value, int | float) and key not in texts]:
         raise TypeError(f"{wrong[0]} of {name} is no number")
-    more: dict[str, Any] = {kind: Errors(**kept.get(kind, {})) for kind in CHANGES}
+    more: dict[str, Any] = {kind: Errors.of(kept.get(kind, {})) for kind in CHANGES}
     more |= {key: values.pop(key) for key in (*STABILITY, "reached") if key in values}
     slip = {"all_slip": True, "slip_held": True} if name == "full_slip" else {}
     return replace(ContactState.from_row({"mu_app": math.nan} | values | slip), **more)

@@ -238,7 +238,7 @@ class Attempt:
         motion = self.report.motion() if self._writer.folder is not None and scene.output.each_load else None
 
         def with_estimate(result: Result) -> Result:
-            found = result.named if estimate is None else with_errors(estimate, result.named)
+            found = result.named if estimate is None else with_errors(estimate, result.named, self._outputs)
             drawing = None if result.drawing is None else replace(result.drawing, named=found)
             result = replace(result, drawing=drawing, **found)  # type: ignore[arg-type]
             failure = result.failure or broken(result.full_slip, error, mu_0)

@@ -20,6 +20,8 @@ RANGES = {
 """Ranges of keys (SI): of people's loads, and of coatings and films on screens.
 
 Others are from a tenth to ten times their value."""
+MAX_POINTS = 10_000
+"""Of a sweep, a map or a table."""
 _AROUND = 10.0
 _RATIOS = 8.0  # of the ends of a range, from which on it is divided at equal ratios
 
@@ -52,6 +54,16 @@ class Axis:
         small = self.unit == "m" and max(map(abs, values)) < 1e-3
         unit, factor = ("µm", 1e6) if small else (self.unit, 1.0)
         return " to ".join(f"{value * factor:.4g}" for value in values) + f" {unit}" * bool(unit)
+
+
+def refuse_many(count: int, what: str = "sweep") -> None:
+    """Refuse more points than :data:`MAX_POINTS`.
+
+    Raises:
+        SceneError: there are more.
+    """
+    if count > MAX_POINTS:
+        raise SceneError(f"the {what} has {count} points; at most {MAX_POINTS} are allowed")
 
 
 def axis(scene: Scene, key: str, between: Sequence[float | str] | None = None) -> Axis:

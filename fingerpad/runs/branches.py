@@ -74,6 +74,7 @@ class Branches:
         on_step: Callable[[Step, float], None],
         on_trace: Callable[[str], None],
         kept: dict[str, Followed],
+        pause: Callable[[], None],
     ) -> None:
         """Expect the forces of the default finger.
 
@@ -83,8 +84,10 @@ class Branches:
             on_step: see :class:`fingerpad.model.simulation.Simulation`.
             on_trace: called with the state's name before a trace is followed, and with an empty one after it.
             kept: traces that an earlier command has followed.
+            pause: called before each state of full slip; may raise to stop.
         """
         self._scene, self._comm, self._on_step, self._on_trace = scene, comm, on_step, on_trace
+        self._pause = pause
         self._reach = Reach(scene, self._made)
         with computed():
             light = max(LIGHT, traces.SMALLEST / self._reach.top)
@@ -158,6 +161,7 @@ class Branches:
         found = Followed(top, [now.state]) if before is None else replace(before, top=top)
         anchors = (KEPT * top, top / traces.MARGIN)
         for force in _forces(now.conditions.f_ext, top, anchors):
+            self._pause()
             try:
                 now = slips.reach(replace(now.conditions, f_ext=force), now)
             except StepFailed as error:

@@ -2,7 +2,6 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import partial
 
 from fingerpad.reduced.model import Model
 from fingerpad.results.quantities import Output
@@ -11,7 +10,8 @@ from fingerpad.runs.context import RunContext
 from fingerpad.scene import Scene
 from fingerpad.scene.messages import SceneError
 from fingerpad.slices import traces
-from fingerpad.slices.total import Total, at_indentation, deepest, profile
+from fingerpad.slices.grid import of_points
+from fingerpad.slices.total import Total, profile
 from variational.coefficients import LawError
 
 STATE = "full_slip"
@@ -58,26 +58,34 @@ class ClosedForm:
         """
         try:
             self.model.check(scene)
-            if scene.force is None:
-                return self.section(scene)
-            return traces.whole(scene, self.model, lambda each, _: self.section(each))
+            solve: traces.Solve = lambda each, _: self.section(each)  # noqa: E731
+            if scene.force is not None:
+                return traces.whole(scene, self.model, solve)
+            section = self.section(scene)
+            return traces.with_sum(section, self.model, solve) if self.model.sums else section
         except LawError as error:
             raise SceneError(str(error)) from error
 
     def newtons(self, scene: Scene) -> float:
-        """Return the force (N) on the whole finger whose centre bears ``f_ext`` at full slip, without voltage.
+        """Return the force (N) on the whole finger whose centre bears ``f_ext`` (N/m), as a run of the model has it.
 
-        It is the force of a run of the same model, which a voltage does not change (:func:`slices.estimate.estimate`).
+        A voltage does not change it.
+
+        Raises:
+            SceneError: there is no such finger.
         """
-        self.model.check(scene)
-        still, finger = scene.replace(voltage=0.0), profile(scene.slices)
-        made = self._traced(still, STATE, scene.f_ext, 0).trace
-        return at_indentation(finger, made, deepest(finger, made), scene.slices.count).totals["f_ext"]
+        found = self.result(scene.replace(voltage=0.0))
+        if found.finger is None:
+            raise SceneError(found.notes[-1].partition(": ")[2])
+        return found.finger.f_ext
 
     def _total(self, scene: Scene) -> Total:
-        found = traces.Reach(scene, partial(self._traced, scene.model_copy(update={"force": None}))).follow(STATE).total
+        section = scene.model_copy(update={"force": None})
+
+        def traced(name: str, top: float, _: int) -> traces.Traced:
+            solve: traces.Solve = lambda each, _: self.section(each)  # noqa: E731
+            return traces.Traced(*of_points(section, self.model, solve, name, scene.centre_force, top))
+
+        found = traces.Reach(scene, traced).follow(STATE).total
         assert found is not None
         return found
-
-    def _traced(self, scene: Scene, name: str, top: float, _: int) -> traces.Traced:
-        return traces.of_points(scene, self.model, lambda each, _: self.section(each), name, top)

@@ -109,7 +109,7 @@ def _run(scene: Scene, session: Session, kept: dict[str, Any] | None, context: R
                 checkpoint.delete()
             return result
     except BaseException as error:
-        full = no_room(error)
+        full = no_room(error, checkpoint is not None and checkpoint.number > 0)
         writer.close()
         if full is None:
             raise

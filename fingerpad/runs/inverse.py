@@ -12,10 +12,10 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-from fingerpad.reduced.cylinder_errors import WHOLE
 from fingerpad.reduced.cylinders import Cylinders
 from fingerpad.reduced.registry import find
-from fingerpad.results.quantities import FINGER, PLUS_MINUS
+from fingerpad.results.answer import Number
+from fingerpad.results.quantities import FINGER, plus_minus_of
 from fingerpad.results.result import Result
 from fingerpad.runs.axis import Axis, axis
 from fingerpad.runs.closed_form import STATE, ClosedForm
@@ -26,6 +26,7 @@ from fingerpad.runs.target import CONTRAST, Target, read
 from fingerpad.scene import Scene
 from fingerpad.scene.dotted import with_values
 from fingerpad.scene.messages import SceneError
+from fingerpad.scene.remarks import drive_in_short, other_under_a_drive
 from fingerpad.slices import errors
 
 
@@ -35,16 +36,21 @@ class Root:
 
     key: float
     """In SI."""
-    value: float
-    """Of the quantity, in SI; not relative."""
+    number: Number
+    """The quantity with its error; not relative."""
     margin: float
-    """Error of the key (SI) by the known error of the closed form; NaN where this is not known."""
+    """Error of the key (SI) by that of the closed form; NaN where this is not known."""
     scene: Scene
     """With the key."""
     closed: Result
     """Of the closed form: the section and, where the scene has a force, the whole finger."""
     full: Result | None = None
     """Of the full model, where it was asked for."""
+
+    @property
+    def value(self) -> float:
+        """The quantity (SI)."""
+        return self.number.value
 
 
 @dataclass(frozen=True)
@@ -86,32 +92,28 @@ class Solution:
         of = " of the whole finger" if self.target.whole else " of the middle section"
         lines = [
             f"{self.target} over {axis.key} from {axis.shown(axis.low, axis.high)}: {quantity.words}{of} at full slip, "
-            "by the closed form."
+            f"by the closed form, under {drive_in_short(each.scene for each in self.roots)}."
         ]
         if self.target.name == CONTRAST:
             lines.append("contrast is the relative rise of µ_app by the voltage.")
         for root in self.roots:
             line = f"  {axis.key} = {axis.shown(root.key)}"
             if root.margin == root.margin:
-                line += f", ± {axis.shown(root.margin)} by the known error of the closed form"
-            lines.append(f"{line}: {quantity.symbol} {_cell(self.target, root.value)}")
+                line += f", ± {axis.shown(root.margin)} by the error of the closed form"
+            lines.append(f"{line}: {quantity.symbol} {_cell(self.target, root.number)}")
             if root.full is not None:
                 lines.append(f"    {self._beside(root, root.full)}")
-        confirmed = any(root.full is not None for root in self.roots)
-        return "\n".join([*lines, *[PLUS_MINUS] * confirmed, *self.notes])
+        return "\n".join([*lines, *other_under_a_drive(each.scene for each in self.roots), *self.notes])
 
     def _beside(self, root: Root, full: Result) -> str:
         """Return what the full model has at a root, beside the closed form."""
-        found, name = None, self.target.quantity.name
-        if self.target.whole and full.finger is not None and STATE in full.finger.states:
-            found = full.finger.values(STATE)[name], full.finger.error.get(STATE, {}).get(name)
-        elif not self.target.whole and full.full_slip is not None:
-            found = getattr(full.full_slip, name), full.full_slip.error.known().get(name)
-        if found is None:
+        if self.target.whole and (full.finger is None or STATE not in full.finger.states) or full.full_slip is None:
             return f"full model: no full slip{f': {full.failure}' if full.failure else ''}"
-        off = round(100 * (found[0] / root.value - 1), 1) + 0.0 if root.value else math.nan  # no -0.0
-        ratio = f", {off:+.1f} % from the closed form" if root.value else ""
-        return f"full model: {self.target.quantity.symbol} {_cell(self.target, *found)}{ratio}"
+        found, value = full.number(STATE, self.target.quantity.name, self.target.whole), root.number.value
+        off = round(100 * (found.value / value - 1), 1) + 0.0 if value else math.nan  # no -0.0
+        ratio = f", {off:+.1f} % from the closed form" if value else ""
+        by = f" (± by {', '.join(found.parts)})" if found.error == found.error else ""
+        return f"full model: {self.target.quantity.symbol} {_cell(self.target, found)}{by}{ratio}"
 
 
 def solve(
@@ -150,9 +152,9 @@ def solve(
         given = f"over is {over}" if over in ("f_ext", "force") else "force is given"
         raise SceneError(f"{goal.name} is a quantity of the {kind} and {given}; give {other} in its place")
     if goal.whole and not newtons:
-        force = float(f"{form.newtons(scene):.4g}")
+        force = form.newtons(scene)
         at = f"the section at the finger's centre then bears the scene's f_ext, {scene.f_ext:g} N/m, at full slip"
-        notes.append(f"No force is given. It is {force:g} N: {at}.")
+        notes.append(f"No force is given. It is {force:.4g} N: {at}.")
         scene = scene.replace(force=force)
     elif over == "f_ext" and goal.quantity.name in FINGER:
         notes.append("The whole finger has another value; vary force for it.")
@@ -218,24 +220,16 @@ class _Problem:
 
     def _root(self, search: Roots, place: float) -> Root:
         scene = self._at(place)
-        value = search.values[place] * (self._base(scene) if self._target.relative else 1.0)
         closed = self._form.result(scene)
-        share, margin = self._share(closed), math.nan
-        if share is not None:
-            margin = abs(share * search.values[place] / search.slope(place))
-            margin *= self._axis.value(place) if self._axis.logarithmic else 1.0
-            margin = margin if margin < self._axis.high - self._axis.low else math.nan  # where the slope vanishes
-        return Root(self._axis.value(place), value, margin, scene, closed)
-
-    def _share(self, closed: Result) -> float | None:
-        """Return the known relative error of the quantity in a result of the closed form."""
-        known = closed.record["model_error"].get(WHOLE if self._target.whole else STATE, {})
-        return known.get(self._target.quantity.name)
+        number = closed.number(STATE, self._target.quantity.name, self._target.whole)
+        margin = abs(number.error / (number.value or math.nan) * search.values[place] / search.slope(place))
+        margin *= self._axis.value(place) if self._axis.logarithmic else 1.0
+        margin = margin if margin < self._axis.high - self._axis.low else math.nan  # where the slope vanishes
+        return Root(self._axis.value(place), number, margin, scene, closed)
 
     def _known(self, root: Root) -> list[str]:
         """Return what is known of the error of a root; a caution of its result tells where nothing is."""
-        share = self._share(root.closed)
-        known = [] if share is None else [f"The closed form is known to {100 * share:.1f} % beside the full model."]
+        known = [plus_minus_of(root.number.parts)] if root.number.error == root.number.error else []
         return known + (errors.remarks([root.scene.force or 0.0]) if self._target.whole else [])
 
     def _refused(self, search: Roots) -> str:
@@ -259,7 +253,7 @@ class _Problem:
         return "; ".join([words, *more])
 
 
-def _cell(target: Target, value: float, error: float | None = None) -> str:
-    """Return the quantity of a target with its unit."""
+def _cell(target: Target, number: Number) -> str:
+    """Return the quantity of a target with its error and unit."""
     unit = target.quantity.unit
-    return target.quantity.shown(value, error) + (f" {unit}" if unit else "")
+    return target.quantity.shown(number.value, number.error) + (f" {unit}" if unit else "")

@@ -38,6 +38,7 @@ from fingerpad.scene.remarks import coefficient, used
 from fingerpad.slices import errors, traces
 from fingerpad.slices.correction import Pair, corrected, correction_errors, mesh_errors
 from fingerpad.slices.total import BeyondTrace, at_force, profile
+from fingerpad.slices.trace import TraceError
 from fingerpad.slices.traces import Traced
 from fingerpad.startup import MPI
 from geometry.profiles import GeometryError
@@ -82,7 +83,7 @@ def run(scene: Scene, context: RunContext) -> Result:
             failure = f"{str(stopped).partition(';')[0]} of the {made.doing}; the same command goes on with it"
             bare = Result(scene, DEFAULT_MODEL, None, None, None, failure=failure, interrupted=stopped.signal.name)
             return replace(bare, cost=made.clock.cost(made.branches.counts, 0))
-        except BeyondTrace as error:  # of the corrected trace, which other ridges can make too short
+        except (BeyondTrace, TraceError) as error:  # of the corrected trace, which other ridges can make too short
             raise Unsuited(str(error)) from error
         except (SceneError, LawError):  # a run of its own would be refused as well
             raise
@@ -109,7 +110,7 @@ class _Newtons:
         self._scene, self._comm, self._console, self._interrupt = scene, comm, console, interrupt
         self._checkpoint, self.clock, self.doing = checkpoint, Clock(comm), "light press"
         self._restarts, self._steps = list[str](), 0
-        self.branches = Branches(scene, comm, self._on_step, self._on_trace, self._earlier())
+        self.branches = Branches(scene, comm, self._on_step, self._on_trace, self._earlier(), self._pause)
 
     def result(self) -> tuple[Result, Entry]:
         """Return the result, and the entry of the cautions on all of its states; collective."""
@@ -135,7 +136,10 @@ class _Newtons:
     def _on_step(self, step: Step, done: float) -> None:
         self._steps = step.state.step
         self._console.step(step.state, min(len(self.branches.found) / (1 + len(traces.states(self._scene))), 1.0))
-        self._interrupt.stop_if_asked(step.state.step)
+        self._pause()
+
+    def _pause(self) -> None:
+        self._interrupt.stop_if_asked(self._steps)
 
     def _on_trace(self, name: str) -> None:
         self.doing = f"trace of {WORDS[name]}" if name else "way to the next trace"
@@ -173,10 +177,10 @@ class _Newtons:
             for name in branches.found
             for state in branches.kept[name].anchors
         }
-        self._interrupt.stop_if_asked(self._steps)
         coarse = {words: state for words, (_, state) in anchors.items()}
         centre = {name: words for words, (name, _) in anchors.items()}  # the last of each
-        fine = solve_again(model.changed(mesh=model.final), coarse, self._comm, examined=centre.values())
+        final, examined = model.changed(mesh=model.final), centre.values()
+        fine = solve_again(final, coarse, self._comm, examined=examined, pause=self._pause)
         branches.counts.add(Counts(fine.newton, fine.factorisations))
         pairs: dict[str, list[Pair]] = {name: [] for name in branches.found}
         for words, (name, state) in anchors.items():

@@ -169,6 +169,8 @@ def completed(result: Result, context: RunContext, writer: Writer, own: Sequence
         in_words &= done or entry is not WORDS
     if result is not written:
         writer.summary(result.to_dict(headline=in_words))
+    if result.failure:
+        writer.log.error(result.failure)
     return result
 
 

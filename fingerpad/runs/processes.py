@@ -2,9 +2,11 @@
 
 A job that is killed, crashes in the linear solver or takes too long costs that job and no other: a thread of the pool
 only waits for a fresh process, which, unlike a worker of a process pool, can be stopped by itself. Time is that of the
-processor, the same on a busy machine. A signal that ends the program stops its jobs, too: each gets SIGTERM.
+processor, the same on a busy machine. What ends the program stops its jobs, too, also where it is killed: each gets
+SIGTERM.
 """
 
+import ctypes
 import math
 import os
 import resource
@@ -28,6 +30,7 @@ _LAUNCHERS = ("OMPI_", "PMIX_", "PMI_", "PRTE_", "MV2_")  # by whose variables M
 _STUCK = 20  # times its limit that a job may take by the clock
 _RUNNING = set[subprocess.Popen[str]]()  # of all pools: a signal is to the program
 _STOPPED = threading.Event()
+_PROGRAM, _SIGNAL_OF_PARENT = "FINGERPAD_PROGRAM", 1  # whose job a process is; PR_SET_PDEATHSIG of <sys/prctl.h>
 _NOTICED = 0.5  # s after which a signal is seen at the latest
 Key = TypeVar("Key")
 Result = TypeVar("Result")
@@ -45,9 +48,14 @@ class End:
 
 
 def limit_processor_time(seconds: float) -> None:
-    """End this process, with :attr:`End.reason` TIME_LIMIT, when it has used so much."""
+    """End this process, with :attr:`End.reason` TIME_LIMIT, when it has used so much, or when its program has ended."""
     whole = math.ceil(seconds)
     resource.setrlimit(resource.RLIMIT_CPU, (whole, whole + 10))
+    program = os.environ.get(_PROGRAM)
+    if program is not None and sys.platform == "linux":
+        ctypes.CDLL(None).prctl(_SIGNAL_OF_PARENT, signal.SIGTERM)
+        if os.getppid() != int(program):  # it ended before
+            os.kill(os.getpid(), signal.SIGTERM)
 
 
 def run(module: str, arguments: Sequence[str], limit: float, folders: Sequence[str] = ()) -> End:
@@ -61,7 +69,8 @@ def run(module: str, arguments: Sequence[str], limit: float, folders: Sequence[s
     """
     path, laws = os.pathsep.join([str(_ROOT), *entries("PYTHONPATH")]), os.pathsep.join([*entries(LAWS), *folders])
     alone = {name: value for name, value in os.environ.items() if not name.startswith(_LAUNCHERS)}
-    env = alone | {"PYTHONPATH": path, LAWS: laws, "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
+    env = alone | {_PROGRAM: str(os.getpid()), "PYTHONPATH": path, LAWS: laws}
+    env |= {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
     command = [sys.executable, "-P", "-m", module, *arguments]  # -P: no modules of the current folder
     if _STOPPED.is_set():  # while the job waited for its turn
         return End(-signal.SIGTERM, "STOPPED", "a signal came before it began", "")

@@ -24,7 +24,7 @@ FINEST = 5e-6
 _HINTS = {
     "NOT_A_NUMBER": "report it with the scene; until then try parameters nearer to the defaults",
     "MUMPS_OUT_OF_MEMORY": "try a larger mesh.contact, fewer ranks, or a machine with more memory",
-    "MUMPS_OUT_OF_WORKSPACE": "try -fingerpad_mat_mumps_icntl_14 100, which sets twice the workspace aside",
+    "MUMPS_OUT_OF_WORKSPACE": "try fewer ranks or a larger mesh.contact; it had 17 times the workspace of its estimate",
     "MUMPS_SINGULAR": "try pressing with a bone_height before an f_ext, or a smaller voltage",
     "MUMPS_FAILED": "look the code up in the users' guide of MUMPS, section 8",
     "COUPLING_CAP": "try a larger numerics.coupling_cap, or another voltage: the ridge may be at its fold",

@@ -13,7 +13,7 @@ from fingerpad import launcher
 from fingerpad.installed import needed_by, source, version
 from fingerpad.model import breakdown
 from fingerpad.reduced.registry import find
-from fingerpad.results.files import below, read_object
+from fingerpad.results.files import below, has_other_format, read_object
 from fingerpad.results.folder import Serial, identity, on_rank_0
 from fingerpad.results.quantities import Output
 from fingerpad.results.quantities import checked as checked_outputs
@@ -242,9 +242,10 @@ def finished(scene: Scene, place: Path) -> Summary | None:
 
 
 def ended(found: Summary | None) -> Summary | None:
-    """Return a summary but for one of a run that was stopped or killed, or had too little memory."""
-    again = found is None or found.get("interrupted") or BEGUN in found or OF_THE_MACHINE in str(found.get("failure"))
-    return None if again else found
+    """Return a summary; None of a run that was stopped or killed or had too little memory, and of another format."""
+    if found is None or OF_THE_MACHINE in str(found.get("failure")):
+        return None
+    return None if found.get("interrupted") or BEGUN in found or has_other_format(found) else found
 
 
 def summary(place: Path) -> Summary | None:

@@ -15,10 +15,11 @@ from fingerpad import launcher
 from fingerpad.installed import source, version
 from fingerpad.reduced.registry import MODELS, find
 from fingerpad.report.write import attempt
-from fingerpad.results.files import below, check_folder, replace_json
+from fingerpad.results.files import FORMAT, below, check_folder, replace_json
 from fingerpad.results.quantities import Output
 from fingerpad.results.quantities import checked as checked_outputs
 from fingerpad.results.result import Result
+from fingerpad.runs.axis import refuse_many
 from fingerpad.runs.context import RunContext
 from fingerpad.runs.post import applied, of_outputs
 from fingerpad.runs.solve import checked, solved
@@ -37,7 +38,6 @@ FILES = ("table.csv", FILE, "report.html", "sweep.json")
 """What a sweep writes into its folder beside its points."""
 STATES = ("all", "full_slip")
 """Of the points of a sweep: the first is the default."""
-_MAX_POINTS = 10_000  # of a sweep
 _LIMIT = 4 * 3600.0  # s of processor time for one point
 
 
@@ -109,7 +109,7 @@ def sweep(
     done = Sweep(values, tuple(applied(each, [of_outputs(outputs)]) for each in found), folder)
     for name in FILES[:-1]:  # else that of an earlier sweep may stay beside this one's
         (folder / name).unlink(missing_ok=True)
-    asked = {"version": version(), "model": model, "parameters": scene.parameters()}
+    asked: dict[str, Any] = {"format": FORMAT, "version": version(), "model": model, "parameters": scene.parameters()}
     asked |= {"outputs": [each.to_dict() for each in done.outputs]}
     said = list(dict.fromkeys(note for each in done.results for note in leakage(each.scene)))
     leaks = f"{'First point: ' * (len(said) > 1)}{said[0]}" if said else ""
@@ -169,9 +169,7 @@ def _refuse_axes(axes: Mapping[str, Sequence[Any]]) -> None:
             raise SceneError(
                 f"{key} of the sweep is {show(values)}; it must be a list of at least one value, none a list"
             )
-    count = int(np.prod([len(values) for values in axes.values()]))
-    if count > _MAX_POINTS:
-        raise SceneError(f"the sweep has {count} points; at most {_MAX_POINTS} are allowed")
+    refuse_many(math.prod(len(values) for values in axes.values()))
 
 
 def _values(scenes: Sequence[Scene], axes: Mapping[str, Sequence[Any]]) -> dict[str, tuple[Any, ...]]:
@@ -237,15 +235,15 @@ def _in_processes(
 
 
 def _neighbours(axes: Mapping[str, Sequence[Any]]) -> list[int]:
-    """Return the places of a grid in an order in which each is beside the one before.
+    """Return the places of a grid in an order in which each is beside the one before, the easiest first.
 
-    Voltages are the fastest and the largest come first. Forces begin with the least: a ridge that comes down takes a
-    third of the work of one that snaps off, and the first point is the end of a short path.
+    Voltages are the fastest. Voltages, forces and friction begin with the least: a ridge that comes down takes a third
+    of the work of one that snaps off, and the first point is the end of a short path. Other keys begin with the most.
     """
     places = np.arange(math.prod(len(values) for values in axes.values())).reshape([len(v) for v in axes.values()])
     for k, (key, values) in enumerate(axes.items()):
         if all(isinstance(value, int | float) for value in values):
-            sign = 1 if key == "f_ext" else -1
+            sign = 1 if key in ("f_ext", "voltage", "friction") else -1
             places = np.take(places, np.argsort([sign * abs(value) for value in values], kind="stable"), axis=k)
     places = places.transpose(sorted(range(len(axes)), key=lambda k: [*axes][k] == "voltage"))
     along = [places]

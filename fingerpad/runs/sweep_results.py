@@ -4,7 +4,7 @@ import csv
 import io
 import itertools
 import json
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, overload
@@ -16,11 +16,12 @@ from fingerpad import notebook
 from fingerpad.results import dataset, netcdf
 from fingerpad.results.closures import KNOWN
 from fingerpad.results.files import replace
-from fingerpad.results.quantities import FINGER, PER_LENGTH, Output
+from fingerpad.results.quantities import FINGER, PER_LENGTH, Output, plus_minus_of
 from fingerpad.results.states import STATES, WORDS
 from fingerpad.runs import post
 from fingerpad.runs.sweep_columns import described, head_of, of_finger, printed, row, said_of, shown, tables
 from fingerpad.scene.messages import alike
+from fingerpad.scene.remarks import drive_in_short, other_under_a_drive
 from fingerpad.slices.errors import remarks
 from variational.state import CONDITIONS, RESULTS
 
@@ -165,7 +166,7 @@ class Sweep:
         replace(Path(path), text.getvalue())
 
     def __str__(self) -> str:
-        """Return full slip over the axes, and loads over time, as tables with units; ± estimated errors.
+        """Return full slip over the axes, and loads over time, as tables with units; ± whole known errors.
 
         The first columns are of the whole finger, where it is known, and those of the middle section follow.
         """
@@ -197,11 +198,20 @@ class Sweep:
             cells = [of.shown(values[column], errors[column]) for column, of in columns.items()]
             table.append([*first, *cells])
         of = said_of(columns)
-        found = [(f"{of[0].upper()}{of[1:]}, at {WORDS[state]}", table)]
+        scenes = [result.scene for result in self.results]
+        found = [(f"{of[0].upper()}{of[1:]}, at {WORDS[state]}, under {drive_in_short(scenes)}", table)]
         found += [(f"Over time, in the load {name}", over_time) for name, over_time in tables(rows, axes)]
         forces = {each.finger.f_ext for each in self.results if each.finger is not None}
         known = remarks(forces, {column.rpartition("finger_")[2] for column in columns})
+        known = [*self._plus_minus(columns, rows), *known, *other_under_a_drive(scenes)]
         return found, [*known, *([] if any(map(of_finger, columns)) else [PER_LENGTH])]
+
+    def _plus_minus(self, columns: Mapping[str, Output], rows: Sequence[Mapping[str, Any]]) -> list[str]:
+        """Return what the ± of a table's columns is of, a sentence; none without a ±."""
+        shown = {of_finger(column) for column in columns for each in rows if each.get(f"{column}_error")}
+        fingers = [each.finger.parts() for each in self.results if each.finger is not None and True in shown]
+        sections = [each.parts() for each in self.results if False in shown]
+        return [plus_minus_of(itertools.chain(*fingers, *sections))] if shown else []
 
 
 def _aligned(table: Sequence[Sequence[str]]) -> list[str]:

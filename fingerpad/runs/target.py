@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 from fingerpad.results.quantities import EXTREMES, FINGER, QUANTITIES, Output
 from fingerpad.scene.messages import SceneError, clip, show
-from geometry.units import to_si
+from geometry.units import finite, to_si
 
 CONTRAST = "contrast"
 _NUMBER = re.compile(r"([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d{1,3})?)\s*(.*)")
@@ -72,7 +72,10 @@ def read(text: str, newtons: bool) -> Target:
     parts = _NUMBER.fullmatch(given)
     if parts is None:
         raise SceneError(f"target {clip(name)} is {show(given)}; it must have a number: {_EXAMPLES}")
-    number, unit = float(parts[1]), parts[2]
+    try:
+        number, unit = finite(parts[1]), parts[2]
+    except ValueError as error:
+        raise SceneError(f"target {clip(name)} is {show(given)}; {error}") from None
     found.sort(key=lambda each: each[1] != newtons)
     if unit in ("x", "×") and name != CONTRAST:
         return Target(name, *found[0], number, True)

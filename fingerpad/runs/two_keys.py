@@ -5,7 +5,7 @@ The closed form is the model "cylinders" (:mod:`fingerpad.reduced.cylinders`), b
 the quantity has its value.
 """
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from fingerpad.reduced import cylinder_errors
 from fingerpad.reduced.cylinders import Cylinders
-from fingerpad.runs.axis import Axis, axis
+from fingerpad.runs.axis import Axis, axis, refuse_many
 from fingerpad.runs.closed_form import ClosedForm
 from fingerpad.runs.target import Target, read
 from fingerpad.scene import Scene
@@ -25,6 +25,8 @@ COUNT = 11
 Array = NDArray[np.float64]
 Over = Mapping[str, Sequence[float | str]]
 """Values by key, in SI or as texts with a unit; none for :data:`COUNT` of the default range."""
+Point = tuple[int, ...]
+Points = Sequence[Point]
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,7 +63,7 @@ class TwoKeys:
                 yield dict(zip(names, (one, other), strict=True)) | value | {"error_known": float(self.known[j, k])}
 
 
-def two_keys(scene: Scene, over: Over, target: str = "") -> TwoKeys:
+def two_keys(scene: Scene, over: Over, target: str = "", watch: Callable[[Points], Iterable[Point]] = iter) -> TwoKeys:
     """Return a quantity at full slip over two keys.
 
     Args:
@@ -70,9 +72,10 @@ def two_keys(scene: Scene, over: Over, target: str = "") -> TwoKeys:
         over: values by key, of two keys that a search may vary (:mod:`fingerpad.runs.axis`).
         target: a quantity and its value, as :func:`fingerpad.runs.target.read` takes it; by default µ_app, without a
             line.
+        watch: goes through the places of the points, as a progress bar does.
 
     Raises:
-        SceneError: no pair of keys, an impossible key, value or target, or a map without any answer.
+        SceneError: no pair of keys, too many points, an impossible key, value or target, or a map without any answer.
     """
     if len(over) != 2:
         count = f"{len(over)} keys are" if len(over) > 1 else "one key is"
@@ -83,7 +86,7 @@ def two_keys(scene: Scene, over: Over, target: str = "") -> TwoKeys:
     form.model.check(scene)
     whole = "f_ext" not in over
     if whole and "force" not in over and scene.force is None:
-        scene = scene.replace(force=float(f"{form.newtons(scene):.4g}"))
+        scene = scene.replace(force=form.newtons(scene))
     if not whole:
         scene = scene.replace(force=None)
     goal = read(target or "mu_app=1", whole)
@@ -94,7 +97,8 @@ def two_keys(scene: Scene, over: Over, target: str = "") -> TwoKeys:
     axes = [axis(scene, key, _ends(key, values)) for key, values in over.items()]
     keys = [_values(scene, each, over[each.key]) for each in axes]
     found = _Map(scene, goal, (axes[0], axes[1]), (keys[0], keys[1]), form)
-    return found.made()
+    refuse_many(len(keys[0]) * len(keys[1]), "map")
+    return found.made(watch)
 
 
 def _ends(key: str, values: Sequence[float | str]) -> Sequence[float | str] | None:
@@ -131,21 +135,21 @@ class _Map:
     keys: tuple[list[float], list[float]]
     form: ClosedForm
 
-    def made(self) -> TwoKeys:
+    def made(self, watch: Callable[[Points], Iterable[Point]]) -> TwoKeys:
         shape = (len(self.keys[0]), len(self.keys[1]))
         values, reached, known = np.full(shape, np.nan), np.full(shape, np.nan), np.zeros(shape, dtype=bool)
         lost, base = list[str](), dict[tuple[float, ...], float]()
-        for j, one in enumerate(self.keys[0]):
-            for k, other in enumerate(self.keys[1]):
-                try:
-                    scene = with_values(self.scene, {self.axes[0].key: one, self.axes[1].key: other})
-                    names = [self.target.quantity.name, "f_electrostatic"]
-                    values[j, k], attraction = self.form.values(scene, names, self.target.whole)
-                    known[j, k] = names[0] in cylinder_errors.at_full_slip(scene, attraction)
-                    reached[j, k] = values[j, k] / self._base(scene, (one, other), base)
-                except SceneError as error:
-                    at = " and ".join(f"{a.key} {a.shown(v)}" for a, v in zip(self.axes, (one, other), strict=True))
-                    lost.append(f"At {at}: {error}.")
+        for j, k in watch([*np.ndindex(shape)]):
+            at = (self.keys[0][j], self.keys[1][k])
+            try:
+                scene = with_values(self.scene, dict(zip((axis.key for axis in self.axes), at, strict=True)))
+                names = [self.target.quantity.name, "f_electrostatic"]
+                values[j, k], attraction = self.form.values(scene, names, self.target.whole)
+                known[j, k] = names[0] in cylinder_errors.at_full_slip(scene, attraction)
+                reached[j, k] = values[j, k] / self._base(scene, at, base)
+            except SceneError as error:
+                words = " and ".join(f"{axis.key} {axis.shown(v)}" for axis, v in zip(self.axes, at, strict=True))
+                lost.append(f"At {words}: {error}.")
         if len(lost) == values.size:
             raise SceneError(lost[0].partition(": ")[2].rstrip("."))
         return TwoKeys(self.target, self.axes, self.scene, self.keys, values, reached, known, tuple(lost))

@@ -115,13 +115,17 @@ def _found(name: str, places: Any) -> Any:
 
 
 def _refuse_beside(file: Path) -> None:
-    """Refuse a file below the folder of a scene, but for folders in it that are named or of installed packages."""
+    """Refuse a file below the folder of a scene or a package around it, but for what is named there or installed."""
     installed = [*site.getsitepackages(), site.getusersitepackages()]
     chosen = {Path(each).resolve() for each in (*entries(LAWS), *installed)}
     for path in (file.absolute(), file.resolve()):
-        for scene in filter(path.is_relative_to, _SCENES):
-            if not any(path.resolve().is_relative_to(each) and each.is_relative_to(scene.resolve()) for each in chosen):
-                raise _Refused(f"{path} lies in the folder of a scene")
+        for scene in _SCENES:
+            around = path.stem == "__init__" and scene.is_relative_to(path.parent)
+            if not (around or path.is_relative_to(scene)):
+                continue
+            mine = [each for each in chosen if path.resolve().is_relative_to(each)]
+            if not any(around or each.is_relative_to(scene.resolve()) for each in mine):
+                raise _Refused(f"{path} lies in the folder of a scene{' or around it' * around}")
 
 
 @contextmanager

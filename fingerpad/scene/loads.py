@@ -12,7 +12,7 @@ from typing import Annotated, Any
 
 from pydantic import AfterValidator, Discriminator, Tag, model_validator
 
-from fingerpad.scene.messages import NUMBER, WAVE, show
+from fingerpad.scene.messages import NUMBER, WAVE, is_formula, show
 from fingerpad.scene.wavefile import Volts
 from fingerpad.scene.waveform import MOST, Waveform
 from geometry.units import Finite, Switch, Table, within
@@ -25,7 +25,6 @@ _EITHER = (
     ("bone_x", "bone_x_by", "give the place or the move"),
     ("speed", "duration", "one follows from the other, so give one"),
 )  # keys of which a load has one at most
-_FORMULA = ("=", "+", "-", "@")  # of a cell in a spreadsheet, also as wide letters; a tab is forbidden anyway
 _FORBIDDEN = '/\\:*?"<>|'  # the first separates folders, the others are forbidden on memory sticks
 Way = Annotated[Finite, within(1e-9, 0.1, "m", zero=True, sides=2)]
 
@@ -45,7 +44,7 @@ def load_name(name: str) -> str:
         raise ValueError(f"it must be without {unfit!r}, since files are named by it")
     if name.startswith((".", "-", " ")):
         raise ValueError(f"it must not begin with {name[0]!r}, since files are named by it")
-    if unicodedata.normalize("NFKC", name[0]) in _FORMULA:
+    if is_formula(name):
         raise ValueError(f"it must not begin with {name[0]!r}, which makes a formula of it when a table is opened")
     return name
 

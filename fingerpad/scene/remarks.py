@@ -6,7 +6,7 @@ A voltage attracts as over lossless insulators, Eq. 3 of the paper. Skin conduct
 an alternating one, so that it has a note alone. The mean of a waveform is a constant voltage, and has a caution.
 """
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import fields
 from typing import TYPE_CHECKING, Any
 
@@ -34,6 +34,11 @@ LEAKAGE = (
     "5 % high at 10 kHz (200 V rms, 75 N/m: docs/drive.md). A constant voltage leaks away."
 )
 """Note on every result with a constant voltage; its numbers are ``left_out`` of docs/drive.json."""
+UNDER_A_DRIVE = (
+    "The finger's tissue and leak have no effect without a drive, and under a drive a moist finger can need more "
+    "of it than a dry one: compare fingers under one drive, as "
+    'voltage = {waveform = "sine", rms = 150, frequency = 100}.'
+)
 _MEAN = 0.01  # of the peak: mean of a waveform that is none
 _OF_SCENE = {"h_0": "m"}  # units of what laws take from the rest of a scene
 _LARGE = 1e6  # SI, from which on a number of a law has a power of ten
@@ -119,6 +124,25 @@ def leakage(scene: "Scene") -> list[str]:
     elif constant:
         found.append(_remains_in_words(scene, circuit))
     return found
+
+
+def drive_in_short(scenes: Iterable["Scene"]) -> str:
+    """Return which drive a search or a table of scenes means, such as "a voltage without losses (Eq. 3)"."""
+    found = dict[str, None]()
+    for scene in scenes:
+        lossless = scene.electric.circuit(scene.geometry.sc_thickness).lossless
+        if scene.supply is not None:
+            found["a drive without losses" if lossless else "a drive with the losses of each finger's circuit"] = None
+        elif scene.volts:
+            found["a voltage without losses (Eq. 3)"] = None
+    return " or ".join(found) or "no voltage"
+
+
+def other_under_a_drive(scenes: Iterable["Scene"]) -> list[str]:
+    """Return a sentence where a constant voltage is put on a finger whose circuit would lose it; none elsewhere."""
+    constant = (scene for scene in scenes if scene.supply is None and scene.volts)
+    loses = any(not scene.electric.circuit(scene.geometry.sc_thickness).lossless for scene in constant)
+    return [UNDER_A_DRIVE] if loses else []
 
 
 def _drive_in_words(name: str, wave: Waveform, scene: "Scene") -> str:

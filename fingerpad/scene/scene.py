@@ -87,7 +87,7 @@ class Scene(Table):
     """Friction coefficient mu_0 of skin on the screen, or a table of a law of friction."""
     finger: FingerName = "adult"
     """Finger by its name, whose keys are those of docs/fingers.md. A key that is given wins over the name's. "adult" is
-    the default finger."""
+    the default finger. Its tissue and leak act under a drive; a constant voltage has no losses."""
     geometry: Geometry = Geometry()
     mesh: MeshSize = MeshSize()
     materials: Materials = Materials()
@@ -267,8 +267,7 @@ class Scene(Table):
     def parameters(self) -> dict[str, Any]:
         """Return every parameter in use, ready for JSON; as a scene it gives the same run again."""
         unused = {"history"} if self.history is None else {*DEFAULT_HISTORY}
-        unused |= {"accuracy"} if self.accuracy is None else set()
-        unused |= {"finger"} if self.finger == ADULT else set()
+        unused |= {*["accuracy"] * (self.accuracy is None), *["finger"] * (self.finger == ADULT)}
         unused |= {"force" if self.force is None else "f_ext"}
         found = self.model_dump(mode="json", exclude=unused)
         if self.geometry.file is not None:  # whose mesh has its own shape and sizes

@@ -18,6 +18,7 @@ from itertools import groupby
 
 import numpy as np
 
+from fingerpad.results.quantities import MODEL, PENALTY
 from fingerpad.slices.total import TOTALS, Array, Profile, Total, at_indentation
 from fingerpad.slices.trace import LEAST, Trace, gross_width
 from variational.state import ContactState
@@ -29,12 +30,13 @@ _OF_SECTION = {  # whose relative error each has; the external force is prescrib
     "contact_area": "contact_length",
     "indentation": "bone_height",
 }
+_AREAS = {"contact_length": "contact_area"}  # of a section and of a sum
 _FINER = 40  # times as many slices, so that there are some between any two points of a trace
 _TINY = 1e-300
 _RELATIVE_STEP = 1e-3  # of the largest indentation: its change for the slope over the force
 MESH, ESTIMATED, POINTS = "mesh of the cross-section", "estimate beside the centre", "points of the traces"
 COARSE = "coarser mesh of the traces"
-"""Parts of an error, as they are printed."""
+"""Parts of an error, as they are printed; of others the names are in :mod:`fingerpad.results.quantities`."""
 ESTIMATE = {
     "charged": {"f_electrostatic": 0.054, "contact_area": 0.050, "gross_area": 0.086, "indentation": 0.005},
     "full_slip": {"f_electrostatic": 0.032, "contact_area": 0.030, "gross_area": 0.075, "indentation": 0.014},
@@ -46,8 +48,8 @@ Those of the indentation are twice as large as there, because they grow the most
 """
 
 
-def discretisation(state: ContactState | None, wavelength: float) -> dict[str, float]:
-    """Return the relative discretisation errors that a sum takes over from its cross-section.
+def of_section(state: ContactState | None, wavelength: float) -> dict[str, dict[str, float]]:
+    """Return the relative errors that a sum takes over from its cross-section, by part and quantity.
 
     The gross width ends with half of a ridge's length on either side, and has the error of that length.
 
@@ -55,17 +57,19 @@ def discretisation(state: ContactState | None, wavelength: float) -> dict[str, f
         state: of the cross-section, with estimated errors; None where there is none.
         wavelength: of a ridge (m).
     """
-    found = dict[str, float]()
+    mesh, penalty = dict[str, float](), dict[str, float]()
     if state is None:
-        return found
+        return {MESH: mesh}
     for name, of in _OF_SECTION.items():
-        value, error = getattr(state, of), getattr(state.error, of)
+        value, error, springs = (getattr(each, of) for each in (state, state.error, state.penalty))
         if value and not math.isnan(error):
-            found[name] = abs(error / value)
-    if "contact_area" in found:
-        ridge = state.error.contact_length / state.ridges_in_contact
-        found["gross_area"] = ridge / gross_width(state, wavelength)
-    return found
+            springs = 0.0 if math.isnan(springs) else abs(springs)
+            mesh[name], penalty[name] = (error - springs) / abs(value), springs / abs(value)
+    for part in (mesh, penalty):
+        if "contact_area" in part:
+            ridge = part["contact_area"] * state.contact_length / state.ridges_in_contact
+            part["gross_area"] = ridge / gross_width(state, wavelength)
+    return {MESH: mesh} | ({PENALTY: penalty} if any(penalty.values()) else {})
 
 
 def estimate(name: str, total: Total) -> dict[str, float]:
@@ -91,7 +95,12 @@ def lighter(carried: Mapping[str, dict[str, float]], total: Total, ratio: float)
             found[part] = {key: error * math.sqrt(ratio) for key, error in found[part].items()}
     if ESTIMATED in found:
         found[ESTIMATED] = _with_friction(found[ESTIMATED], total)
-    return found
+    return found | ({MODEL: {}} if MODEL in found else {})  # known in a range of forces alone
+
+
+def of_model(known: dict[str, float], total: Total) -> dict[str, float]:
+    """Return the relative errors of a sum by a cheaper model, of known ones but for friction; empty without any."""
+    return _with_friction({_AREAS.get(name, name): error for name, error in known.items()}, total) if known else {}
 
 
 def _with_friction(known: dict[str, float], total: Total) -> dict[str, float]:
@@ -125,7 +134,8 @@ def interpolation(finger: Profile, trace: Trace, total: Total, count: int) -> di
         count: slices in each stretch of contact.
 
     Returns:
-        Of friction, attraction, areas, indentation and effective width; empty for a trace of two points, of which none can be left out.
+        Of friction, attraction, areas, indentation and effective width; empty for a trace of two points, of which none
+        can be left out.
     """
     if len(trace.depth) < LEAST:
         return {}

@@ -25,7 +25,7 @@ from fingerpad.slices import errors
 from fingerpad.slices.finger import WholeFinger, in_order
 from fingerpad.slices.total import Profile, profile, under_one_force
 from fingerpad.slices.trace import LEAST, Trace, TraceError, columns, trace
-from fingerpad.slices.traces import LIGHT
+from fingerpad.slices.traces import LIGHT, NO_NEWTONS
 from variational.state import ContactState
 
 if TYPE_CHECKING:
@@ -50,7 +50,7 @@ def with_newtons(result: "Result") -> "Result":
         finger = estimate(result.scene, states or _closed_form(result.scene), result.named)
         return replace(result, finger=finger if states else replace(finger, source=OF_SLIP))
     except (SceneError, TraceError) as error:
-        return replace(result, notes=(*result.notes, f"no newtons of the whole finger: {error}"))
+        return replace(result, notes=(*result.notes, f"{NO_NEWTONS}: {error}"))
 
 
 def estimate(scene: Scene, press: Sequence[ContactState], named: Mapping[str, ContactState]) -> WholeFinger:
@@ -76,7 +76,7 @@ def estimate(scene: Scene, press: Sequence[ContactState], named: Mapping[str, Co
     for name, total in found.items():
         estimated = name != "uncharged" and traces[name] is not traces.get("uncharged")
         between = errors.interpolation(finger, traces[name], total, count).get("effective_width", 0.0)
-        carried[name] = {errors.MESH: errors.discretisation(named[name], wavelength), errors.COARSE: away[name]}
+        carried[name] = errors.of_section(named[name], wavelength) | {errors.COARSE: away[name]}
         carried[name] |= {errors.ESTIMATED: errors.estimate(name, total)} if estimated else {}
         carried[name] |= {errors.POINTS: {"f_ext": between}}
     return WholeFinger(in_order(found), SOURCE, carried, traces, scene.slices)

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from fingerpad import notebook
-from fingerpad.results.quantities import FINGER, FRICTION, head_rows, side_by_side
+from fingerpad.results.quantities import FINGER, FRICTION, MODEL, head_rows, plus_minus_of, side_by_side
 from fingerpad.results.states import STATES, WORDS, called
 from fingerpad.scene import Scene, SceneError
 from fingerpad.scene.parameters import Slices
@@ -29,8 +29,8 @@ class WholeFinger:
     source: str
     """Where the traces of the cross-section come from, for a reader."""
     carried: dict[str, dict[str, dict[str, float]]] = field(default_factory=dict)
-    """Relative errors by state, part and quantity that no trace gives: of the cross-section's mesh, and of a run's
-    estimate (:mod:`fingerpad.slices.errors`)."""
+    """Relative errors by state, part and quantity that no trace gives: of the cross-section's mesh and penalty, of a
+    run's estimate (:mod:`fingerpad.slices.errors`), and of a cheaper model, of which an empty part is not known."""
     traces: Mapping[str, Trace] = field(default_factory=dict)
     """Of the cross-section by state, from which :meth:`under` reads other forces."""
     shape: Slices = Slices()
@@ -43,14 +43,16 @@ class WholeFinger:
 
     @cached_property
     def error(self) -> dict[str, dict[str, float]]:
-        """Estimated errors by state and quantity: those carried over, and that of the interpolation of the traces."""
+        """Whole known errors by state and quantity: those carried over, and that of the interpolation of the traces."""
         finger, found = profile(self.shape), {}
         for name, total in self.states.items():
             between = {}
             if name in self.traces:
                 between = errors.interpolation(finger, self.traces[name], total, self.shape.count)
-            shares = errors.add(*self.carried.get(name, {}).values(), between)
-            found[name] = {key: abs(share * total.values[key]) for key, share in shares.items()}
+            carried = self.carried.get(name, {})
+            shares = errors.add(*carried.values(), between)
+            known = carried.get(MODEL, shares)  # of a cheaper model nothing is known where its distance is not
+            found[name] = {key: abs(share * total.values[key]) for key, share in shares.items() if key in known}
         return found
 
     def under(self, force: float | str) -> "WholeFinger":
@@ -60,11 +62,17 @@ class WholeFinger:
             force: in N, as a text such as ``"0.3 N"``, or as a quantity of pint. A trace reaches some percent beyond
                 the force that it was made for, and down to its first point at the centre of the finger.
 
+        Returns:
+            The finger with its errors; of a cheaper model without any, which are known in a range of forces alone.
+
         Raises:
-            SceneError: no force, or one that a trace does not reach.
+            SceneError: no force, one that a trace does not reach, or a finger without traces.
         """
         value, finger = Scene(force=force).force, profile(self.shape)
-        assert value is not None
+        if value is None:
+            raise SceneError("force is None; it must be a number in N, or a text such as '0.3 N'")
+        if missing := [WORDS[name] for name in self.states if name not in self.traces]:
+            raise SceneError(f"the finger has no trace of {missing[0]}, from which another force could be read; run it")
         states = {name: at_force(finger, self.traces[name], value, self.shape.count) for name in self.states}
         for name, total in states.items():
             first = finger.centre_scale * float(self.traces[name].columns["f_ext"][0])
@@ -136,14 +144,13 @@ class WholeFinger:
     def parts(self, *names: str) -> tuple[str, ...]:
         """Return what the errors of states are made of; of all states by default."""
         every = (self.carried.get(name, {}) for name in names or self.states)
-        parts = dict.fromkeys(part for each in every for part, known in each.items() if known)
+        parts = dict.fromkeys(part for each in every for part, known in each.items() if known or part == MODEL)
         return tuple(dict.fromkeys([*parts, *[errors.POINTS] * bool(self.traces)]))
 
     def remarks(self) -> list[str]:
         """Return what a reader of the numbers must be told."""
-        known = [f"±: estimated error, by {', '.join(self.parts())}."]
-        known *= any(map(any, (each.values() for each in self.error.values())))
-        return [*known, *errors.remarks([self.f_ext]), f"Slices: {self.source}."]
+        known = plus_minus_of(self.parts()) * any(map(any, (each.values() for each in self.error.values())))
+        return [*filter(None, [known]), *errors.remarks([self.f_ext]), f"Slices: {self.source}."]
 
     def __str__(self) -> str:
         """Return the text *Whole finger* at the end of a run: the states side by side."""

@@ -266,27 +266,34 @@ def at_force(profile: Profile, trace: Trace, force: float, count: int) -> Total:
     return totals[float(brentq(excess, low, high, xtol=1e-15, rtol=4 * np.finfo(float).eps))]
 
 
-def under_one_force(profile: Profile, traces: Mapping[str, Trace], count: int) -> dict[str, Total]:
+def under_one_force(
+    profile: Profile, traces: Mapping[str, Trace], count: int, f_ext: float | None = None
+) -> dict[str, Total]:
     """Return the finger in several states under one force, the largest that all of their traces reach.
 
     Args:
         profile: the finger along its axis.
         traces: of a slice on the scale 1, by state. At one indentation the states bear other forces.
         count: slices in each stretch of contact.
+        f_ext: force (N/m) up to which the traces are used; by default to their ends.
 
     Raises:
         SceneError: the pad has no contact, or more of it than the finger has.
     """
-    ends = (at_indentation(profile, each, deepest(profile, each), count) for each in traces.values())
+    ends = (at_indentation(profile, each, deepest(profile, each, f_ext), count) for each in traces.values())
     force = min(total.totals["f_ext"] for total in ends)
     return {name: at_force(profile, each, force * (1 - 1e-9), count) for name, each in traces.items()}
 
 
-def deepest(profile: Profile, trace: Trace) -> float:
-    """Return the lowering since the first touch (m) at which the first slice comes to the end of the trace."""
+def deepest(profile: Profile, trace: Trace, f_ext: float | None = None) -> float:
+    """Return the lowering since the first touch (m) at which the first slice comes to the end of the trace.
+
+    With a force (N/m) on the trace, in place of the end.
+    """
+    end = trace.end[0] if f_ext is None else trace.under(f_ext)
 
     def lowered(z: NDArray[Any]) -> NDArray[Any]:
-        return np.asarray(profile.rise(z) + trace.end[0] * profile.width(z))
+        return np.asarray(profile.rise(z) + end * profile.width(z))
 
     z = np.linspace(*profile.ends, _SEARCHED_FOR_DEEPEST)
     k = int(np.argmin(lowered(z)))

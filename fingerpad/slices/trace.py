@@ -7,7 +7,9 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import PchipInterpolator
+from scipy.optimize import brentq
 
+from fingerpad.scene.messages import SceneError
 from variational.state import ContactState
 
 Array = NDArray[np.float64]
@@ -20,8 +22,21 @@ _NOTHING = 1e-12  # of the largest external force: values below it are roundoff
 _APART = 1e-4  # relative distance of two points: of closer ones, slopes are made by the tolerances of solvers (1e-6)
 
 
-class TraceError(ValueError):
+class TraceError(SceneError):
     """States of which no trace can be made; one sentence."""
+
+
+def refuse_floating(states: Iterable[ContactState], model: str) -> None:
+    """Refuse states of a model that do not have the height of their bone.
+
+    Raises:
+        TraceError: one has none.
+    """
+    if any(np.isnan(state.bone_height) for state in states):
+        raise TraceError(
+            f"the model {model!r} gives its states no bone_height, which forces in newtons on the whole finger need; "
+            "give f_ext in place of force, or the model's states a bone_height"
+        )
 
 
 @dataclass(frozen=True)
@@ -94,6 +109,14 @@ class Trace:
         values = np.where(there & touches, values * np.exp(slopes * np.minimum(at - first, 0.0)), 0.0)
         found = dict(zip(_INTERPOLATED, values, strict=True))
         return found | {"f_t": found.pop("grip") * (found["f_ext"] + found["f_electrostatic"])}
+
+    def under(self, force: float) -> float:
+        """Return the indentation (m) at an external force (N/m) between the first point and the end."""
+
+        def excess(x: float) -> float:
+            return float(np.log(self.at(np.exp([x]))["f_ext"][0] / force))
+
+        return float(np.exp(brentq(excess, *np.log(self.depth[[0, -1]]), xtol=1e-14)))
 
     @cached_property
     def _powers(self) -> tuple[PchipInterpolator, Array, NDArray[np.bool_]]:

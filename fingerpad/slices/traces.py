@@ -3,8 +3,9 @@
 The full model follows three histories. The finger is pressed without voltage. It is pressed lightly, charged and
 pressed on. It is pressed lightly, charged, slid to full slip and pressed on while it slides. Where full slip does not
 depend on the path, one simulation has all of them (``fingerpad.runs.newtons``). Elsewhere they are ordinary scenes,
-and every accepted step at full slip is a point of the trace. A model without a path has :data:`FORCES` points. A trace
-that ends before the force is reached is made again to a larger one.
+and every accepted step at full slip is a point of the trace. A model without a path has points at fixed forces
+(:mod:`fingerpad.slices.grid`), so that a sum over them does not depend on the way to it. A trace that ends before the
+force is reached is made again to a larger one.
 """
 
 from collections.abc import Callable, Iterable, Mapping
@@ -22,6 +23,8 @@ from fingerpad.scene.messages import SceneError
 from fingerpad.scene.parameters import LINE, POINT, POWER
 from fingerpad.slices import errors
 from fingerpad.slices.finger import WholeFinger, in_order
+from fingerpad.slices.grid import LIGHT as LIGHT
+from fingerpad.slices.grid import PER_OCTAVE, of_points
 from fingerpad.slices.total import BeyondTrace, Total, at_force, profile, under_one_force
 from fingerpad.slices.trace import Trace, TraceError, trace
 from geometry.units import computed
@@ -32,10 +35,8 @@ if TYPE_CHECKING:
 
 Solve = Callable[[Scene, str], Result]
 """Returns the result of a scene; takes a name for the folder of its files."""
-FORCES = 8
-"""Points of a trace of a model without a path."""
-LIGHT = 1 / 30
-"""Force under which a finger is charged, and slid to full slip, over the largest of its trace."""
+NO_NEWTONS = "no newtons of the whole finger"
+"""Beginning of a note that says why."""
 SMALLEST, _LARGEST = 1e-3, 5e3
 """Forces (N/m) of a scene."""
 _SHORTEST = 1.01 * SMALLEST / LIGHT  # N/m, largest force of a trace whose light one a scene can have
@@ -44,7 +45,7 @@ _MORE = 1.8  # factor on the largest force of the next try
 MARGIN = 1.1
 """Largest force of a trace over the one expected at the centre."""
 CONSTANTS = {
-    "light": LIGHT, "forces": FORCES, "margin": MARGIN, "more": _MORE, "tries": _TRIES,
+    "light": LIGHT, "per_octave": PER_OCTAVE, "margin": MARGIN, "more": _MORE, "tries": _TRIES,
     "shortest": _SHORTEST, "smallest": SMALLEST, "largest": _LARGEST,
     "start": {"line": LINE, "point": POINT, "power": POWER},
 }  # fmt: skip
@@ -82,9 +83,13 @@ def whole(scene: Scene, model: "Model", solve: Solve) -> Result:
     Raises:
         SceneError: a profile that does not fit, or a force that no trace reached.
     """
-    reach = Reach(scene, lambda name, top, tries: _made(scene, model, solve, name, top, tries))
+
+    def reach() -> Reach:
+        return Reach(scene, lambda name, top, tries: _made(scene, model, solve, name, top, tries))
+
+    shared = reach()  # a trace of runs is made to the force of the one before; the others do not depend on each other
     try:
-        found = {name: reach.follow(name) for name in states(scene)}
+        found = {name: (shared if model.path else reach()).follow(name) for name in states(scene)}
     except _Stopped as stopped:
         return stopped.result
     finger = summed(scene, model.traces, found)
@@ -111,14 +116,14 @@ def with_sum(result: Result, model: "Model", solve: Solve) -> Result:
     """
     scene = result.scene
     try:
-        found = {name: of_points(scene, model, solve, name, scene.f_ext) for name in states(scene)}
-        totals = under_one_force(
-            profile(scene.slices), {name: each.trace for name, each in found.items()}, scene.slices.count
-        )
+        f_ext = scene.f_ext
+        found = {name: Traced(*of_points(scene, model, solve, name, f_ext, f_ext)) for name in states(scene)}
+        traces = {name: each.trace for name, each in found.items()}
+        totals = under_one_force(profile(scene.slices), traces, scene.slices.count, f_ext)
         found = {name: each._replace(total=totals[name]) for name, each in found.items()}
-        return replace(result, finger=summed(scene, model.traces, found))
-    except (SceneError, TraceError) as error:
-        return replace(result, notes=(*result.notes, f"no newtons of the whole finger: {error}"))
+        return model.of_finger(scene, result, summed(scene, model.traces, found))
+    except SceneError as error:
+        return replace(result, notes=(*result.notes, f"{NO_NEWTONS}: {error}"))
 
 
 def history(scene: Scene, name: str, top: float, part: float = LIGHT) -> Scene:
@@ -172,7 +177,7 @@ def summed(scene: Scene, words: str, found: Mapping[str, Traced]) -> WholeFinger
     """
     totals = {name: each.total for name, each in found.items() if each.total is not None}
     wavelength = scene.geometry.ridge_wavelength
-    known = {name: dict(each.carried) or {errors.MESH: _shares(each, name, wavelength)} for name, each in found.items()}
+    known = {name: dict(e.carried) or errors.of_section(_end(e, name), wavelength) for name, e in found.items()}
     of = {name: each.trace for name, each in found.items()}
     tops = (f"{each.trace.end[1]:.4g} N/m ({name.replace('_', ' ')})" for name, each in found.items())
     if not scene.volts:  # normal contact is one state then, with two names
@@ -226,7 +231,8 @@ def _section(traced: Traced, name: str, depth: float, wavelength: float) -> Cont
     at: dict[str, Any] = {key: float(values[0]) for key, values in traced.trace.at(np.array([depth])).items()}
     near = min(traced.states, key=lambda state: abs(state.bone_height + depth))
     mu_app = at["f_t"] / at["f_ext"]
-    shares, end = _shares(traced, name, wavelength), _end(traced, name)
+    end, mesh = _end(traced, name), traced.carried.get(errors.MESH)
+    shares = mesh or errors.add(*errors.of_section(end, wavelength).values())
     known = {key: shares[key] * at[key] for key in ("f_t", "f_electrostatic") if key in shares}
     known |= {"mu_app": shares["mu_app"] * mu_app} if "mu_app" in shares else {}
     known |= {"contact_length": shares["contact_area"] * at["contact_length"]} if "contact_area" in shares else {}
@@ -253,11 +259,6 @@ def _end(traced: Traced, name: str) -> ContactState | None:
         return traced.end
     named = {} if traced.result is None else traced.result.named
     return named.get("charged" if name == "uncharged" else name)
-
-
-def _shares(traced: Traced, name: str, wavelength: float) -> dict[str, float]:
-    """Return the relative errors of a sum by the mesh of the cross-section."""
-    return traced.carried.get(errors.MESH) or errors.discretisation(_end(traced, name), wavelength)
 
 
 def _together(costs: Iterable[Cost]) -> Cost:
@@ -326,7 +327,7 @@ def _made(scene: Scene, model: "Model", solve: Solve, name: str, top: float, tri
     here = scene.replace(force=None)
     if model.path:
         return _run(here, scene.force or 0.0, solve, name, top, tries)
-    return of_points(here, model, solve, name, top)
+    return Traced(*of_points(here, model, solve, name, scene.centre_force, top))
 
 
 def _run(scene: Scene, force: float, solve: Solve, name: str, top: float, tries: int) -> Traced:
@@ -340,12 +341,3 @@ def _run(scene: Scene, force: float, solve: Solve, name: str, top: float, tries:
     except TraceError as error:
         why = f": {result.failure}" if result.failure else ""
         raise SceneError(f"the force on the finger is {force:.4g} N; {error}{why}") from None
-
-
-def of_points(scene: Scene, model: "Model", solve: Solve, name: str, top: float) -> Traced:
-    """Return a trace of a model without a path."""
-    forces = [float(each) for each in np.geomspace(top * LIGHT, top, FORCES)]
-    kind = "full_slip" if name == "full_slip" else "charged"
-    scene = scene.model_copy(update={"voltage": 0.0}) if name == "uncharged" else scene
-    found = model.over_forces(scene, forces, kind, lambda each: solve(each, name))
-    return Traced(trace(found, scene.geometry.ridge_wavelength), found)

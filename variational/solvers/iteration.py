@@ -24,7 +24,7 @@ import numpy as np
 from mpi4py import MPI
 from petsc4py import PETSc
 
-from variational.solvers.outcome import OUTSIDE, Counts
+from variational.solvers.outcome import OUT_OF_WORKSPACE, OUTSIDE, Counts, linear_failure
 from variational.solvers.skin_layer import SkinLayer
 from variational.solvers.tangent import Anderson, Tangent
 from variational.solvers.transient import EulerShift
@@ -54,6 +54,7 @@ _REST = 0.005  # of the last residual: that of the layer at the screen when the 
 _END = 0.3  # or of the residual at convergence
 _ROUNDINGS = 4.0  # units of roundoff of the sum of each node's absolute forces, within which a residual may stall,
 _FLOOR = 1e-6  # if that is less than this part of the force scale
+_MOST_WORKSPACE = 1600  # per cent that are set aside beyond MUMPS's estimate
 _SHIFTED_LONGER = 3  # times as many iterations as others: facets of many ridges come down one after the other
 
 
@@ -174,6 +175,30 @@ class Iteration:
         self.floor = norm / self.force_scale if norm > self.tolerance else 0.0
 
     def _solve(self, x: PETSc.Vec) -> None:
+        """Let SNES iterate, again with more workspace where MUMPS ran out of it; collective."""
+        start = x.array_r.copy()
+        self._iterate(x)
+        while self._enlarged():
+            x.array_w[:] = start
+            self.tangent.stale, self._ahead = True, False
+            self._iterate(x)
+
+    def _enlarged(self) -> bool:
+        """Return whether the last factorisation ran out of workspace, and set more aside for the next ones.
+
+        MUMPS estimates its workspace before it pivots, which depends on the matrix, and adds ICNTL(14) per cent.
+        """
+        pc, failed = self.snes.getKSP().getPC(), PETSc.SNES.ConvergedReason.DIVERGED_LINEAR_SOLVE
+        if self.snes.getConvergedReason() != failed or not linear_failure(pc)[0].startswith(OUT_OF_WORKSPACE):
+            return False
+        percent = int(pc.getFactorMatrix().getMumpsIcntl(14))
+        if percent >= _MOST_WORKSPACE:
+            return False
+        PETSc.Options().setValue(f"{PREFIX}mat_mumps_icntl_14", str(min(max(4 * percent, 100), _MOST_WORKSPACE)))
+        pc.reset()
+        return True
+
+    def _iterate(self, x: PETSc.Vec) -> None:
         """Let SNES iterate; what one of its callbacks raised is raised as it was, not as PETSc's error -1."""
         try:
             self.snes.solve(None, x)

@@ -9,11 +9,12 @@ from dataclasses import dataclass
 
 from petsc4py import PETSc
 
+OUT_OF_WORKSPACE = "MUMPS_OUT_OF_WORKSPACE"
 # INFOG(1) in the users' guide of MUMPS 5, section 8. Workspace is estimated before pivoting, which depends on the
 # matrix; memory ran out for any matrix of the size.
 _MUMPS = {
     "MUMPS_SINGULAR": (-6, -10),
-    "MUMPS_OUT_OF_WORKSPACE": (-8, -9, -11, -14, -15, -17, -18, -20),
+    OUT_OF_WORKSPACE: (-8, -9, -11, -14, -15, -17, -18, -20),
     "MUMPS_OUT_OF_MEMORY": (-5, -7, -13, -19, -22),
 }
 OUTSIDE = 1e30  # N/m: norm of the residual where J <= 0 somewhere
