@@ -236,14 +236,14 @@ class Result(Answer):
 
     def __str__(self) -> str:
         """Return the text *Result* at the end of a run: the named states side by side, with units and errors."""
-        return printing.text(self)
+        return printing.text(self, f"{self.headline}")
 
     __repr__ = __str__
     """In a console, too: the values of all steps are hundreds of pages."""
 
     def _repr_html_(self) -> str:
         """Return the text for a notebook: headline, tables, and remarks to unfold."""
-        return printing.page(self)
+        return printing.page(self, f"{self.headline}")
 
 
 def _loads(scene: "Scene", steps: Sequence[ContactState], stable: Sequence[bool | None]) -> tuple[LoadResult, ...]:

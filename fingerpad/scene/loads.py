@@ -90,8 +90,8 @@ class Load(Table):
     bone_x_by: Way | None = None
     """The same as a move (m) from where the bone is when the load begins."""
     speed: Annotated[Finite, within(1e-6, 100.0, "m/s")] | None = None
-    """Speed (m/s) of the bone on its way, which makes it a load over time. The model is quasi-static: the speed only
-    sets how long the way takes."""
+    """Speed (m/s) of the bone on its way, which makes it a load over time. The model is quasi-static: the speed sets
+    how long the way takes, by which viscous layers, friction in time and a drive act."""
     duration: Annotated[Finite, within(1e-6, 1e5, "s")] | None = None
     """Time (s) that the load takes, in place of a speed. The bone moves evenly in time; of a force its root changes
     evenly, and of a voltage its square, as the attraction does."""

@@ -2,7 +2,8 @@ r"""A voltage over time: sine, square, triangle or a table of a file, with the s
 
 .. math:: U(t) = U_0 + \hat U \, w(f t), \quad w = \sin 2 \pi f t \text{ or the square or triangle of its phase}
 
-Time starts with the load. The model is quasi-static: the frequency only sets how far the finger slides in a period.
+Time starts with the load. The model is quasi-static: without viscous layers, friction in time and losses of the drive,
+the frequency sets how far the finger slides in a period, and nothing else.
 
 Turning points, jumps and zeros are always among the samples. A period has 24 of them: friction has twice the frequency
 of the voltage, so that 12 are in each of its periods and 6 in each of its second harmonic's. The attraction goes with
