@@ -12,7 +12,7 @@
 # make notebook  a demo as a notebook of Jupyter, in results: make notebook DEMO=own_material
 # make verify every number with a known answer, some minutes; docs/verification.md
 # make paper  the statements of the paper beside this model's numbers; docs/paper.md, a quarter of an hour or more
-# make paper FIGURE=6  a figure of the paper; fingerpad paper lists them with their times
+# make paper FIGURE=6  a figure of the paper; python3 -m benchmarks.paper.figures lists them with their times
 # make measured  measured fingers beside this model's numbers; docs/measured.md, two minutes
 # make drive  friction over frequency and waveform of the voltage; docs/drive.md, a minute
 # make fingers    friction of fingers by name side by side; docs/fingers.md
@@ -88,7 +88,7 @@ verify:
 	$(run) mpirun -n 2 python3 -m pytest -q --color=no -p no:cacheprovider -m long tests
 
 paper:
-	$(run) python3 -m $(if $(FIGURE),fingerpad paper $(FIGURE) --out results/traces,benchmarks.paper)
+	$(run) python3 -m $(if $(FIGURE),benchmarks.paper.figures $(FIGURE),benchmarks.paper)
 
 measured:
 	$(run) python3 -m benchmarks.measured

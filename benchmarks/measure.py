@@ -1,6 +1,6 @@
 """One measurement of benchmarks/performance.py in a process of its own; rank 0 prints JSON.
 
-python3 -m benchmarks.measure run [SCENE.toml] | compile | explicit | operations FACTOR
+python3 -m benchmarks.measure run [SCENE.toml] | compile | operations FACTOR
 """
 
 import functools
@@ -24,7 +24,6 @@ import numpy as np
 from numpy.typing import NDArray
 from petsc4py import PETSc
 
-from benchmarks import explicit
 from fingerpad.accuracy.refinement import Refinement
 from fingerpad.model.checks import StabilityChecks
 from fingerpad.model.finger import Finger
@@ -244,7 +243,6 @@ if __name__ == "__main__":
         "run": run,
         "operations": operations,
         "compile": forms,
-        "explicit": explicit.measure,
     }
     measured = jobs[sys.argv[1]](*sys.argv[2:])
     if MPI.COMM_WORLD.rank == 0:

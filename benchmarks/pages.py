@@ -60,8 +60,8 @@ _WITHOUT_NUMBERS = (  # these start, read, refuse, order runs, write and print
     *("fingerpad/model/expected.py", "fingerpad/scene/contradictions.py", "fingerpad/scene/messages.py"),
     "fingerpad/model/report.py",
 )
-_APART = ("fingerpad/reduced", "fingerpad/paper")  # no full run uses them: parts of the programs that import them
-_SHARED = ("runs", "limits", "measure", "explicit")  # modules of benchmarks/ that make numbers of several pages
+_APART = ("fingerpad/reduced",)  # no full run uses them: parts of the programs that import them
+_SHARED = ("runs", "limits", "measure")  # modules of benchmarks/ that make numbers of several pages
 _SEARCHED = 100  # commits before the one that brought numbers into git, among which theirs is looked for
 _SHOWN = 3  # changed files of a page that are printed
 

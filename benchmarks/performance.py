@@ -27,7 +27,6 @@ IDLE = 0.5  # load average above which a ratio of wall times is not measured
 OPERATIONS = ("tangent", "factorisation", "solution", "residual")
 LAYER = "layer at the screen"
 _LINK, _LATENCY = 10e9, 2e-6  # bytes/s and s, of a cluster's network
-_MASSES = ("explicit, one density", "explicit, scaled mass")
 Numbers = dict[str, Any]
 
 
@@ -81,7 +80,6 @@ PARTS = {
     "ranks": _ranks,
     "compile": _compile,
     "operations": _operations,
-    "explicit": lambda: child("explicit"),
     "run": lambda: child("run"),
 }
 
@@ -135,13 +133,6 @@ def cluster(one: Mapping[str, Any], ranks: int) -> tuple[float, float, float]:
     return sent, halo, sent / _LINK + messages * _LATENCY
 
 
-def worst(found: Mapping[str, Any], reference: Mapping[str, Any]) -> float:
-    """Return the largest relative difference of contact forces and lengths, and of friction in the last state."""
-    differences = np.abs(np.array(found["answers"]) / reference["answers"] - 1)
-    differences[:-1, 1] = 0.0  # friction vanishes by symmetry before the slide
-    return float(differences.max())
-
-
 def _times(size: Mapping[str, Any]) -> list[float]:
     """Return the processor seconds of each operation, of one step of Newton's method and of the first factorisation."""
     each = [float(size["processor"][name]) for name in OPERATIONS]
@@ -151,16 +142,9 @@ def _times(size: Mapping[str, Any]) -> list[float]:
 def draw(docs: Path) -> Path:
     """Write docs/performance.md from docs/performance.json."""
     of = harness.Record({name: part["found"] for name, part in kept("performance", docs).numbers.items()})
-    run, sizes, explicit = of["run"], of["operations"], of["explicit"]
+    run, sizes = of["run"], of["operations"]
     unknowns = [size["unknowns"] for size in sizes]
     own = next(size["processor"] for size in sizes if size["factor"] == 1.0)
-    ways, costs, finger = [], [], explicit["finger"]
-    for each in explicit["ridges"]:
-        ran = [("implicit", each["implicit"]), *zip(_MASSES, each["explicit"], strict=True)]
-        ways += [(each["size"], way, found, each["implicit"]) for way, found in ran]
-    for (_, way, found, _), (low, high) in zip(ways[-len(_MASSES) :], finger["frequencies"], strict=True):
-        steps = 3 * found["periods"] * np.pi * high / low / explicit["safety"]
-        costs.append((way, found["periods"], high / low, steps))
     names = {
         "of": of, "run": run, "path": sum(run["path"].values()), "unit": unit(run), "times": _times,
         "largest": max(run["path"], key=run["path"].__getitem__),
@@ -168,8 +152,6 @@ def draw(docs: Path) -> Path:
         "memory": exponent(unknowns, [size["memory"] - size["before"] for size in sizes]),
         "saved": (own["tangent"] + own["factorisation"]) / (own["solution"] + own["residual"]),
         "clusters": [(s, ranks, cluster(s, ranks)) for s in sizes if s["factor"] in ON_RANKS for ranks in (2, 8, 64)],
-        "ways": ways, "costs": costs,
-        "residuals": sum(run["path"].values()) / run["path"]["residual"] * run["calls"]["residual"],
     }  # fmt: skip
     return harness.page(docs, "performance", "make performance", globals() | names)
 

@@ -3,8 +3,9 @@
 #
 # A haptic display drives its screen with $U(t) = \hat U \sin \omega t$. The attraction is proportional to the square of
 # the voltage, so friction has twice the frequency of the voltage and no part at this frequency itself. The mean of the
-# squared voltage is half its peak value. The model is quasi-static, without inertia, viscous skin or leaking charge. A
-# frequency only sets how far the finger slides in a period.
+# squared voltage is half its peak value. The model is quasi-static, without inertia. This finger has
+# elastic skin, friction without time and no losses of the drive, so that a frequency sets how far it slides in a
+# period.
 
 # %%
 import sys

@@ -2,8 +2,8 @@
 # # What a step of the voltage does to fibres
 #
 # A display switches its voltage on while a finger slides, and off again. Friction rises and falls by the same amount.
-# The skin of the model is elastic, so friction follows the voltage at once. Rise and fall then differ by the mechanics
-# of contact and by the fibres alone.
+# The skin of this finger is elastic, so friction follows the voltage at once. Rise and fall then differ by the
+# mechanics of contact and by the fibres alone. A scene may also have viscous layers.
 
 # %%
 import sys

@@ -138,8 +138,8 @@ def of_two_meshes(
 
     Lengths in contact have the error of the facets where contact ends, of first order in these, and r is how much
     shorter they are. All else has that of all elements, r = 2, with p = 2 (1 with linear elements), and p = 3/2 for the
-    highest pressure, which means over facets give. Where facets are not shorter where contact ends, friction has the
-    order and the ratio of lengths, since attraction depends on the edge of contact.
+    highest pressure, which means over facets give. Where facets are not shorter where contact ends, friction,
+    attraction and the bone's height have the order and the ratio of lengths, since they depend on the edge of contact.
 
     The change of a single number may come out small by accident. So the relative error at a site in the skin is at
     least a part of the median of all sites' of its state. Lengths and friction are sums over ridges, whose changes are
@@ -155,7 +155,7 @@ def of_two_meshes(
         sites: that part of the median.
         short: whether facets are shorter where contact ends than elsewhere.
     """
-    found, first_order = {}, ("contact_length", *(() if short else ("f_t", "mu_app")))
+    found, first_order = {}, ("contact_length", *(() if short else ("f_t", "mu_app", "f_electrostatic", "bone_height")))
     for name in (name for name in fine if name in coarse):
         of_ends = name.endswith(first_order)
         state = next((prefix for prefix in facets if name.startswith(f"{prefix}_")), None)

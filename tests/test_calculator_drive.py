@@ -13,7 +13,7 @@ from tests.test_calculator import FIELDS, SET, by_script, in_si
 
 @pytest.mark.parametrize("force", [None, 0.5], ids=["section", "whole finger"])
 def test_drive_is_that_of_python(force, tmp_path):
-    """Mean, extremes and amplitudes within 1 % of the mean: the page has a sixteenth of the samples, and fewer gaps."""
+    """Mean, extremes and amplitudes within 1 % of the mean: the page has a quarter of the samples, and fewer gaps."""
     default = in_si({key: field.value for key, field in FIELDS.items()})
     cases = [("sine", 30.0, 50.0, "lossless"), ("square", 30.0, 50.0, "sliding dry"), ("triangle", 250.0, 0.0, "moist")]
     names = ("waveform", "frequency", "offset", "circuit")

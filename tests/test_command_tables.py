@@ -90,7 +90,6 @@ def test_estimate_says_where_its_error_is_not_known(capsys):
         ("mesh --out finger.stl", "finger.stl cannot be a mesh; its name must end with .msh"),
         ("sweep --over model=full,cylinders", "model is varied and is no key of a scene; a sweep has one model"),
         ("sweep --over out=1,2 --model cylinders", "out is varied and is no key of a scene"),
-        ("paper 7 --jobs=", "argument --jobs: an empty text is not allowed; it must be a whole"),
         ("compare --ridges 3", "one of --contact-length and --ridges is given without the other"),
         ("compare --run none --model cylinders", "none is not a folder of a finished run"),
         ("compare --contact-length 1.58 --ridges 16", "--contact-length is 1580 mm, longer than 16 ridges, 7.73 mm"),

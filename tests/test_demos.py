@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 from mpi4py import MPI
 
-from benchmarks import explicit, performance
+from benchmarks import performance
 from tests.commands import python
 from tests.measures import rows_of
 from tests.pages import alike
@@ -92,18 +92,6 @@ def test_parts_are_all_of_the_processor_time(tmp_path):
     assert performance.unit(found) > 0
 
 
-def test_explicit_dynamics_end_in_the_equilibrium():
-    """A ridge of facets of 40 um, led along the loads over eight periods: forces and contact lengths within 3 %.
-
-    What is left swings on: the loads are applied in so few periods that the kinetic energy is some percent.
-    """
-    base = explicit.implicit(40e-6)
-    for scaled in (False, True):
-        found = explicit.lead(40e-6, scaled, base["frequencies"][scaled], 8.0)
-        assert found["ratio"] < 0.1
-        assert performance.worst(found, base) < 0.03
-
-
 def test_sweep_as_an_array_of_jobs(tmp_path):
     """Two tasks run at a time, each its own voltage in the shared folder; the whole sweep then finds both there."""
     environment = {**os.environ, "VOLTAGES": "50 100", "OUT": str(tmp_path)}
@@ -121,9 +109,3 @@ def test_sweep_as_an_array_of_jobs(tmp_path):
     rows = rows_of(tmp_path, "table")
     assert [float(row["voltage"]) for row in rows] == [50.0, 100.0]
     assert float(rows[1]["full_slip_mu_app"]) > float(rows[0]["full_slip_mu_app"]) > 0.25
-
-
-def test_lumped_mass_is_that_of_the_body():
-    mass = explicit.Ridge(40e-6).mass(scaled=False)
-    assert mass.sum() == pytest.approx(483e-6 * 600e-6 - 483e-6 * 50e-6, rel=0.02)  # the skin is a polygon
-    assert mass.min() > 0

@@ -64,8 +64,8 @@ def test_json_that_never_ends(tmp_path):
     os.mkfifo(tmp_path / "pipe")
     with (tmp_path / "sparse").open("wb") as file:
         file.truncate(10**12)
-    for name in ("pipe", "sparse"):
-        with pytest.raises(ValueError, match=f"{name} is no ordinary file of at most"):
+    for name, words in (("pipe", "it is not an ordinary file"), ("sparse", "it has 1000000 MB, and at most 200")):
+        with pytest.raises(OSError, match=words):
             read_object(tmp_path / name)
 
 
@@ -89,6 +89,28 @@ def test_summary_with_a_value_of_another_kind(answered, tmp_path, key, value):
             read(copy)
         except SceneError as error:
             assert str(copy)[-20:] in str(error) or "copy" in str(error)
+
+
+@pytest.mark.timeout(20)
+@pytest.mark.parametrize("name", ["result.nc", "steps.csv", "footprint.png", "fields.npz"])
+def test_pipes_in_a_folder_are_not_waited_for(answered, tmp_path, name):
+    """Of a run that ended or did not: results are read without the file, which is no longer one."""
+    copy = Path(shutil.copytree(answered, tmp_path / "copy"))
+    for pipe in {"result.nc", name}:
+        (copy / pipe).unlink(missing_ok=True)
+        os.mkfifo(copy / pipe)
+    if name == "steps.csv":
+        with pytest.raises(SceneError, match="copy cannot be read: .* not an ordinary file"):
+            fp.Result.load(copy)
+    else:
+        assert fp.Result.load(copy).full_slip is not None and write(copy).is_file()
+
+
+@pytest.mark.timeout(20)
+def test_pipe_in_place_of_the_table_of_a_sweep(tmp_path):
+    os.mkfifo(tmp_path / "table.csv")
+    with pytest.raises(SceneError, match="the table of .* cannot be read: .* not an ordinary file"):
+        write(tmp_path)
 
 
 @pytest.mark.parametrize("model", ["full --out ~; rm -rf ~ #", "$(rm x)", "`rm x`", "<script>", "a\nb", "", 5])

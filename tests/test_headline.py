@@ -185,7 +185,7 @@ def test_solved_has_the_penalty():
     slip = state(error=Errors(mu_app=0.006), penalty=Errors(mu_app=-0.002))
     section = fp.Result(fp.Scene(), "full", None, None, slip).headline
     assert section.error == 0.006 and section.parts == ("mesh", "penalty")
-    carried = errors.of_section(slip)
+    carried = errors.of_section(slip, 5e-4)
     assert carried["penalty"]["mu_app"] == pytest.approx(0.002 / slip.mu_app)
     assert carried[errors.MESH]["mu_app"] == pytest.approx(0.004 / slip.mu_app)
     alone, both = (replace(whole(), carried={"full_slip": each}) for each in ({}, carried))

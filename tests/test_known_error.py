@@ -63,7 +63,7 @@ LIGHT = pytest.mark.xfail(strict=True, reason="8.6 N/m, 139 V: 4.6 % less fricti
 @pytest.mark.long
 @pytest.mark.parametrize("number", [0, 1, pytest.param(2, marks=LIGHT)])
 def test_friction_of_runs_from_which_no_error_was_found_is_within_it(number):
-    """Full runs under forces and voltages drawn by a seed, none of which is kept: within the error and the run's own."""
+    """Full runs under forces and voltages drawn by a seed, none of them kept: within the error and the run's own."""
     chance = np.random.default_rng([20261128, number])
     f_ext, voltage = np.exp(chance.uniform(np.log(8.0), np.log(140.0))), chance.uniform(100.0, 195.0)
     scene = Scene(f_ext=float(f_ext), voltage=float(voltage), output={"receptors": False})

@@ -8,8 +8,10 @@ import pytest
 
 import fingerpad as fp
 from fingerpad.cli import main
+from fingerpad.cli.output import write
 from fingerpad.measurements.fit import ALL
 from fingerpad.measurements.table import read
+from fingerpad.results.quantities import Output
 from fingerpad.runs.sweep import sweep
 from fingerpad.scene import Scene
 from tests.commands import refused
@@ -166,3 +168,98 @@ def test_files_that_are_no_tables(tmp_path, capsys, content):
     file = tmp_path / "lab.csv"
     file.write_bytes(content)
     assert "lab.csv" in refused(capsys, "compare-data", str(file), "--run", "nowhere")
+
+
+# -- voltages, units and kinds of columns --------------------------------------------------------------------------
+def voltages(frame, columns=None):
+    return read(frame, columns).rows.voltage.tolist()
+
+
+@pytest.mark.parametrize(
+    ("head", "effective"),
+    [
+        *(("voltage (V)", 100), ("voltage (Vrms)", 100), ("voltage [V eff]", 100), ("voltage_kV", 1e5)),
+        *(("voltage (Vpp)", 35.355339), ("voltage (V peak to peak)", 35.355339), ("voltage (mV pk-pk)", 0.035355339)),
+        *(("voltage (V amplitude)", 70.710678), ("voltage Vpeak", 70.710678)),
+    ],
+)
+def test_voltages_are_effective(head, effective):
+    """Of a sine: its amplitude over the root of 2."""
+    frame = pd.DataFrame({"force (N)": [0.5], head: [100], "friction [-]": [0.3]})
+    assert voltages(frame.assign(remark=["moist"])) == pytest.approx([effective], rel=1e-7)
+
+
+def test_measure_of_a_voltage_is_offered_with_its_factor():
+    """A column that may be a voltage is not taken for one; the name to give it has the measure of its head."""
+    frame = pd.DataFrame({"force (N)": [0.5], "Vpp (V)": [100.0], "friction (1)": [0.3]})
+    said = "{'Vpp (V)': 'voltage (V peak to peak)'}, which is taken times 0.354, or leave it out by {'Vpp (V)': ''}"
+    with pytest.raises(fp.SceneError, match=re.escape(said)):
+        read(frame)
+    assert voltages(frame, {"Vpp (V)": "voltage (V peak to peak)"}) == pytest.approx([35.355339])
+    with pytest.raises(fp.SceneError, match=re.escape("{'Vrms': 'voltage'}, or leave")):
+        read(frame.rename(columns={"Vpp (V)": "Vrms"}).assign(Vrms=[3.0]))
+
+
+def test_categorical_and_nullable_columns():
+    """As the same numbers of NumPy: categories as groupby makes them, whole numbers and NA of pandas."""
+    plain = pd.DataFrame(
+        {"force (N)": [0.5, 1.0], "voltage (V)": [0, 100], "friction (1)": [0.25, 0.5], "spread (1)": [0.1, np.nan]}
+    )
+    kinds = plain.assign(participant=["A", "B"]).astype(
+        {"force (N)": "category", "voltage (V)": "Int64", "friction (1)": "Float64", "participant": "category"}
+    )
+    kinds["spread (1)"] = pd.array([0.1, pd.NA], dtype="Float64")
+    found = read(kinds).rows
+    assert found.pop("participant").tolist() == ["A", "B"]
+    pd.testing.assert_frame_equal(found, read(plain).rows)
+    kinds["friction (1)"] = pd.array([0.25, pd.NA], dtype="Float64")
+    with pytest.raises(fp.SceneError, match=r"the table has nothing in row 1 of 'friction \(1\)'"):
+        read(kinds)
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "force;gross area;index\nN;mm2;-\n0,5;120;1\n",
+        'sep=;\n"force_N";"gross area/mm2"\n0,5;120\n',
+        "force N\tgross area [mm²]\t\n0.5\t120\t\n",
+        ",force (mN),gross area (cm^2)\n0,500,1.2\n",
+    ],
+)
+def test_units_stand_where_they_stand(text, tmp_path):
+    """In a line of their own, behind a mark, with an index of pandas before them."""
+    (tmp_path / "lab.csv").write_text(text, encoding="utf-8")
+    found = read(tmp_path / "lab.csv", {} if "index" not in text else {"index": ""})
+    assert found.rows[["force", "measured"]].iloc[0].tolist() == pytest.approx([0.5, 120e-6], rel=1e-12)
+
+
+# -- the command ---------------------------------------------------------------------------------------------------
+def test_cells_are_no_formulas(grid, tmp_path):
+    """A participant named like one has an apostrophe before it in the table; numbers below 0 have none."""
+    (tmp_path / "lab.csv").write_text('participant,force (N/m),voltage (V),friction (1)\n"=HYPERLINK(1)",75,200,0.9\n')
+    argv = ["compare-data", str(tmp_path / "lab.csv"), "--sweep", str(grid.folder), "--csv", str(tmp_path / "out.csv")]
+    assert main(argv) == 0
+    (row,) = rows_of(tmp_path, "out")
+    assert row["participant"] == "'=HYPERLINK(1)" and float(row["difference"]) < 0
+
+
+@pytest.mark.parametrize("mark", "=+-@＝\t")
+def test_first_letters_of_formulas(mark, tmp_path):
+    write(tmp_path / "out.csv", [Output("a", "")], [{"a": f"{mark}1+1"}, {"a": "1+1"}])
+    assert (tmp_path / "out.csv").read_text() == f"a\n'{mark}1+1\n1+1\n"
+
+
+@pytest.mark.parametrize(
+    ("heads", "row", "said"),
+    [
+        ("friction (1)", "0.5", "rows are at 0 V: the misfit is that of µ_0 alone, 0.25 in the results, and not"),
+        ("contact length (mm)", "9", "rows are at 0 V: the misfit is that of contact without voltage, and not of the"),
+    ],
+)
+def test_misfit_without_voltage_is_named(grid, tmp_path, capsys, heads, row, said):
+    """It says nothing of the attraction; one row under voltage and the sentence is gone."""
+    for more in ("", f"75,200,{row}\n"):
+        (tmp_path / "lab.csv").write_text(f"force (N/m),voltage (V),{heads}\n75,0,{row}\n{more}", encoding="utf-8")
+        assert main(["compare-data", str(tmp_path / "lab.csv"), "--sweep", str(grid.folder)]) == 0
+        out = capsys.readouterr().out
+        assert (said in out) == (more == "") and "(V rms)" in out

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 
-from benchmarks.peers import at_equal_error, calculix_ridge, equal, ours, plain
+from benchmarks.peers import at_equal_error, equal, ours, plain
 from benchmarks.peers.__main__ import half_width
 from benchmarks.peers.at_equal_error import CURVED, OURS
-from benchmarks.peers.exchange import Answer, Case, Load, Ridge, State, cases
+from benchmarks.peers.exchange import Answer, Case, Load, Ridge, State
 from geometry.bodies import ridge as one_ridge
 from geometry.mesh import load
 
@@ -69,18 +69,6 @@ def test_half_width_of_a_parabola():
     x = np.linspace(0, (-0.5 + np.sqrt(0.25 + 3)) / 1.5, 200001)
     exact = np.hypot(np.diff(x), np.diff(-1 + x / 2 + 0.75 * x**2)).sum() / 2
     assert half_width(mesh, state) == pytest.approx(exact, rel=1e-5)  # the error of six Gauss points
-
-
-def test_deck(ridge):
-    """CalculiX gets Ogden's exponent in its own sign, D = 2/K, every facet once, and numbers short enough for it."""
-    deck = calculix_ridge.deck(cases()["friction"], ridge)
-    lines = deck.splitlines()
-    law = [float(word) for word in lines[lines.index("*HYPERELASTIC, OGDEN, N=1") + 1].split(",")]
-    assert law == pytest.approx([0.08676, 14.53, 3 * (1 - 2 * 0.48) / (0.08676 * 1.48)])
-    slave = lines[lines.index("*SURFACE, NAME=SLAVE") + 1 : lines.index("*SURFACE, NAME=MASTER")]
-    assert len(slave) == len(ridge.skin)
-    assert max(len(word.strip()) for line in lines for word in line.split(",") if "*" not in line) <= 20
-    assert deck.count("*STEP") == len(cases()["friction"].loads)
 
 
 def test_plain_script_agrees(body, ridge):

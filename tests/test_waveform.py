@@ -205,13 +205,13 @@ def test_nothing_but_the_voltage_holds_the_skin(offset, allowed):
     ("text", "message"),
     [
         (None, "which cannot be read: 'No such file or directory'"),
-        ("time (m),voltage (V)\n0,1\n", "whose first numbers are in 'm'; they must be in s or ms"),
-        ("time (s),current (A)\n0,1\n", "whose numbers of 'current' are in 'A'; they must be in V or mV"),
+        ("time (m),voltage (V)\n0,1\n", "which has 'time (m)' in 'm', which is not a unit of time; it must be in s"),
+        ("time (s),current (A)\n0,1\n", "has 'current (A)' in 'A', which is not a unit of voltage; it must be in V"),
         (TABLE + "0,1\n", "times are 1; there must be from 2"),
-        (TABLE + "0,1\n1,2,3\n", "whose line 3 has 3 cells"),
-        (TABLE + "0,1\n1,inf\n", "whose line 3 has 'inf'; it must be a finite number"),
+        (TABLE + "0,1\n1,2,3\n", "which has more cells in line 3 than its 2 heads"),
+        (TABLE + "0,1\n1,inf\n", "which has 'inf' in line 3 of 'voltage (V)'; it must be a finite number"),
         (TABLE + "0,1\n1,6000\n", "which at 1 s has a number that is 6000 V; it must be 0 or from 0.001 to 5000 V"),
-        (TABLE + f"0,{'1' * 200_000}\n", "which is no table in CSV: 'line 2: field larger than field limit (131072)'"),
+        (TABLE + f"0,{'1' * 200_000}\n", "which has no two columns of numbers"),
         (TABLE + "0,1\n2,2\n2,3\n", "times are 2 and then 2 s; each must be later"),
         (
             TABLE + "".join(f"{k},{(-1) ** k}\n" for k in range(2500)),

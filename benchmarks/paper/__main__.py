@@ -20,12 +20,11 @@ import numpy as np
 from benchmarks import newtons
 from benchmarks.errors import known
 from benchmarks.harness import keep, kept, made, main, page, run, table
-from benchmarks.paper import energy, fields, friction, states
+from benchmarks.paper import energy, fields, friction, scenes, states
+from benchmarks.paper.figures import FIGURES, PaperFigure
+from benchmarks.paper.figures import draw as drawn
 from benchmarks.paper.statement import BUILT, HOLDS, IN_PART, NOT, Statement
 from benchmarks.runs import FORCES, VOLTAGES, Run
-from fingerpad.paper import scenes
-from fingerpad.paper.figures import FIGURES, PaperFigure
-from fingerpad.paper.figures import draw as drawn
 from fingerpad.slices import errors
 
 _LIMIT = 3600.0  # s of processor time for one run; the sine takes longest
@@ -145,7 +144,7 @@ def _rows(statements: Sequence[Statement]) -> str:
 
 def _section(name: str, figure: PaperFigure, statements: Sequence[Statement], docs: Path) -> str:
     """Return a figure's part of the page: its command, its picture if it was drawn, and the statements about it."""
-    parts = [f"### Fig. {name}: {figure.shows}", f"`fingerpad paper {name}`: {figure.cost or 'a closed form'}."]
+    parts = [f"### Fig. {name}: {figure.shows}", f"`make paper FIGURE={name}`: {figure.cost or 'a closed form'}."]
     if (docs / f"paper_{name}.png").exists():
         parts.append(f"![{_CAPTIONS[name]}](paper_{name}.png)")
     else:

@@ -3,9 +3,9 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from benchmarks.paper.sine import by_kind, steady
 from benchmarks.paper.statement import HALF, Statement, statement
 from benchmarks.runs import Array, Run
-from fingerpad.paper.sine import by_kind, steady
 from fingerpad.scene import Scene
 from fingerpad.scene.remarks import coefficient
 from variational.roughness.bam import BearingArea

@@ -6,10 +6,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from benchmarks.limits import Limit
+from benchmarks.paper.loads import COLUMNS, STATES, reduction
+from benchmarks.paper.scenes import MAP, SECTION, TRANSITION
 from benchmarks.paper.statement import HALF, Statement, statement
 from benchmarks.runs import Run
-from fingerpad.paper.loads import COLUMNS, STATES, reduction
-from fingerpad.paper.scenes import MAP, SECTION, TRANSITION
 
 Array = NDArray[np.float64]
 Grid = Mapping[str, Array]

@@ -20,20 +20,18 @@ from numpy.polynomial import Polynomial
 from benchmarks.harness import DOCS, RESULTS, keep, kept, made, page, picture, table
 from benchmarks.peers import at_equal_error
 from benchmarks.peers.exchange import TASKS, TIMED, Answer, Array, Ridge, State, answer_path, cases, timed, write
-from fingerpad.results.style import BLUE, GREEN, ORANGE, VERMILION
+from fingerpad.results.style import BLUE, ORANGE
 
 FORCE, SHAPE = 5e-4, 1e-2  # bars: relative differences of forces, and of half-width and peak pressure
 _BARS = (FORCE, FORCE, SHAPE, SHAPE)
 _ROUNDED = 5e-7  # a difference that is zero in all printed digits
 SIZES, FINEST, REPEATS = (10.0, 2.5), 1.25, ("1", "2", "3")  # µm, of the timed runs
-SLOW = ("felupe", "calculix")  # run once
+SLOW = ("felupe",)  # run once
 UNSTEADY = 0.15  # relative spread of repeats, above which the page says so
 OURS, PLAIN = ("fingerpad", "plain dolfinx"), "plain dolfinx"
 _HEAD = ["program", "F_n (N/mm)", "F_t (N/mm)", "half-width (mm)", "peak pressure (MPa)"]
 # Colour, marker, and whether it is filled: a variant that explains a program lies in the middle of its marker.
-_STYLES = {"NGSolve": (BLUE, "o", False), "GetFEM": (GREEN, "x", False), "FElupe": (ORANGE, "s", False),
-           "NGSolve, as FElupe": (ORANGE, "s", True), "CalculiX": (VERMILION, "^", False),
-           "NGSolve, as CalculiX": (VERMILION, "^", True)}  # fmt: skip
+_STYLES = {"NGSolve": (BLUE, "o", False), "FElupe": (ORANGE, "s", False), "NGSolve, as FElupe": (ORANGE, "s", True)}
 
 
 # -- before ----------------------------------------------------------------------------------------------------
@@ -56,7 +54,6 @@ def prepare(folder: Path, sizes: list[float]) -> None:
             case_path = folder / f"{name}_{variant}.json".replace(" ", "_")
             write(replace(cases()[name], variant=variant), case_path)
             tasks.append(f"{peer} {case_path} {mesh} {answer_path(folder, size, name, variant, peer)}")
-    tasks.sort(key=lambda task: task.startswith("calculix"))  # the slowest last
     (folder / "tasks").write_text("\n".join(tasks) + "\n", encoding="utf-8")
 
 

@@ -17,14 +17,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[Any]
-PEERS = ("ngsolve", "getfem", "felupe", "calculix")
+PEERS = ("ngsolve", "felupe")
 # What explains where a peer is off: case, deviation, and the program that can be made to do the same.
-# As CalculiX: stiffnesses per current area; new points drag since the unloaded state.
 # As FElupe: skin integrated by Simpson's rule, whose points are nodes; new points drag since they touched.
 # As installed: the program's own element, known to be wrong.
 VARIANTS = (
-    ("frictionless", "as CalculiX", "ngsolve"),
-    ("friction", "as CalculiX", "ngsolve"),
     ("frictionless", "as FElupe", "ngsolve"),
     ("friction", "as FElupe", "ngsolve"),
     ("frictionless", "as installed", "felupe"),

@@ -53,8 +53,8 @@ def solve(case: Case, ridge: Ridge) -> Answer:
         raise RuntimeError("friction's history has other points than the integrals over the skin")
     anchor, before_x, before_gap = (ng.GridFunction(places) for _ in range(3))
 
-    def tractions(displacement, gradient):
-        """Return friction and pressure per reference area, and per the area that the stiffnesses are of."""
+    def tractions(displacement):
+        """Return friction and pressure per reference area."""
         depth = -(ng.y + displacement[1])
         p = case.eps_n * ng.IfPos(depth, depth, 0.0)
         slip = displacement[0] - anchor
@@ -63,13 +63,11 @@ def solve(case: Case, ridge: Ridge) -> Answer:
             slip = ng.IfPos(before_gap, ng.IfPos(depth, since, 0.0), slip)
         limit, trial = case.mu_f * p, -case.eps_t * slip
         t = ng.IfPos(trial - limit, limit, ng.IfPos(-limit - trial, -limit, trial))
-        tangent = ng.specialcf.tangential(2)
-        stretch = ng.Norm(tangent + gradient * tangent) if case.variant == "as CalculiX" else ng.CF(1.0)
-        return stretch * t, stretch * p, t
+        return t, p
 
     loaded = ng.BilinearForm(V)
     loaded += ng.Variation(energy(case, ng.Id(2) + ng.Grad(u)).Compile() * ng.dx(intrules={ng.TRIG: _TRIANGLE}))
-    t, p, _ = tractions(u.Trace(), ng.Grad(u).Trace())
+    t, p = tractions(u.Trace())
     loaded += -(t * v.Trace()[0] + p * v.Trace()[1]) * ng.ds("skin", intrules={ng.SEGM: edge})
 
     lifts = {}
@@ -87,7 +85,7 @@ def solve(case: Case, ridge: Ridge) -> Answer:
     for before, load in case.steps():
         now.vec.data += (load.x - before.x) * lifts["x"].vec + (load.y - before.y) * lifts["y"].vec
         answer.iterations += _newton(loaded, now, residual)
-        t, p, law = tractions(now, ng.Grad(now))
+        t, p = tractions(now)
         loaded.Apply(now.vec, residual)
         f_n, f_t = (-ng.InnerProduct(residual, lifts[name].vec) for name in ("y", "x"))
         columns = [np.reshape(f(nodes), (-1, 1)) for f in (ng.x, now[0], now[1])]
@@ -96,9 +94,7 @@ def solve(case: Case, ridge: Ridge) -> Answer:
         answer.report(
             load, f_n, f_t, edges[:, :, 1:].reshape(-1, 2), *(np.ravel(f(points)) for f in (ng.x + now[0], p, t))
         )
-        after = now[0] + law / case.eps_t
-        if case.variant == "as CalculiX":  # what touches in a step has slipped since the beginning of all steps
-            after = ng.IfPos(p, after, 0.0)
+        after = now[0] + t / case.eps_t
         for field, value in ((anchor, after), (before_x, now[0]), (before_gap, ng.y + now[1])):
             field.vec.FV().NumPy()[dofs] = np.ravel(value(points))
     return answer

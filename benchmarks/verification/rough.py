@@ -68,7 +68,7 @@ def theory(small: bool) -> list[Row]:
             Row(f"area in contact at {pressure:g} E* q_0 h_rms", area_left, walked, 5e-3, why, f"{steps} steps")
         )
     p: Array = np.geomspace(0.02, 0.5, 2001, dtype=np.float64)
-    x = np.geomspace(1.0 + 1e-9, _RATIO, 4001)
+    x: Array = np.geomspace(1.0 + 1e-9, _RATIO, 4001, dtype=np.float64)
     level = x ** (-2 - 2 * _HURST)
     level /= 2 * np.pi * np.trapezoid(x * level, x)
     area = erf(np.sqrt(2) * p[:, None] / np.sqrt(_slope_squared(x)))

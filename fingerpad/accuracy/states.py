@@ -89,8 +89,8 @@ def quantities(name: str, state: State) -> dict[str, float]:
 
     Without a force that presses the finger there is no coefficient.
     """
-    wanted = ("f_electrostatic", "contact_length", "p_max", "bone_height")
-    wanted = ("f_t", "mu_app", *wanted) if name == "full_slip" else wanted
+    friction = ("f_t", "mu_app") if name == "full_slip" else ()
+    wanted = (*friction, "f_electrostatic", "contact_length", "p_max", "bone_height")
     values = {quantity: float(getattr(state.state, quantity)) for quantity in wanted}
     found = {quantity: value for quantity, value in values.items() if not math.isnan(value)}
     return found | {f"sed_{j}": value for j, value in state.sed.items()}

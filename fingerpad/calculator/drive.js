@@ -7,7 +7,8 @@
 "use strict";
 
 const drive = (function () {
-  const SAMPLES = 256, POINTS = 11, GAPS = 41, ITERATIONS = 30;
+  const SAMPLES = 1024, POINTS = 11, GAPS = 41, ITERATIONS = 30;
+  const TURN = Array.from({ length: SAMPLES }, (_, k) => (2 * Math.PI * k) / SAMPLES).map((a) => [Math.cos(a), Math.sin(a)]);
   const multiply = ([a, b], [c, d]) => [a * c - b * d, a * d + b * c];
   const divide = ([a, b], [c, d]) => multiply([a, b], [c, -d]).map((v) => v / (c * c + d * d));
 
@@ -47,20 +48,24 @@ const drive = (function () {
     });
   }
 
-  /** Return the Fourier series of samples: complex amplitudes at the multiples from 0 on. */
-  function series(values) {
+  /** Return the sums over k of values[k] exp(sign 2 pi i j k / n) for all j, of complex values, by halves. */
+  function transform(values, sign) {
     const n = values.length;
-    return Array.from({ length: n / 2 + 1 }, (_, k) => values.reduce(([re, im], v, j) => {
-      const angle = (2 * Math.PI * ((k * j) % n)) / n;
-      return [re + v * Math.cos(angle), im - v * Math.sin(angle)];
-    }, [0, 0]).map((v) => (v * (k && k < n / 2 ? 2 : 1)) / n));
+    if (n === 1) return values;
+    const [even, odd] = [0, 1].map((rest) => transform(values.filter((_, k) => k % 2 === rest), sign));
+    const turned = odd.map((v, k) => multiply(v, [TURN[(k * SAMPLES) / n][0], sign * TURN[(k * SAMPLES) / n][1]]));
+    return [1, -1].flatMap((half) => even.map(([re, im], k) => [re + half * turned[k][0], im + half * turned[k][1]]));
   }
 
-  function samples(amplitudes, n) {
-    return Array.from({ length: n }, (_, j) => amplitudes.reduce((sum, [re, im], k) => {
-      const angle = (2 * Math.PI * ((k * j) % n)) / n;
-      return sum + re * Math.cos(angle) - im * Math.sin(angle);
-    }, 0));
+  /** Return the Fourier series of samples: complex amplitudes at the multiples from 0 on. */
+  function series(values) {
+    return transform(values.map((v) => [v, 0]), -1).slice(0, SAMPLES / 2 + 1)
+      .map((c, k) => c.map((v) => (v * (k && k < SAMPLES / 2 ? 2 : 1)) / SAMPLES));
+  }
+
+  function samples(amplitudes) {
+    const all = Array.from({ length: SAMPLES }, (_, k) => amplitudes[k] || [0, 0]);
+    return transform(all, 1).map(([re]) => re);
   }
 
   /** Return friction over a period: time, voltage, sigma_el, f_t and the amplitudes of f_t; answer: of a voltage alone. */
@@ -74,7 +79,7 @@ const drive = (function () {
     };
     const still = solve(0), gaps = Array.from({ length: GAPS }, (_, k) => 0.5 * still.d_eq * 2.4 ** (k / (GAPS - 1)));
     const own = circuit || { tissue: { eps_inf: p["electric.eps_sc"], terms: [], sigma: 0 }, leak: Infinity };
-    const table = gaps.map((g) => samples(spectrum.map((c, k) => multiply(c, gain(k * asked.frequency, g, p, own))), SAMPLES)
+    const table = gaps.map((g) => samples(spectrum.map((c, k) => multiply(c, gain(k * asked.frequency, g, p, own))))
       .map((v) => (v * (h_0 + g)) / g));
     const most = Math.max(...table.filter((_, k) => gaps[k] >= 0.7 * still.d_eq && gaps[k] <= still.d_eq).flat().map(Math.abs), 1e-9);
     const squares = Array.from({ length: POINTS }, (_, k) => (most ** 2 * k) / (POINTS - 1));

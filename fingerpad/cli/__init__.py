@@ -29,7 +29,6 @@ COMMANDS = {
     "calculator": "the closed form as one HTML page with sliders, for a browser without Python or network",
     "solve": "the voltage, coating or other key at which friction has a given value, by the closed form, at once",
     "drive": "friction over the period of an alternating voltage, its spectrum, and whether it is felt, in a second",
-    "paper": "a figure of the paper by Forsbach et al. 2023, computed and drawn; lists all where none is given",
     "microscale": "air gap, attraction and real area of contact of a ridge over its pressure",
     "topography": "roughness of a scene from a measured height map",
     "params": "every key of a scene: unit, default, range and meaning",

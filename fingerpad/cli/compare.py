@@ -1,7 +1,6 @@
 """Results side by side: ``fingerpad compare`` of several models, ``fingerpad compare-data`` with measured tables."""
 
 import math
-import os
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -196,7 +195,6 @@ def _mapping(given: Sequence[str]) -> dict[str, str]:
 def _rows(compared: "pd.DataFrame") -> list[dict[str, str | float | None]]:
     """Return the rows by name, in SI units; None for what is missing."""
     about = {key: compared.attrs[key] for key in _ABOUT}
-    about["table"] = os.path.join(os.curdir, about["table"])  # ./=a.csv: a cell =a.csv would be a formula
     about["state"] = WORDS[about["state"]]
     values = compared.astype(object).where(compared.notna(), None)
     return [about | row for row in values.to_dict("records")]
@@ -211,7 +209,7 @@ def _lines(compared: "pd.DataFrame") -> Iterator[str]:
     columns = [
         *([Output("participant", "")] if "participant" in compared else []),
         Output("force", about["force_unit"]),
-        Output("voltage", "V", digits=1),
+        Output("voltage", "V rms", digits=1),
         *(Output(key, unit, words="±" if key == "error" else key, digits=4) for key in named),
         Output("relative_difference", "%", words="relative", digits=1),
     ]
@@ -227,6 +225,11 @@ def _lines(compared: "pd.DataFrame") -> Iterator[str]:
         rows = f"{about['turned']} of {len(compared)} rows have a friction below 0"
         yield f"{rows}, of the other direction; its magnitude is compared."
     yield from _fits(fits, about["mu_0"])
+    compared_at = compared.voltage[compared.difference.notna()]
+    if about["misfit"] and not compared_at.any():
+        alone = f"µ_0 alone, {about['mu_0']:g} in the results" if about["mu_0"] else "friction without voltage"
+        what = alone if about["quantity"].startswith("friction") else "contact without voltage"
+        yield f"All compared rows are at 0 V: the misfit is that of {what}, and not of the attraction."
     yield from _misfit(about["misfit"], errors)
     if not compared.voltage.any():
         yield "No row is under a voltage: attraction is not compared."
@@ -309,7 +312,7 @@ def _panel(ax: "Axes", rows: "pd.DataFrame", known: "Computed") -> None:
         bars = None if spread.isna().all() else scale * spread
         ax.errorbar(repeats.index, scale * repeats["measured", "mean"], bars, ms=7, capsize=3, **look)
     force = "force (N)" if about["force_unit"] == "N" else "force per length (N/m)"
-    ax.set(xlabel="voltage (V)" if over_voltage else force)
+    ax.set(xlabel="voltage (V rms)" if over_voltage else force)
     ax.set(ylabel=f"{about['quantity']} ({unit or '–'})", title=style.plain(clip(about["source"], 40)))
     ax.set_ylim(bottom=0)
     if math.isclose(*ax.get_xlim(), rel_tol=0.05):  # a single force, but for roundoff

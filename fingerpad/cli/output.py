@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike
 from fingerpad.cli.arguments import PICTURE, Kind, Parser, echo
 from fingerpad.results.files import replace
 from fingerpad.results.quantities import Output
+from fingerpad.scene.messages import is_formula
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -38,11 +39,18 @@ def _cell(column: Output, value: str | float | None) -> str:
 
 
 def write(file: Path, columns: Sequence[Output], rows: Sequence[Mapping[str, Any]]) -> None:
-    """Write a table as CSV in SI units, unrounded; :mod:`fingerpad.cli.arguments` has rounded its values."""
+    """Write a table as CSV in SI units, unrounded; :mod:`fingerpad.cli.arguments` has rounded its values.
+
+    An apostrophe stands before a text of which a spreadsheet would make a formula.
+    """
     out = io.StringIO()
     writer = csv.DictWriter(out, [c.name for c in columns], extrasaction="ignore", lineterminator="\n")
-    writer.writerows(rows)
+    writer.writerows({key: f"'{cell}" if _is_formula(cell) else cell for key, cell in row.items()} for row in rows)
     replace(file, _head(columns) + out.getvalue())
+
+
+def _is_formula(cell: Any) -> bool:
+    return isinstance(cell, str) and is_formula(cell)
 
 
 def _head(columns: Sequence[Output]) -> str:

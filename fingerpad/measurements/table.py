@@ -7,7 +7,8 @@
     participant; force [N/m]; voltage [V]; friction [%]; spread [%]; room temperature
     A; 50; 100; 31,5; 4; 23
 
-Semicolons and tabs allow decimal commas. Friction may be in percent; a spread in percent is a part of the measured
+Files are those of :mod:`fingerpad.scene.tables`. A voltage is the effective value: ``voltage (Vpp)`` and ``voltage (V
+amplitude)`` are converted as those of a sine. Friction may be in percent; a spread in percent is a part of the measured
 value, if that is in another unit. The sign of a friction is its direction, and that of a voltage changes no force:
 neither is compared. ``participant`` is a person's name or number.
 
@@ -30,14 +31,15 @@ from fingerpad.scene.tables import NUMBERS, Column, is_of, parts
 
 CONDITIONS = {"force": ("N", "N/m"), "voltage": ("V",)}
 """Columns that are conditions, and their SI units."""
+_NONE = ("", "")  # of what a cross-section, or a whole finger, does not have
 QUANTITIES = {
     "friction": (("mu_app", "1"), ("mu_app", "1")),
     "friction force": (("f_t", "N/m"), ("f_t", "N")),
     "attraction": (("f_electrostatic", "N/m"), ("f_electrostatic", "N")),
-    "contact length": (("contact_length", "m"), None),
-    "ridges": (("ridges_in_contact", "1"), None),
-    "gross area": (None, ("gross_area", "m^2")),
-    "contact area": (None, ("contact_area", "m^2")),
+    "contact length": (("contact_length", "m"), _NONE),
+    "ridges": (("ridges_in_contact", "1"), _NONE),
+    "gross area": (_NONE, ("gross_area", "m^2")),
+    "contact area": (_NONE, ("contact_area", "m^2")),
     "depth": (("depth", "m"), ("indentation", "m")),
 }
 """Key of the result and SI unit of a cross-section, and of a whole finger; a depth is the way down of the bone."""
@@ -49,8 +51,7 @@ _NAMES = (*CONDITIONS, *QUANTITIES, "spread", PERSON)
 _PERCENT = ("%", "percent")
 _COMMENT = re.compile(r"(source|doi|url|people|state)\s*:(.*)", re.IGNORECASE)
 _SINE = re.compile(
-    r"(?:^|(?<=[vu])|[ _-]+)(?:(rms|eff(?:ective)?)|(pp|p-p|pk-?pk|peak[ -]to[ -]peak)|(amplitude|peak))$",
-    re.IGNORECASE,
+    r"(?i)(?:^|(?<=[vu])|[ _-]+)(?:(rms|eff(?:ective)?)|(pp|p-p|pk-?pk|peak[ -]to[ -]peak)|(amplitude|peak))$"
 )
 _EFFECTIVE = {None: ("", 1.0), 1: ("", 1.0), 2: (" peak to peak", 8**-0.5), 3: (" amplitude", 2**-0.5)}
 """How a voltage is given, behind the V, and the effective value of a sine over it; by the group of the expression."""
@@ -124,6 +125,7 @@ def read(
 
 
 def _measured(table: str | Path | pd.DataFrame, name: str, given: Mapping[str, str], state: str | None) -> Measured:
+    """Return the measurements of :func:`read`, with the columns that are ``given`` by head; refusals have no name."""
     heads, about, path = _of_frame(table) if isinstance(table, pd.DataFrame) else _of_file(table)
     asked = (state or about.get("state", "full slip")).lower().replace("_", " ")
     if asked not in STATES:
@@ -140,11 +142,10 @@ def _measured(table: str | Path | pd.DataFrame, name: str, given: Mapping[str, s
     whole = any("area" in of or (of != "spread" and is_of(each.unit, "N")) for of, each in used.items())
     if quantity.startswith("friction") and asked != "full slip":
         raise ValueError(f"has {quantity} at the state {asked}; before the finger slides it has none")
-    if (known := QUANTITIES[quantity][whole]) is None:
+    if (known := QUANTITIES[quantity][whole]) == _NONE:
         kind = "a whole finger, which has a column in newtons or of an area," if whole else "a cross-section"
-        raise ValueError(
-            f"has {quantity}, and {kind} has {', '.join(of for of in QUANTITIES if QUANTITIES[of][whole])}"
-        )
+        others = ", ".join(of for of, each in QUANTITIES.items() if each[whole] != _NONE)
+        raise ValueError(f"has {quantity}, and {kind} has {others}")
     units = {quantity: known[1], "spread": known[1], "force": "N" if whole else "N/m", "voltage": "V"}
     rows = {of: _numbers(each, units[of]) for of, each in used.items() if of != PERSON}
     turned = int((rows[quantity] < 0).sum())
@@ -157,7 +158,7 @@ def _measured(table: str | Path | pd.DataFrame, name: str, given: Mapping[str, s
         rows[PERSON] = used[PERSON].cells.map(lambda cell: clip(cell, 40))
     taken = {column.head for column in used.values()} | {head for head, of in given.items() if not of}
     ignored = [column for column in heads if column.head not in taken]
-    for condition in CONDITIONS.keys() - used.keys():
+    for condition in (each for each in CONDITIONS if each not in used):
         _refuse_overlooked(condition, ignored)
     measured = pd.DataFrame({"spread": np.nan} | rows).rename(columns={quantity: "measured"})
     left = tuple(column.head for column in ignored)
@@ -172,6 +173,7 @@ def _of_frame(table: pd.DataFrame) -> tuple[list[Column], dict[str, str], str]:
     texts = (each.where(each.notna(), "").map(lambda cell: str(cell).strip()) for each in cells)
     heads = [str(head).strip() for head in table]
     columns = [Column(head, *parts(head), each, row="row") for head, each in zip(heads, texts, strict=True)]
+    columns = [replace(each, numeric=pd.to_numeric(each.cells, errors="coerce").notna().any()) for each in columns]
     return columns, {key: str(value) for key, value in table.attrs.items()}, ""
 
 
@@ -186,10 +188,9 @@ def _of_file(file: str | Path) -> tuple[list[Column], dict[str, str], str]:
 def _named(heads: Sequence[Column], given: Mapping[str, str]) -> dict[str, Column]:
     """Return columns by their names in this program, with their units."""
     found = dict[str, Column]()
+    has = clip(", ".join(column.head for column in heads), 200)
     if unknown := given.keys() - {column.head for column in heads}:
-        raise ValueError(
-            f"has no column {show(min(unknown))}; it has {clip(', '.join(each.head for each in heads), 200)}"
-        )
+        raise ValueError(f"has no column {show(min(unknown))}; it has {has}")
     for column in heads:
         of, unit = parts(given[column.head]) if column.head in given else (column.name, column.unit)
         of, unit, cells = of.lower(), unit or column.unit, column.cells
@@ -209,7 +210,7 @@ def _refuse_overlooked(condition: str, ignored: Sequence[Column]) -> None:
     """Refuse a table without a condition where an ignored column may be it."""
     units = CONDITIONS[condition]
     for column in ignored:
-        if any(is_of(column.unit, si) for si in units) if column.unit else column.numeric:
+        if any(is_of(_SINE.sub("", column.unit), si) for si in units) if column.unit else column.numeric:
             measure = _SINE.search(column.name) if condition == "voltage" else None
             words, effective = _EFFECTIVE[measure and measure.lastindex]
             meant = f"{condition} ({units[0]}{words})" if words or not column.unit else condition
@@ -238,5 +239,5 @@ def _numbers(column: Column, si: str) -> "pd.Series[float]":
         column.refuse(values == 0, "a finite number other than 0")
     else:
         zero = of in ("spread", "attraction")
-        column.refuse((values < 0) | ((values == 0) & (not zero)), f"{'0 or more' if zero else 'greater than 0'}")
+        column.refuse((values < 0) | ((values == 0) & (not zero)), "0 or more" if zero else "greater than 0")
     return values

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 from fingerpad.results.quantities import SYMBOL
 from fingerpad.scene import Scene, SceneError, changed_keys, override
 from fingerpad.scene.reading import DEFAULT_MODEL, flat
+from variational.files import read
 
 if TYPE_CHECKING:
     from PIL.Image import Image
@@ -128,12 +129,13 @@ def picture(file: Path, words: str) -> str:
     if not file.exists():
         return ""
     try:
-        with Image.open(file, formats=("PNG",)) as drawn:
+        content = read(file)
+        with Image.open(BytesIO(content), formats=("PNG",)) as drawn:
             if drawn.width * drawn.height > _MAX_PIXELS:
                 raise ValueError
             drawn.load()
             size = f'width="{drawn.width}" height="{drawn.height}"'
-            found = _as_it_is(file, drawn) or _of_few_colours(drawn)
+            found = _as_it_is(content, drawn) or _of_few_colours(drawn)
     except (OSError, SyntaxError, ValueError, Image.DecompressionBombError):
         return paragraph(f"{file.name} is left out: it is no picture of a run, or not a whole one.", "note")
     data = base64.b64encode(found).decode()
@@ -142,10 +144,9 @@ def picture(file: Path, words: str) -> str:
     return f"<figure>{shown}{caption}</figure>"
 
 
-def _as_it_is(file: Path, drawn: "Image") -> bytes:
+def _as_it_is(content: bytes, drawn: "Image") -> bytes:
     """Return a file of a palette, as a run writes it; nothing of one that holds more than its pixels."""
-    small = drawn.mode == "P" and file.stat().st_size <= drawn.width * drawn.height
-    return file.read_bytes() if small else b""
+    return content if drawn.mode == "P" and len(content) <= drawn.width * drawn.height else b""
 
 
 def _of_few_colours(drawn: "Image") -> bytes:

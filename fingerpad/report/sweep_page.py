@@ -1,6 +1,7 @@
 """The table of a sweep and its report: friction and contact over what was varied, every point, and what failed."""
 
 import csv
+import io
 import itertools
 import math
 import shlex
@@ -34,6 +35,7 @@ from fingerpad.scene import SceneError, changed_keys
 from fingerpad.scene.messages import clip
 from fingerpad.scene.reading import DEFAULT_MODEL, model_name
 from fingerpad.slices.errors import remarks
+from variational.files import read
 
 _CHARTS = ("mu_app", "f_t", "contact_length", "contact_area")
 _MAX_CAUTIONS = 3  # in the headline
@@ -106,9 +108,8 @@ def table_of(folder: Path) -> Table:
     """
     name = clip(str(folder), 80)
     try:
-        with (folder / "table.csv").open(encoding="utf-8", newline="") as file:
-            reader = csv.DictReader(file)
-            texts, columns = list(reader), list(reader.fieldnames or ())
+        reader = csv.DictReader(io.StringIO(read(folder / "table.csv").decode(), newline=""))
+        texts, columns = list(reader), list(reader.fieldnames or ())
     except (OSError, UnicodeDecodeError, csv.Error) as error:
         raise SceneError(f"the table of {name} cannot be read: {error}") from None
     axes = tuple(key for key in columns if not key.startswith(_RESULTS) and key != "failure")

@@ -10,7 +10,6 @@ from fingerpad.report import page as html
 from fingerpad.report.known import bars
 from fingerpad.report.page import BAD, CARE, GOOD
 from fingerpad.results.closures import KNOWN, why_not_known
-from fingerpad.results.headline import missing_slip
 from fingerpad.results.states import called
 from fingerpad.richardson import FEW_FACETS
 from fingerpad.scene.remarks import coefficient
@@ -76,7 +75,7 @@ def _full_slip(result: "Result") -> Iterator[Finding]:
     if result.full_slip is not None and follows_path(result.model):
         words = "Every point in contact slips one way, and the forces stayed the same over a further 0.2 mm."
         yield Finding("full slip", GOOD, words)
-    elif how := missing_slip(result):
+    elif how := result.missing_slip:
         words = f"Full slip was {how}, so there is no friction of full slip."
         yield Finding("full slip was not reached", BAD if result.failure else CARE, words)
     for load in result.loads:

@@ -99,6 +99,14 @@ class Answer:
         return {name: state for name in STATES if (state := getattr(self, name)) is not None}
 
     @property
+    def missing_slip(self) -> str:
+        """That a slide did not end in full slip, in words; empty where it did, or where nothing slides."""
+        if self.full_slip is not None or not any(load.until_full_slip or load.moves for load in self.scene.loads()):
+            return ""
+        held = any(load.full_slip_reached for load in self.loads)
+        return "not held over a further 0.2 mm" if held else "not reached"
+
+    @property
     def parameters(self) -> dict[str, Any]:
         """Parameters of the scene, as its files have them, with names of laws that are not read."""
         kept: dict[str, Any] = self.record.get("parameters") or self.scene.parameters()

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fingerpad.results import files
+from variational.files import read
 from variational.outline import outline
 
 Array = NDArray[np.float64]
@@ -81,7 +82,7 @@ def skin_of(file: Path, prefix: str) -> dict[str, Any]:
 def arrays_of(file: Path) -> dict[str, Any]:
     """Return the arrays of a file by name; none without a file that can be read."""
     try:
-        with file.open("rb") as stream, np.load(stream, allow_pickle=False) as found:
+        with np.load(BytesIO(read(file)), allow_pickle=False) as found:
             return dict(found)
     except (OSError, ValueError, EOFError, TypeError, RuntimeError, MemoryError, zipfile.BadZipFile, zlib.error):
         return {}

@@ -9,6 +9,7 @@ its end.
 """
 
 import hashlib
+import io
 import json
 import os
 import zipfile
@@ -22,6 +23,7 @@ from numpy.typing import NDArray
 
 from fingerpad.results.files import read_object, remove, replace_json
 from fingerpad.scene import SceneError
+from variational.files import read
 
 Arrays = dict[str, NDArray[Any]]
 _FORMAT = 3
@@ -202,7 +204,7 @@ def _write(file: Path, value: Any) -> None:
 
 def _read(file: Path, classes: Mapping[str, type]) -> Any:
     """Return the value that a file holds."""
-    with np.load(file, allow_pickle=False) as stream:
+    with np.load(io.BytesIO(read(file)), allow_pickle=False) as stream:
         arrays = dict(stream)
     return _restored(json.loads(arrays.pop(_FACTS).tobytes()), arrays, classes)
 
@@ -210,7 +212,7 @@ def _read(file: Path, classes: Mapping[str, type]) -> Any:
 def _whole(file: Path) -> bool:
     """Return whether a file is there and undamaged."""
     try:
-        with zipfile.ZipFile(file) as state:
+        with zipfile.ZipFile(io.BytesIO(read(file))) as state:
             return state.testzip() is None and f"{_FACTS}.npy" in state.namelist()
     except (OSError, zipfile.BadZipFile, ValueError):
         return False

@@ -18,6 +18,7 @@ from typing import Any, BinaryIO
 from uuid import uuid4
 
 from fingerpad.scene.messages import SceneError, clip
+from variational.files import read
 
 FORMAT = 2
 """Number of the format of ``summary.json`` and ``sweep.json``; one more where older files are read otherwise."""
@@ -54,14 +55,11 @@ def read_object(file: Path) -> dict[str, Any]:
     """Return the object that a JSON file of a folder of results holds, whoever wrote it.
 
     Raises:
-        OSError: it cannot be read.
-        ValueError: it is no ordinary file, too large, or holds something else than an object of some depth.
+        OSError: it cannot be read, is no ordinary file or too large.
+        ValueError: it holds something else than an object of some depth.
     """
-    about = file.stat()
-    if not stat.S_ISREG(about.st_mode) or about.st_size > _MAX_BYTES:
-        raise ValueError(f"{file.name} is no ordinary file of at most {_MAX_BYTES} bytes")
     try:
-        found = json.loads(file.read_text(encoding="utf-8"))
+        found = json.loads(read(file, _MAX_BYTES).decode())
     except RecursionError:
         found = None
     if not isinstance(found, dict) or not _is_shallow(found, _MAX_DEPTH):

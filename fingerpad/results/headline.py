@@ -117,14 +117,6 @@ def _of_result(result: "Answer") -> Headline:
     return found
 
 
-def missing_slip(result: "Answer") -> str:
-    """Return in words that a slide did not end in full slip; empty where it did, or where nothing slides."""
-    if result.full_slip is not None or not any(load.until_full_slip or load.moves for load in result.scene.loads()):
-        return ""
-    held = any(load.full_slip_reached for load in result.loads)
-    return "not held over a further 0.2 mm" if held else "not reached"
-
-
 # -- what a number is of ---------------------------------------------------------------------------------------
 def _of_finger(result: "Answer", finger: "WholeFinger") -> Headline:
     """Return the friction coefficient of the whole finger; its ridge contact area without full slip."""
@@ -246,7 +238,7 @@ def _change(
 
 def _stuck(result: "Answer", load: str) -> str:
     """Return a sentence that full slip is missing; empty where it is not."""
-    how = missing_slip(result)
+    how = result.missing_slip
     return f"At {load} full slip was {how}, so there is no friction force of sliding." if how else ""
 
 

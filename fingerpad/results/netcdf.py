@@ -14,6 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.io import netcdf_file
 
+from variational.files import read
+
 Variables = Mapping[str, tuple[tuple[str, ...], Any, Mapping[str, str]]]
 """Dimensions, values, and attributes by name."""
 _TEXT = "utf-8"
@@ -83,7 +85,7 @@ def arrays(file: Path) -> dict[str, NDArray[Any]]:
     Raises:
         OSError, ValueError, TypeError, KeyError, IndexError, MemoryError, AttributeError: it is no whole file.
     """
-    with netcdf_file(str(file), "r", mmap=False) as content:
+    with netcdf_file(io.BytesIO(read(file)), "r", mmap=False) as content:
         return {name: _values(variable) for name, variable in content.variables.items()}
 
 

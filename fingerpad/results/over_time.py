@@ -22,16 +22,15 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from fingerpad.results.quantities import EXTREMES
-from variational.state import ContactState
+from variational.state import EXTREMES, ContactState
 
 if TYPE_CHECKING:
     from fingerpad.scene.waveform import Waveform
 
 NOTE = (
-    "Loads over time are quasi-static: no inertia, viscous skin only in layers with a viscosity, and no leakage of "
-    "charge but that of the key electric.leak. Else a frequency only sets how far the finger slides in a period, and "
-    "what the circuit of the gap loses."
+    "Loads over time are quasi-static: no inertia. Time acts in layers with a viscosity, in friction of the laws "
+    "Occlusion and Speed, and in the circuit of electric.tissue and electric.leak. In a scene without these a "
+    "frequency sets how far the finger slides in a period, and nothing else."
 )
 """What a result with a load over time says of it."""
 HARMONICS, SAMPLED = 6, 4

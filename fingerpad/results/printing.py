@@ -5,7 +5,6 @@ from typing import TYPE_CHECKING
 
 from fingerpad import notebook
 from fingerpad.results.closures import RECORD, in_words
-from fingerpad.results.headline import headline, missing_slip
 from fingerpad.results.quantities import PER_LENGTH, QUANTITIES, cell, head_rows, plus_minus_of, side_by_side
 from fingerpad.results.states import LoadResult, called
 from fingerpad.scene.reading import DEFAULT_MODEL
@@ -19,7 +18,7 @@ if TYPE_CHECKING:
 _SECTION = "Middle section of the finger"
 
 
-def text(result: "Answer") -> str:
+def text(result: "Answer", headline: str) -> str:
     """Return the text *Result* at the end of a run: headline, whole finger, and named states with units and errors."""
     lines = [_title(result)]
     if result.named:
@@ -28,12 +27,12 @@ def text(result: "Answer") -> str:
     lines += [f"  {note}" for note in (*_timed(result), *_remarks(result))]
     lines += [f"  ! {caution}" for caution in result.cautions]
     finger = [f"{result.finger}"] if result.finger is not None else []
-    return "\n".join([f"{headline(result)}", *finger, *lines])
+    return "\n".join([headline, *finger, *lines])
 
 
-def page(result: "Answer") -> str:
+def page(result: "Answer", headline: str) -> str:
     """Return the same for a notebook, with remarks to unfold."""
-    title, *known = map(str.strip, f"{headline(result)}".splitlines())
+    title, *known = map(str.strip, headline.splitlines())
     parts = [] if result.finger is None else [result.finger._repr_html_()]
     parts += [notebook.page(_title(result), notebook.table(*_table(result)))] if result.named else []
     cautions = notebook.lines(f"! {each}" for each in result.cautions)
@@ -66,7 +65,7 @@ def _timed(result: "Answer") -> list[str]:
 def _remarks(result: "Answer") -> list[str]:
     """Return the lines after the table: failure, missing full slip, meaning of ± and N/m, effect of the penalty."""
     found = [f"Not finished: {result.failure}"] if result.failure else []
-    if (how := missing_slip(result)) and not result.failure:
+    if (how := result.missing_slip) and not result.failure:
         found.append(f"Full slip was {how}.")
     if any(state.error.known() for state in result.named.values()):
         found.append(plus_minus_of(result.parts()))

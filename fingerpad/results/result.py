@@ -1,6 +1,7 @@
 """Result of a model: the states of a run by name and in order, their errors and costs, as values, files and text."""
 
 import csv
+import io
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass, fields, replace
@@ -8,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from fingerpad import launcher
-from fingerpad.results import dataset
+from fingerpad.results import dataset, printing
 from fingerpad.results.answer import Answer, Cost
 from fingerpad.results.files import FORMAT, read_object, refuse_other_format
 from fingerpad.results.headline import Headline, headline
@@ -20,6 +21,7 @@ from fingerpad.scene.messages import SceneError, clip
 from fingerpad.scene.reading import DEFAULT_MODEL, model_name
 from fingerpad.scene.remarks import coefficient
 from fingerpad.scene.scene import as_kept
+from variational.files import read
 from variational.state import CONDITIONS, PATH, RESULTS, ContactState, Errors
 
 if TYPE_CHECKING:
@@ -234,18 +236,14 @@ class Result(Answer):
 
     def __str__(self) -> str:
         """Return the text *Result* at the end of a run: the named states side by side, with units and errors."""
-        from fingerpad.results.printing import text
-
-        return text(self)
+        return printing.text(self, f"{self.headline}")
 
     __repr__ = __str__
     """In a console, too: the values of all steps are hundreds of pages."""
 
     def _repr_html_(self) -> str:
         """Return the text for a notebook: headline, tables, and remarks to unfold."""
-        from fingerpad.results.printing import page
-
-        return page(self)
+        return printing.page(self, f"{self.headline}")
 
 
 def _loads(scene: "Scene", steps: Sequence[ContactState], stable: Sequence[bool | None]) -> tuple[LoadResult, ...]:
@@ -261,8 +259,8 @@ def steps_of(folder: Path) -> tuple[ContactState, ...]:
         OSError: there is no such file.
         ValueError: it is not of a run.
     """
-    with (folder / "steps.csv").open(encoding="utf-8", newline="") as file:
-        return tuple(ContactState.from_row(row) for row in csv.DictReader(file) if None not in row.values())
+    rows = csv.DictReader(io.StringIO(read(folder / "steps.csv").decode(), newline=""))
+    return tuple(ContactState.from_row(row) for row in rows if None not in row.values())
 
 
 def _state(name: str, kept: Mapping[str, Any]) -> ContactState:

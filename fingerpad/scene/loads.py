@@ -12,7 +12,7 @@ from typing import Annotated, Any
 
 from pydantic import AfterValidator, Discriminator, Tag, model_validator
 
-from fingerpad.scene.messages import NUMBER, WAVE, show
+from fingerpad.scene.messages import NUMBER, WAVE, is_formula, show
 from fingerpad.scene.wavefile import Volts
 from fingerpad.scene.waveform import MOST, Waveform
 from geometry.units import Finite, Switch, Table, within
@@ -25,7 +25,6 @@ _EITHER = (
     ("bone_x", "bone_x_by", "give the place or the move"),
     ("speed", "duration", "one follows from the other, so give one"),
 )  # keys of which a load has one at most
-_FORMULA = ("=", "+", "-", "@")  # of a cell in a spreadsheet, also as wide letters; a tab is forbidden anyway
 _FORBIDDEN = '/\\:*?"<>|'  # the first separates folders, the others are forbidden on memory sticks
 Way = Annotated[Finite, within(1e-9, 0.1, "m", zero=True, sides=2)]
 
@@ -45,7 +44,7 @@ def load_name(name: str) -> str:
         raise ValueError(f"it must be without {unfit!r}, since files are named by it")
     if name.startswith((".", "-", " ")):
         raise ValueError(f"it must not begin with {name[0]!r}, since files are named by it")
-    if unicodedata.normalize("NFKC", name[0]) in _FORMULA:
+    if is_formula(name):
         raise ValueError(f"it must not begin with {name[0]!r}, which makes a formula of it when a table is opened")
     return name
 
@@ -91,8 +90,8 @@ class Load(Table):
     bone_x_by: Way | None = None
     """The same as a move (m) from where the bone is when the load begins."""
     speed: Annotated[Finite, within(1e-6, 100.0, "m/s")] | None = None
-    """Speed (m/s) of the bone on its way, which makes it a load over time. The model is quasi-static: the speed only
-    sets how long the way takes."""
+    """Speed (m/s) of the bone on its way, which makes it a load over time. The model is quasi-static: the speed sets
+    how long the way takes, by which viscous layers, friction in time and a drive act."""
     duration: Annotated[Finite, within(1e-6, 1e5, "s")] | None = None
     """Time (s) that the load takes, in place of a speed. The bone moves evenly in time; of a force its root changes
     evenly, and of a voltage its square, as the attraction does."""

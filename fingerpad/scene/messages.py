@@ -5,6 +5,7 @@ control characters are written out.
 """
 
 import re
+import unicodedata
 from collections.abc import Iterable, Iterator, Sequence
 from difflib import SequenceMatcher
 from typing import Any, get_args
@@ -70,6 +71,11 @@ def refuse_type(name: str, value: object, allowed: Any, words: str) -> None:
 
 
 # -- texts ---------------------------------------------------------------------------------------------
+def is_formula(text: str) -> bool:
+    """Return whether a spreadsheet takes a cell with this text for a formula, also by a wide letter."""
+    return unicodedata.normalize("NFKC", text[:1])[:1] in ("=", "+", "-", "@", "\t", "\r")
+
+
 def clip(text: str, most: int = _MAX_VALUE) -> str:
     """Return a text in one line of printable characters, at most so many of them."""
     text = "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in text[: most + 1])

@@ -54,7 +54,6 @@ class Column:
     """Empty where a cell is missing; the index has the lines of a file, or the rows of a DataFrame."""
     numeric: bool = True
     """Whether it has numbers in at least half as many cells as the column with most of them."""
-
     row: str = "line"
     """What a row is called."""
 
@@ -72,9 +71,8 @@ class Column:
         try:
             unit = factor(self.unit, si)
         except ValueError as error:
-            given = f"has {show(self.head)} in {show(self.unit)}, which {error}".partition(";")[0].replace(
-                "its unit ", ""
-            )
+            why = re.split("[;:]", str(error))[0].removeprefix("its unit ")
+            given = f"has {show(self.head)} in {show(self.unit)}, which {why}"
             raise ValueError(f"{given}; it must be in {allowed or si}") from None
         found = self.cells.where(pd.to_numeric(self.cells, errors="coerce").notna()).astype(float) * unit
         self.refuse(~np.isfinite(found) & ((self.cells != "") | (not optional)), "a finite number")
@@ -112,13 +110,17 @@ def factor(unit: str, si: str) -> float:
     Raises:
         ValueError: the unit is not known, or of another dimension.
     """
-    for spelling, usual in _SPELLINGS:
-        unit = spelling.sub(usual, unit)
     if si != "1":
-        return to_si(f"1 {unit}", si)
+        return to_si(f"1 {_usual(unit)}", si)
     if unit not in NUMBERS:
         raise ValueError("is not a number")
     return NUMBERS[unit]
+
+
+def _usual(unit: str) -> str:
+    for spelling, usual in _SPELLINGS:
+        unit = spelling.sub(usual, unit)
+    return unit
 
 
 def is_of(unit: str, si: str) -> bool:
@@ -165,11 +167,10 @@ def read(file: str | Path, header: str) -> Table:
     comments = [line.strip().lstrip("# ") for line in lines if line.lstrip().startswith("#")]
     lines = ["" if line.lstrip().startswith("#") or (named and k == 0) else line for k, line in enumerate(lines)]
     last = [line for line in lines if line.strip()][-_LAST:]
-    mark = (
-        named[1] if named else next((mark for mark in "\t;" if 2 * sum(mark in line for line in last) > len(last)), ",")
-    )
-    frame = _parted(lines, mark)
-    numbers = frame.apply(lambda cells: pd.to_numeric(cells.str.rstrip("% "), errors="coerce").notna())
+    mark = next((mark for mark in "\t;" if 2 * sum(mark in line for line in last) > len(last)), ",")
+    frame = _parted(lines, mark := named[1] if named else mark)
+    bare = frame.apply(lambda cells: cells.str.rstrip("% ")) if "%" in text else frame
+    numbers = bare.apply(lambda cells: pd.to_numeric(cells, errors="coerce").notna())
     counts = numbers.sum()
     places = [k for k in frame if 2 * counts[k] >= counts.max() > 0]
     rows = numbers[places].any(axis=1) & (numbers[places] | (frame[places] == "")).all(axis=1)
@@ -184,7 +185,8 @@ def read(file: str | Path, header: str) -> Table:
     if more.any():
         why = "decimals have points, not commas" if mark == "," else "each cell must have a head"
         raise ValueError(f"has more cells in line {more.idxmax()} than its {width} heads; {why}")
-    columns = [Column(*heads[k], body[k], k in places) for k in frame if heads[k][0] or (body[k] != "").any()]
+    every = ((*heads[k], body[k], k in places) for k in frame if heads[k][0] or (body[k] != "").any())
+    columns = [Column(head, name, unit, cells, numeric) for head, name, unit, cells, numeric in every]
     facts = {key.casefold(): value for key, value in frame.iloc[:_PREAMBLE, :2].itertuples(index=False) if value}
     return Table(columns, facts, comments, not above.empty)
 
@@ -214,15 +216,11 @@ def _parted(lines: Sequence[str], mark: str) -> pd.DataFrame:
 
 def _heads(above: pd.DataFrame, places: Sequence[int]) -> list[tuple[str, str, str]]:
     """Return head, name and unit of each column from the lines above the numbers."""
-    *names, last = [[""] * len(above.columns), *above.to_numpy().tolist()]
+    *names, last = [[""] * len(above.columns), *([*row] for row in above.itertuples(index=False))]
     bare = [cell.strip("()[] ") for cell in last]
-    if len(names) > 1 and (
-        all(cell[0] in "([" for cell in last if cell)
-        or (
-            any(map(_BARE.fullmatch, bare))
-            and all(not u or u in NUMBERS or is_unit(u) or is_unit(u.lower()) for u in bare)
-        )
-    ):
+    known = (not u or u in NUMBERS or is_unit(_usual(u)) or is_unit(u.lower()) for u in bare)
+    in_brackets = all(cell[0] in "([" for cell in last if cell)
+    if len(names) > 1 and (in_brackets or (any(map(_BARE.fullmatch, bare)) and all(known))):
         return [(head, parts(head)[0], unit) for head, unit in zip(names[-1], bare, strict=True)]
     if len(names) > 1 and any(files.is_number(last[k]) for k in places):
         wrong = next(last[k] for k in places if pd.isna(pd.to_numeric(last[k] or "-", errors="coerce")))

@@ -6,7 +6,7 @@ V. Times may begin anywhere: the first becomes 0.
 
 A file that repeats itself ends where a period does. One of 1.5 periods or more is cut to whole ones, another one must
 end with its first voltage, or one sample before. Files of more than :data:`POINTS` samples are averaged in groups, all
-of as many. Where this would take more than :data:`_LOST` of the mean square, a carrier for example, the file is refused.
+of as many. Where this would take more than :data:`_LOST` of the mean square, as of a carrier, the file is refused.
 """
 
 import math
@@ -99,9 +99,10 @@ def _columns(found: "Table", wanted: str | None) -> list[Array]:
     times = [each for each in columns if is_of(each.unit, "s")]
     times = [each for each in named if each in times] or times or [each for each in named if not each.unit] or named
     if not times:
-        heads = clip(", ".join(show(each.head) for each in columns), 100)
-        raise ValueError(f"has nothing named or united as time among {heads}; write a head such as 'time (s)'")
-    first, others = times[0], [each for each in columns if each not in times and not _COUNT.fullmatch(each.name)]
+        among = clip(", ".join(show(each.head) for each in columns), 100)
+        raise ValueError(f"has nothing named or united as time among {among}; write a head such as 'time (s)'")
+    first = times[0]
+    others = [each for each in columns if each not in times and (each.unit or not _COUNT.fullmatch(each.name))]
     if other := next((each for each in times[1:] if (each.cells != first.cells).any()), None):
         raise ValueError(f"has time twice, as {show(first.head)} and {show(other.head)}; it must have one alone")
     units = {si: found.facts.get(_SIDE[si]) or si for si in _SIDE}

@@ -2,7 +2,8 @@ r"""A voltage over time: sine, square, triangle or a table of a file, with the s
 
 .. math:: U(t) = U_0 + \hat U \, w(f t), \quad w = \sin 2 \pi f t \text{ or the square or triangle of its phase}
 
-Time starts with the load. The model is quasi-static: the frequency only sets how far the finger slides in a period.
+Time starts with the load. The model is quasi-static: without viscous layers, friction in time and losses of the drive,
+the frequency sets how far the finger slides in a period, and nothing else.
 
 Turning points, jumps and zeros are always among the samples. A period has 24 of them: friction has twice the frequency
 of the voltage, so that 12 are in each of its periods and 6 in each of its second harmonic's. The attraction goes with
@@ -67,12 +68,10 @@ class Waveform(Table):
     """Whole periods of the wave, and a pause at the offset."""
     file: Annotated[str | None, Field(exclude=True)] = None
     """CSV file with the header ``time (s),voltage (V)``, or of an oscilloscope (:mod:`fingerpad.scene.wavefile`),
-    straight between its points; a relative path starts at the scene file. The times increase; the first counts as 0,
-    and the last sample closes the period. The file is read at once: a scene stores only its points."""
+    straight between its points; a relative path starts at the scene file. The times increase, and the first counts as
+    0. A file that repeats itself is cut to whole periods. It is read at once: a scene stores only its points."""
     column: Annotated[str | None, Field(exclude=True, max_length=100)] = None
-    """Name of the column of voltages in a file with several, as ``CH1`` or ``CH1 (V)``. Without names it is a number,
-    and that of times is 1.
-    """
+    """Name of the column of voltages in a file with several, as ``CH1`` or ``CH1 (V)``."""
     probe: Annotated[Probe | None, Field(exclude=True)] = None
     """Factor on the voltages of a file, 1 by default; 100 for a channel without the factor of its 1:100 probe."""
     repeat: Switch = False

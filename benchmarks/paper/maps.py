@@ -11,8 +11,8 @@ from matplotlib.cm import ScalarMappable
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from fingerpad.paper import scenes
-from fingerpad.paper.run import computed
+from benchmarks.paper import scenes
+from benchmarks.runs import computed
 from fingerpad.results import finger_picture, style
 from variational.snapshot import Snapshot
 

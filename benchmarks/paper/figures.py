@@ -1,19 +1,24 @@
 """The figures of the paper: what each shows, what it costs, its numbers and its picture.
 
+environment/run python3 -m benchmarks.paper.figures [6 9A ...]     also: make paper FIGURE=6
+
+Runs that are in the folder are not repeated, so that a figure that was stopped goes on.
+
 A figure is an entry of :data:`FIGURES`. Its numbers go into a JSON file beside the picture and can be drawn again.
 """
 
-from collections.abc import Callable, Mapping
+import argparse
+import sys
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from matplotlib.figure import Figure
 
-from fingerpad.paper import loads, maps, microscale, section, sine, transition
-from fingerpad.results import style
+from benchmarks.harness import RESULTS, picture
+from benchmarks.paper import loads, maps, microscale, section, sine, transition
 from fingerpad.results.files import replace_json
-from fingerpad.scene.messages import SceneError, clip
 
 
 @dataclass(frozen=True)
@@ -61,32 +66,9 @@ FIGURES = {
 }  # fmt: skip
 
 
-def find(name: str) -> list[PaperFigure]:
-    """Return the figure of a name as ``6``, ``6B`` or ``9``, which has two parts.
-
-    Raises:
-        SceneError: the paper has no such figure, or it cannot be computed.
-    """
-    asked = name.strip().upper()
-
-    def names(figure: PaperFigure) -> list[str]:
-        return [figure.name, figure.name.rstrip("AB"), *(figure.name + panel for panel in figure.panels)]
-
-    found = [each for each in FIGURES.values() if asked in names(each)]
-    if not found:
-        *others, last = sorted({*FIGURES, *(each.rstrip("AB") for each in FIGURES)})
-        why = {"1": " (1 is the mesh: fingerpad check --plot)", "3": " (3 is a measurement)"}.get(asked[:1], "")
-        raise SceneError(f"figure is {clip(name) or 'an empty text'}; it must be {', '.join(others)} or {last}{why}")
-    return found
-
-
 def draw(figure: PaperFigure, numbers: Mapping[str, Any], path: Path) -> None:
     """Draw a figure from its numbers into a PNG file."""
-    with style.look():
-        width, height = figure.size
-        made = style.figure(height, width)
-        figure.paint(made, numbers)
-        style.save(made, path)
+    picture(path, figure.size, lambda made: figure.paint(made, numbers))
 
 
 def compute(figure: PaperFigure, out: Path, jobs: int) -> list[Path]:
@@ -97,7 +79,29 @@ def compute(figure: PaperFigure, out: Path, jobs: int) -> list[Path]:
     """
     out.mkdir(parents=True, exist_ok=True)
     numbers = figure.numbers(out, jobs)
-    picture, kept = (out / f"figure_{figure.name}.{ending}" for ending in ("png", "json"))
+    drawn, kept = (out / f"figure_{figure.name}.{ending}" for ending in ("png", "json"))
     replace_json(kept, numbers)
-    draw(figure, numbers, picture)
-    return [picture, kept]
+    draw(figure, numbers, drawn)
+    return [drawn, kept]
+
+
+def main(given: Sequence[str] | None = None) -> int:
+    """Compute and draw figures, or list them."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    choices = sorted({*FIGURES, *(name.rstrip("AB") for name in FIGURES)})
+    parser.add_argument("figures", nargs="*", help=f"{', '.join(choices)}; a list of them where none is given")
+    parser.add_argument("--out", type=Path, default=RESULTS / "traces", help="folder of runs, pictures and numbers")
+    parser.add_argument("--jobs", type=int, default=2, help="runs at a time (default: 2)")
+    args = parser.parse_args(given)
+    if unknown := set(args.figures) - set(choices):
+        parser.error(f"no figure {', '.join(unknown)}; 1 is the mesh (fingerpad check --plot), 3 a measurement")
+    for each in FIGURES.values():
+        if not args.figures or {each.name, each.name.rstrip("AB")} & set(args.figures):
+            print(f"Figure {each.name}, {each.shows}: {each.cost or 'a closed form'}.", flush=True)
+            if args.figures:
+                print(*compute(each, args.out, args.jobs), sep="\n")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -8,8 +8,8 @@ import numpy as np
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from fingerpad.paper import scenes
-from fingerpad.paper.run import Run, computed
+from benchmarks.paper import scenes
+from benchmarks.runs import Run, computed
 from fingerpad.results import style
 
 Array = NDArray[np.float64]

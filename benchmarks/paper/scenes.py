@@ -1,15 +1,11 @@
 """The runs behind the paper's figures; those of Figs. 6 to 8 are a grid of forces and voltages."""
 
-from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 
-from fingerpad.model.options import by_rule
-from fingerpad.scene import Scene, from_data
-
-VOLTAGES = (0.0, 50.0, 100.0, 150.0, 200.0)
-FORCES = (5.0, 10.0, 25.0, 50.0, 75.0, 100.0, 120.0, 150.0)  # N/m
+from benchmarks.runs import FORCES, VOLTAGES, plain
+from fingerpad.scene import Scene
 
 _PATH = {"output": {"errors": False}}  # the default finger on its default mesh; what that leaves of error is known
 SECTION = (120.0, 150.0)  # N/m, V of Fig. 2
@@ -21,11 +17,6 @@ NAMED = {"highest": 22, "enters": 27, "leaves": 16, "changes least": 25}
 _SLIP = 2e-3  # m, by which the finger slips without voltage (at 1.4 mm)
 _BETWEEN = 0.8e-3  # m of sliding from one voltage to the next, half of it while the voltage changes
 PHASES = np.linspace(0, np.pi, 13)  # of one half period, of which the square of the voltage is a whole one
-
-
-def plain(data: Mapping[str, Any]) -> Scene:
-    """Return a scene, with a number of ridges that can touch."""
-    return by_rule(from_data(data))
 
 
 def grid() -> dict[tuple[float, float], Scene]:

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 
-from fingerpad.paper import scenes
+from benchmarks.paper import scenes
 from fingerpad.results import style
 from fingerpad.scene import Scene
 from variational.roughness.bam import BearingArea

@@ -9,8 +9,8 @@ import numpy as np
 from matplotlib.figure import Figure
 from numpy.typing import ArrayLike, NDArray
 
-from fingerpad.paper import scenes
-from fingerpad.paper.run import computed, known
+from benchmarks.paper import scenes
+from benchmarks.runs import computed, known
 from fingerpad.results import style
 from fingerpad.scene import Scene
 

@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 
-from fingerpad.paper import scenes
-from fingerpad.paper.run import computed
+from benchmarks.paper import scenes
+from benchmarks.runs import computed
 from fingerpad.results import style
 
 _STATES = {"charged": "A  Normal contact", "partial": "B  Partial slip", "full_slip": "C  Full slip"}
