@@ -111,6 +111,15 @@ def test_no_band_where_no_run_is(scene):
     assert scene.parameters()[key.partition(".")[0]] != Scene().parameters()[key.partition(".")[0]]
 
 
+def test_losses_of_a_drive_count_under_a_drive_alone():
+    """A constant voltage attracts by Eq. 3 whatever tissue and leak are, and its error is that of the default scene."""
+    losses = {"electric": {"tissue": "dry", "leak": "sliding dry", "follows": "mean"}}
+    drive = {"voltage": {"waveform": "sine", "rms": 150.0, "frequency": 100.0}}
+    assert cylinder_errors.cautions(from_data(losses)) == []
+    (text,) = cylinder_errors.cautions(from_data(losses | drive))
+    assert "electric" in text
+
+
 def test_other_finger_is_named_by_its_tables():
     """Not by each of its 21 sizes and moduli; two keys of a table are named."""
     (text,) = cylinder_errors.cautions(Scene(finger="woman"))

@@ -66,6 +66,7 @@ class Outside(NamedTuple):
         return f"{self.key} is {self.value}, and it is known for {self.known}"
 
 
+_OF_DRIVES = ("tissue", "leak", "follows")  # keys of electric without effect on a constant voltage
 _TABLES = ("friction", "geometry", "materials", "contact", "electric", "roughness")
 _DEFAULT_SCREEN = Region(
     44,
@@ -146,7 +147,14 @@ def in_short(keys: Sequence[Outside]) -> list[Outside]:
 
 
 def _given(scene: Scene, pull: float) -> dict[str, Any]:
-    """Return the values of a scene by dotted key; of the two forces the one that it has."""
+    """Return the values of a scene by dotted key; of the two forces the one that it has.
+
+    A constant voltage has no losses, so without a drive the keys of :data:`_OF_DRIVES` are those of the default scene.
+    """
+    if scene.supply is None:
+        default = Scene().electric
+        lossless = {key: getattr(default, key) for key in _OF_DRIVES}
+        scene = scene.model_copy(update={"electric": scene.electric.model_copy(update=lossless)})
     given = flat(scene.parameters()) | {"voltage": scene.volts, PULL: pull}
     given.pop("f_ext" if scene.force is not None else "force", None)
     return given
