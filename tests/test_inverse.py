@@ -111,6 +111,20 @@ def test_drive_is_varied_by_its_amplitude():
     assert amplitude / 2**0.5 == pytest.approx(voltage, rel=1e-4)
 
 
+def test_drive_is_not_replaced_by_constant_voltages():
+    """A voltage that is varied in place of a drive would be one without its losses."""
+    sine = fp.Scene(voltage={"waveform": "sine", "amplitude": 100.0, "frequency": 1e3})
+    with pytest.raises(SceneError, match="voltage is a drive and over is voltage; give one of its keys"):
+        fp.solve(sine, "mu_app=2x")
+
+
+def test_margin_is_printed_with_the_digits_of_its_value():
+    """Two digits of the error, as beside every other number."""
+    solution = fp.solve(target="mu_app=2x")
+    ((value, error),) = re.findall(r"voltage = ([\d.]+) ± ([\d.]+) V, ±", str(solution))
+    assert error == f"{solution.roots[0].margin:.2g}" and value == f"{solution.values[0]:.1f}"
+
+
 def test_all_values_are_named():
     """The sign of a voltage changes no force."""
     low, high = fp.solve(target="mu_app=2x", between=("-0.3 kV", 300)).values

@@ -4,6 +4,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from fingerpad.richardson import plus_minus
 from fingerpad.scene import Scene
 from fingerpad.scene.dotted import value_of, with_values
 from fingerpad.scene.keys import by_name
@@ -51,9 +52,17 @@ class Axis:
 
     def shown(self, *values: float) -> str:
         """Return one or two values of the key with their unit; short lengths in µm."""
-        small = self.unit == "m" and max(map(abs, values)) < 1e-3
-        unit, factor = ("µm", 1e6) if small else (self.unit, 1.0)
+        unit, factor = self._unit(*values)
         return " to ".join(f"{value * factor:.4g}" for value in values) + f" {unit}" * bool(unit)
+
+    def with_error(self, value: float, error: float) -> str:
+        """Return a value of the key with its error and unit, as in tables."""
+        unit, factor = self._unit(value)
+        return plus_minus(value * factor, error * factor) + f" {unit}" * bool(unit)
+
+    def _unit(self, *values: float) -> tuple[str, float]:
+        small = self.unit == "m" and max(map(abs, values)) < 1e-3
+        return ("µm", 1e6) if small else (self.unit, 1.0)
 
 
 def refuse_many(count: int, what: str = "sweep") -> None:

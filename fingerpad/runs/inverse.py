@@ -97,9 +97,9 @@ class Solution:
         if self.target.name == CONTRAST:
             lines.append("contrast is the relative rise of µ_app by the voltage.")
         for root in self.roots:
-            line = f"  {axis.key} = {axis.shown(root.key)}"
-            if root.margin == root.margin:
-                line += f", ± {axis.shown(root.margin)} by the error of the closed form"
+            known = root.margin == root.margin
+            value = axis.with_error(root.key, root.margin) if known else axis.shown(root.key)
+            line = f"  {axis.key} = {value}" + ", ± by the error of the closed form" * known
             lines.append(f"{line}: {quantity.symbol} {_cell(self.target, root.number)}")
             if root.full is not None:
                 lines.append(f"    {self._beside(root, root.full)}")
@@ -145,6 +145,8 @@ def solve(
     scene, way = checked(scene).resolved(), find(model)
     form = ClosedForm(Cylinders() if way.path else way)
     form.model.check(scene)
+    if over == "voltage" and scene.supply is not None:
+        raise SceneError("voltage is a drive and over is voltage; give one of its keys, as voltage.rms")
     newtons = over == "force" or (scene.force is not None and over != "f_ext")
     goal, notes = read(target, over != "f_ext"), list[str]()
     if over == "f_ext" and goal.whole or newtons and not goal.whole:
