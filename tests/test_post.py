@@ -64,6 +64,18 @@ def test_states_survive_all_failures(broken):
     assert [state.f_t for state in found.steps] == [state.f_t for state in expected.steps]
 
 
+def test_failure_has_its_whole_sentence(tmp_path, monkeypatch):
+    """One of the length that refusals have."""
+    sentence = "a quantity of the band is missing: " + "x" * 150
+
+    def refuse(*args, **more):
+        raise RuntimeError(sentence)
+
+    monkeypatch.setattr(PARTS["bands of friction"], refuse)
+    result = solved(fp.Scene(), find("cylinders"), RunContext(tmp_path))
+    assert f"bands of friction: RuntimeError: {sentence}" in result.notes
+
+
 @pytest.mark.parametrize("name", ["bands of friction", "result.nc", "footprint.png", "report"])
 def test_failure_of_one_costs_no_other(tmp_path, monkeypatch, name):
     """Of the closed form, with a folder."""

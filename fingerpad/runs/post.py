@@ -25,6 +25,7 @@ from variational.state import ContactState
 
 BEGUN = "begun"
 """Key of a summary that was written before the entries, for runs that end in between."""
+_LONGEST = 300  # characters of a failure in a note, whose traceback is in run.log
 _BEGUN = "The run ended before what follows from its states was computed: no newtons, bands, cautions or pictures."
 
 
@@ -188,7 +189,7 @@ def _tried(entry: Entry, result: Result, context: RunContext, writer: Writer) ->
             found = compute(result)
     except Exception as error:  # whatever it is, the result stays
         words = f"{entry.name}: {type(error).__name__}: {error}"
-        why = str(error) if isinstance(error, SceneError) else clip(words)
+        why = str(error) if isinstance(error, SceneError) else clip(words, _LONGEST)
         trace = traceback.format_exc()
     why, trace = next((each for each in writer.comm.allgather((why, trace)) if each[0]), ("", ""))
     if not why:
