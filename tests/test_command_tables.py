@@ -56,7 +56,9 @@ def test_errors_are_drawn_and_forces_have_their_unit(tmp_path, monkeypatch):
         (row,) = (each for each in rows if each["force"] == force and each["voltage"] == 200.0)
         heights = band[band[:, 0] == 200.0, 1]
         assert heights.max() - heights.min() == pytest.approx(2 * row["mu_app_error"], rel=1e-9)
-    legend = ax.get_legend()
+    legend, (canvas, label) = ax.get_legend(), (figures[0].canvas, ax.yaxis.label)
+    canvas.draw()
+    assert label.get_window_extent().height < figures[0].bbox.height
     assert [text.get_text() for text in legend.get_texts()] == ["0.3 N", "0.5 N"]
     assert "band: ± error" in legend.get_title().get_text()
 

@@ -49,6 +49,20 @@ def test_browser_opens_a_sweep(table, tmp_path, size):
     assert found["wide"] <= width
 
 
+@pytest.mark.parametrize("size", SIZES)
+def test_titles_fit_their_charts_and_curves_have_units(table, tmp_path, size):
+    """A title of an axis is no longer than its picture is high."""
+    width, height = SIZES[size]
+    program = """
+    const long = (found) => found && found.getBoundingClientRect().height;
+    const charts = [...document.querySelectorAll(".chart")];
+    const legend = [...charts[0].querySelectorAll(".legendtext")].map((each) => each.textContent);
+    return { legend, long: charts.map((c) => [long(c.querySelector(".ytitle")), long(c)]) };"""
+    found = asked((table / NAME).read_text(encoding="utf-8"), program, tmp_path, width=width, height=height)
+    assert found["legend"] == ["f_ext = 25 N/m", "f_ext = 75 N/m"]
+    assert all(0 < title < 0.8 * chart for title, chart in found["long"])
+
+
 def test_failed_points_are_listed_with_their_reason(table):
     page = (table / NAME).read_text(encoding="utf-8").replace("\u00a0", " ")
     assert "1 of 6 points failed" in page

@@ -228,6 +228,6 @@ def draw(key: str, file: Path, rows: Sequence[Mapping[str, Any]]) -> None:
             colour = style.voltage(value, max(voltages, key=abs)) if each == "voltage" else None
             x, mu, error = ([point.get(key, 0.0) for point in points] for key in (over, mu_app, mu_app + _ERROR))
             output.curve(ax, k, x, mu, label[each].format(value), colour, error)
-        ax.set(xlabel=axis[over], ylabel=rf"apparent friction coefficient $\mu_{{app}}$ of the {of} (–)")
+        ax.set(xlabel=axis[over], ylabel=r"apparent friction coefficient $\mu_{app}$ (–)")
         title = {"f_ext_of_section": "$f_{ext}$", "force": "$F_{ext}$", "voltage": "U"}[each]
         ax.legend(title=f"{title}; band: ± error" if _has_errors(rows) else title)

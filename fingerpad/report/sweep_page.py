@@ -22,6 +22,7 @@ from fingerpad.results.states import WORDS
 from fingerpad.runs.sweep_columns import (
     FORCE,
     LOAD,
+    described,
     head_of,
     in_time,
     loads,
@@ -40,6 +41,7 @@ from variational.files import read
 _CHARTS = ("mu_app", "f_t", "contact_length", "contact_area")
 _MAX_CAUTIONS = 3  # in the headline
 _MAX_VALUES = 6  # of a key in the headline
+_MAX_TITLE = 30  # characters beside an axis, beyond which they take two lines
 _RUBS = 1e-6  # µ_app that is no roundoff
 _IN_TIME = ("mu_app_max", "mu_app_mean", "f_t_amplitude")  # columns with a chart of a load over time, behind its name
 
@@ -303,6 +305,11 @@ def _cite(table: Table) -> str:
     )  # fmt: skip
 
 
+def _unit(key: str) -> str:
+    meant = described(key)
+    return f" {meant.unit}" if meant is not None and meant.unit else ""
+
+
 def _curves(table: Table) -> dict[str, Any]:
     """Return one curve for each value of all axes but the one along x, which is that with most numbers."""
     charts, scales = _charts(table), {column: quantity.scale for column, quantity in table.shown[1].items()}
@@ -314,12 +321,13 @@ def _curves(table: Table) -> dict[str, Any]:
         groups.setdefault(tuple(row[key] for key in others), []).append(row)
     curves = []
     for values, rows in groups.items():
-        name = ", ".join(f"{key} = {printed(value)}" for key, value in zip(others, values, strict=True))
+        name = ", ".join(f"{key} = {printed(value)}{_unit(key)}" for key, value in zip(others, values, strict=True))
         x = [row[along] if numbers[along] else printed(row[along]) for row in rows]
         curve: dict[str, Any] = {"name": name, "x": x}
         for (place, (column, _)), end in itertools.product(charts.items(), ("", "_error")):
             found = [row.get(f"{column}{end}") for row in rows]
             curve[f"{place}{end}"] = [None if value is None else value * scales.get(column, 1.0) for value in found]
         curves.append(curve)
-    titles = {place: html.typeset(title) for place, (_, title) in charts.items()}
+    breaks = {place: "<br>of the " if len(title) > _MAX_TITLE else " of the " for place, (_, title) in charts.items()}
+    titles = {place: html.typeset(title).replace(" of the ", breaks[place]) for place, (_, title) in charts.items()}
     return {"along": html.typeset(head_of(along, "title")), "curves": curves, "charts": titles}
