@@ -6,6 +6,7 @@ from numpy.testing import assert_allclose
 
 import fingerpad as fp
 from fingerpad.reduced import cylinders
+from fingerpad.results.drive_picture import Period, over_period
 from fingerpad.scene.remarks import leakage, remarks
 from fingerpad.scene.supply import GAPS, SAMPLES, Supply, one_period, supply_of
 from variational.attraction.circuit import GapCircuit
@@ -204,3 +205,13 @@ def test_drive_is_refused(drive, electric, words):
 
 def test_a_carrier_that_a_file_resolves_is_taken():
     assert fp.Scene(voltage=FILE | {"carrier": {"frequency": 40.0}}).supply is not None
+
+
+# -- as a picture ----------------------------------------------------------------------------------------------------
+@pytest.mark.parametrize(("unit", "symbol"), [("N", "$F_T$"), ("N/m", "$f_T$")])
+def test_picture_has_the_symbol_of_the_finger_or_of_its_section(unit, symbol):
+    """Newtons and newtons per metre are two quantities, with the symbols of the tables."""
+    times, none = np.linspace(0.0, 0.01, 3), np.array([])
+    found = Period(times, times, times, times, unit, none, none)
+    labels = [ax.get_ylabel() for ax in over_period(found, "", None).axes]
+    assert labels[2:] == [f"{symbol} ({unit})", f"amplitude of {symbol} ({unit})"]

@@ -42,7 +42,7 @@ def over_period(found: Period, title: str, path: Path | None) -> Figure:
         parts = (
             (found.voltage, "U (V)", style.BLACK),
             (found.sigma_el / 1e3, r"$\sigma_{el}$ (kPa)", style.ATTRACTION),
-            (found.f_t, f"$F_T$ ({found.unit})", style.VERMILION),
+            (found.f_t, f"{_symbol(found)} ({found.unit})", style.VERMILION),
         )
         for ax, (values, label, colour) in zip(panels, parts, strict=True):
             ax.plot(1e3 * found.time, values, color=colour)
@@ -58,11 +58,16 @@ def over_period(found: Period, title: str, path: Path | None) -> Figure:
         return style.save(figure, path)
 
 
+def _symbol(found: Period) -> str:
+    """Return the symbol of the friction force: of the whole finger in N, and of a section in N/m."""
+    return "$F_T$" if found.unit == "N" else "$f_T$"
+
+
 def _spectrum(ax: Axes, found: Period) -> None:
     shown = np.flatnonzero(found.amplitude > _LEAST * found.amplitude.max(initial=0.0))[:_MOST]
     ax.vlines(found.frequency[shown], 0, found.amplitude[shown], color=style.VERMILION)
     ax.plot(found.frequency[shown], found.amplitude[shown], "o", color=style.VERMILION, ms=4)
-    ax.set(xlabel="frequency (Hz)", ylabel=f"amplitude of $F_T$ ({found.unit})")
+    ax.set(xlabel="frequency (Hz)", ylabel=f"amplitude of {_symbol(found)} ({found.unit})")
     ax.set_xlim(left=0)
     ax.set_ylim(bottom=0)
     ax.grid(alpha=0.3)
