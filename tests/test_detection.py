@@ -159,7 +159,7 @@ def test_microscale_takes_a_drive(capsys):
 
 def test_constant_voltage_has_no_period(capsys):
     assert main(["drive", "--set", "electric.leak=300"]) == 0
-    assert "leaks away with a time constant of 6.83 ms" in capsys.readouterr().out
+    assert "Charge leaks with a time constant of 6.83 ms" in capsys.readouterr().out
 
 
 @pytest.mark.parametrize(

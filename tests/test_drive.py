@@ -104,7 +104,7 @@ def test_constant_voltage_says_what_remains():
     assert "time constant of 12.1 ms" in note and "230 to 410" in note
     table = {"frequency": [1.0, 1e6], "eps": [2e3, 1e3], "sigma": [1e-4, 1e-3]}
     (note,) = leakage(fp.Scene(electric={"tissue": table, "leak": 300.0}))
-    assert "it would leak away" in note
+    assert "A constant voltage leaks away in it" in note
 
 
 def test_offset_without_a_leak_has_a_caution():

@@ -195,3 +195,17 @@ def test_what_is_missing_is_one_sentence(ran, monkeypatch):
     nothing = Fields(*(np.zeros((0, 2)),) * 7)
     with pytest.raises(ImportError, match="to_pyvista needs pyvista, which is not installed; pip install pyvista, or"):
         nothing.to_pyvista()
+
+
+@pytest.mark.parametrize("errors", [False, True])
+def test_bone_of_full_slip_is_where_its_fields_have_it(tmp_path, errors):
+    """The nodes on the bone, some 45, move by ``bone_x``, to roundoff; also from the folder, and on the final mesh.
+
+    Both are solved for 0.2 mm and more behind the place where slip begins.
+    """
+    scene = NINE | {"f_ext": 1.0, "voltage": 60.0, "output": {"receptors": False, "errors": errors}}
+    with no_pictures():
+        result = fp.run(from_data(scene), out=tmp_path)
+    for found in (result, fp.Result.load(tmp_path)):
+        moved = found.fields["full_slip"].displacement[:, 0]
+        assert np.isclose(moved, found.full_slip.bone_x, rtol=0, atol=1e-12).sum() > 30

@@ -22,8 +22,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from fingerpad.results.quantities import EXTREMES
-from variational.state import ContactState
+from variational.state import EXTREMES, ContactState
 
 if TYPE_CHECKING:
     from fingerpad.scene.waveform import Waveform

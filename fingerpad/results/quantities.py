@@ -13,6 +13,7 @@ from typing import Any
 from fingerpad.richardson import plus_minus
 from fingerpad.scene.messages import SceneError, show
 from geometry.units import in_si
+from variational.state import EXTREMES as EXTREMES
 from variational.state import ContactState, StepRecord
 
 _NOTHING = 1e-6  # in the units of tables: below it all is roundoff
@@ -248,8 +249,6 @@ QUANTITIES = {name: STEPS[name] for name in (*_PRINTED_FIRST, "ridges_in_contact
 CHANGES = {"error": "whole known error", "penalty": "estimated change for a rigid screen"}
 MESH, PENALTY, MODEL = "mesh", "penalty", "closed form"
 """Parts of the error of a section, in words; those of a whole finger are in :mod:`fingerpad.slices.errors`."""
-EXTREMES = ("mu_app", "f_t", "contact_length", "f_electrostatic")
-"""Quantities of a load of which extremes and means are kept, beside outputs of one's own."""
 SWEPT = (*EXTREMES, "ridges_in_contact")
 """Quantities of a named state in the table of a sweep, beside outputs of one's own."""
 FRICTION = ("mu_app", "f_t")

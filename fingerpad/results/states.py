@@ -17,8 +17,7 @@ from operator import attrgetter
 from typing import TYPE_CHECKING, Any
 
 from fingerpad.results.over_time import OverTime, over_time, without_parts_of_jumps
-from fingerpad.results.quantities import EXTREMES
-from variational.state import CONDITIONS, RESULTS, ContactState
+from variational.state import CONDITIONS, EXTREMES, RESULTS, ContactState
 
 if TYPE_CHECKING:
     from fingerpad.scene import Load

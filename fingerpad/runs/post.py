@@ -80,7 +80,8 @@ def cautions_on(states: Sequence[ContactState] = ()) -> Entry:
 
 
 def _words(result: Result) -> Result:
-    """Return the result itself, once it was put into words."""
+    """Return the result itself, once it was put into words and into its summary."""
+    result.to_dict()
     str(result)
     return result
 

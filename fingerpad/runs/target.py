@@ -1,7 +1,7 @@
 """What a scene is to reach, read from a text: ``"mu_app=2x"``, ``"F_T=0.3 N"``, ``"contrast=10 %"``.
 
 A target is a quantity of the state of full slip and its value. Quantities are those of
-:data:`fingerpad.results.quantities.FINGER`, of the whole finger, and :data:`~fingerpad.results.quantities.EXTREMES`, of
+:data:`fingerpad.results.quantities.FINGER`, of the whole finger, and :data:`~variational.state.EXTREMES`, of
 the section at its centre. They have their names or symbols. ``2x`` is twice the value without voltage. *Contrast* is
 the relative rise of µ_app by the voltage: 10 % is 1.1 times µ_app without voltage.
 """
@@ -10,9 +10,10 @@ import re
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from fingerpad.results.quantities import EXTREMES, FINGER, QUANTITIES, Output
+from fingerpad.results.quantities import FINGER, QUANTITIES, Output
 from fingerpad.scene.messages import SceneError, clip, show
 from geometry.units import finite, to_si
+from variational.state import EXTREMES
 
 CONTRAST = "contrast"
 _NUMBER = re.compile(r"([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d{1,3})?)\s*(.*)")

@@ -54,8 +54,8 @@ _FRICTION = "Buchholz, Frederick and Armstrong 1988, Ergonomics 31, 317 to 325, 
 
 NOT_MEASURED = "This finger was not measured: its values are from several sources, and assumptions (docs/fingers.md)."
 MOISTURE = (
-    "No finger was measured for these values, and they contradict a measurement. Here moisture raises the attraction "
-    "of a voltage; people with moist fingers needed a higher voltage to feel it (arXiv 2409.16936)."
+    "No finger was measured for these values. Moisture raises the attraction of a constant voltage here, without "
+    "losses; people with moist fingers needed a higher voltage to feel it (arXiv 2409.16936)."
 )
 
 
