@@ -1,4 +1,4 @@
-# make demo   press, charge and slide the default finger; results in results/demo
+# make demo   press the default finger with 0.5 N, charge and slide it; results in results/demo
 # make test   all tests, then those marked mpi on two ranks
 # make check  tests of every module that run no whole finger
 # make lint   style, layout and types: ruff and mypy, half a minute
@@ -34,7 +34,7 @@ help:
 	@sed -n 's/^# make/make/p' Makefile
 
 demo:
-	$(run) python3 -m fingerpad run --out results/demo
+	$(run) python3 -m fingerpad run --force "0.5 N" --out results/demo
 
 lint:
 	environment/lint

@@ -1,10 +1,12 @@
 """The pictures of the README: finger, one ridge with gap and attraction, friction force; and the moving run.
 
 Finger and ridge are those of a default run, at whose middle 75 N/m press. Friction forces are of the whole finger, sums
-of slices over the traces of docs/models.json, under the force of that run and under two others.
+of slices over the traces of docs/models.json, under the force of the README and under two others. The README has the
+headline of the run under that force.
 
-environment/run python3 -m benchmarks.hero FOLDER    keep the numbers of a default run's folder, then draw both
-environment/run python3 -m benchmarks.pages hero     draw from docs/hero.json, without a run
+environment/run python3 -m benchmarks.hero PATH FORCE    keep the numbers of the folders of two default runs, then draw:
+                                                         fingerpad run, and fingerpad run --force "0.5 N" (make demo)
+environment/run python3 -m benchmarks.pages hero         draw from docs/hero.json, without a run
 """
 
 import json
@@ -37,9 +39,9 @@ _MM, _UM, _KPA = 1e3, 1e6, 1e-3
 _FINE = 0.02  # mm, between the points of a drawn outline
 
 
-def main(folder: str) -> None:
-    """Keep the numbers of a default run with those of docs/models.json, and draw."""
-    summary = json.loads((Path(folder) / "summary.json").read_text(encoding="utf-8"))
+def main(folder: str, newtons_folder: str) -> None:
+    """Keep the numbers of two default runs with those of docs/models.json, and draw."""
+    summary = json.loads((Path(newtons_folder) / "summary.json").read_text(encoding="utf-8"))
     a = finger_of(Path(folder) / "finger_full_slip.npz")
     xy, outlines = _MM * (a["x"] + a["u"]), []
     for tag in tags.LAYERS.values():
@@ -151,4 +153,4 @@ def _draw_friction(ax: Axes, friction: dict[str, list[list[float]]], own: str) -
 
 
 if __name__ == "__main__":
-    main(sys.argv[1])
+    main(*sys.argv[1:])

@@ -251,7 +251,7 @@ def draw(docs: Path) -> Path:
         for each in at(numbers, RADII[1], u)
     ]
     names = compared(numbers) | {
-        "friction": friction, "least": at(numbers, RADII[1], HIGH)[0], "largest": _largest, "solids": solids,
+        "default": harness.kept("hero", docs).numbers["default"]["headline"], "friction": friction, "least": at(numbers, RADII[1], HIGH)[0], "largest": _largest, "solids": solids,
         "comparisons": [
             (words, of, points) for key, words in errors.COMPARED.items() for of, known in COMPARISONS.items()
             if (points := known.get(key, ()))
@@ -261,7 +261,7 @@ def draw(docs: Path) -> Path:
         "presses": [each for each in numbers["estimates"] if each["state"] == "charged"],
         "paths": [(p, p["f_t_raised"] / p["f_t"] - 1) for p in numbers["paths"]],
     }  # fmt: skip
-    return harness.page(docs, "newtons", "python3 -m benchmarks.newtons", globals() | names, "models", "solid")
+    return harness.page(docs, "newtons", "python3 -m benchmarks.newtons", globals() | names, "models", "solid", "hero")
 
 
 if __name__ == "__main__":

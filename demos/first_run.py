@@ -1,8 +1,7 @@
 # %% [markdown]
 # # First run
 #
-# A finger is pressed on a screen with 75 N per metre of its length, the voltage of the screen is switched on, and the
-# finger slides. The attraction adds to the contact pressure, and friction follows the contact pressure: so the apparent
+# A finger is pressed on a screen with 0.5 N, the voltage of the screen is switched on, and the finger slides. The attraction adds to the contact pressure, and friction follows the contact pressure: so the apparent
 # friction µ_app, friction force over external force, is above the friction coefficient of 0.25. The headline has that of
 # the whole finger; that of the middle section is in plane strain, per metre of finger.
 #
@@ -12,15 +11,15 @@
 # fmt: off
 import fingerpad as fp
 
-scene = fp.Scene(f_ext=75.0, voltage=200.0, friction=0.25)         # SI units; every other key has a default
+scene = fp.Scene(force="0.5 N", voltage=200.0, friction=0.25)      # SI units; every other key has a default
 curve = fp.sweep(scene, model="cylinders", voltage=[0, 100, 200])  # a closed form: two seconds
 print(curve)
 
 result = fp.run(scene, out="results/mine")                         # finite elements: a minute or two
-print(result.headline)                                             # of the whole finger; set its force by force="0.5 N"
-slip = result.full_slip                                            # also .uncharged, .charged, .steps
+print(result.headline)                                             # of the whole finger
+slip = result.full_slip                                            # its middle section; also .uncharged, .charged
 print(f"middle section: µ_app = {slip.mu_app:.4f} ± {slip.error.mu_app:.4f}, {slip.f_ext:.0f} N/m")
-result.plot("surface", "surface.png")                              # pressure, attraction and gap along the skin
+result.plot("footprint", "footprint.png")                          # gross contact, ridges and pressure from below
 
 # fmt: on
 # %% [markdown]

@@ -20,14 +20,15 @@ NINE = {
 LIGHTER = 1.0 / 75.0  # of the loads: 1 N/m on the small finger for 75 N/m on the default one
 
 
-def small(f_ext: float = 75.0, voltage: float = 200.0, **values: Any) -> Scene:
+def small(f_ext: float = 75.0, voltage: float = 200.0, force: str | None = None, **values: Any) -> Scene:
     """Return the scene on the small finger, under a lighter load and half of the voltage."""
-    return load(SMALL).replace(f_ext=f_ext * LIGHTER, voltage=voltage / 2, **values)
+    load_of = {"f_ext": f_ext * LIGHTER} if force is None else {"force": "0.01 N"}
+    return load(SMALL).replace(**load_of, voltage=voltage / 2, **values)
 
 
 def default(scene: Scene, *args: Any, **more: Any) -> fingerpad.Sweep:
-    """Return a sweep of the default scene: the closed form is made for its finger."""
-    return SWEEP(Scene(), *args, **more)
+    """Return a sweep of the default finger: the closed form is made for it."""
+    return SWEEP(Scene(force="0.5 N") if scene.force else Scene(), *args, **more)
 
 
 def beside(scene: Scene, *args: Any, out: str | None = None, **more: Any) -> fingerpad.Result:

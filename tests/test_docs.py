@@ -50,11 +50,11 @@ def test_closed_form_prints_the_readme(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     block, output = blocks(README)[0]
     first = block.partition("result =")[0]
-    assert alike(output.partition("At 0.53 N")[0], printed(first, {}), 0.0)
+    assert alike(output.partition("At 0.5 N")[0], printed(first, {}), 0.0)
 
 
 def test_full_run_of_the_readme_is_the_kept_one():
-    """The default scene's headline, and friction of its middle section, are those of the run in docs/hero.json."""
+    """The headline at 0.5 N, and friction of its middle section, are those of the run in docs/hero.json."""
     kept = json.loads((ROOT / "docs" / "hero.json").read_text(encoding="utf-8"))["numbers"]["default"]
     found = re.search(r"µ_app = ([0-9.]+) ± ([0-9.]+)", README)
     assert found is not None
