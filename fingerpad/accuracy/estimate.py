@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 from fingerpad.accuracy.states import Solve, with_values
 from fingerpad.results.quantities import QUANTITIES, Output
 from fingerpad.results.states import WORDS
-from fingerpad.richardson import RECEPTOR, TWO, of_two_meshes, plus_minus
+from fingerpad.richardson import RECEPTOR, TWO, of_sum, of_two_meshes, plus_minus
 from fingerpad.scene.messages import SceneError
 from variational.element import ELEMENTS
 from variational.state import ContactState, Errors
@@ -147,6 +147,7 @@ def with_errors(
 def _of_outputs(estimate: Estimate, name: str, outputs: Sequence[Output]) -> dict[str, float]:
     """Return the errors of outputs in a state, of first order in the sizes of two meshes, by name.
 
+    One with a rule of sums has the order of the forces, or of the contact length.
     One that is not computed from the forces, ridges and sites of a state alone has none.
     """
     coarse, base, found = estimate.coarse, estimate.base, dict[str, float]()
@@ -155,8 +156,12 @@ def _of_outputs(estimate: Estimate, name: str, outputs: Sequence[Output]) -> dic
     ratio = coarse.mesh.contact / base.mesh.contact
     for each in outputs:
         with suppress(SceneError):
-            change = each.of(base.states[name].state) - each.of(coarse.states[name].state)
-            found[each.name] = TWO * abs(change) / (ratio - 1)
+            states = coarse.states[name], base.states[name]
+            before, now = (each.of(state.state) for state in states)
+            facets = states[0].facet, states[1].facet
+            found[each.name] = TWO * abs(now - before) / (ratio - 1)
+            if each.sum:
+                found[each.name] = of_sum(before, now, facets, estimate.degree, each.si == "m")
     return found
 
 
