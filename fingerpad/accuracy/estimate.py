@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 from fingerpad.accuracy.states import Solve, with_values
 from fingerpad.results.quantities import QUANTITIES, Output
 from fingerpad.results.states import WORDS
-from fingerpad.richardson import RECEPTOR, TWO, of_sum, of_two_meshes, plus_minus
+from fingerpad.richardson import RECEPTOR, TWO, of_sum, of_two_meshes, plus_minus, rigid
 from fingerpad.scene.messages import SceneError
 from variational.element import ELEMENTS
 from variational.state import ContactState, Errors
@@ -137,8 +137,11 @@ def with_errors(
         if name in found:
             mesh, penalty = (errors_of(name, each) for each in (estimates, estimate.penalty))
             whole = {key: value + abs(penalty.get(key, 0.0)) for key, value in mesh.items()}
-            error = Errors.of(whole | _of_outputs(estimate, name, outputs))
-            found[name] = replace(with_values(found[name], kept), error=error, penalty=Errors.of(penalty))
+            error = whole | _of_outputs(estimate, name, outputs)
+            springs = _by_penalty(estimate, name, outputs)
+            error |= {key: error[key] + abs(change) for key, change in springs.items() if key in error}
+            changes = {"error": Errors.of(error), "penalty": Errors.of(penalty | springs)}
+            found[name] = replace(with_values(found[name], kept), **changes)
     if {"uncharged", "charged"} <= set(found) and path["uncharged"].step == path["charged"].step:  # at 0 V one state
         found["uncharged"] = found["charged"]
     return found
@@ -162,6 +165,16 @@ def _of_outputs(estimate: Estimate, name: str, outputs: Sequence[Output]) -> dic
             found[each.name] = TWO * abs(now - before) / (ratio - 1)
             if each.sum:
                 found[each.name] = of_sum(before, now, facets, estimate.degree, each.si == "m")
+    return found
+
+
+def _by_penalty(estimate: Estimate, name: str, outputs: Sequence[Output]) -> dict[str, float]:
+    """Return by how much a rigid screen would change outputs with a rule of sums in a state, by name."""
+    stiffer, found = estimate.base.stiffer, dict[str, float]()
+    for each in outputs if estimate.penalty and stiffer is not None and name in stiffer.states else ():
+        with suppress(SceneError):
+            now, stiff = ({each.name: each.of(solve.states[name].state)} for solve in (estimate.base, stiffer))
+            found |= rigid(now, stiff) if each.sum else {}
     return found
 
 

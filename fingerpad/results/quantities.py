@@ -22,7 +22,7 @@ _PRINTED = {
 }  # fmt: skip
 """Units of tables that are not those of files, which are SI units, and the factor from SI."""
 _SUMS = {"N/m": ("N", 1), "J/m": ("J", 2), "m": ("mm²", 1), "m^2": ("m^3", 2)}
-"""Of quantities per metre of finger by their SI unit: the unit of their sum, and :attr:`Output.power`."""
+"""Of quantities per metre of finger: the unit of their sum, and :attr:`Output.power`."""
 SYMBOL = re.compile(r"(?<![\w.-])([µdfFhLp])_(app|eq|ext|el|max|[0cRT])(?![\w(=])")
 """A symbol in words, which pages and pictures typeset: its letter and its subscript."""
 
@@ -47,9 +47,7 @@ class Output:
     digits: int = 3
     """Digits after the point, where no error is estimated."""
     sum: str = ""
-    """``"slices"`` for a quantity per metre of finger, such as N/m, J/m or m: it is integrated over the slices of the
-    whole finger, to N, J or m². Slices of another width are similar: energies and areas grow with its square. Empty for
-    a quantity without a value for the whole finger."""
+    """``"slices"`` to integrate a quantity per metre of finger, such as N/m, over the slices of the whole finger."""
 
     @property
     def si(self) -> str:
@@ -63,7 +61,7 @@ class Output:
 
     @property
     def power(self) -> int:
-        """Exponent of the width of a slice with which the quantity grows at equal stress."""
+        """Exponent of the width of similar slices, with which the quantity grows at equal stress."""
         return _SUMS.get(self.si, ("", 1))[1]
 
     @property
@@ -305,10 +303,8 @@ def checked(outputs: Any) -> tuple[Output, ...]:
         if each.sum not in ("", "slices"):
             raise SceneError(f"the output {each.name} has sum = {show(each.sum)}; it must be 'slices', or left out")
         if each.sum and each.si not in _SUMS:
-            raise SceneError(
-                f"the output {each.name} has sum = 'slices' and the unit {show(each.unit)}; a sum over the slices must "
-                f"be of a quantity per metre of finger, in {', '.join(_SUMS)}"
-            )
+            units = f"the unit {show(each.unit)}; it must be one per metre of finger: {', '.join(_SUMS)}"
+            raise SceneError(f"the output {each.name} has sum = 'slices' and {units}")
         if each.sum and each.name in _OF_FINGER:
             raise SceneError(f"an output is called {show(each.name)}, as a quantity of the whole finger; rename it")
         names.add(each.name)

@@ -18,7 +18,7 @@ from itertools import groupby
 
 import numpy as np
 
-from fingerpad.results.quantities import MODEL, PENALTY
+from fingerpad.results.quantities import MODEL, PENALTY, Output
 from fingerpad.slices.total import Array, Profile, Total, at_indentation
 from fingerpad.slices.trace import LEAST, Trace, gross_width
 from variational.state import ContactState
@@ -48,7 +48,9 @@ Those of the indentation are twice as large as there, because they grow the most
 """
 
 
-def of_section(state: ContactState | None, wavelength: float, own: Iterable[str] = ()) -> dict[str, dict[str, float]]:
+def of_section(
+    state: ContactState | None, wavelength: float, own: Iterable[Output] = ()
+) -> dict[str, dict[str, float]]:
     """Return the relative errors that a sum takes over from its cross-section, by part and quantity.
 
     The gross width ends with half of a ridge's length on either side, and has the error of that length.
@@ -56,13 +58,13 @@ def of_section(state: ContactState | None, wavelength: float, own: Iterable[str]
     Args:
         state: of the cross-section, with estimated errors; None where there is none.
         wavelength: of a ridge (m).
-        own: names of outputs that are summed.
+        own: outputs that are summed.
     """
     mesh, penalty = dict[str, float](), dict[str, float]()
     if state is None:
         return {MESH: mesh}
-    for name, of in _OF_SECTION.items():
-        value, error, springs = (getattr(each, of) for each in (state, state.error, state.penalty))
+    for name, of in (_OF_SECTION | {each.name: each.name for each in own}).items():
+        value, error, springs = (getattr(each, of, math.nan) for each in (state, state.error, state.penalty))
         if value and not math.isnan(error):
             springs = 0.0 if math.isnan(springs) else abs(springs)
             mesh[name], penalty[name] = (error - springs) / abs(value), springs / abs(value)
@@ -70,8 +72,6 @@ def of_section(state: ContactState | None, wavelength: float, own: Iterable[str]
         if "contact_area" in part:
             ridge = part["contact_area"] * state.contact_length / state.ridges_in_contact
             part["gross_area"] = ridge / gross_width(state, wavelength)
-    known = {name: state.error.own.get(name, math.nan) for name in own if state.own.get(name)}
-    mesh |= {name: error / abs(state.own[name]) for name, error in known.items() if not math.isnan(error)}
     return {MESH: mesh} | ({PENALTY: penalty} if any(penalty.values()) else {})
 
 

@@ -84,8 +84,8 @@ def estimate(
     for name, total in found.items():
         estimated = name != "uncharged" and traces[name] is not traces.get("uncharged")
         between = errors.interpolation(finger, traces[name], total, count).get("effective_width", 0.0)
-        own = [each.name for each in traces[name].own]
-        carried[name] = errors.of_section(named[name], wavelength, own) | {errors.COARSE: away[name]}
+        own = errors.of_section(named[name], wavelength, traces[name].own)
+        carried[name] = own | {errors.COARSE: away[name]}
         carried[name] |= {errors.ESTIMATED: errors.estimate(name, total)} if estimated else {}
         carried[name] |= {errors.POINTS: {"f_ext": between}}
     return WholeFinger(in_order(found), SOURCE, carried, traces, scene.slices)

@@ -8,8 +8,9 @@ and every accepted step at full slip is a point of the trace. A model without a 
 force is reached is made again to a larger one.
 """
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import fields, replace
+from functools import partial
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -68,7 +69,7 @@ class Traced(NamedTuple):
     """Relative errors of the sum by part and quantity, where they are not those of a run's section."""
 
 
-def whole(scene: Scene, model: "Model", solve: Solve, outputs: Iterable[Output] = ()) -> Result:
+def whole(scene: Scene, model: "Model", solve: Solve, outputs: Sequence[Output] = ()) -> Result:
     """Return the result of a force on the whole finger; collective.
 
     Args:
@@ -84,13 +85,12 @@ def whole(scene: Scene, model: "Model", solve: Solve, outputs: Iterable[Output] 
     Raises:
         SceneError: a profile that does not fit, or a force that no trace reached.
     """
-
-    def reach() -> Reach:
-        return Reach(scene, lambda name, top, tries: _made(scene, model, solve, name, top, tries, outputs))
-
-    shared = reach()  # a trace of runs is made to the force of the one before; the others do not depend on each other
+    make = partial(_made, scene, model, solve, outputs)
+    shared = Reach(
+        scene, make
+    )  # a trace of runs is made to the force of the one before; the others do not depend on each other
     try:
-        found = {name: (shared if model.path else reach()).follow(name) for name in states(scene)}
+        found = {name: (shared if model.path else Reach(scene, make)).follow(name) for name in states(scene)}
     except _Stopped as stopped:
         return stopped.result
     finger = summed(scene, model.traces, found)
@@ -105,7 +105,7 @@ def whole(scene: Scene, model: "Model", solve: Solve, outputs: Iterable[Output] 
     return model.of_finger(scene, solve(scene.replace(f_ext=centre), ""), finger)
 
 
-def with_sum(result: Result, model: "Model", solve: Solve, outputs: Iterable[Output] = ()) -> Result:
+def with_sum(result: Result, model: "Model", solve: Solve, outputs: Sequence[Output] = ()) -> Result:
     """Return the result of a section by a model without a path, with its whole finger, or with a note why it has none.
 
     The centre of the finger bears the section's force in one of the named states, and less in the others.
@@ -179,7 +179,9 @@ def summed(scene: Scene, words: str, found: Mapping[str, Traced]) -> WholeFinger
     """
     totals = {name: each.total for name, each in found.items() if each.total is not None}
     wavelength = scene.geometry.ridge_wavelength
-    known = {name: dict(e.carried) or _of_section(e, name, wavelength) for name, e in found.items()}
+    known = {
+        name: dict(e.carried) or errors.of_section(_end(e, name), wavelength, e.trace.own) for name, e in found.items()
+    }
     of = {name: each.trace for name, each in found.items()}
     tops = (f"{each.trace.end[1]:.4g} N/m ({name.replace('_', ' ')})" for name, each in found.items())
     if not scene.volts:  # normal contact is one state then, with two names
@@ -234,7 +236,7 @@ def _section(traced: Traced, name: str, depth: float, wavelength: float) -> Cont
     near = min(traced.states, key=lambda state: abs(state.bone_height + depth))
     mu_app = at["f_t"] / at["f_ext"]
     end, mesh = _end(traced, name), traced.carried.get(errors.MESH)
-    shares = mesh or errors.add(*_of_section(traced, name, wavelength).values())
+    shares = mesh or errors.add(*errors.of_section(end, wavelength, traced.trace.own).values())
     own = {each.name: at.pop(each.name) for each in traced.trace.own}
     known = {key: shares[key] * at[key] for key in ("f_t", "f_electrostatic") if key in shares}
     known |= {"mu_app": shares["mu_app"] * mu_app} if "mu_app" in shares else {}
@@ -256,11 +258,6 @@ def _section(traced: Traced, name: str, depth: float, wavelength: float) -> Cont
         own=own,
         error=Errors.of(known),
     )
-
-
-def _of_section(traced: Traced, name: str, wavelength: float) -> dict[str, dict[str, float]]:
-    """Return the relative errors that a sum takes over from the end of its trace."""
-    return errors.of_section(_end(traced, name), wavelength, [each.name for each in traced.trace.own])
 
 
 def _end(traced: Traced, name: str) -> ContactState | None:
@@ -333,20 +330,16 @@ class Reach:
 
 
 def _made(
-    scene: Scene, model: "Model", solve: Solve, name: str, top: float, tries: int, outputs: Iterable[Output]
+    scene: Scene, model: "Model", solve: Solve, outputs: Sequence[Output], name: str, top: float, tries: int
 ) -> Traced:
-    """Return a trace as ordinary scenes have it; arguments as of :class:`Reach` and :func:`whole`."""
+    """Return a trace as ordinary scenes have it; arguments as of :class:`Reach` and :func:`whole`.
+
+    Each try of a run has a folder of its own, from which another command goes on.
+    """
     here = scene.replace(force=None)
-    if model.path:
-        return _run(here, scene.force or 0.0, solve, name, top, tries, outputs)
-    return Traced(*of_points(here, model, solve, name, scene.centre_force, top, outputs))
-
-
-def _run(
-    scene: Scene, force: float, solve: Solve, name: str, top: float, tries: int, outputs: Iterable[Output]
-) -> Traced:
-    """Return a trace of a run; each try has a folder of its own, from which another command goes on."""
-    result = solve(history(scene, name, top), f"{name}_{tries + 1}" if tries else name)
+    if not model.path:
+        return Traced(*of_points(here, model, solve, name, scene.centre_force, top, outputs))
+    result = solve(history(here, name, top), f"{name}_{tries + 1}" if tries else name)
     if result.interrupted:
         raise _Stopped(result, name)
     found = points(result, name)
@@ -354,4 +347,4 @@ def _run(
         return Traced(trace(found, scene.geometry.ridge_wavelength, outputs=outputs), found, result)
     except TraceError as error:
         why = f": {result.failure}" if result.failure else ""
-        raise SceneError(f"the force on the finger is {force:.4g} N; {error}{why}") from None
+        raise SceneError(f"the force on the finger is {scene.force:.4g} N; {error}{why}") from None
