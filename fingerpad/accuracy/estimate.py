@@ -140,8 +140,8 @@ def with_errors(
             error = whole | _of_outputs(estimate, name, outputs)
             springs = _by_penalty(estimate, name, outputs)
             error |= {key: error[key] + abs(change) for key, change in springs.items() if key in error}
-            changes = {"error": Errors.of(error), "penalty": Errors.of(penalty | springs)}
-            found[name] = replace(with_values(found[name], kept), **changes)
+            state = with_values(found[name], kept)
+            found[name] = replace(state, error=Errors.of(error), penalty=Errors.of(penalty | springs))
     if {"uncharged", "charged"} <= set(found) and path["uncharged"].step == path["charged"].step:  # at 0 V one state
         found["uncharged"] = found["charged"]
     return found
@@ -171,10 +171,12 @@ def _of_outputs(estimate: Estimate, name: str, outputs: Sequence[Output]) -> dic
 def _by_penalty(estimate: Estimate, name: str, outputs: Sequence[Output]) -> dict[str, float]:
     """Return by how much a rigid screen would change outputs with a rule of sums in a state, by name."""
     stiffer, found = estimate.base.stiffer, dict[str, float]()
-    for each in outputs if estimate.penalty and stiffer is not None and name in stiffer.states else ():
+    if not estimate.penalty or stiffer is None or name not in stiffer.states:
+        return found
+    base, stiff = estimate.base.states[name].state, stiffer.states[name].state
+    for each in outputs:
         with suppress(SceneError):
-            now, stiff = ({each.name: each.of(solve.states[name].state)} for solve in (estimate.base, stiffer))
-            found |= rigid(now, stiff) if each.sum else {}
+            found |= rigid({each.name: each.of(base)}, {each.name: each.of(stiff)}) if each.sum else {}
     return found
 
 

@@ -75,8 +75,8 @@ class WholeFinger:
             shares = errors.add(*carried.values(), between)
             known = carried.get(MODEL, shares)  # of a cheaper model nothing is known where its distance is not
             parts = [each for part in _PARTS if (each := carried.get(part))]  # an output of one's own has all or none
-            known = {key for key in known if key in FINGER or all(key in each for each in parts)}
-            found[name] = {key: abs(share * total.values[key]) for key, share in shares.items() if key in known}
+            there = {key for key in known if key in FINGER or all(key in each for each in parts)}
+            found[name] = {key: abs(share * total.values[key]) for key, share in shares.items() if key in there}
         return found
 
     def under(self, force: float | str) -> "WholeFinger":
@@ -142,7 +142,7 @@ class WholeFinger:
         states, traces, outputs = {}, {}, read_outputs(data.get("outputs", ()))
         for name, state in data["states"].items():
             arrays = {key: np.array(values) for key, values in state["slices"].items()}
-            places = [arrays.pop(key) for key in ("z", "thickness", "indentation")]
+            places = arrays.pop("z"), arrays.pop("thickness"), arrays.pop("indentation")
             del arrays["pressure"]
             states[name] = Total(state["indentation"], *places, state["centre"], arrays)
             points = {key: np.array(values) for key, values in state["trace"].items()}
