@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 
 from benchmarks import harness, models, newtons
-from fingerpad import run
 from fingerpad.reduced import cylinder_errors, cylinders, uncharged
 from fingerpad.scene import Scene, from_data
 from fingerpad.scene.dotted import with_values
@@ -54,23 +53,6 @@ def test_band_is_named_where_the_runs_are():
         for error in bands.values():
             assert f" {100 * error:.1f} %" in words
     assert "in charged normal contact" in words
-
-
-LIGHT = pytest.mark.xfail(strict=True, reason="8.6 N/m, 139 V: 4.6 % less friction, of an error of 3.1 %")
-
-
-@pytest.mark.slow
-@pytest.mark.long
-@pytest.mark.parametrize("number", [0, 1, pytest.param(2, marks=LIGHT)])
-def test_friction_of_runs_from_which_no_error_was_found_is_within_it(number):
-    """Full runs under forces and voltages drawn by a seed, none of them kept: within the error and the run's own."""
-    chance = np.random.default_rng([20261128, number])
-    f_ext, voltage = np.exp(chance.uniform(np.log(8.0), np.log(140.0))), chance.uniform(100.0, 195.0)
-    scene = Scene(f_ext=float(f_ext), voltage=float(voltage), output={"receptors": False})
-    result, full = cylinders.solve(scene), run(scene).full_slip
-    error, slip = result.record["model_error"]["full_slip"]["mu_app"], result.full_slip
-    assert slip is not None and full is not None and 0.01 < error < 0.05
-    assert abs(full.mu_app - slip.mu_app) <= error * slip.mu_app + full.error.mu_app, (f_ext, voltage)
 
 
 def test_ends_of_a_range_belong_to_it():

@@ -141,8 +141,8 @@ time.sleep(100)
 def test_program_that_is_killed_leaves_no_job(tmp_path):
     """Its job gets SIGTERM from the system, and is gone at once; it sleeps for longer than the test waits."""
     (tmp_path / "job.py").write_text(JOB, encoding="utf-8")
-    code = f"from fingerpad.runs.processes import run; run('job', [], 100.0, [{str(tmp_path)!r}])"
-    environment = {**os.environ, "PYTHONPATH": str(Path(__file__).parents[1])}
+    code = "from fingerpad.runs.processes import run; run('job', [], 100.0)"
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join([str(Path(__file__).parents[1]), str(tmp_path)])}
 
     def until(done):
         end = time.monotonic() + 60
