@@ -200,6 +200,7 @@ def _of_path(scene: Scene, finger: WholeFinger, found: dict[str, Traced]) -> Res
         **sections(scene, found),
         steps=(),
         loads=(),
+        outputs=(),
         drawing=None,
         folder=None,
         cost=_together(run.cost for run in runs),
@@ -332,10 +333,7 @@ class Reach:
 def _made(
     scene: Scene, model: "Model", solve: Solve, outputs: Sequence[Output], name: str, top: float, tries: int
 ) -> Traced:
-    """Return a trace as ordinary scenes have it; arguments as of :class:`Reach` and :func:`whole`.
-
-    Each try of a run has a folder of its own, from which another command goes on.
-    """
+    """Return a trace as ordinary scenes have it, each try in a folder of its own; see :class:`Reach`, :func:`whole`."""
     here = scene.replace(force=None)
     if not model.path:
         return Traced(*of_points(here, model, solve, name, scene.centre_force, top, outputs))
