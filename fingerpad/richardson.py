@@ -55,6 +55,7 @@ not show their scatter; in whole runs with an accuracy, where all sizes are chan
 """
 TWO = 2.0
 """The same on an error from two meshes that differ in all elements; see :data:`SITES`."""
+_EQUAL = 2.5  # ratio of two facets up to which they are as different as all elements
 SITES = 0.5
 """Of the median relative error of the sites of a state: least one of a single site.
 
@@ -167,6 +168,20 @@ def of_two_meshes(
         relative = np.array([found[name] for name in names]) / np.where(values > 0, values, np.inf)
         found |= dict(zip(names, np.maximum(relative, sites * np.median(relative)) * values, strict=True))
     return {name: float(error) for name, error in found.items()}
+
+
+def of_sum(coarse: float, fine: float, facets: tuple[float, float], degree: int, length: bool) -> float:
+    """Return the error of a sum over the ridges of a section by two meshes, see :func:`of_two_meshes`, in its unit.
+
+    Args:
+        coarse: value on the mesh with elements twice as large.
+        fine: on the finer one.
+        facets: lengths of the facets where contact ends (m), coarse and fine.
+        degree: polynomial degree of the elements.
+        length: whether it has the order of a length in contact, else that of a force.
+    """
+    name, short = "state_contact_length" if length else "state_f_t", facets[0] > _EQUAL * facets[1]
+    return of_two_meshes({name: coarse}, {name: fine}, {"state": facets}, degree, short=short)[name]
 
 
 def of_two_paths(differences: Mapping[str, float], ratio: float) -> dict[str, float]:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 from fingerpad.accuracy.states import Solve, with_values
 from fingerpad.results.quantities import QUANTITIES, Output
 from fingerpad.results.states import WORDS
-from fingerpad.richardson import RECEPTOR, TWO, of_two_meshes, plus_minus
+from fingerpad.richardson import RECEPTOR, TWO, of_sum, of_two_meshes, plus_minus, rigid
 from fingerpad.scene.messages import SceneError
 from variational.element import ELEMENTS
 from variational.state import ContactState, Errors
@@ -137,8 +137,11 @@ def with_errors(
         if name in found:
             mesh, penalty = (errors_of(name, each) for each in (estimates, estimate.penalty))
             whole = {key: value + abs(penalty.get(key, 0.0)) for key, value in mesh.items()}
-            error = Errors.of(whole | _of_outputs(estimate, name, outputs))
-            found[name] = replace(with_values(found[name], kept), error=error, penalty=Errors.of(penalty))
+            error = whole | _of_outputs(estimate, name, outputs)
+            springs = _by_penalty(estimate, name, outputs)
+            error |= {key: error[key] + abs(change) for key, change in springs.items() if key in error}
+            state = with_values(found[name], kept)
+            found[name] = replace(state, error=Errors.of(error), penalty=Errors.of(penalty | springs))
     if {"uncharged", "charged"} <= set(found) and path["uncharged"].step == path["charged"].step:  # at 0 V one state
         found["uncharged"] = found["charged"]
     return found
@@ -147,6 +150,7 @@ def with_errors(
 def _of_outputs(estimate: Estimate, name: str, outputs: Sequence[Output]) -> dict[str, float]:
     """Return the errors of outputs in a state, of first order in the sizes of two meshes, by name.
 
+    One with a rule of sums has the order of the forces, or of the contact length.
     One that is not computed from the forces, ridges and sites of a state alone has none.
     """
     coarse, base, found = estimate.coarse, estimate.base, dict[str, float]()
@@ -155,8 +159,24 @@ def _of_outputs(estimate: Estimate, name: str, outputs: Sequence[Output]) -> dic
     ratio = coarse.mesh.contact / base.mesh.contact
     for each in outputs:
         with suppress(SceneError):
-            change = each.of(base.states[name].state) - each.of(coarse.states[name].state)
-            found[each.name] = TWO * abs(change) / (ratio - 1)
+            states = coarse.states[name], base.states[name]
+            before, now = (each.of(state.state) for state in states)
+            facets = states[0].facet, states[1].facet
+            found[each.name] = TWO * abs(now - before) / (ratio - 1)
+            if each.sum:
+                found[each.name] = of_sum(before, now, facets, estimate.degree, each.si == "m")
+    return found
+
+
+def _by_penalty(estimate: Estimate, name: str, outputs: Sequence[Output]) -> dict[str, float]:
+    """Return by how much a rigid screen would change outputs with a rule of sums in a state, by name."""
+    stiffer, found = estimate.base.stiffer, dict[str, float]()
+    if not estimate.penalty or stiffer is None or name not in stiffer.states:
+        return found
+    base, stiff = estimate.base.states[name].state, stiffer.states[name].state
+    for each in outputs:
+        with suppress(SceneError):
+            found |= rigid({each.name: each.of(base)}, {each.name: each.of(stiff)}) if each.sum else {}
     return found
 
 

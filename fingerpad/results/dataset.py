@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fingerpad.results import files, netcdf, quantities
-from fingerpad.results.quantities import FINGER, RIDGES, SITES, SKIN, SLICES, STEPS, STIMULI, Output
+from fingerpad.results.quantities import RIDGES, SITES, SKIN, SLICES, STEPS, STIMULI, Output
 from fingerpad.results.states import STATES, UNLOADED
 from fingerpad.scene.reading import flat
 from variational.state import ContactState, Errors, RidgeStates, Sites, Skin, Stimuli
@@ -281,13 +281,14 @@ def _finger(whole: "WholeFinger | None") -> Variables:
         return {}
     totals = [whole.states.get(name) for name in STATES]
     found: Variables = {}
-    for name, output in FINGER.items():
-        values = [None if total is None else total.values[name] for total in totals]
+    own = {each.name: each for trace in whole.traces.values() for each in trace.own}
+    for name, output in whole.quantities.items():
+        values = [None if total is None else total.values.get(name) for total in totals]
         errors = [whole.error.get(state, {}).get(name) for state in STATES]
         found[f"finger_{name}"] = ("state",), _column(values), output.about()
         found[f"finger_{name}_error"] = ("state",), _column(errors), output.about("estimated error of the ")
-    for name, output in SLICES.items():
-        along = [None if total is None else total.slices()[name] for total in totals]
+    for name, output in (SLICES | own).items():
+        along = [None if total is None else total.slices().get(name) for total in totals]
         found[f"slice_{name}"] = ("state", "slice"), _padded(along), output.about()
     return found
 

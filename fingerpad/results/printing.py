@@ -5,8 +5,9 @@ from typing import TYPE_CHECKING
 
 from fingerpad import notebook
 from fingerpad.results.closures import RECORD, in_words
-from fingerpad.results.quantities import PER_LENGTH, QUANTITIES, cell, head_rows, plus_minus_of, side_by_side
+from fingerpad.results.quantities import PER_LENGTH, QUANTITIES, cell, plus_minus_of
 from fingerpad.results.states import LoadResult, called
+from fingerpad.results.text_table import head_rows, side_by_side
 from fingerpad.scene.reading import DEFAULT_MODEL
 
 if TYPE_CHECKING:

@@ -21,6 +21,8 @@ _PRINTED = {
     "": ("1", 1.0), "%": ("1", 100.0), "mm": ("m", 1e3), "µm": ("m", 1e6), "mm²": ("m^2", 1e6), "kPa": ("Pa", 1e-3)
 }  # fmt: skip
 """Units of tables that are not those of files, which are SI units, and the factor from SI."""
+_SUMS = {"N/m": ("N", 1), "J/m": ("J", 2), "m": ("mm²", 1), "m^2": ("m^3", 2)}
+"""Of quantities per metre of finger: the unit of their sum, and :attr:`Output.power`."""
 SYMBOL = re.compile(r"(?<![\w.-])([µdfFhLp])_(app|eq|ext|el|max|[0cRT])(?![\w(=])")
 """A symbol in words, which pages and pictures typeset: its letter and its subscript."""
 
@@ -44,6 +46,8 @@ class Output:
     """With which it is printed, by default its name; the last of them is a symbol, such as µ_app."""
     digits: int = 3
     """Digits after the point, where no error is estimated."""
+    sum: str = ""
+    """``"slices"`` to integrate a quantity per metre of finger, such as N/m, over the slices of the whole finger."""
 
     @property
     def si(self) -> str:
@@ -54,6 +58,16 @@ class Output:
     def scale(self) -> float:
         """Factor from SI to the unit."""
         return _of_unit(self.unit)[1]
+
+    @property
+    def power(self) -> int:
+        """Exponent of the width of similar slices, with which the quantity grows at equal stress."""
+        return _SUMS.get(self.si, ("", 1))[1]
+
+    @property
+    def whole(self) -> "Output":
+        """The sum over the slices of a whole finger, of a quantity per metre of it."""
+        return replace(self, unit=_SUMS[self.si][0])
 
     @property
     def symbol(self) -> str:
@@ -239,6 +253,7 @@ SLICES = _listed(
     ("pressure", "Pa", "mean contact pressure of the slice over its length in contact"),
 )
 """Of the slices of a whole finger."""
+_OF_FINGER = {*FINGER, *SLICES, "centre", "carried", "slices", "trace"}
 OUTPUTS: tuple[Output, ...] = ()
 """Outputs of the package that are computed from a state, as those of a user are. A new one is an entry here."""
 
@@ -285,6 +300,13 @@ def checked(outputs: Any) -> tuple[Output, ...]:
             raise SceneError(f"an output is called {show(each.name)}; it must have a name of its own, such as 'p_mean'")
         if not isinstance(each.unit, str) or not callable(each.compute):
             raise SceneError(f"the output {each.name} must have a unit, such as 'kPa', and a function of a state")
+        if each.sum not in ("", "slices"):
+            raise SceneError(f"the output {each.name} has sum = {show(each.sum)}; it must be 'slices', or left out")
+        if each.sum and each.si not in _SUMS:
+            units = f"the unit {show(each.unit)}; it must be one per metre of finger: {', '.join(_SUMS)}"
+            raise SceneError(f"the output {each.name} has sum = 'slices' and {units}")
+        if each.sum and each.name in _OF_FINGER:
+            raise SceneError(f"an output is called {show(each.name)}, as a quantity of the whole finger; rename it")
         names.add(each.name)
     return every
 
@@ -297,7 +319,8 @@ def valued(
     Args:
         state: the state.
         outputs: what is computed from it.
-        lost: takes by name why an output has no value, which is NaN then; without it that is an error.
+        lost: takes by name why an output has no value, which is NaN then; without it that is an error. A state
+            between those of a trace keeps the value that was interpolated.
 
     Raises:
         SceneError: an output cannot be computed.
@@ -307,6 +330,8 @@ def valued(
         try:
             return each.of(state)
         except SceneError as error:
+            if each.sum and each.name in state.own:
+                return state.own[each.name]
             if lost is None:
                 raise
             lost.setdefault(each.name, str(error))
@@ -323,19 +348,3 @@ def read(kept: Sequence[dict[str, Any]]) -> tuple[Output, ...]:
 def cell(key: str, value: float, error: float = math.nan) -> str:
     """Return a quantity of :data:`QUANTITIES` as :meth:`Output.shown` does."""
     return QUANTITIES[key].shown(value, error)
-
-
-def head_rows(states: Sequence[str]) -> list[list[str]]:
-    """Return the two lines of heads of states side by side, by their words."""
-    heads = [words.split(" normal") for words in states]
-    return [["", *(head[0] for head in heads)], ["", *("normal" + head[1] if head[1:] else "" for head in heads)]]
-
-
-def side_by_side(rows: Sequence[Sequence[str]]) -> list[str]:
-    """Return the lines of a table whose first column is words and whose others are numbers."""
-    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
-    lines = list[str]()
-    for first, *rest in rows:
-        cells = (cell.rjust(width) for cell, width in zip(rest, widths[1:], strict=True))
-        lines.append("   ".join(["  " + first.ljust(widths[0]), *cells]).rstrip())
-    return lines

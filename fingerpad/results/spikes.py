@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fingerpad.results import files, netcdf
-from fingerpad.results.quantities import side_by_side
+from fingerpad.results.text_table import side_by_side
 
 if TYPE_CHECKING:
     import xarray

@@ -17,6 +17,7 @@ from fingerpad.model.full_slip import Conditions, FullSlips, Solved
 from fingerpad.model.options import FingerModel
 from fingerpad.model.simulation import RestartRequired, Simulation
 from fingerpad.results.interrupt import Interrupted
+from fingerpad.results.quantities import Output
 from fingerpad.results.states import FIRST_TOUCH
 from fingerpad.scene import Load, Scene
 from fingerpad.slices import traces
@@ -75,6 +76,7 @@ class Branches:
         on_trace: Callable[[str], None],
         kept: dict[str, Followed],
         pause: Callable[[], None],
+        outputs: Sequence[Output] = (),
     ) -> None:
         """Expect the forces of the default finger.
 
@@ -85,9 +87,10 @@ class Branches:
             on_trace: called with the state's name before a trace is followed, and with an empty one after it.
             kept: traces that an earlier command has followed.
             pause: called before each state of full slip; may raise to stop.
+            outputs: of one's own, that are summed.
         """
         self._scene, self._comm, self._on_step, self._on_trace = scene, comm, on_step, on_trace
-        self._pause = pause
+        self._pause, self._outputs = pause, outputs
         self._reach = Reach(scene, self._made)
         with computed():
             light = max(LIGHT, traces.SMALLEST / self._reach.top)
@@ -137,7 +140,8 @@ class Branches:
             self.kept[name] = followed
             self._on_trace("")
         smooth = name == "full_slip"
-        return Traced(trace(followed.states, self._scene.geometry.ridge_wavelength, smooth), followed.states)
+        made = trace(followed.states, self._scene.geometry.ridge_wavelength, smooth, self._outputs)
+        return Traced(made, followed.states)
 
     def _raised(self, name: str, top: float) -> Followed:
         """Return the trace of normal contact from the present state on."""

@@ -24,13 +24,14 @@ from fingerpad.model.state import broken
 from fingerpad.results.checkpoint import Checkpoint, CheckpointError
 from fingerpad.results.interrupt import Interrupt, Interrupted, all_together
 from fingerpad.results.provenance import check_options, provenance
+from fingerpad.results.quantities import Output
 from fingerpad.results.result import Result
 from fingerpad.results.states import WORDS
 from fingerpad.results.terminal import Console
 from fingerpad.runs.branches import Again, Branches, Followed
 from fingerpad.runs.checkpoints import checkpoint_of, read
 from fingerpad.runs.context import RunContext
-from fingerpad.runs.post import Entry, cautions_on, kept
+from fingerpad.runs.post import Entry, cautions_on, kept, of_outputs
 from fingerpad.scene import Scene, SceneError
 from fingerpad.scene.messages import counted
 from fingerpad.scene.reading import DEFAULT_MODEL
@@ -76,7 +77,7 @@ def run(scene: Scene, context: RunContext) -> Result:
     check_options(comm, scene.numerics.element)
     checkpoint = None if context.folder is None else checkpoint_of(scene, context.folder, ())
     with closing(Console(comm, context.lines, context.bar, context.on_step)) as console, Interrupt(comm) as interrupt:
-        made = _Newtons(scene, comm, console, interrupt, checkpoint)
+        made = _Newtons(scene, comm, console, interrupt, checkpoint, context.outputs)
         try:
             bare, cautions = made.result()
         except Interrupted as stopped:
@@ -89,7 +90,7 @@ def run(scene: Scene, context: RunContext) -> Result:
             raise
         except (StepFailed, GeometryError, ValueError) as error:
             raise Unsuited(str(error)) from error
-        result = kept(bare, context, [cautions])
+        result = kept(bare, context, [cautions, *of_outputs(context.outputs)])
         if checkpoint is not None and comm.rank == 0:
             checkpoint.delete()
         return result
@@ -105,12 +106,18 @@ class _Newtons:
     """
 
     def __init__(
-        self, scene: Scene, comm: MPI.Comm, console: Console, interrupt: Interrupt, checkpoint: Checkpoint | None
+        self,
+        scene: Scene,
+        comm: MPI.Comm,
+        console: Console,
+        interrupt: Interrupt,
+        checkpoint: Checkpoint | None,
+        outputs: Sequence[Output],
     ) -> None:
         self._scene, self._comm, self._console, self._interrupt = scene, comm, console, interrupt
         self._checkpoint, self.clock, self.doing = checkpoint, Clock(comm), "light press"
         self._restarts, self._steps = list[str](), 0
-        self.branches = Branches(scene, comm, self._on_step, self._on_trace, self._earlier(), self._pause)
+        self.branches = Branches(scene, comm, self._on_step, self._on_trace, self._earlier(), self._pause, outputs)
 
     def result(self) -> tuple[Result, Entry]:
         """Return the result, and the entry of the cautions on all of its states; collective."""
@@ -210,7 +217,7 @@ class _Newtons:
         assert force is not None
         made = corrected(each.trace, pairs, wavelength)
         carried = {
-            errors.MESH: mesh_errors(pairs[-1], wavelength, degree),
+            errors.MESH: mesh_errors(pairs[-1], wavelength, degree, made.own),
             errors.COARSE: correction_errors(finger, each.trace, pairs, wavelength, force, count),
         }
         return Traced(made, each.states, None, at_force(finger, made, force, count), pairs[-1].fine, carried)

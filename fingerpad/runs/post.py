@@ -16,7 +16,7 @@ from typing import NamedTuple
 
 from fingerpad.results import dataset
 from fingerpad.results.folder import Serial
-from fingerpad.results.quantities import Output
+from fingerpad.results.quantities import Output, checked
 from fingerpad.results.result import Result
 from fingerpad.results.writing import Writer
 from fingerpad.runs.context import RunContext
@@ -80,6 +80,12 @@ def cautions_on(states: Sequence[ContactState] = ()) -> Entry:
     return Entry("cautions", _followed, lambda each: _cautions(each, states or each.steps or [*each.named.values()]))
 
 
+def _sums(result: Result) -> Result:
+    """Return a result with notes on the outputs that have no value for the whole finger, though they have a rule."""
+    assert result.finger is not None
+    return replace(result, notes=(*result.notes, *result.finger.missing(result.outputs)))
+
+
 def _words(result: Result) -> Result:
     """Return the result itself, once it was put into words and into its summary."""
     result.to_dict()
@@ -109,6 +115,7 @@ def _page(result: Result, context: RunContext) -> bool:
     return context.report and result.folder is not None
 
 
+SUMS = Entry("sums of outputs", lambda result, _: result.finger is not None, _sums)
 WORDS = Entry("headline", lambda result, _: True, _words)
 BANDS = Entry(
     "bands of friction",
@@ -121,6 +128,7 @@ POST: list[Entry] = [
         lambda result, c: _followed(result, c) and result.finger is None,
         "fingerpad.slices.estimate:with_newtons",
     ),
+    SUMS,
     BANDS,
     cautions_on(),
     WORDS,
@@ -132,9 +140,23 @@ POST: list[Entry] = [
 """What follows from the states of a result, in order."""
 
 
-def of_outputs(outputs: Sequence[Output]) -> Entry:
-    """Return the entry of outputs of one's own, for results whose states do not have them yet."""
-    return Entry("outputs", lambda *_: True, lambda result: result.with_outputs(outputs))
+def of_outputs(outputs: Sequence[Output]) -> list[Entry]:
+    """Return the entries of outputs of one's own, for results whose states do not have them yet."""
+
+    def computed(output: Output) -> Callable[[Result], Result]:
+        return lambda result: result.with_outputs([output])
+
+    return [Entry(f"output {each.name}", lambda *_: True, computed(each)) for each in checked(outputs)]
+
+
+def of_kept(outputs: Sequence[Output]) -> list[Entry]:
+    """Return the entries of outputs of one's own, for results that were read from their files, with their sums."""
+
+    def needs(result: Result, context: RunContext) -> bool:
+        return _followed(result, context) and result.finger is not None and not result.whole
+
+    sums = [POST[0]._replace(needs=needs), SUMS] if any(each.sum for each in outputs) else []
+    return [*of_outputs(outputs), *sums]
 
 
 # -- where a result is made --------------------------------------------------------------------------------

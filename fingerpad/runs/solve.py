@@ -120,7 +120,7 @@ def solved(scene: Scene, model: "Model", context: RunContext) -> Result:
         model: one of :data:`fingerpad.reduced.registry.MODELS`.
         context: all else.
     """
-    checked_outputs(context.outputs)
+    context = replace(context, outputs=checked_outputs(context.outputs))
     scene = scene.resolved()
     if context.resume:
         scene.refuse_laws_of_program("a run that goes on")
@@ -139,9 +139,10 @@ def _section(scene: Scene, model: "Model", context: RunContext) -> Result:
     def with_sum(result: Result) -> Result:
         from fingerpad.slices import traces
 
-        return traces.with_sum(result, model, lambda each, _: _solved(each, model, replace(context, folder=None)))
+        here = replace(context, folder=None)
+        return traces.with_sum(result, model, lambda each, _: _solved(each, model, here), context.outputs)
 
-    own = [Entry("newtons of the whole finger", lambda *_: model.sums, with_sum), of_outputs(context.outputs)]
+    own = [Entry("newtons of the whole finger", lambda *_: model.sums, with_sum), *of_outputs(context.outputs)]
     return kept(result, context, own)
 
 
@@ -214,9 +215,9 @@ def _whole(scene: Scene, model: "Model", context: RunContext) -> Result:
             print(f"\nTrace of the cross-section, {name.replace('_', ' ')}", flush=True)
         return gone_on(each, model, replace(context, folder=context.folder and below(context.folder, name)))
 
-    found = traces.whole(scene, model, solve)
+    found = traces.whole(scene, model, solve, context.outputs)
     found = replace(found, notes=(*found.notes, *notes))
-    return found if found.interrupted else kept(found, context, [] if model.path else [of_outputs(context.outputs)])
+    return found if found.interrupted else kept(found, context, of_outputs(context.outputs))
 
 
 def gone_on(scene: Scene, model: "Model", context: RunContext) -> Result:

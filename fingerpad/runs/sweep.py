@@ -21,7 +21,7 @@ from fingerpad.results.quantities import checked as checked_outputs
 from fingerpad.results.result import Result
 from fingerpad.runs.axis import refuse_many
 from fingerpad.runs.context import RunContext
-from fingerpad.runs.post import applied, of_outputs
+from fingerpad.runs.post import applied, of_kept
 from fingerpad.runs.solve import checked, solved
 from fingerpad.runs.sweep_results import FILE, Sweep
 from fingerpad.scene import Scene
@@ -103,10 +103,11 @@ def sweep(
     folder = Path(out)
     _claim(folder)
     if way.meshes:
-        found = _in_processes(scenes, values, folder, jobs, way, quiet, states)
+        kept = _in_processes(scenes, values, folder, jobs, way, quiet, states)
+        found = [applied(each, of_kept(outputs)) for each in kept]
     else:
-        found = [_here(each, way) for each in scenes]
-    done = Sweep(values, tuple(applied(each, [of_outputs(outputs)]) for each in found), folder)
+        found = [_here(each, way, outputs) for each in scenes]
+    done = Sweep(values, tuple(found), folder)
     for name in FILES[:-1]:  # else that of an earlier sweep may stay beside this one's
         (folder / name).unlink(missing_ok=True)
     asked: dict[str, Any] = {"format": FORMAT, "version": version(), "model": model, "parameters": scene.parameters()}
@@ -115,8 +116,8 @@ def sweep(
     leaks = f"{'First point: ' * (len(said) > 1)}{said[0]}" if said else ""
     replace_json(folder / FILES[-1], asked | {"cautions": done.cautions(), "notes": [leaks] if leaks else []})
     done.to_csv(folder / FILES[0])
-    kept = folder / (model if states == STATES[0] else states)
-    notes = tuple(filter(None, (leaks, _reached(done), done.save(), _older(done, kept))))
+    place = folder / (model if states == STATES[0] else states)
+    notes = tuple(filter(None, (leaks, _reached(done), done.save(), _older(done, place))))
     attempt(folder)
     return replace(done, notes=notes)
 
@@ -188,9 +189,9 @@ def _failed(scene: Scene, model: "Model", why: str) -> Result:
     return Result(scene, model.name, None, None, None, failure=why)
 
 
-def _here(scene: Scene, model: "Model") -> Result:
+def _here(scene: Scene, model: "Model", outputs: Sequence[Output]) -> Result:
     try:
-        return solved(scene, model, RunContext(report=False))
+        return solved(scene, model, RunContext(report=False, outputs=outputs))
     except SceneError as error:
         return _failed(scene, model, str(error))
 

@@ -57,7 +57,8 @@ def _newtons(finger: WholeFinger) -> dict[str, float]:
     found: dict[str, float] = {}
     for state in finger.states:
         values, error = finger.values(state), finger.error.get(state, {})
-        for key in _NEWTONS:
+        own = (key for key in finger.quantities if key not in FINGER and key in values)
+        for key in (*_NEWTONS, *own):
             if key in FRICTION and state != "full_slip":
                 continue
             name = _of_finger(state, key)
@@ -99,11 +100,13 @@ def shown(columns: Iterable[str], whole: bool, outputs: Iterable[Output] = ()) -
         finger = {_of_finger("full_slip", key): FINGER[key] for key in _FIRST} if summed else {}
         known = {key: QUANTITIES[key] for key in SWEPT}
         known = {key: _of_section(known[key]) for key in _SECOND} if summed else known
-        known |= {each.name: each for each in outputs}
+        finger |= {_of_finger("full_slip", each.name): each.whole for each in outputs if each.sum} if summed else {}
+        known |= {each.name: _of_section(each) if summed and each.sum else each for each in outputs}
         return "full_slip", finger | {f"full_slip_{key}": each for key, each in known.items()}
     state = next((name for name in reversed(STATES) if _of_finger(name, "contact_area") in there), "full_slip")
     keys = [key for key in _WHOLE if state == "full_slip" or key not in FRICTION]
-    return state, {_of_finger(state, key): FINGER[key] for key in keys}
+    own = {_of_finger(state, each.name): each.whole for each in outputs if each.sum}
+    return state, {_of_finger(state, key): FINGER[key] for key in keys} | own
 
 
 def of_finger(column: str) -> bool:

@@ -104,12 +104,14 @@ class Sweep:
         if state not in STATES:
             raise ValueError(f"state is {state!r}; it must be one of {', '.join(STATES)}")
         own = (each.name for each in self.outputs)
-        known = tuple(FINGER) if self.whole else (*CONDITIONS[2:], *RESULTS, *own)
+        known = (*(FINGER if self.whole else (*CONDITIONS[2:], *RESULTS)), *own)
         if quantity not in known:
             raise ValueError(f"quantity is {quantity!r}; it must be one of {', '.join(known)}")
         if self.whole:
             fingers = [result.finger for result in self.results]
-            values = [np.nan if f is None or state not in f.states else f.values(state)[quantity] for f in fingers]
+            values = [
+                np.nan if f is None or state not in f.states else f.values(state).get(quantity, np.nan) for f in fingers
+            ]
         else:
             found = [result.named.get(state) for result in self.results]
             values = [np.nan if each is None else float(getattr(each, quantity, np.nan)) for each in found]

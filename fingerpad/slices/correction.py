@@ -16,14 +16,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fingerpad.richardson import of_two_meshes
-from fingerpad.slices.total import TOTALS, Profile, at_force
+from fingerpad.results.quantities import Output
+from fingerpad.richardson import of_sum, of_two_meshes
+from fingerpad.slices.total import Profile, at_force
 from fingerpad.slices.trace import Trace, columns
 from variational.state import ContactState
 
-_SCALED = ("depth", "f_electrostatic", "contact_length", "gross_width", "grip")
+_SCALED = ("|bone_height|", "f_electrostatic", "contact_length", "gross_width", "f_t/f_c")
 _SUMS = {"f_electrostatic": "f_electrostatic", "contact_area": "contact_length", "gross_area": "gross_width"}
-_OF_SUM = {**_SUMS, "indentation": "depth", "f_t": "f_t", "mu_app": "f_t"}
+_OF_SUM = {**_SUMS, "indentation": "|bone_height|", "f_t": "f_t", "mu_app": "f_t"}
 """Names of a sum's quantities, and of the section's value whose relative error each has."""
 _SECTION = "section_"
 _ROUNDOFF = 1e-9  # of the contact force: sideways forces of normal contact are below
@@ -47,28 +48,38 @@ def corrected(trace: Trace, pairs: Sequence[Pair], wavelength: float) -> Trace:
         pairs: states of the trace on both, at growing forces.
         wavelength: of a ridge (m).
     """
-    coarse, fine = (_values([getattr(pair, which) for pair in pairs], wavelength) for which in ("coarse", "fine"))
+    coarse, fine = (
+        _values([getattr(pair, which) for pair in pairs], wavelength, trace.own) for which in ("coarse", "fine")
+    )
+    own = [each for each in trace.own if each.name in coarse and each.name in fine]
     force, at = np.log(trace.columns["f_ext"]), np.log([pair.coarse.f_ext for pair in pairs])
-    ratio = {name: np.interp(force, at, _ratio(fine[name], coarse[name])) for name in _SCALED}
-    found = {name: values * ratio.get(name, 1.0) for name, values in trace.columns.items()}
+    ratio = {
+        name: np.interp(force, at, _ratio(fine[name], coarse[name]))
+        for name in (*_SCALED, *(each.name for each in own))
+    }
+    found = {name: values * ratio.get(name, 1.0) for name, values in trace.columns.items() if name in coarse}
     borne = trace.columns["f_ext"] + trace.columns["f_electrostatic"]
-    grip = ratio["grip"] * trace.columns["f_t"] / borne
+    grip = ratio["f_t/f_c"] * trace.columns["f_t"] / borne
     found["f_t"] = grip * (found["f_ext"] + found["f_electrostatic"])
-    return Trace(trace.depth * ratio["depth"], found, trace.ridges)
+    return Trace(trace.depth * ratio["|bone_height|"], found, trace.ridges, tuple(own))
 
 
-def mesh_errors(pair: Pair, wavelength: float, degree: int = 2) -> dict[str, float]:
+def mesh_errors(pair: Pair, wavelength: float, degree: int = 2, own: Sequence[Output] = ()) -> dict[str, float]:
     """Return the relative errors of a sum by the fine mesh, those of the section, by the sum's quantities.
 
     Args:
         pair: the section on both meshes.
         wavelength: of a ridge (m).
         degree: polynomial degree of the elements.
+        own: outputs that are summed.
     """
     coarse, fine = (_parts(state, wavelength) for state in (pair.coarse, pair.fine))
     found = of_two_meshes(coarse, fine, {_SECTION[:-1]: pair.facets}, degree)
     values = {name: float(np.sum(fine[_SECTION + of])) for name, of in _OF_SUM.items()}
-    return {name: found[_SECTION + _OF_SUM[name]] / value for name, value in values.items() if value}
+    known = {name: found[_SECTION + _OF_SUM[name]] / value for name, value in values.items() if value}
+    ends = {each: (each.of(pair.coarse), each.of(pair.fine)) for each in own}
+    errors = {each: of_sum(*both, pair.facets, degree, each.si == "m") for each, both in ends.items()}
+    return known | {each.name: errors[each] / abs(value) for each, (_, value) in ends.items() if value}
 
 
 def correction_errors(
@@ -89,16 +100,16 @@ def correction_errors(
     value, *others = (
         at_force(finger, each, force, count).values for each in (corrected(trace, pairs, wavelength), *other)
     )
-    names = {*TOTALS, "mu_app", "indentation", "effective_width"} - {"f_ext"}
-    return {name: max(abs(o[name] / value[name] - 1) for o in others) for name in sorted(names) if value[name]}
+    names = sorted({*value} - {"f_ext"})
+    return {name: max(abs(o[name] / value[name] - 1) for o in others) for name in names if value[name]}
 
 
-def _values(states: Sequence[ContactState], wavelength: float) -> dict[str, np.ndarray]:
+def _values(states: Sequence[ContactState], wavelength: float, own: Sequence[Output] = ()) -> dict[str, np.ndarray]:
     """Return what is scaled of states, shape (states,)."""
-    found = columns(states, wavelength)
+    found = columns(states, wavelength, own)
     depth, borne = np.array([-state.bone_height for state in states]), found["f_ext"] + found["f_electrostatic"]
     f_t = np.where(found["f_t"] > _ROUNDOFF * borne, found["f_t"], 0.0)
-    return found | {"depth": depth, "f_t": f_t, "grip": f_t / borne}
+    return found | {"|bone_height|": depth, "f_t": f_t, "f_t/f_c": f_t / borne}
 
 
 def _parts(state: ContactState, wavelength: float) -> Mapping[str, np.ndarray]:
@@ -110,4 +121,4 @@ def _parts(state: ContactState, wavelength: float) -> Mapping[str, np.ndarray]:
 
 
 def _ratio(fine: np.ndarray, coarse: np.ndarray) -> np.ndarray:
-    return np.divide(fine, coarse, out=np.ones_like(fine), where=coarse > 0)
+    return np.divide(fine, coarse, out=np.ones_like(fine), where=coarse != 0)

@@ -18,8 +18,8 @@ from itertools import groupby
 
 import numpy as np
 
-from fingerpad.results.quantities import MODEL, PENALTY
-from fingerpad.slices.total import TOTALS, Array, Profile, Total, at_indentation
+from fingerpad.results.quantities import MODEL, PENALTY, Output
+from fingerpad.slices.total import Array, Profile, Total, at_indentation
 from fingerpad.slices.trace import LEAST, Trace, gross_width
 from variational.state import ContactState
 
@@ -48,7 +48,9 @@ Those of the indentation are twice as large as there, because they grow the most
 """
 
 
-def of_section(state: ContactState | None, wavelength: float) -> dict[str, dict[str, float]]:
+def of_section(
+    state: ContactState | None, wavelength: float, own: Iterable[Output] = ()
+) -> dict[str, dict[str, float]]:
     """Return the relative errors that a sum takes over from its cross-section, by part and quantity.
 
     The gross width ends with half of a ridge's length on either side, and has the error of that length.
@@ -56,12 +58,13 @@ def of_section(state: ContactState | None, wavelength: float) -> dict[str, dict[
     Args:
         state: of the cross-section, with estimated errors; None where there is none.
         wavelength: of a ridge (m).
+        own: outputs that are summed.
     """
     mesh, penalty = dict[str, float](), dict[str, float]()
     if state is None:
         return {MESH: mesh}
-    for name, of in _OF_SECTION.items():
-        value, error, springs = (getattr(each, of) for each in (state, state.error, state.penalty))
+    for name, of in (_OF_SECTION | {each.name: each.name for each in own}).items():
+        value, error, springs = (getattr(each, of, math.nan) for each in (state, state.error, state.penalty))
         if value and not math.isnan(error):
             springs = 0.0 if math.isnan(springs) else abs(springs)
             mesh[name], penalty[name] = (error - springs) / abs(value), springs / abs(value)
@@ -145,7 +148,7 @@ def interpolation(finger: Profile, trace: Trace, total: Total, count: int) -> di
 
     def change(coarse: Trace) -> dict[str, float]:
         other = at_indentation(finger, coarse, total.delta, count)
-        moved = {name: other.columns[column] - total.columns[column] for name, column in TOTALS.items()}
+        moved = {name: other.columns[column] - total.columns[column] for name, column in total.summed.items()}
         return _at_equal_force(total, moved, slope, values)
 
     one, other, below = (change(coarse) for coarse in (*trace.halves(), trace.later()))
@@ -165,14 +168,14 @@ def _at_equal_force(
 
     Args:
         total: the slices.
-        moved: changes of the slices by the names of :data:`fingerpad.slices.total.TOTALS`, shape (slices,).
+        moved: changes of the slices by the names of its sums, shape (slices,).
         slope: of each quantity over the force.
         values: of the sum.
     """
     force = moved["f_ext"]
     sums = {name: total.thickness @ abs(each - slope[name] * force) for name, each in moved.items() if name != "f_ext"}
     sums["indentation"] = slope["indentation"] * total.thickness @ abs(force)
-    found = {name: float(each / values[name]) if values[name] else 0.0 for name, each in sums.items()}
+    found = {name: float(each / abs(values[name])) if values[name] else 0.0 for name, each in sums.items()}
     deepest = int(total.depth.argmax())
     centre = abs(force[deepest]) / total.columns["f_ext"][deepest]
     return found | {"effective_width": float(total.thickness @ abs(force) / values["f_ext"] + centre)}
@@ -195,9 +198,10 @@ def _between(finger: Profile, trace: Trace, total: Total, count: int, slope: Map
     jumps, above = trace.ridges[k] != trace.ridges[k + 1], depth >= trace.depth[0]
     at, points = np.log(np.maximum(depth, trace.depth[0])), np.log(trace.depth)
     moved = dict[str, Array]()
-    for name, column in TOTALS.items():
-        values, width = trace.columns[column], finger.width(fine.z)
-        linear = np.exp(np.interp(at, points, np.log(np.maximum(values, _TINY)))) * width
+    power = {each.name: each.power for each in trace.own}
+    for name, column in fine.summed.items():
+        values, width = trace.columns[column], np.asarray(finger.width(fine.z)) ** power.get(column, 1)
+        linear = np.exp(np.interp(at, points, np.log(np.maximum(abs(values), _TINY)))) * width * np.sign(values.sum())
         half = (values[k + 1] - values[k]) / 2 * width
         moved[name] = np.where(above, np.where(jumps, half, linear - fine.columns[column]), 0.0)
     found = _at_equal_force(fine, moved, slope, total.values)

@@ -18,13 +18,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fingerpad.reduced import cylinders
+from fingerpad.results.quantities import Output
 from fingerpad.scene import Scene
 from fingerpad.scene.messages import SceneError
 from fingerpad.scene.remarks import coefficient
 from fingerpad.slices import errors
 from fingerpad.slices.finger import WholeFinger, in_order
 from fingerpad.slices.total import Profile, profile, under_one_force
-from fingerpad.slices.trace import LEAST, Trace, TraceError, columns, trace
+from fingerpad.slices.trace import LEAST, NAMES, Trace, TraceError, columns, trace
 from fingerpad.slices.traces import LIGHT, NO_NEWTONS
 from variational.state import ContactState
 
@@ -47,19 +48,23 @@ def with_newtons(result: "Result") -> "Result":
         return result
     try:
         states = [state for state in result.steps if state.load == "press"]
-        finger = estimate(result.scene, states or _closed_form(result.scene), result.named)
+        finger = estimate(result.scene, states or _closed_form(result.scene), result.named, result.outputs)
         return replace(result, finger=finger if states else replace(finger, source=OF_SLIP))
     except (SceneError, TraceError) as error:
         return replace(result, notes=(*result.notes, f"{NO_NEWTONS}: {error}"))
 
 
-def estimate(scene: Scene, press: Sequence[ContactState], named: Mapping[str, ContactState]) -> WholeFinger:
+def estimate(
+    scene: Scene, press: Sequence[ContactState], named: Mapping[str, ContactState], outputs: Sequence[Output] = ()
+) -> WholeFinger:
     """Return the finger whose centre bears the scene's force in one of its named states, and less in the others.
 
     Args:
         scene: press, charge and slide.
         press: states of the press without voltage, at growing forces up to the scene's.
         named: states at the scene's force, by name.
+        outputs: of one's own, that are summed; in other states than the press they follow from the forces and the
+            contact length, since those of the ridges are not known away from the centre.
 
     Raises:
         SceneError: the profile does not fit, or the cylinders have no equilibrium.
@@ -67,7 +72,10 @@ def estimate(scene: Scene, press: Sequence[ContactState], named: Mapping[str, Co
     """
     finger, count, wavelength = profile(scene.slices), scene.slices.count, scene.geometry.ridge_wavelength
     presses = _on_final_mesh(_thinned(press), named.get("uncharged"))
-    traces, *others = (_traces(scene, each, named, wavelength) for each in presses)
+    traces, *others = (
+        _traces(scene, each, named, wavelength, [*map(_of_sums, outputs)] if k else outputs)
+        for k, each in enumerate(presses)
+    )
     if "charged" in named and traces.get("uncharged") is traces["charged"]:
         named = {**named, "uncharged": named["charged"]}
     found = under_one_force(finger, traces, count)
@@ -76,7 +84,8 @@ def estimate(scene: Scene, press: Sequence[ContactState], named: Mapping[str, Co
     for name, total in found.items():
         estimated = name != "uncharged" and traces[name] is not traces.get("uncharged")
         between = errors.interpolation(finger, traces[name], total, count).get("effective_width", 0.0)
-        carried[name] = errors.of_section(named[name], wavelength) | {errors.COARSE: away[name]}
+        own = errors.of_section(named[name], wavelength, traces[name].own)
+        carried[name] = own | {errors.COARSE: away[name]}
         carried[name] |= {errors.ESTIMATED: errors.estimate(name, total)} if estimated else {}
         carried[name] |= {errors.POINTS: {"f_ext": between}}
     return WholeFinger(in_order(found), SOURCE, carried, traces, scene.slices)
@@ -114,10 +123,14 @@ def _on_final_mesh(press: Sequence[ContactState], end: ContactState | None) -> l
 
 
 def _traces(
-    scene: Scene, press: Sequence[ContactState], named: Mapping[str, ContactState], wavelength: float
+    scene: Scene,
+    press: Sequence[ContactState],
+    named: Mapping[str, ContactState],
+    wavelength: float,
+    outputs: Sequence[Output],
 ) -> dict[str, Trace]:
     """Return the trace of each named state; at 0 V normal contact is one state, with one trace."""
-    found = {name: _scaled(scene, press, name, state, wavelength) for name, state in named.items()}
+    found = {name: _scaled(scene, press, name, state, wavelength, outputs) for name, state in named.items()}
     if "uncharged" in found and "charged" in found and named["charged"].voltage == 0:
         found["uncharged"] = found["charged"]
     return found
@@ -138,7 +151,8 @@ def _away(finger: Profile, traces: Sequence[Mapping[str, Trace]], count: int) ->
     away = dict[str, dict[str, float]]()
     for name in traces[0]:
         own, *others = (found[f"{name} {k}"] for k in range(len(traces)))
-        away[name] = {key: sum(abs(each[key] / value - 1) for each in others) for key, value in own.items() if value}
+        there = [key for key, value in own.items() if value and all(key in each for each in others)]
+        away[name] = {key: sum(abs(each[key] / own[key] - 1) for each in others) for key in there}
         away[name]["f_ext"] = away[name]["effective_width"]
     return away
 
@@ -169,7 +183,19 @@ def _thinned(press: Sequence[ContactState]) -> list[ContactState]:
     return [states[k] for k in sorted({int(np.abs(forces - each).argmin()) for each in wanted})]
 
 
-def _scaled(scene: Scene, press: Sequence[ContactState], name: str, end: ContactState, wavelength: float) -> Trace:
+def _of_sums(output: Output) -> Output:
+    """Return an output as it follows from what slices are summed in, without the values by ridge."""
+    return replace(output, compute=lambda state: output.of(replace(state, ridges=None, sites=None)))
+
+
+def _scaled(
+    scene: Scene,
+    press: Sequence[ContactState],
+    name: str,
+    end: ContactState,
+    wavelength: float,
+    outputs: Sequence[Output],
+) -> Trace:
     """Return the trace of a named state: the press changed as the cylinders are, and scaled to the state itself."""
     states = _charged(scene, press, name, end.voltage)
     law, now = scene.friction_law(), states[-1]
@@ -181,10 +207,17 @@ def _scaled(scene: Scene, press: Sequence[ContactState], name: str, end: Contact
     friction = [law.resultant(*each) if slips and law else 0.0 for each in borne]
     # Coulomb's law does not ask how a force is spread; any other one is scaled to the run's own state.
     factor = 1.0 if coefficient(scene) is not None else _ratio(abs(end.f_t), friction[-1])
-    found = [replace(state, f_t=factor * f_t) for state, f_t in zip(found, friction, strict=True)]
-    made = trace(found, wavelength)
-    width = _ratio(columns([end], wavelength)["gross_width"][0], made.columns["gross_width"][-1])
-    return Trace(made.depth, made.columns | {"gross_width": width * made.columns["gross_width"]})
+    found = [
+        replace(state, f_t=factor * f_t, mu_app=factor * f_t / state.f_ext, f_contact=borne, voltage=end.voltage)
+        for state, f_t, (borne, _) in zip(found, friction, borne, strict=True)
+    ]
+    pressed = name == "uncharged" or (name == "charged" and end.voltage == 0)
+    made = trace(found, wavelength, outputs=outputs if pressed else map(_of_sums, outputs))
+    ends = columns([end], wavelength, outputs)
+    own = [each for each in made.own if each.name in ends and (made.columns[each.name][-1] or not ends[each.name][0])]
+    scaled = {key: made.columns[key] for key in ("gross_width", *(each.name for each in own))}
+    scaled = {key: _ratio(ends[key][0], values[-1]) * values for key, values in scaled.items()}
+    return Trace(made.depth, {key: made.columns[key] for key in NAMES} | scaled, own=tuple(own))
 
 
 def _charged(scene: Scene, press: Sequence[ContactState], name: str, voltage: float) -> list[ContactState]:

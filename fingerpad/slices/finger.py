@@ -1,6 +1,6 @@
 """The whole finger of a result: newtons and square millimetres by named state, their errors, and their source."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any
@@ -8,15 +8,18 @@ from typing import Any
 import numpy as np
 
 from fingerpad import notebook
-from fingerpad.results.quantities import FINGER, FRICTION, MODEL, head_rows, plus_minus_of, side_by_side
+from fingerpad.results.quantities import FINGER, FRICTION, MODEL, Output, plus_minus_of
+from fingerpad.results.quantities import read as read_outputs
 from fingerpad.results.states import STATES, WORDS, called
+from fingerpad.results.text_table import head_rows, side_by_side
 from fingerpad.scene import Scene, SceneError
 from fingerpad.scene.parameters import Slices
 from fingerpad.slices import errors
 from fingerpad.slices.total import Total, at_force, profile
-from fingerpad.slices.trace import NAMES, Trace
+from fingerpad.slices.trace import Trace
 
 _ROUNDOFF = 1e-9
+_PARTS = errors.MESH, errors.ESTIMATED, errors.COARSE
 _TITLE = "Whole finger, as a sum of slices"
 
 
@@ -41,6 +44,25 @@ class WholeFinger:
         """External force (N)."""
         return next(iter(self.states.values())).totals["f_ext"]
 
+    @property
+    def quantities(self) -> dict[str, Output]:
+        """Quantities of the whole finger by name: those of all fingers, and sums of outputs of one's own."""
+        return FINGER | {each.name: each.whole for trace in self.traces.values() for each in trace.own}
+
+    def missing(self, outputs: Iterable[Output]) -> list[str]:
+        """Return why outputs with a rule of sums have no value in a state, a sentence each."""
+        lacking = {
+            each.name: [WORDS[name] for name, total in self.states.items() if each.name not in total.columns]
+            for each in outputs
+            if each.sum
+        }
+        return [
+            f"The output {name} has no value for the whole finger in {', '.join(words)}: states of the slices have no "
+            "skin and may have no ridges, its function fails on one of them, or values have both signs."
+            for name, words in lacking.items()
+            if words
+        ]
+
     @cached_property
     def error(self) -> dict[str, dict[str, float]]:
         """Whole known errors by state and quantity: those carried over, and that of the interpolation of the traces."""
@@ -52,7 +74,9 @@ class WholeFinger:
             carried = self.carried.get(name, {})
             shares = errors.add(*carried.values(), between)
             known = carried.get(MODEL, shares)  # of a cheaper model nothing is known where its distance is not
-            found[name] = {key: abs(share * total.values[key]) for key, share in shares.items() if key in known}
+            parts = [each for part in _PARTS if (each := carried.get(part))]  # an output of one's own has all or none
+            there = {key for key in known if key in FINGER or all(key in each for each in parts)}
+            found[name] = {key: abs(share * total.values[key]) for key, share in shares.items() if key in there}
         return found
 
     def under(self, force: float | str) -> "WholeFinger":
@@ -94,6 +118,8 @@ class WholeFinger:
         """Return all values, ready for JSON; SI units."""
         about = {"source": self.source, "model_error": " ".join(errors.remarks([self.f_ext]))}
         found: dict[str, Any] = {"f_ext": self.f_ext, **about, "states": {}}
+        own = {each.name: each.to_dict() for trace in self.traces.values() for each in trace.own}
+        found |= {"outputs": [*own.values()]} if own else {}
         for name, total in self.states.items():
             arrays = {key: values.tolist() for key, values in total.slices().items()}
             known = {"error": self.error[name], "carried": self.carried.get(name, {})}
@@ -113,29 +139,31 @@ class WholeFinger:
             data: of the dictionary.
             shape: the finger along its axis, which the dictionary does not have.
         """
-        states, traces = {}, {}
+        states, traces, outputs = {}, {}, read_outputs(data.get("outputs", ()))
         for name, state in data["states"].items():
             arrays = {key: np.array(values) for key, values in state["slices"].items()}
-            columns = {key: arrays[key] for key in NAMES}
-            places = arrays["z"], arrays["thickness"], arrays["indentation"]
-            states[name] = Total(state["indentation"], *places, state["centre"], columns)
+            places = arrays.pop("z"), arrays.pop("thickness"), arrays.pop("indentation")
+            del arrays["pressure"]
+            states[name] = Total(state["indentation"], *places, state["centre"], arrays)
             points = {key: np.array(values) for key, values in state["trace"].items()}
             ridges = points.pop("ridges", None)
-            traces[name] = Trace(points.pop("indentation"), points, ridges)
+            own = tuple(each for each in outputs if each.name in points)
+            traces[name] = Trace(points.pop("indentation"), points, ridges, own)
         carried = {name: state["carried"] for name, state in data["states"].items()}
         return cls(states, data["source"], carried, traces, shape)
 
     def rows(self) -> Iterator[list[str]]:
         """Yield the quantities with unit, and their values in each state with the error."""
-        for key, quantity in FINGER.items():
-            known = [name for name in self.states if key not in FRICTION or name == "full_slip"]
+        for key, quantity in self.quantities.items():
+            friction = key in FRICTION
+            known = [n for n in self.states if key in self.values(n) and (not friction or n == "full_slip")]
             cells = [self.shown(name, key) if name in known else "–" for name in self.states]
             if set(cells) - {"–"}:
                 yield [quantity.title, *cells]
 
     def shown(self, name: str, key: str) -> str:
         """Return a quantity of a state in the unit of tables, with its error where the error reaches the digits."""
-        return FINGER[key].shown(self.values(name)[key], self.error.get(name, {}).get(key))
+        return self.quantities[key].shown(self.values(name)[key], self.error.get(name, {}).get(key))
 
     def heads(self) -> list[str]:
         """Return the words of the states."""

@@ -1,9 +1,10 @@
 """Traces of a model without a path: states at fixed forces, so that a sum does not depend on the way to it."""
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from typing import TYPE_CHECKING
 
+from fingerpad.results.quantities import Output
 from fingerpad.scene import Scene
 from fingerpad.slices.trace import Trace, refuse_floating, trace
 from variational.state import ContactState
@@ -25,6 +26,7 @@ def of_points(
     name: str,
     expected: float,
     top: float,
+    outputs: Iterable[Output] = (),
 ) -> tuple[Trace, list[ContactState]]:
     """Return a trace of a model without a path, and its states; refuse states without a bone.
 
@@ -35,12 +37,13 @@ def of_points(
         name: of the state.
         expected: force (N/m) at the centre of the finger, about.
         top: force (N/m) that the trace is to reach.
+        outputs: of one's own, that are summed.
     """
     kind = "full_slip" if name == "full_slip" else "charged"
     scene = scene.model_copy(update={"voltage": 0.0}) if name == "uncharged" else scene
     found = model.over_forces(scene, grid(expected, top), kind, lambda each: solve(each, name))
     refuse_floating(found, model.name)
-    return trace(found, scene.geometry.ridge_wavelength), found
+    return trace(found, scene.geometry.ridge_wavelength, outputs=outputs), found
 
 
 def grid(expected: float, top: float) -> list[float]:

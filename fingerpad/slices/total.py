@@ -13,7 +13,7 @@ from scipy.optimize import brentq
 
 from fingerpad.scene.messages import SceneError
 from fingerpad.scene.parameters import Slices
-from fingerpad.slices.trace import NAMES, Trace
+from fingerpad.slices.trace import Trace
 
 Array = NDArray[np.float64]
 Floats = NDArray[np.floating[Any]]
@@ -21,14 +21,8 @@ _SEARCHED = 2001  # places along the finger between which ends of contact are lo
 _SEARCHED_FOR_DEEPEST = 4001  # places along the finger among which the first to end its trace is looked for
 _DOUBLINGS = 6  # of the depth, from the least one tried to the end of the trace
 _TINY = 1e-300  # N, of a logarithm
-TOTALS = {
-    "f_ext": "f_ext",
-    "f_t": "f_t",
-    "f_electrostatic": "f_electrostatic",
-    "contact_area": "contact_length",
-    "gross_area": "gross_width",
-}
-"""Name of each sum, and of the column of a slice that it is the sum of."""
+_AREAS = {"contact_length": "contact_area", "gross_width": "gross_area"}
+"""Columns of a slice whose sums have names of their own."""
 
 
 @dataclass(frozen=True)
@@ -153,12 +147,17 @@ class Total:
     centre: float
     """External force of the slice that is indented most (N/m)."""
     columns: dict[str, Array]
-    """Of each slice, by the names of :data:`fingerpad.slices.trace.NAMES`: N/m and m."""
+    """Of each slice, by the names of a trace's columns: N/m and m."""
+
+    @property
+    def summed(self) -> dict[str, str]:
+        """Name of each sum, and of the column of a slice that it is the sum of."""
+        return {_AREAS.get(column, column): column for column in self.columns}
 
     @cached_property
     def totals(self) -> dict[str, float]:
-        """Sums over the slices by the names of :data:`TOTALS`: N and m²."""
-        return {name: float(self.thickness @ self.columns[column]) for name, column in TOTALS.items()}
+        """Sums over the slices by name: N and m²."""
+        return {name: float(self.thickness @ self.columns[column]) for name, column in self.summed.items()}
 
     @property
     def mu_app(self) -> float:
@@ -210,7 +209,8 @@ def at_indentation(profile: Profile, trace: Trace, delta: float, count: int) -> 
         )
     scale = profile.centre_scale
     values = trace.at(np.clip([*relative, delta / scale], 0.0, deepest))  # the last one is the deepest place
-    columns = {name: width * values[name][:-1] for name in NAMES}
+    power = {each.name: each.power for each in trace.own}
+    columns = {name: width ** power.get(name, 1) * values[name][:-1] for name in trace.columns}
     return Total(delta, z, thickness, depth, scale * float(values["f_ext"][-1]), columns)
 
 

@@ -1,6 +1,7 @@
 """What one slice bears over its indentation, from states of the cross-section at growing forces."""
 
 from collections.abc import Iterable, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -9,13 +10,13 @@ from numpy.typing import NDArray
 from scipy.interpolate import PchipInterpolator
 from scipy.optimize import brentq
 
+from fingerpad.results.quantities import Output
 from fingerpad.scene.messages import SceneError
 from variational.state import ContactState
 
 Array = NDArray[np.float64]
 NAMES = ("f_ext", "f_t", "f_electrostatic", "contact_length", "gross_width")
-"""Columns: N/m the forces, m the lengths."""
-_INTERPOLATED = ("f_ext", "f_electrostatic", "contact_length", "gross_width", "grip")
+"""Columns of every trace: N/m the forces, m the lengths. Others are of outputs with a rule of sums."""
 LEAST = 3
 """Least number of points of a trace. A power law needs two, and the error of the interpolation leaves one out."""
 _NOTHING = 1e-12  # of the largest external force: values below it are roundoff
@@ -52,10 +53,12 @@ class Trace:
     depth: Array
     """Indentations (m), growing, greater than 0; shape (points,)."""
     columns: dict[str, Array]
-    """By :data:`NAMES`; shape (points,)."""
+    """By :data:`NAMES` and the names of :attr:`own`; shape (points,)."""
     ridges: Array | None = None
     """Ridges in contact at the points, shape (points,); None where a trace is not known to be smooth between two points
     with the same ridges."""
+    own: tuple[Output, ...] = ()
+    """Outputs of one's own that have a column, none of both signs."""
 
     def __post_init__(self) -> None:
         """Refuse what is no trace.
@@ -88,7 +91,7 @@ class Trace:
 
     def _on(self, kept: NDArray[np.bool_]) -> "Trace":
         columns = {name: values[kept] for name, values in self.columns.items()}
-        return Trace(self.depth[kept], columns, None if self.ridges is None else self.ridges[kept])
+        return Trace(self.depth[kept], columns, None if self.ridges is None else self.ridges[kept], self.own)
 
     def at(self, depth: Array) -> dict[str, Array]:
         """Return the columns at indentations (m); nothing where a slice does not touch, at 0 and less.
@@ -104,11 +107,11 @@ class Trace:
             )
         touches, first = depth > 0, np.log(self.depth[0])
         at = np.log(depth, where=touches, out=np.full_like(depth, first))
-        cubics, slopes, there = self._powers
+        names, cubics, slopes, there = self._powers
         values = np.exp(cubics(np.clip(at, first, np.log(self.depth[-1]))).T)
-        values = np.where(there & touches, values * np.exp(slopes * np.minimum(at - first, 0.0)), 0.0)
-        found = dict(zip(_INTERPOLATED, values, strict=True))
-        return found | {"f_t": found.pop("grip") * (found["f_ext"] + found["f_electrostatic"])}
+        values = np.where(touches, there * values * np.exp(slopes * np.minimum(at - first, 0.0)), 0.0)
+        found = dict(zip(names, values, strict=True))
+        return found | {"f_t": found.pop("f_t/f_c") * (found["f_ext"] + found["f_electrostatic"])}
 
     def under(self, force: float) -> float:
         """Return the indentation (m) at an external force (N/m) between the first point and the end."""
@@ -119,19 +122,26 @@ class Trace:
         return float(np.exp(brentq(excess, *np.log(self.depth[[0, -1]]), xtol=1e-14)))
 
     @cached_property
-    def _powers(self) -> tuple[PchipInterpolator, Array, NDArray[np.bool_]]:
-        """Logarithms of the columns over that of the indentation, their slopes below it, and which are not zero."""
+    def _powers(self) -> tuple[list[str], PchipInterpolator, Array, Array]:
+        """Names of the columns, logarithms of their amounts over that of the indentation, slopes below it, and signs.
+
+        The sign of a column that is zero is 0.
+        """
         borne = self.columns["f_ext"] + self.columns["f_electrostatic"]
-        columns = self.columns | {"grip": self.columns["f_t"] / borne}
-        slopes = {name: self._slope(columns[name]) for name in _INTERPOLATED} | {"grip": 0.0}
-        # No shorter contact than one in which the mean pressure falls with the forces, and no gross one within it.
+        columns = self.columns | {"f_t/f_c": self.columns["f_t"] / borne}
+        names = [name for name in columns if name != "f_t"]
+        slopes = {name: self._slope(abs(columns[name])) for name in names} | {"f_t/f_c": 0.0}
+        # No shorter contact than one in which the mean pressure falls with the forces, and no other length within it.
         forces = [slopes[name] for name in ("f_ext", "f_electrostatic") if columns[name].any()]
         slopes["contact_length"] = min(slopes["contact_length"], *forces)
-        slopes["gross_width"] = min(slopes["gross_width"], slopes["contact_length"])
-        values = np.array([columns[name] for name in _INTERPOLATED])
-        there = values.max(axis=1, keepdims=True) > _NOTHING * columns["f_ext"].max()
-        cubics = PchipInterpolator(np.log(self.depth), np.log(np.maximum(values, np.finfo(float).tiny)).T)
-        return cubics, np.array([[slopes[name]] for name in _INTERPOLATED]), there
+        for name in ("gross_width", *(each.name for each in self.own if each.si == "m")):
+            slopes[name] = min(slopes[name], slopes["contact_length"])
+        values = np.array([columns[name] for name in names])
+        least = np.array([[0.0 if name in {each.name for each in self.own} else _NOTHING] for name in names])
+        most = abs(values).max(axis=1, keepdims=True)
+        signs = np.sign(values.sum(axis=1, keepdims=True)) * (most > least * columns["f_ext"].max())
+        cubics = PchipInterpolator(np.log(self.depth), np.log(np.maximum(abs(values), np.finfo(float).tiny)).T)
+        return names, cubics, np.array([[slopes[name]] for name in names]), signs
 
     def _slope(self, values: Array) -> float:
         """Return the exponent of the power law of the first two points; 0 where values fall, or are 0."""
@@ -140,7 +150,9 @@ class Trace:
         return max(float(np.log(values[1] / values[0]) / np.log(self.depth[1] / self.depth[0])), 0.0)
 
 
-def trace(states: Iterable[ContactState], wavelength: float, smooth: bool = False) -> Trace:
+def trace(
+    states: Iterable[ContactState], wavelength: float, smooth: bool = False, outputs: Iterable[Output] = ()
+) -> Trace:
     """Return the trace of a cross-section.
 
     Args:
@@ -149,6 +161,7 @@ def trace(states: Iterable[ContactState], wavelength: float, smooth: bool = Fals
             solvers, of which full slip under a constant force has several.
         wavelength: of a ridge (m).
         smooth: whether states with the same ridges in contact are on one smooth curve.
+        outputs: of one's own; see :func:`columns`.
 
     Raises:
         TraceError: less than :data:`LEAST` states are left.
@@ -164,18 +177,27 @@ def trace(states: Iterable[ContactState], wavelength: float, smooth: bool = Fals
             f"{len(kept)} states with growing indentation and force are no trace, which must have {LEAST} at least"
         )
     ridges = np.array([float(state.ridges_in_contact) for state in kept]) if smooth else None
-    return Trace(np.array([-state.bone_height for state in kept]), columns(kept, wavelength), ridges)
+    found = columns(kept, wavelength, outputs := tuple(outputs))
+    own = tuple(each for each in outputs if each.name in found)
+    return Trace(np.array([-state.bone_height for state in kept]), found, ridges, own)
 
 
-def columns(states: Sequence[ContactState], wavelength: float) -> dict[str, Array]:
+def columns(states: Sequence[ContactState], wavelength: float, outputs: Iterable[Output] = ()) -> dict[str, Array]:
     """Return the columns of a trace by name, shape (states,).
 
     Args:
         states: of the cross-section.
         wavelength: of a ridge (m).
+        outputs: of one's own. Those with a rule of sums have a column, unless one of the states lacks what is needed,
+            or values have both signs.
     """
     found = {name: [abs(getattr(state, name)) for state in states] for name in NAMES if name != "gross_width"}
     found["gross_width"] = [gross_width(state, wavelength) for state in states]
+    for each in outputs:
+        with suppress(SceneError):
+            values = [each.of(state) for state in states] if each.sum and each.compute else [np.nan]
+            if np.isfinite(values).all() and (min(values) >= 0 or max(values) <= 0):
+                found[each.name] = values
     return {name: np.array(values, dtype=float) for name, values in found.items()}
 
 

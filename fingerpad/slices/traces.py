@@ -8,14 +8,15 @@ and every accepted step at full slip is a point of the trace. A model without a 
 force is reached is made again to a larger one.
 """
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import fields, replace
+from functools import partial
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from fingerpad.results.answer import Cost
-from fingerpad.results.quantities import STABILITY
+from fingerpad.results.quantities import STABILITY, Output
 from fingerpad.results.result import Result
 from fingerpad.results.states import WORDS
 from fingerpad.scene import Scene
@@ -68,13 +69,14 @@ class Traced(NamedTuple):
     """Relative errors of the sum by part and quantity, where they are not those of a run's section."""
 
 
-def whole(scene: Scene, model: "Model", solve: Solve) -> Result:
+def whole(scene: Scene, model: "Model", solve: Solve, outputs: Sequence[Output] = ()) -> Result:
     """Return the result of a force on the whole finger; collective.
 
     Args:
         scene: with a force.
         model: that solves.
         solve: solves a scene without a force on the whole finger by it.
+        outputs: of one's own, that are summed.
 
     Returns:
         The whole finger, and the section at its centre as named states. A trace that was interrupted is returned as it
@@ -83,13 +85,12 @@ def whole(scene: Scene, model: "Model", solve: Solve) -> Result:
     Raises:
         SceneError: a profile that does not fit, or a force that no trace reached.
     """
-
-    def reach() -> Reach:
-        return Reach(scene, lambda name, top, tries: _made(scene, model, solve, name, top, tries))
-
-    shared = reach()  # a trace of runs is made to the force of the one before; the others do not depend on each other
+    make = partial(_made, scene, model, solve, outputs)
+    shared = Reach(
+        scene, make
+    )  # a trace of runs is made to the force of the one before; the others do not depend on each other
     try:
-        found = {name: (shared if model.path else reach()).follow(name) for name in states(scene)}
+        found = {name: (shared if model.path else Reach(scene, make)).follow(name) for name in states(scene)}
     except _Stopped as stopped:
         return stopped.result
     finger = summed(scene, model.traces, found)
@@ -104,7 +105,7 @@ def whole(scene: Scene, model: "Model", solve: Solve) -> Result:
     return model.of_finger(scene, solve(scene.replace(f_ext=centre), ""), finger)
 
 
-def with_sum(result: Result, model: "Model", solve: Solve) -> Result:
+def with_sum(result: Result, model: "Model", solve: Solve, outputs: Sequence[Output] = ()) -> Result:
     """Return the result of a section by a model without a path, with its whole finger, or with a note why it has none.
 
     The centre of the finger bears the section's force in one of the named states, and less in the others.
@@ -113,11 +114,12 @@ def with_sum(result: Result, model: "Model", solve: Solve) -> Result:
         result: of a scene without a force on the whole finger.
         model: that solved it.
         solve: solves a scene by it.
+        outputs: of one's own, that are summed.
     """
     scene = result.scene
     try:
         f_ext = scene.f_ext
-        found = {name: Traced(*of_points(scene, model, solve, name, f_ext, f_ext)) for name in states(scene)}
+        found = {name: Traced(*of_points(scene, model, solve, name, f_ext, f_ext, outputs)) for name in states(scene)}
         traces = {name: each.trace for name, each in found.items()}
         totals = under_one_force(profile(scene.slices), traces, scene.slices.count, f_ext)
         found = {name: each._replace(total=totals[name]) for name, each in found.items()}
@@ -177,7 +179,9 @@ def summed(scene: Scene, words: str, found: Mapping[str, Traced]) -> WholeFinger
     """
     totals = {name: each.total for name, each in found.items() if each.total is not None}
     wavelength = scene.geometry.ridge_wavelength
-    known = {name: dict(e.carried) or errors.of_section(_end(e, name), wavelength) for name, e in found.items()}
+    known = {
+        name: dict(e.carried) or errors.of_section(_end(e, name), wavelength, e.trace.own) for name, e in found.items()
+    }
     of = {name: each.trace for name, each in found.items()}
     tops = (f"{each.trace.end[1]:.4g} N/m ({name.replace('_', ' ')})" for name, each in found.items())
     if not scene.volts:  # normal contact is one state then, with two names
@@ -196,6 +200,7 @@ def _of_path(scene: Scene, finger: WholeFinger, found: dict[str, Traced]) -> Res
         **sections(scene, found),
         steps=(),
         loads=(),
+        outputs=(),
         drawing=None,
         folder=None,
         cost=_together(run.cost for run in runs),
@@ -232,11 +237,13 @@ def _section(traced: Traced, name: str, depth: float, wavelength: float) -> Cont
     near = min(traced.states, key=lambda state: abs(state.bone_height + depth))
     mu_app = at["f_t"] / at["f_ext"]
     end, mesh = _end(traced, name), traced.carried.get(errors.MESH)
-    shares = mesh or errors.add(*errors.of_section(end, wavelength).values())
+    shares = mesh or errors.add(*errors.of_section(end, wavelength, traced.trace.own).values())
+    own = {each.name: at.pop(each.name) for each in traced.trace.own}
     known = {key: shares[key] * at[key] for key in ("f_t", "f_electrostatic") if key in shares}
     known |= {"mu_app": shares["mu_app"] * mu_app} if "mu_app" in shares else {}
     known |= {"contact_length": shares["contact_area"] * at["contact_length"]} if "contact_area" in shares else {}
     known |= {"bone_height": shares["indentation"] * depth} if "indentation" in shares else {}
+    known |= {key: shares[key] * abs(value) for key, value in own.items() if key in shares}
     del at["gross_width"]
     return ContactState(
         **at,
@@ -249,7 +256,8 @@ def _section(traced: Traced, name: str, depth: float, wavelength: float) -> Cont
         **({} if end is None else {key: getattr(end, key) for key in STABILITY}),
         all_slip=name == "full_slip",
         slip_held=name == "full_slip",
-        error=Errors(**known),
+        own=own,
+        error=Errors.of(known),
     )
 
 
@@ -322,22 +330,19 @@ class Reach:
         raise AssertionError("every try returns or raises")
 
 
-def _made(scene: Scene, model: "Model", solve: Solve, name: str, top: float, tries: int) -> Traced:
-    """Return a trace as ordinary scenes have it; arguments as of :class:`Reach` and :func:`whole`."""
+def _made(
+    scene: Scene, model: "Model", solve: Solve, outputs: Sequence[Output], name: str, top: float, tries: int
+) -> Traced:
+    """Return a trace as ordinary scenes have it, each try in a folder of its own; see :class:`Reach`, :func:`whole`."""
     here = scene.replace(force=None)
-    if model.path:
-        return _run(here, scene.force or 0.0, solve, name, top, tries)
-    return Traced(*of_points(here, model, solve, name, scene.centre_force, top))
-
-
-def _run(scene: Scene, force: float, solve: Solve, name: str, top: float, tries: int) -> Traced:
-    """Return a trace of a run; each try has a folder of its own, from which another command goes on."""
-    result = solve(history(scene, name, top), f"{name}_{tries + 1}" if tries else name)
+    if not model.path:
+        return Traced(*of_points(here, model, solve, name, scene.centre_force, top, outputs))
+    result = solve(history(here, name, top), f"{name}_{tries + 1}" if tries else name)
     if result.interrupted:
         raise _Stopped(result, name)
     found = points(result, name)
     try:
-        return Traced(trace(found, scene.geometry.ridge_wavelength), found, result)
+        return Traced(trace(found, scene.geometry.ridge_wavelength, outputs=outputs), found, result)
     except TraceError as error:
         why = f": {result.failure}" if result.failure else ""
-        raise SceneError(f"the force on the finger is {force:.4g} N; {error}{why}") from None
+        raise SceneError(f"the force on the finger is {scene.force:.4g} N; {error}{why}") from None
