@@ -251,7 +251,8 @@ def draw(docs: Path) -> Path:
         for each in at(numbers, RADII[1], u)
     ]
     names = compared(numbers) | {
-        "default": harness.kept("hero", docs).numbers["default"]["headline"], "friction": friction, "least": at(numbers, RADII[1], HIGH)[0], "largest": _largest, "solids": solids,
+        "default": harness.kept("hero", docs).numbers["default"]["headline"],
+        "friction": friction, "least": at(numbers, RADII[1], HIGH)[0], "largest": _largest, "solids": solids,
         "comparisons": [
             (words, of, points) for key, words in errors.COMPARED.items() for of, known in COMPARISONS.items()
             if (points := known.get(key, ()))

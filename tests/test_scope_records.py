@@ -204,3 +204,11 @@ def test_record_without_whole_periods_is_refused(tmp_path):
         fp.Scene(voltage=file)
     scene = fp.Scene(history=[PRESS, {"name": "wave", "duration": 0.02, "voltage": file}])
     assert scene.history[1].voltage.times[-1] == pytest.approx(0.024)
+
+
+def test_long_record_has_no_side_bands(tmp_path):
+    """Of 50 periods at 2000 samples a period one is kept, to 1e-6 of its length: the period of the sine is exact."""
+    t, u = sine(50, 100001)
+    found = table(written(tmp_path, "time (s),U (V)", t, u), repeat=True)
+    assert found["times"][-1] == pytest.approx(0.02, rel=1e-6)
+    assert max(found["voltages"]) == pytest.approx(100, rel=1e-4)

@@ -90,6 +90,7 @@ REGIONS = _regions()
 """Errors that cover the full model's states: tests/test_known_error.py and tests/test_loads.py derive them from those
 of docs/models.json and docs/loads.json."""
 _ROUNDOFF = 1e-12  # relative, of a value at an end
+_TINY = 1e-12  # of a value, below all that a scene has but 0
 
 
 # -- where ---------------------------------------------------------------------------------------------------
@@ -194,9 +195,9 @@ def _outside(given: Mapping[str, Any], changed: Mapping[str, Sequence[str]], reg
 
 
 def _far(value: float, ends: tuple[float, float]) -> float:
-    """Return the logarithm of the ratio of a value and the nearest end of a range; 0 where one is not positive."""
+    """Return the logarithm of the ratio of a value, 0 as a very small one, and the nearest end of a range."""
     end = min(max(abs(value), ends[0]), ends[1])
-    return abs(math.log(abs(value) / end)) if value and end > 0 else 0.0
+    return abs(math.log(max(abs(value), _TINY) / max(end, _TINY)))
 
 
 def _number(value: Any) -> bool:

@@ -163,8 +163,8 @@ def _trust(result: Result) -> str:
     )
     band = in_words(result.record.get(RECORD, {}))
     note = (
-        "All this is about the mathematics. The least certain input is the finger: ridge tips and roughness move µ_app "
-        "by 10 % and more (docs/assumptions.md)." + (f" {band}" if band else "")
+        "All this is about the mathematics. The finger is less certain: its law of friction, ridge tips and roughness "
+        "move µ_app by 10 % and more (docs/assumptions.md)." + (f" {band}" if band else "")
     )
     return html.section(
         "trust", "Can these numbers be relied on?", f'<ul class="findings">{lines}</ul>', html.paragraph(note)

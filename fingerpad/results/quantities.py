@@ -17,6 +17,7 @@ from variational.state import EXTREMES as EXTREMES
 from variational.state import ContactState, StepRecord
 
 _NOTHING = 1e-6  # in the units of tables: below it all is roundoff
+_HIDDEN = 5e-3  # of a value: a smaller error is left out where the digits do not show it
 _PRINTED = {
     "": ("1", 1.0), "%": ("1", 100.0), "mm": ("m", 1e3), "µm": ("m", 1e6), "mm²": ("m^2", 1e6), "kPa": ("Pa", 1e-3)
 }  # fmt: skip
@@ -87,7 +88,7 @@ class Output:
         return f"{self.words or self.name} ({self.unit})" if self.unit else self.words or self.name
 
     def shown(self, value: float | None, error: float | None = None) -> str:
-        """Return a value in the unit of tables, with its error where the error reaches the digits shown.
+        """Return a value in the unit of tables, with its error where that is half a digit shown, or half a per cent.
 
         Args:
             value: in SI; None or NaN where it is not computed.
@@ -95,9 +96,9 @@ class Output:
         """
         if value is None or math.isnan(value):
             return "–"
-        if error is not None and error * self.scale >= 0.5 * 10.0**-self.digits:
-            return plus_minus(value * self.scale, error * self.scale)
-        shown = value * self.scale
+        shown, wide = value * self.scale, math.nan if error is None else error * self.scale
+        if wide >= 0.5 * 10.0**-self.digits or (abs(shown) > _NOTHING and wide > _HIDDEN * abs(shown)):
+            return plus_minus(shown, wide)
         small = _NOTHING < abs(shown) < 0.5 * 10.0**-self.digits
         return f"{shown:.2g}" if small else f"{shown:z.{self.digits}f}"  # z: no minus before a zero
 

@@ -5,7 +5,8 @@ is named or united as time, and a column that counts samples is none. Without un
 V. Times may begin anywhere: the first becomes 0.
 
 A file that repeats itself ends where a period does. One of 1.5 periods or more is cut to whole ones, another one must
-end with its first voltage, or one sample before. Files of more than :data:`POINTS` samples are averaged in groups, all
+end with its first voltage, or one sample before. Where all periods have more than :data:`POINTS` samples, fewer of them
+are kept, one at least. Files of more than :data:`POINTS` samples are averaged in groups, all
 of as many. Where this would take more than :data:`_LOST` of the mean square, as of a carrier, the file is refused.
 """
 
@@ -143,7 +144,8 @@ def _whole(t: Array, u: Array) -> tuple[Array, Array]:
     """Return a record of whole periods: one that is cut, or goes on for a sample with its first voltage."""
     steps, period, apart, end = np.diff(t), _period(t, u), abs(u[-1] - u[0]), t[-1]
     if period is not None:
-        end = math.floor((t[-1] + 1.5 * steps.min()) / period) * period
+        count = math.floor((t[-1] + 1.5 * steps.min()) / period)
+        end = max(1, min(count, math.floor(count * (POINTS - 1) / len(t)))) * period  # as many as need no means
         end = t[-1] if abs(end - t[-1]) < 0.25 * steps.min() else end
     elif steps.max() < 1.01 * steps.min() and _CLOSED * np.ptp(u) < apart <= 1.01 * np.abs(np.diff(u)).max():
         end = t[-1] + steps[-1]
@@ -159,8 +161,10 @@ def _whole(t: Array, u: Array) -> tuple[Array, Array]:
 def _period(t: Array, u: Array) -> float | None:
     """Return the period (s) of a record of 1.5 periods or more, None of another one.
 
-    It is the least delay, past the first lobe, at which the record hardly differs from itself and varies.
+    It is the least delay, past the first lobe, at which the record hardly differs from itself and varies; of several
+    periods a part of the delay over all of them, at which it differs least.
     """
+    import scipy.optimize
     import scipy.signal
 
     v = np.interp(np.linspace(0.0, t[-1], POINTS), t, u)
@@ -168,7 +172,16 @@ def _period(t: Array, u: Array) -> float | None:
     near = 1 + scipy.signal.find_peaks(-apart, height=-2 * _ALIKE * v.var())[0]
     near = near[near > 1 + np.argmax(apart > v.var())]
     found = [int(k) for k in near if min(v[k:].var(), v[:-k].var()) > v.var() / 4]
-    return found[-1] / round(found[-1] / found[0]) * t[-1] / (POINTS - 1) if found else None
+    if not found:
+        return None
+    count, step = round(found[-1] / found[0]), t[-1] / (POINTS - 1)
+
+    def differ(delay: float) -> float:
+        early = t[t <= t[-1] - delay]
+        return float(np.mean((np.interp(early + delay, t, u) - u[: len(early)]) ** 2))
+
+    ends = (found[-1] - 1) * step, min((found[-1] + 1) * step, t[-1] - step)
+    return float(scipy.optimize.minimize_scalar(differ, bounds=ends, method="bounded").x) / count
 
 
 def _fewer(name: str, t: Array, u: Array) -> tuple[Array, Array]:
