@@ -30,8 +30,8 @@ from fingerpad.model.finger import Finger
 from fingerpad.model.options import FingerModel, by_rule, plan
 from fingerpad.model.report import Report
 from fingerpad.model.simulation import Simulation
+from fingerpad.results import dataset
 from fingerpad.results.drawing import Drawing
-from fingerpad.results.writing import Writer
 from fingerpad.runs import full
 from fingerpad.runs.context import RunContext
 from fingerpad.scene import load
@@ -57,7 +57,7 @@ _WATCHED: dict[str, list[tuple[type, str]]] = {
     "tangent": [(Equations, "assemble_tangent")],
     "stability": [(StabilityChecks, "check")],
     "coupling": [(Observer, "state"), (Observer, "ridge_loads")],
-    "output": [(Report, "step"), (Report, "load_reached"), (Report, "final"), (Drawing, "write"), (Writer, "dataset")],
+    "output": [(Report, "step"), (Report, "load_reached"), (Report, "final"), (Drawing, "write"), (dataset, "save")],
 }
 _EVENTS = {"MatLUFactorSym": "factorisation", "MatLUFactorNum": "factorisation", "MatSolve": "back-substitution"}
 

@@ -274,27 +274,26 @@ def test_states_with_errors_are_those_of_runs(tmp_path):
     Tolerance: the air gaps' of 1e-6, which the ends of contact follow, and with them the places of facets.
     """
     scene = from_data(SCENE | {"output": {"errors": True, "receptors": False}})
-    direct = fp.sweep(scene, tmp_path, states="full_slip", quiet=True, voltage=[0, 60])
+    direct = fp.sweep(scene, tmp_path, states="full_slip", quiet=True, voltage=[60, 80])
     run = fp.run(scene.replace(voltage=60))
-    mine, its = direct[1].full_slip, run.full_slip
-    assert (mine.reached, direct[0].full_slip.reached) == ("path", "full slip from voltage 60 V")
-    assert direct[0].notes[0].startswith("This is full slip alone, solved for again on the scene's mesh;")
+    mine, its = direct[0].full_slip, run.full_slip
+    assert (mine.reached, direct[1].full_slip.reached) == ("path", "full slip from voltage 60 V")
+    assert direct[1].notes[0].startswith("This is full slip alone, solved for again on the scene's mesh;")
     for name in ("f_t", "mu_app", "contact_length", "f_electrostatic", "p_max"):
         assert getattr(mine, name) == pytest.approx(getattr(its, name), rel=1e-4), name
     for name, error in mine.error.known().items():
         assert error == pytest.approx(its.error.known()[name], rel=1e-2), name
     assert set(mine.error.known()) == set(its.error.known())
-    assert direct[0].full_slip.error.contact_length > 0
-    assert direct.array("mu_app")[0] == pytest.approx(0.25, rel=1e-9)
-    assert direct[1].record["accuracy"]["mesh"] == run.record["accuracy"]["mesh"]
-    row = direct.rows()[1]
+    assert direct[1].full_slip.error.contact_length > 0
+    assert direct[0].record["accuracy"]["mesh"] == run.record["accuracy"]["mesh"]
+    row = direct.rows()[0]
     assert row["full_slip_f_t_error"] == mine.error.f_t and " ± " in str(direct)
 
 
 @pytest.mark.slow
 def test_chain_that_was_stopped_goes_on(tmp_path, monkeypatch):
     """Of its points those that are missing are followed, the first of them by a path; numbers as in one go."""
-    voltages = [100.0, 80.0, 60.0, 40.0, 20.0]
+    voltages = [20.0, 40.0, 60.0, 80.0, 100.0]
     scene, write, written = from_data(SCENE), chain.kept, []
     every = scenes(voltage=voltages)
     file = tmp_path / "asked.json"
@@ -319,6 +318,6 @@ def test_chain_that_was_stopped_goes_on(tmp_path, monkeypatch):
     assert [[each["voltage"] for each in given["scenes"]] for given in asked] == [voltages[2:]]
     whole = fp.sweep(scene, tmp_path / "whole", states="full_slip", quiet=True, voltage=voltages)
     reached = [r.full_slip.reached for r in cut]
-    assert reached[::2] == ["path", "path", "full slip from voltage 40 V"]
+    assert reached[::2] == ["path", "path", "full slip from voltage 80 V"]
     for quantity in ("f_t", "f_electrostatic", "contact_length"):
         assert cut.array(quantity) == pytest.approx(whole.array(quantity), rel=1e-5), quantity

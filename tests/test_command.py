@@ -198,7 +198,7 @@ def test_commands_with_finite_elements_name_what_is_missing(plain, name, needed)
         ("1e3:1e6:4:log", [1e3, 1e4, 1e5, 1e6]),
         ("0:0.2:3 kV", ["0.0 kV", "0.1 kV", "0.2 kV"]),
         ("1e-6,2E-6", [1e-6, 2e-6]),
-        ("1 um,5 um", ["1.0 um", "5.0 um"]),
+        ("1 um,5 um", ["1 um", "5 um"]),
     ],
 )
 def test_ranges(text, values):
@@ -244,7 +244,7 @@ def test_negative_voltages(capsys):
     """A range of them after an equals sign, and a number also without."""
     for words in (["--voltage=-200:200:3"], ["--voltage", "-200"]):
         assert main(["estimate", *words]) == 0
-        assert re.search(r"^ *0.5388 +-200(.0)? .* 75.00 ", capsys.readouterr().out, re.MULTILINE)
+        assert re.search(r"^ *0.5377 +-200(.0)? .* 75.00 ", capsys.readouterr().out, re.MULTILINE)
 
 
 def test_terminal_without_the_letters_gets_others():

@@ -97,7 +97,7 @@ def test_weak_hits_say_so():
 def test_run_of_another_scene_is_not_taken(tmp_path, monkeypatch):
     """A folder that has the run of one scene is not read for another."""
     (tmp_path / "onset").mkdir()
-    kept = {"parameters": json.loads(json.dumps(scenes.step(25.0).parameters()))}
+    kept = {"format": FORMAT, "parameters": json.loads(json.dumps(scenes.step(25.0).parameters()))}
     (tmp_path / "onset" / "summary.json").write_text(json.dumps(kept), encoding="utf-8")
     asked, done = [], Result(scenes.step(25.0), "full", None, None, None)
     monkeypatch.setattr(scenes.fp, "run", lambda scene, out: asked.append(scene) or done)

@@ -124,7 +124,7 @@ def test_folder_of_the_shell_or_script_is_not_named(user, monkeypatch):
     monkeypatch.chdir(user)
     assert "Python finds no module evil in installed" in refusal("evil:X")
     monkeypatch.chdir(ROOT)
-    monkeypatch.setattr(sys.modules["__main__"], "__file__", str(user / "script.py"))
+    monkeypatch.setattr(sys.modules["__main__"], "__file__", str(user / "script.py"), raising=False)
     assert "Python finds no module evil in installed" in refusal("evil:X")
 
 

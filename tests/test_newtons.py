@@ -73,7 +73,7 @@ def test_states_on_the_scenes_mesh_are_those_of_a_run(found):
         assert run.ridges_in_contact == state.ridges_in_contact
         for name, error in run.error.known().items():
             value = getattr(state, name)
-            assert getattr(run, name) == pytest.approx(value, abs=min(error, 1e-2 * value)), name
+            assert getattr(run, name) == pytest.approx(value, abs=min(error, 1e-2 * abs(value))), name
 
 
 def test_traces_meet_the_states_on_the_scenes_mesh(found):

@@ -39,7 +39,8 @@ def changed(
     if "accuracy" in changes and accuracy is not None:
         coarse = start(accuracy)
         present["mesh"] = {key: size for key, size in present.get("mesh", {}).items() if coarse.get(key) != size}
-    for key in _replaced(changes):
+    no_mesh = {"geometry.file_sha256"} if "file" in (changes.get("geometry") or {}) else set[str]()
+    for key in _replaced(changes) | no_mesh:
         if _at(present, key.split(".")) is not None:
             present = _put(present, key.split("."), None)
     return _merged(present, changes)
