@@ -11,6 +11,7 @@ from benchmarks.feel import rules, scenes, subfield
 from benchmarks.harness import kept
 from benchmarks.measured.rules import HIT, MISS
 from fingerpad.results import felt
+from fingerpad.results.files import FORMAT
 from fingerpad.results.result import Result
 
 STEP = {

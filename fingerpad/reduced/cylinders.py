@@ -177,7 +177,7 @@ def solve(scene: Scene, footprint: Footprint | None = None) -> Result:
         n, length = np.array([footprint.ridges[state]]), np.array([footprint.length[state]])
         ((found[state], states[state]),) = _solved(scene, [scene.f_ext], length, n, state, footprint.charged)
         cautions += _others(state, states[state])
-    known = {} if footprint.charged else cylinder_errors.errors(scene, found)
+    known = {} if footprint.charged else cylinder_errors.errors(scene.model_copy(update={"force": None}), found)
     cautions += [] if footprint.charged else cylinder_errors.cautions(scene, _pull(found["full_slip"]))
     notes = (
         footprint.source,
