@@ -16,6 +16,7 @@ from typing import Any
 
 import fingerpad.startup  # noqa: F401
 from fingerpad.accuracy.solves import solve_again
+from fingerpad.accuracy.states import State
 from fingerpad.model import followed
 from fingerpad.model.finger import Step
 from fingerpad.model.options import FingerModel, by_rule, plan
@@ -24,7 +25,7 @@ from fingerpad.model.state import broken
 from fingerpad.results.checkpoint import Checkpoint, CheckpointError
 from fingerpad.results.interrupt import Interrupt, Interrupted, all_together
 from fingerpad.results.provenance import check_options, provenance
-from fingerpad.results.quantities import Output
+from fingerpad.results.quantities import PENALTY, Output
 from fingerpad.results.result import Result
 from fingerpad.results.states import WORDS
 from fingerpad.results.terminal import Console
@@ -37,7 +38,7 @@ from fingerpad.scene.messages import counted
 from fingerpad.scene.reading import DEFAULT_MODEL
 from fingerpad.scene.remarks import coefficient, used
 from fingerpad.slices import errors, traces
-from fingerpad.slices.correction import Pair, corrected, correction_errors, mesh_errors
+from fingerpad.slices.correction import Pair, corrected, correction_errors, mesh_errors, penalty_errors
 from fingerpad.slices.total import BeyondTrace, at_force, profile
 from fingerpad.slices.trace import TraceError
 from fingerpad.slices.traces import Traced
@@ -186,14 +187,18 @@ class _Newtons:
         }
         coarse = {words: state for words, (_, state) in anchors.items()}
         centre = {name: words for words, (name, _) in anchors.items()}  # the last of each
-        final, examined = model.changed(mesh=model.final), centre.values()
-        fine = solve_again(final, coarse, self._comm, examined=examined, pause=self._pause)
+        final, stiffer = model.changed(mesh=model.final), model.contact.over_stiffer_screen()
+        fine = solve_again(final, coarse, self._comm, stiffer=stiffer, examined=centre.values(), pause=self._pause)
+        over = {} if fine.stiffer is None else fine.stiffer.states
         branches.counts.add(Counts(fine.newton, fine.factorisations))
         pairs: dict[str, list[Pair]] = {name: [] for name in branches.found}
         for words, (name, state) in anchors.items():
             own = fine.states[words]
             pairs[name].append(Pair(state.state, own.state, (state.facet, own.facet)))
-        found = {name: self._total(branches.found[name], each, degree) for name, each in pairs.items()}
+        found = {
+            name: self._total(branches.found[name], each, degree, over.get(centre[name]))
+            for name, each in pairs.items()
+        }
         notes = [text for name, each in pairs.items() for text in _differences(name, each)]
         least = branches.force_error
         states = [state for each in found.values() for state in each.states]
@@ -210,8 +215,15 @@ class _Newtons:
         )
         return result, cautions_on(states)
 
-    def _total(self, each: Traced, pairs: Sequence[Pair], degree: int) -> Traced:
-        """Return a trace as on the scene's own mesh, with the finger on it and its errors."""
+    def _total(self, each: Traced, pairs: Sequence[Pair], degree: int, stiffer: State | None) -> Traced:
+        """Return a trace as on the scene's own mesh, with the finger on it and its errors.
+
+        Args:
+            each: the trace on coarser elements.
+            pairs: of its states on both meshes.
+            degree: of the elements.
+            stiffer: the last state over a screen of twice the stiffness; None where the screen is rigid.
+        """
         scene = self._scene
         finger, force, count, wavelength = profile(scene.slices), scene.force, scene.slices.count, _wavelength(scene)
         assert force is not None
@@ -220,6 +232,8 @@ class _Newtons:
             errors.MESH: mesh_errors(pairs[-1], wavelength, degree, made.own),
             errors.COARSE: correction_errors(finger, each.trace, pairs, wavelength, force, count),
         }
+        if stiffer is not None:
+            carried[PENALTY] = penalty_errors(pairs[-1].fine, stiffer.state, wavelength)
         return Traced(made, each.states, None, at_force(finger, made, force, count), pairs[-1].fine, carried)
 
     def _record(self, model: FingerModel) -> dict[str, Any]:

@@ -3,10 +3,11 @@ r"""A trace followed on coarse elements, corrected by some of its states solved 
 Where a force is prescribed, an error of the mesh changes indentation, attraction, contact length, gross width, and
 friction over contact force by a few per cent, and by about as much at neighbouring forces. So each of these is
 multiplied by the ratio r of its values on the fine and the coarse mesh. Between the forces :math:`f_k` of the states
-that are known on both, r is linear in the logarithm of the force; beyond them it is constant. Two errors are left:
+that are known on both, r is linear in the logarithm of the force; beyond them it is constant. Three errors are left:
 
 * of the *mesh*: that of the section on the fine one, from the two meshes (:func:`fingerpad.richardson.of_two_meshes`),
   at the largest force that is known on both; it is carried over to the sum,
+* of the *penalty*: what a rigid screen would change of that state, carried over as well,
 * of the *correction*: the largest change of the sum over the slices without one of the ratios but the last, or, with a
   single ratio, without a correction.
 """
@@ -17,7 +18,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from fingerpad.results.quantities import Output
-from fingerpad.richardson import of_sum, of_two_meshes
+from fingerpad.richardson import of_sum, of_two_meshes, rigid
 from fingerpad.slices.total import Profile, at_force
 from fingerpad.slices.trace import Trace, columns
 from variational.state import ContactState
@@ -80,6 +81,19 @@ def mesh_errors(pair: Pair, wavelength: float, degree: int = 2, own: Sequence[Ou
     ends = {each: (each.of(pair.coarse), each.of(pair.fine)) for each in own}
     errors = {each: of_sum(*both, pair.facets, degree, each.si == "m") for each, both in ends.items()}
     return known | {each.name: errors[each] / abs(value) for each, (_, value) in ends.items() if value}
+
+
+def penalty_errors(state: ContactState, stiffer: ContactState, wavelength: float) -> dict[str, float]:
+    """Return the relative changes of a sum by a rigid screen, those of the section, by the sum's quantities.
+
+    Args:
+        state: on the fine mesh.
+        stiffer: the same over a screen of twice the stiffness (:func:`fingerpad.richardson.rigid`).
+        wavelength: of a ridge (m).
+    """
+    value, over = ({of: float(each[0]) for of, each in _values([s], wavelength).items()} for s in (state, stiffer))
+    change = rigid(value, over)
+    return {name: abs(change[of] / value[of]) for name, of in _OF_SUM.items() if value[of]}
 
 
 def correction_errors(

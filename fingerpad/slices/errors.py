@@ -75,6 +75,12 @@ def of_section(
     return {MESH: mesh} | ({PENALTY: penalty} if any(penalty.values()) else {})
 
 
+def on_section(state: ContactState, shares: Mapping[str, float]) -> dict[str, float]:
+    """Return the errors of a section, in their units, from the relative ones of a sum (:func:`of_section`)."""
+    of = _OF_SECTION | {name: name for name in state.own}
+    return {of[key]: share * abs(getattr(state, of[key])) for key, share in shares.items() if key in of}
+
+
 def estimate(name: str, total: Total) -> dict[str, float]:
     """Return the relative errors of a run's estimate in a named state; none of its own press without voltage."""
     return _with_friction(ESTIMATE[name], total) if name in ESTIMATE else {}

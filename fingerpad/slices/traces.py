@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from fingerpad.results.answer import Cost
-from fingerpad.results.quantities import STABILITY, Output
+from fingerpad.results.quantities import PENALTY, STABILITY, Output
 from fingerpad.results.result import Result
 from fingerpad.results.states import WORDS
 from fingerpad.scene import Scene
@@ -179,9 +179,7 @@ def summed(scene: Scene, words: str, found: Mapping[str, Traced]) -> WholeFinger
     """
     totals = {name: each.total for name, each in found.items() if each.total is not None}
     wavelength = scene.geometry.ridge_wavelength
-    known = {
-        name: dict(e.carried) or errors.of_section(_end(e, name), wavelength, e.trace.own) for name, e in found.items()
-    }
+    known = {name: _carried(each, name, wavelength) for name, each in found.items()}
     of = {name: each.trace for name, each in found.items()}
     tops = (f"{each.trace.end[1]:.4g} N/m ({name.replace('_', ' ')})" for name, each in found.items())
     if not scene.volts:  # normal contact is one state then, with two names
@@ -224,6 +222,11 @@ def sections(scene: Scene, found: Mapping[str, Traced]) -> dict[str, Any]:
     return {name: named.get(name) for name in WORDS}
 
 
+def _carried(traced: Traced, name: str, wavelength: float) -> dict[str, dict[str, float]]:
+    """Return the errors that a sum takes over: those that its trace has, else those of its end."""
+    return dict(traced.carried) or errors.of_section(_end(traced, name), wavelength, traced.trace.own)
+
+
 def _section(traced: Traced, name: str, depth: float, wavelength: float) -> ContactState:
     """Return the section at the centre of the finger, interpolated between the points of its trace.
 
@@ -236,16 +239,9 @@ def _section(traced: Traced, name: str, depth: float, wavelength: float) -> Cont
     at: dict[str, Any] = {key: float(values[0]) for key, values in traced.trace.at(np.array([depth])).items()}
     near = min(traced.states, key=lambda state: abs(state.bone_height + depth))
     mu_app = at["f_t"] / at["f_ext"]
-    end, mesh = _end(traced, name), traced.carried.get(errors.MESH)
-    shares = mesh or errors.add(*errors.of_section(end, wavelength, traced.trace.own).values())
-    own = {each.name: at.pop(each.name) for each in traced.trace.own}
-    known = {key: shares[key] * at[key] for key in ("f_t", "f_electrostatic") if key in shares}
-    known |= {"mu_app": shares["mu_app"] * mu_app} if "mu_app" in shares else {}
-    known |= {"contact_length": shares["contact_area"] * at["contact_length"]} if "contact_area" in shares else {}
-    known |= {"bone_height": shares["indentation"] * depth} if "indentation" in shares else {}
-    known |= {key: shares[key] * abs(value) for key, value in own.items() if key in shares}
+    end, own = _end(traced, name), {each.name: at.pop(each.name) for each in traced.trace.own}
     del at["gross_width"]
-    return ContactState(
+    state = ContactState(
         **at,
         mu_app=mu_app,
         voltage=near.voltage,
@@ -257,8 +253,10 @@ def _section(traced: Traced, name: str, depth: float, wavelength: float) -> Cont
         all_slip=name == "full_slip",
         slip_held=name == "full_slip",
         own=own,
-        error=Errors.of(known),
     )
+    carried = _carried(traced, name, wavelength)
+    mesh, penalty = (errors.on_section(state, carried.get(part, {})) for part in (errors.MESH, PENALTY))
+    return replace(state, error=Errors.of(errors.add(mesh, penalty)), penalty=Errors.of(penalty))
 
 
 def _end(traced: Traced, name: str) -> ContactState | None:
