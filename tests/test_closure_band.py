@@ -88,8 +88,7 @@ def test_drive_has_the_voltage_of_each_air_gap(volts):
         share = float(fp.BoundaryElements(scene.h_0).balanced(*charged(other)))
         assert result.record[RECORD]["upper_bounds"]["boundary elements"] == pytest.approx(share, rel=1e-6)
     else:
-        volts_there = charged(other)[1]
-        assert result.record[RECORD]["no_number"]["boundary elements"] == f"ridges adhere at {volts_there:.4g} V"
+        assert result.record[RECORD]["no_number"]["boundary elements"] == "ridges adhere under the drive"
 
 
 def charged(result):

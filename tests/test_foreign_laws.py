@@ -55,9 +55,9 @@ def refusal(law: str) -> str:
     ("file", "law", "sentence"),
     [
         ("results/foreign/evil.py", "results.foreign.evil:X", "results is a folder without __init__.py"),
-        ("pack/__main__.py", "pack.__main__:X", "__main__ is of a program or its tests"),
-        ("pack/tests/evil.py", "pack.tests.evil:X", "tests is of a program or its tests"),
-        ("setup.py", "setup:X", "setup is of a program or its tests"),
+        ("pack/__main__.py", "pack.__main__:X", "__main__ is a name of programs and tests"),
+        ("pack/tests/evil.py", "pack.tests.evil:X", "tests is a name of programs and tests"),
+        ("setup.py", "setup:X", "setup is a name of programs and tests"),
         ("pack/inner/evil.py", "pack.inner.evil:X", "pack.inner is a folder without __init__.py"),
     ],
 )

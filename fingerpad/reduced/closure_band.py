@@ -157,7 +157,7 @@ def friction(scene: Scene, slip: ContactState, law: Closure, press: ContactState
     try:
         return _solved(scene, slip, law, press, tips)
     except SceneError:
-        return Slip(np.inf, _adhere(law, slip.voltage) or "there is no equilibrium")
+        return Slip(np.inf, _adhere(scene, law, slip.voltage) or "there is no equilibrium")
 
 
 def _solved(scene: Scene, slip: ContactState, law: Closure, press: ContactState | None, tips: float = 1.0) -> Slip:
@@ -168,7 +168,7 @@ def _solved(scene: Scene, slip: ContactState, law: Closure, press: ContactState 
     p_c = found.f_contact / found.contact_length
     voltage = slip.voltage if scene.supply is None else float(scene.supply.effective(law(p_c).d_eq))
     if p_c > law.pressures[1]:
-        return Slip(np.inf, _adhere(law, voltage) or "the ridges' pressure is beyond the table")
+        return Slip(np.inf, _adhere(scene, law, voltage) or "the ridges' pressure is beyond the table")
     balanced = float(law.balanced(p_c, voltage))
     return Slip(found.mu_app, balanced=balanced if balanced >= BALANCED else 0.0)
 
@@ -187,8 +187,10 @@ def _at(scene: Scene, voltage: float) -> Scene:
     return scene.model_copy(update={"voltage": voltage})
 
 
-def _adhere(law: Closure, voltage: float) -> str:
-    return f"ridges adhere at {voltage:.4g} V" if sticking(law, voltage) else ""
+def _adhere(scene: Scene, law: Closure, voltage: float) -> str:
+    """Return that ridges adhere, empty where they do not; the voltage that a circuit leaves is another by closure."""
+    under = f"at {voltage:.4g} V" if scene.supply is None else "under the drive"
+    return f"ridges adhere {under}" if sticking(law, voltage) else ""
 
 
 # -- all assumptions ---------------------------------------------------------------------------------------

@@ -93,7 +93,9 @@ def _refuse_foreign(module: str) -> None:
     for k, part in enumerate(parts, start=1):
         name = ".".join(parts[:k])
         if part in _BESIDE or part.startswith("__"):
-            raise _Refused(f"{part} is of a program or its tests, and no law")
+            raise _Refused(
+                f"{part} is a name of programs and tests, from which no law is imported; move the law elsewhere"
+            )
         if name in sys.modules:
             file, places = getattr(sys.modules[name], "__file__", None), getattr(sys.modules[name], "__path__", None)
         else:
