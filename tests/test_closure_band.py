@@ -119,7 +119,7 @@ def test_no_band_without_voltage_or_friction():
 
 
 def test_no_band_with_a_law_of_ones_own():
-    scene = from_data({"roughness": {"law": "tests.test_closure_band:Held"}})
+    scene = from_data({"roughness": {"law": f"{Held.__module__}:Held"}})
     assert RECORD not in fp.run(scene, model="cylinders").record
 
 

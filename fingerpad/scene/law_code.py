@@ -94,7 +94,7 @@ def _refuse_foreign(module: str) -> None:
         name = ".".join(parts[:k])
         if part in _BESIDE or part.startswith("__"):
             raise _Refused(
-                f"{part} is a name of programs and tests, from which no law is imported; move the law elsewhere"
+                f"{part} is a name of programs and tests, which hold no laws; move the law elsewhere"
             )
         if name in sys.modules:
             file, places = getattr(sys.modules[name], "__file__", None), getattr(sys.modules[name], "__path__", None)
