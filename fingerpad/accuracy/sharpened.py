@@ -2,7 +2,8 @@
 
 A state that was solved for from its neighbour has these numbers as a run has those of its named states: the mesh is
 finest where the state's own contact ends, and the difference of the two meshes makes the estimated error
-(:func:`fingerpad.richardson.of_two_meshes`). Where other ridges touch on the two meshes, that difference is in it.
+(:func:`fingerpad.richardson.of_two_meshes`). A screen of twice the stiffness makes that of the penalty. Where other
+ridges touch on the two meshes, that difference is in it.
 """
 
 from dataclasses import dataclass, replace
@@ -14,7 +15,7 @@ from fingerpad.accuracy.solves import solve_again
 from fingerpad.accuracy.states import Solve, StateRecorder, with_values
 from fingerpad.model.options import FingerModel
 from fingerpad.model.simulation import Simulation
-from fingerpad.richardson import of_two_meshes
+from fingerpad.richardson import of_two_meshes, rigid
 from variational.element import ELEMENTS
 from variational.state import ContactState, Errors
 
@@ -62,11 +63,15 @@ class Sharpener:
         final = model.final.model_copy(update=arc)
         self._recorder.keep(_SLIP)
         path, coarser = self._recorder.solve(), model.coarser(final)
-        fine = solve_again(model.changed(mesh=final), path.states, self._comm)
+        stiffer = model.contact.over_stiffer_screen()
+        fine = solve_again(model.changed(mesh=final), path.states, self._comm, stiffer=stiffer)
         coarse = path
         if path.mesh != coarser:
             coarse = solve_again(model.changed(mesh=coarser), path.states, self._comm)
         facets = {_SLIP: (coarse.states[_SLIP].facet, fine.states[_SLIP].facet)}
         found = of_two_meshes(coarse.parts(), fine.parts(), facets, ELEMENTS[model.numerics.element].degree)
+        change = {} if fine.stiffer is None else rigid(fine.values(), fine.stiffer.values())
+        mesh, penalty = (errors_of(_SLIP, each) for each in (found, change))
+        error = {key: value + abs(penalty.get(key, 0.0)) for key, value in mesh.items()}
         final_state = with_values(state, fine.states[_SLIP])
-        return Sharpened(replace(final_state, error=Errors.of(errors_of(_SLIP, found))), fine)
+        return Sharpened(replace(final_state, error=Errors.of(error), penalty=Errors.of(penalty)), fine)

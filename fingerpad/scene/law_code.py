@@ -93,9 +93,7 @@ def _refuse_foreign(module: str) -> None:
     for k, part in enumerate(parts, start=1):
         name = ".".join(parts[:k])
         if part in _BESIDE or part.startswith("__"):
-            raise _Refused(
-                f"{part} is a name of programs and tests, which hold no laws; move the law elsewhere"
-            )
+            raise _Refused(f"{part} is a name of programs and tests, which hold no laws; move the law elsewhere")
         if name in sys.modules:
             file, places = getattr(sys.modules[name], "__file__", None), getattr(sys.modules[name], "__path__", None)
         else:
