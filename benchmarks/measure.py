@@ -147,6 +147,7 @@ def run(scene: str = "") -> Numbers:
     started, parts = time.process_time(), Parts()
     with tempfile.TemporaryDirectory() as folder:
         result = full.run(load(Path(scene) if scene else None), RunContext(Path(folder)))
+    parts._charge()  # of what follows from the states, after the last file
     errors = sum(parts.of(_ERRORS, parts.seconds).values())
     return {
         "newton": result.cost.newton_iterations,

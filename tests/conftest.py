@@ -11,6 +11,7 @@ from fingerpad.startup import MPI, start
 
 start()
 
+from fingerpad.scene import law_code
 from geometry import fingertip
 from geometry import mesh as meshing
 from geometry.bodies import block
@@ -47,6 +48,13 @@ def pytest_collection_modifyitems(config, items):
     if MPI.COMM_WORLD.size > 1:
         config.hook.pytest_deselected(items=[item for item in items if item.get_closest_marker("mpi") is None])
         items[:] = [item for item in items if item.get_closest_marker("mpi") is not None]
+
+
+@pytest.fixture(autouse=True)
+def no_folder_of_a_scene():
+    """Forget the folders of scenes that a test has read, from which a process takes no laws."""
+    yield
+    law_code._SCENES.clear()
 
 
 @pytest.fixture(scope="session", autouse=True)

@@ -183,9 +183,3 @@ def test_direct_states_have_the_share_of_each_ridge(tmp_path):
     direct = fp.sweep(scene, tmp_path / "direct", states="full_slip", quiet=True, **frequencies)
     assert sorted(result.full_slip.reached.partition(" ")[0] for result in direct) == ["full", "path"]
     assert direct.array("f_t") == pytest.approx(paths.array("f_t"), rel=1e-6)
-
-
-def test_closed_form_has_the_caution_of_the_widest_gap():
-    """At 400 V air breaks down across the gap of a light ridge alone, as `estimate` and `check` say."""
-    found = fp.run(fp.Scene(voltage=400.0), model="cylinders").cautions
-    assert sum("air breaks down" in each for each in found) == 1

@@ -114,7 +114,7 @@ def test_charts_have_the_units_of_their_titles(found):
     """A chart's numbers are in mm² and N, as the table below."""
     charts = _curves(read(found.folder))
     assert charts["charts"]["sweep_mu_app"] == "µ<sub>app</sub> of the whole finger"
-    assert charts["charts"]["sweep_contact_area"] == "ridge contact area of the whole finger (mm²)"
+    assert charts["charts"]["sweep_contact_area"] == "ridge contact area<br>of the whole finger (mm²)"
     drawn = charts["curves"][1]["sweep_contact_area"]
     assert drawn == pytest.approx(1e6 * found.array("contact_area")[1])
 

@@ -187,8 +187,7 @@ def solve(scene: Scene, footprint: Footprint | None = None) -> Result:
         *leakage(scene),
     )
     cautions += on_states(found.values(), scene.closure())
-    gaps = [(WORDS[state], ridge.d_eq, scene.volts) for state, ridge in states.items()]
-    cautions += breakdown.of_gaps(scene, gaps) or breakdown.ahead(scene)
+    cautions += breakdown.of_gaps(scene, [(WORDS[state], ridge.d_eq, scene.volts) for state, ridge in states.items()])
     more: dict[str, Any] = {
         f"{state}_{name}": getattr(ridge, name) for state, ridge in states.items() for name in ("p_c", "d_eq")
     }

@@ -17,7 +17,6 @@ from variational.state import EXTREMES as EXTREMES
 from variational.state import ContactState, StepRecord
 
 _NOTHING = 1e-6  # in the units of tables: below it all is roundoff
-_HIDDEN = 5e-3  # of a value: a smaller error is left out where the digits do not show it
 _PRINTED = {
     "": ("1", 1.0), "%": ("1", 100.0), "mm": ("m", 1e3), "µm": ("m", 1e6), "mm²": ("m^2", 1e6), "kPa": ("Pa", 1e-3)
 }  # fmt: skip
@@ -97,7 +96,7 @@ class Output:
         if value is None or math.isnan(value):
             return "–"
         shown, wide = value * self.scale, math.nan if error is None else error * self.scale
-        if wide >= 0.5 * 10.0**-self.digits or (abs(shown) > _NOTHING and wide > _HIDDEN * abs(shown)):
+        if wide >= 0.5 * 10.0**-self.digits or (abs(shown) > _NOTHING and wide > 5e-3 * abs(shown)):
             return plus_minus(shown, wide)
         small = _NOTHING < abs(shown) < 0.5 * 10.0**-self.digits
         return f"{shown:.2g}" if small else f"{shown:z.{self.digits}f}"  # z: no minus before a zero
