@@ -88,9 +88,9 @@ def test_traces_meet_the_states_on_the_scenes_mesh(found):
         assert found[0].named[name].f_ext == pytest.approx(found[1][name][-1].f_ext, rel=0.1)
 
 
-def test_errors_have_three_parts(found):
+def test_errors_have_four_parts(found):
     """All of which are printed, and none of which is zero or all."""
-    assert "by mesh of the cross-section, coarser mesh of the traces, points of the traces" in str(found[0])
+    assert "by mesh of the cross-section, coarser mesh of the traces, penalty, points of the traces" in str(found[0])
     for name, parts in found[0].finger.carried.items():
         for part, known in parts.items():
             assert all(0 < value < 0.5 for value in known.values()), (name, part, known)
