@@ -47,7 +47,7 @@ STRAIN = (0.01, -0.02)  # of the body whose tangent is measured
 _REPEATS, _SIZES = 5, ("contact", "receptor", "interface", "growth")
 _NEWTON, _PATH, _ERRORS, _LAYER = "rest of Newton's method", "rest of the path", "errors", "layer at the screen"
 _WHOLE = ("stability", "output", "set-up", _LAYER)  # parts to which all that is called in them belongs
-_WATCHED: dict[str, list[tuple[type, str]]] = {
+_WATCHED: dict[str, list[tuple[Any, str]]] = {
     _PATH: [(Simulation, "run")],
     _ERRORS: [(Refinement, "run")],
     _NEWTON: [(Iteration, "run")],
