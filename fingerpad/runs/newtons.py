@@ -233,7 +233,7 @@ class _Newtons:
             errors.COARSE: correction_errors(finger, each.trace, pairs, wavelength, force, count),
         }
         if stiffer is not None:
-            carried[PENALTY] = penalty_errors(pairs[-1].fine, stiffer.state, wavelength)
+            carried[PENALTY] = penalty_errors(pairs[-1].fine, stiffer.state, wavelength, made.own)
         return Traced(made, each.states, None, at_force(finger, made, force, count), pairs[-1].fine, carried)
 
     def _record(self, model: FingerModel) -> dict[str, Any]:

@@ -83,17 +83,20 @@ def mesh_errors(pair: Pair, wavelength: float, degree: int = 2, own: Sequence[Ou
     return known | {each.name: errors[each] / abs(value) for each, (_, value) in ends.items() if value}
 
 
-def penalty_errors(state: ContactState, stiffer: ContactState, wavelength: float) -> dict[str, float]:
+def penalty_errors(
+    state: ContactState, stiffer: ContactState, wavelength: float, own: Sequence[Output] = ()
+) -> dict[str, float]:
     """Return the relative changes of a sum by a rigid screen, those of the section, by the sum's quantities.
 
     Args:
         state: on the fine mesh.
         stiffer: the same over a screen of twice the stiffness (:func:`fingerpad.richardson.rigid`).
         wavelength: of a ridge (m).
+        own: outputs that are summed.
     """
-    value, over = ({of: float(each[0]) for of, each in _values([s], wavelength).items()} for s in (state, stiffer))
-    change = rigid(value, over)
-    return {name: abs(change[of] / value[of]) for name, of in _OF_SUM.items() if value[of]}
+    value, over = ({of: float(each[0]) for of, each in _values([s], wavelength, own).items()} for s in (state, stiffer))
+    change, names = rigid(value, over), _OF_SUM | {each.name: each.name for each in own}
+    return {name: abs(change[of] / value[of]) for name, of in names.items() if of in change and value[of]}
 
 
 def correction_errors(
