@@ -4,7 +4,7 @@ The scene is kept in the folder (``scene.json``) and another one is refused ther
 beside a summary of another, and no run is overwritten because ``--out`` was forgotten. The same scene may be run
 again: what its earlier run left stays until the new one has reached its first step, and goes then as a whole.
 Results are not written beside and put in place at the end, since every accepted step is to be seen at once and has
-to outlive the run. A resumed run writes its files anew, from :mod:`fingerpad.results.checkpoint`.
+to outlive the run. A resumed run writes its files anew, from :mod:`fingerpad.runs.checkpoint`.
 """
 
 import contextlib
@@ -71,22 +71,27 @@ def on_rank_0(comm: "MPI.Comm | Serial", work: Callable[[], T]) -> T:
     """Return on every rank what rank 0 finds; collective.
 
     Raises:
-        OSError: what rank 0 cannot write, on every rank: the others would wait for it.
+        OSError: what rank 0 cannot read or write, on every rank: the others would wait for it.
+        SceneError: its refusal, on every rank.
     """
-    found: T | OSError | None = None
+    found: T | OSError | SceneError | None = None
     if comm.rank == 0:
         try:
             found = work()
-        except OSError as error:
+        except (OSError, SceneError) as error:
             found = error
     found = comm.bcast(found)
-    if isinstance(found, OSError):
+    if isinstance(found, OSError | SceneError):
         raise found
     return found  # type: ignore[return-value]
 
 
 class FolderError(SceneError):
     """A folder that results cannot be written to; one sentence."""
+
+
+class CheckpointError(SceneError):
+    """A checkpoint from which a run cannot go on; one sentence."""
 
 
 class Folder:
