@@ -16,7 +16,7 @@ import numpy as np
 from numpy.polynomial.legendre import leggauss
 
 from fingerpad.calculator import presets
-from fingerpad.installed import version
+from fingerpad.launcher import version
 from fingerpad.model.cautions import BALANCED
 from fingerpad.reduced import cylinder_errors, cylinders, uncharged
 from fingerpad.reduced.closure_band import CHANGE, SHEAR_STRESS, TIPS, closures, powers, with_band

@@ -4,7 +4,7 @@ import sys
 from collections.abc import Sequence
 
 from fingerpad.cli.arguments import Kind, Parser, echo, path
-from fingerpad.ctrl_c import raises
+from fingerpad.launcher import raising_at_ctrl_c
 from fingerpad.results.result import Result
 from fingerpad.results.terminal import watched
 from fingerpad.runs.batch import progress
@@ -27,7 +27,7 @@ def main(argv: Sequence[str]) -> int:
     from fingerpad.results.animation import animate  # Matplotlib
 
     try:
-        with raises(), progress(quiet=not watched()) as bar:
+        with raising_at_ctrl_c(), progress(quiet=not watched()) as bar:
             task = bar.add_task("frames drawn", total=None)
             animate(result, file, lambda done, count: bar.update(task, completed=done, total=count))
     except KeyboardInterrupt:

@@ -24,7 +24,7 @@ from fingerpad.model.report import Clock
 from fingerpad.model.state import broken
 from fingerpad.results.folder import CheckpointError
 from fingerpad.results.interrupt import Interrupt, Interrupted, all_together
-from fingerpad.results.provenance import check_options, provenance
+from fingerpad.results.provenance import check_options, provenance, refuse_unread
 from fingerpad.results.quantities import PENALTY, Output
 from fingerpad.results.result import Result
 from fingerpad.results.states import WORDS
@@ -142,6 +142,7 @@ class _Newtons:
 
     # -- on the way ------------------------------------------------------------------------------------
     def _on_step(self, step: Step, done: float) -> None:
+        refuse_unread()
         self._steps = step.state.step
         self._console.step(step.state, min(len(self.branches.found) / (1 + len(traces.states(self._scene))), 1.0))
         self._pause()

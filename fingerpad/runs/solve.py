@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from fingerpad import launcher
-from fingerpad.installed import needed_by, source, version
+from fingerpad.launcher import needed_by, source, version
 from fingerpad.model import breakdown
 from fingerpad.reduced.registry import find
 from fingerpad.results.files import below, has_other_format, read_object
