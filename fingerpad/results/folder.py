@@ -27,19 +27,8 @@ if TYPE_CHECKING:
 
 # All that a run leaves, for the next run of the same scene to delete; what else is in the folder is not touched.
 LEFT = (
-    *(
-        "steps.csv",
-        "ridges.csv",
-        "receptors.csv",
-        "*_final.csv",
-        "coupling.csv",
-        "summary.json",
-        "summary.json*.part",
-        "run.log",
-        "result.nc",
-        "result.nc*.part",
-    ),
-    *("displacement.bp", "stress.bp", "sed.bp", "fields.csv"),  # of earlier versions
+    *("steps.csv", "ridges.csv", "receptors.csv", "*_final.csv", "coupling.csv"),
+    *("summary.json", "summary.json*.part", "run.log", "result.nc", "result.nc*.part"),
     *("finger_*.npz", "finger_*.png", "surface*.npz", "surface*.png"),
     *("fields_*.vtu", "fields.pvd"),
     *("history.png", "time.png", "field.png", "footprint.png", "solid.png", "report.html", "report.html*.part"),
@@ -183,9 +172,7 @@ class Folder:
     def _kept(self) -> dict[str, Any] | None:
         """Return the parameters of the scene whose results are in the folder; None if there are none."""
         with contextlib.suppress(FileNotFoundError, ValueError):
-            return _whole(read_object(self.folder / "scene.json"))
-        with contextlib.suppress(FileNotFoundError, ValueError):
-            return _whole(read_object(self.folder / "summary.json").get("parameters", {}))
+            return read_object(self.folder / "scene.json")
         for file in (self.folder / "scene.json", *self._left()):
             if file.exists():
                 raise FolderError(f"{ends(self.folder)} holds {file.name} of an unknown scene; choose another folder")
@@ -214,23 +201,12 @@ def full_scene(folder: Path) -> Scene:
     """
     foreign(folder)
     try:
-        kept = _whole(read_object(folder / "scene.json"))
+        kept = read_object(folder / "scene.json")
     except (OSError, ValueError):
         raise FolderError(f"{ends(folder)} has no scene.json of a run, and so no run to go on with") from None
     if "model" in kept:
         raise FolderError(f"{ends(folder)} has a run of the model {kept['model']!r}; only a full one can go on")
     return from_data(kept)
-
-
-def _whole(parameters: Any) -> dict[str, Any]:
-    """Return parameters of a scene that a file holds.
-
-    Raises:
-        ValueError: they are something else.
-    """
-    if not isinstance(parameters, dict):
-        raise ValueError("no parameters of a scene")
-    return parameters
 
 
 def identity(parameters: Mapping[str, Any]) -> dict[str, Any]:
