@@ -13,7 +13,7 @@ from fingerpad.accuracy.states import StateRecorder
 from fingerpad.model import report
 from fingerpad.model.checks import FullSlip
 from fingerpad.model.state import force_error
-from fingerpad.results import fields
+from fingerpad.results import drawing, fields
 from fingerpad.results.states import RESULTS, named
 from fingerpad.scene import from_data
 from tests.measures import rows_of
