@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from importlib.resources import files
 from pathlib import Path
 
-from fingerpad.afferents.registry import DEFAULT, LAWS
+from fingerpad.afferents import DEFAULT, LAWS
 from fingerpad.cli.arguments import Kind, Parser, echo, path, refuse_file
 from fingerpad.ctrl_c import raises
 from fingerpad.report.write import write
