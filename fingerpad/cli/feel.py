@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 
-from fingerpad.afferents.registry import DEFAULT, LAWS
+from fingerpad.afferents import DEFAULT, LAWS
 from fingerpad.cli.arguments import Parser, echo, path
 from fingerpad.results.result import Result
 
