@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from fingerpad.results import files
 from variational.files import read
-from variational.outline import outline
+from variational.snapshot import outline
 
 Array = NDArray[np.float64]
 Numbers = NDArray[np.int64]
