@@ -5,7 +5,6 @@ The closed form alone takes an interpreter of JavaScript and no browser.
 
 import json
 import random
-import re
 import shutil
 import subprocess
 from pathlib import Path
