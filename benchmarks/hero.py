@@ -29,7 +29,7 @@ from fingerpad.results.result import Result
 from fingerpad.scene.parameters import Slices
 from fingerpad.slices.total import at_force
 from geometry import tags
-from variational.outline import loops
+from variational.snapshot import loops
 
 Array = NDArray[np.float64]
 FORCES = (0.2, 0.75)  # N, of the curves of friction beside that of the run

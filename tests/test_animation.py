@@ -37,7 +37,7 @@ def copy(folder, tmp_path) -> Path:
 def test_animation_has_a_frame_for_each_state(folder, tmp_path, capsys, ending):
     """And some between states, each load at least as many as it is said to have; the last frame stands longest."""
     file = tmp_path / f"run{ending}"
-    assert main(["animate", str(folder), "--out", str(file)]) == 0 and str(file) in capsys.readouterr().out
+    assert main(["report", str(folder), "--animate", "--out", str(file)]) == 0 and str(file) in capsys.readouterr().out
     with Image.open(file) as shown:
         assert shown.size == (810, 540) and shown.n_frames > len(Result.load(folder).steps)
         first = shown.convert("RGB").tobytes()
@@ -72,7 +72,7 @@ def test_long_run_keeps_some_of_its_states():
 )
 def test_animation_that_cannot_be_made_is_refused(copy, capsys, name, words):
     (copy / fields.FILE).unlink()
-    assert main(["animate", str(copy), "--out", str(copy / name)]) == 2
+    assert main(["report", str(copy), "--animate", "--out", str(copy / name)]) == 2
     printed, said = capsys.readouterr()
     assert words in said and said.count("\n") == 1 and printed == ""
 
@@ -89,7 +89,7 @@ def test_animation_that_is_stopped_leaves_what_was_there(copy, capsys, monkeypat
     frames = animation._frames
     monkeypatch.setattr(animation, "_frames", lambda states: frames(states)[:2])
     monkeypatch.setattr(where, stop)
-    assert main(["animate", str(copy)]) == 130
+    assert main(["report", str(copy), "--animate"]) == 130
     said = capsys.readouterr().err
     assert said.startswith("fingerpad: stopped by Ctrl-C") and said.count("\n") == 1
     assert file.read_bytes() == b"earlier" and set(copy.iterdir()) == there

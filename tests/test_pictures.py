@@ -21,7 +21,7 @@ from fingerpad.scene import from_data
 from geometry import tags
 from tests.runs import no_pictures
 from tests.small_finger import NINE
-from variational.outline import outline
+from variational.snapshot import outline
 from variational.state import ContactState, Errors, StepRecord
 
 LOADED = ContactState(

@@ -29,8 +29,8 @@ from variational.resultants import RidgeLoads
 from variational.roughness.bam import BearingArea
 from variational.snapshot import Snapshot
 from variational.solvers.continuation import Target
-from variational.solvers.snapshot import take_snapshot
 from variational.solvers.stability import StabilityCheck
+from variational.solvers.state_snapshot import take_snapshot
 
 pytestmark = pytest.mark.slow
 H_0, WIDTH, HEIGHT, FORCE = 0.514e-6, 0.5e-3, 0.5e-3, 3.0

@@ -14,7 +14,7 @@ from fingerpad.results.fields import View
 from fingerpad.results.states import before_sliding
 from geometry.parameters import MeshSize
 from variational.output import Receptors
-from variational.solvers.snapshot import StateSnapshot, take_snapshot
+from variational.solvers.state_snapshot import StateSnapshot, take_snapshot
 from variational.state import RESULTS, ContactState
 
 if TYPE_CHECKING:

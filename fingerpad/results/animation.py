@@ -25,7 +25,7 @@ from fingerpad.results.finger_picture import LAYER_COLOURS, curve
 from fingerpad.results.states import by_load
 from fingerpad.scene.messages import SceneError, clip
 from fingerpad.scene.remarks import coefficient
-from variational.outline import loops
+from variational.snapshot import loops
 from variational.state import ContactState
 
 if TYPE_CHECKING:

@@ -14,7 +14,7 @@ from fingerpad.scene import Scene
 from fingerpad.startup import MPI
 from variational.snapshot import Snapshot
 from variational.solvers.outcome import Counts
-from variational.solvers.snapshot import SkinState, StateSnapshot
+from variational.solvers.state_snapshot import SkinState, StateSnapshot
 from variational.solvers.target import Control, Progress
 from variational.state import ContactState, Errors, RidgeStates, Sites, Skin, StepRecord, Stimuli
 
