@@ -29,10 +29,9 @@ if TYPE_CHECKING:
 LEFT = (
     *("steps.csv", "ridges.csv", "receptors.csv", "*_final.csv", "coupling.csv"),
     *("summary.json", "summary.json*.part", "run.log", "result.nc", "result.nc*.part"),
-    *("finger_*.npz", "finger_*.png", "surface*.npz", "surface*.png"),
-    *("fields_*.vtu", "fields.pvd"),
+    *("fields.npz", "fields.npz*.part", "finger_*.png", "surface*.png"),
     *("history.png", "time.png", "field.png", "footprint.png", "solid.png", "report.html", "report.html*.part"),
-    *("spikes.csv", "spikes.nc", "raster.png", "motion.npz", "animation.webp"),
+    *("spikes.csv", "spikes.nc", "raster.png", "animation.webp"),
 )
 _LOCK = ".lock"
 T = TypeVar("T")

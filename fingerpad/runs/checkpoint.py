@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 
 import fingerpad.startup  # noqa: F401
 from fingerpad.accuracy.states import State
-from fingerpad.results.drawing import View
+from fingerpad.results.fields import View
 from fingerpad.results.files import read_object, remove, replace_json
 from fingerpad.results.folder import CheckpointError, on_rank_0
 from fingerpad.results.provenance import provenance
@@ -32,7 +32,7 @@ from fingerpad.startup import MPI
 from variational.files import read as read_bytes
 from variational.snapshot import Snapshot
 from variational.solvers.outcome import Counts
-from variational.solvers.snapshot import SkinState, StateSnapshot
+from variational.solvers.state_snapshot import SkinState, StateSnapshot
 from variational.solvers.target import Control, Progress
 from variational.state import ContactState, Errors, RidgeStates, Sites, Skin, StepRecord, Stimuli
 
