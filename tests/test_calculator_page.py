@@ -10,7 +10,7 @@ import fingerpad as fp
 from fingerpad.calculator import presets
 from fingerpad.calculator.page import page
 from fingerpad.reduced import cylinder_errors
-from fingerpad.runs.two_keys import two_keys
+from fingerpad.runs.sweep import sweep
 from fingerpad.scene import Scene
 from fingerpad.scene.reading import put
 from tests.browser import asked
@@ -54,7 +54,7 @@ def test_bar_of_the_band_moves_with_the_fields(whole, tmp_path):
 def test_map_is_that_of_the_command(tmp_path):
     """To 1e-9 of ``fingerpad estimate --over``, some of the places, and refused at the same ones."""
     over = {"voltage": [0.0, 90.0, 400.0, 5000.0], "electric.d_i": [0.1e-6, 1e-6, 30e-6]}
-    expected = two_keys(Scene(force=0.5), over).values
+    expected = sweep(Scene(force=0.5), None, model="cylinders", **over).array("mu_app")
     default = in_si({key: field.value for key, field in FIELDS.items()}) | {"force": 0.5}
     places = [[default | {"voltage": u, "electric.d_i": d} for d in over["electric.d_i"]] for u in over["voltage"]]
     program = f"""console.log(JSON.stringify({json.dumps(places)}.map((row) => row.map((p) => {{
@@ -81,7 +81,7 @@ def test_map_has_the_target_and_takes_clicks_and_keys(whole, tmp_path):
     find("map").dispatchEvent(new KeyboardEvent("keydown", {{ key: "ArrowUp", bubbles: true }}));
     return [words, under, after, find("voltage").value, svg.querySelectorAll("image").length];"""
     words, under, after, up, images = asked(whole, program, tmp_path)
-    (root,) = fp.solve(fp.Scene(force=0.5), "mu_app=2x").values
+    (root,) = fp.solve(fp.Scene(force=0.5), mu_app=0.5).values
     assert float(re.search(r"reached at ([0-9.]+) V\.", words)[1]) == pytest.approx(root, rel=1e-3)
     assert re.fullmatch(r"[0-9.]+ µm, [0-9.]+ V: [0-9.]+", under)
     assert float(after[0]) not in (0, 200) and float(after[1]) not in (1, 0.1)
