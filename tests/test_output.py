@@ -12,9 +12,8 @@ from variational.contact.penalty import Penalty
 from variational.materials import ogden, saint_venant
 from variational.materials.ogden import Ogden
 from variational.materials.saint_venant import SaintVenant
-from variational.output import Cellwise, Receptors, sed_per_cell
+from variational.output import Cellwise, Lines, Receptors, sed_per_cell
 from variational.problem import Interface, Problem
-from variational.snapshot import Lines
 from variational.surface import Surface
 
 pytestmark = pytest.mark.mpi

@@ -22,7 +22,7 @@ never solves.
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from functools import cache
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import dolfinx
 import numpy as np
@@ -33,14 +33,11 @@ from variational import jit, kinematics
 from variational.attraction import electroadhesion
 from variational.contact.formulation import STICKS, Contact, Formulation, Skin
 from variational.contact.friction import Friction, law_of
-from variational.element import ELEMENTS, Centroid, LayerwisePressure
+from variational.element import ELEMENTS, Centroid, LayerwisePressure, grouped
 from variational.history import History, SkinField
-from variational.layers import grouped
+from variational.materials.material import Material
 from variational.relaxation import Spent, relaxations
-
-if TYPE_CHECKING:
-    from variational.materials.material import Material
-    from variational.surface import Surface
+from variational.surface import Surface
 
 
 @dataclass(frozen=True)
@@ -118,8 +115,8 @@ class Problem:
         self,
         mesh: dolfinx.mesh.Mesh,
         cell_tags: dolfinx.mesh.MeshTags,
-        surface: "Surface",
-        solids: Mapping[int, "Material"],
+        surface: Surface,
+        solids: Mapping[int, Material],
         interface: Interface,
         element: str = "P2",
     ) -> None:
@@ -177,7 +174,7 @@ class Problem:
         self.pressure = self._pressure(solids) if kind.mixed else None
         self.pressures = {tags: law.pressure(H) for tags, law in self.laws.items()}
 
-        def strained(laws: Mapping[tuple[int, ...], "Material"]):
+        def strained(laws: Mapping[tuple[int, ...], Material]):
             energy = 0
             for tags, law in laws.items():
                 energy += law.distortion(H) * dx(tags)
@@ -262,7 +259,7 @@ class Problem:
         for relaxation in self.relaxations.values():
             relaxation.prepare()
 
-    def _pressure(self, solids: Mapping[int, "Material"]) -> LayerwisePressure | None:
+    def _pressure(self, solids: Mapping[int, Material]) -> LayerwisePressure | None:
         """Return the pressure of the layers whose law has a volumetric part, None if there is none."""
         skins = {tag: solid.shear_modulus for tag, solid in solids.items() if solid.volumetric is not None}
         return LayerwisePressure(self.mesh, self.cell_tags, tuple(skins), max(skins.values())) if skins else None
@@ -280,7 +277,7 @@ class Problem:
         behind_all = found.pop()
         return kinematics.first_piola_kirchhoff(self.laws[behind_all], F, self.pressures[behind_all])
 
-    def _skin_stiffness(self, solids: Mapping[int, "Material"], cellwise: fem.FunctionSpace) -> fem.Function:
+    def _skin_stiffness(self, solids: Mapping[int, Material], cellwise: fem.FunctionSpace) -> fem.Function:
         """Return the constrained modulus behind the touching skin over the facets' lengths (Pa/m), cell by cell."""
         f = fem.Function(cellwise)
         for tag, solid in solids.items():

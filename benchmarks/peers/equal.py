@@ -26,7 +26,7 @@ from geometry.bodies import ridge
 from geometry.mesh import TaggedMesh, load
 from geometry.parameters import MeshSize
 from variational.body import Body
-from variational.solvers.snapshot import StateSnapshot, take_snapshot
+from variational.solvers.state_snapshot import StateSnapshot, take_snapshot
 from variational.solvers.transfer import restore
 
 Array = NDArray[np.float64]

@@ -41,9 +41,9 @@ from variational.contact.penalty import Penalty
 from variational.element import ELEMENTS
 from variational.energy import EnergyBook
 from variational.materials.material import Material
+from variational.output import Lines, Nodes
 from variational.problem import Interface
 from variational.roughness.closure import Closure, check
-from variational.snapshot import Lines, Nodes
 from variational.solvers.continuation import Attempt, StepFailed, Target
 from variational.state import ContactState, Skin, StepRecord
 

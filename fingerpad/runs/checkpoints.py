@@ -7,14 +7,14 @@ from typing import Any
 import fingerpad.startup  # noqa: F401
 from fingerpad.accuracy.states import State
 from fingerpad.results.checkpoint import Checkpoint, CheckpointError
-from fingerpad.results.drawing import View
+from fingerpad.results.fields import View
 from fingerpad.results.provenance import provenance
 from fingerpad.results.quantities import Output
 from fingerpad.scene import Scene
 from fingerpad.startup import MPI
 from variational.snapshot import Snapshot
 from variational.solvers.outcome import Counts
-from variational.solvers.snapshot import SkinState, StateSnapshot
+from variational.solvers.state_snapshot import SkinState, StateSnapshot
 from variational.solvers.target import Control, Progress
 from variational.state import ContactState, Errors, RidgeStates, Sites, Skin, StepRecord, Stimuli
 

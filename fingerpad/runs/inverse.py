@@ -21,8 +21,7 @@ from fingerpad.runs.closed_form import STATE, ClosedForm
 from fingerpad.runs.context import RunContext
 from fingerpad.runs.roots import EQUAL, Axis, Roots, axis
 from fingerpad.runs.solve import checked, solved, stopped
-from fingerpad.scene import Scene
-from fingerpad.scene.dotted import with_values
+from fingerpad.scene import Scene, with_values
 from fingerpad.scene.messages import SceneError, clip, show
 from fingerpad.scene.remarks import drive_in_short, other_under_a_drive
 from fingerpad.slices import errors
