@@ -177,13 +177,14 @@ def _paint(figure: Figure, numbers: Mapping[str, Any], ends: Mapping[str, Limit]
 def draw(docs: Path) -> Path:
     """Draw page and picture from the kept numbers."""
     numbers, ends = harness.kept("errors", docs).numbers, known(docs)
-    whole, rows = numbers["default"], numbers["studies"]["penalty"]
+    whole = numbers["default"]
 
-    def by_penalty(quantity: str) -> list[float]:
+    def study(name: str, quantity: str) -> list[float]:
+        rows = numbers["studies"][name]
         return [row["quantities"][quantity] / QUANTITIES[quantity][1] for row in rows]
 
     def rigid(quantity: str) -> float:
-        _, middle, stiff = by_penalty(quantity)
+        _, middle, stiff = study("penalty", quantity)
         return 100 * (stiff / middle - 1)
 
     def worst(kind: str) -> float:
@@ -191,7 +192,7 @@ def draw(docs: Path) -> Path:
 
     harness.picture(docs / "errors.png", (9, 3.6), lambda figure: _paint(figure, numbers, ends))
     names = {"whole": whole, "ends": ends, "again": numbers["again"], "penalty": stiffer(docs), "end": _end}
-    names |= {"by_penalty": by_penalty, "rigid": rigid, "worst": worst, "saw": numbers["saw"]}
+    names |= {"study": study, "rigid": rigid, "worst": worst, "saw": numbers["saw"]}
     names["shown"] = {name: words for name, words in QUANTITIES.items() if name in whole}
     names["force"] = indented(numbers["pressed"])
     return harness.page(docs, "errors", "make chart", globals() | names)
