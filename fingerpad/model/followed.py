@@ -21,7 +21,6 @@ from fingerpad.scene.supply import GAPS, REFERENCE, Supply, supply_of
 from fingerpad.scene.wavefile import POINTS
 from fingerpad.scene.waveform import Waveform
 from geometry.units import computed
-from variational.attraction.dielectric import ColeCole
 from variational.attraction.network import Network
 
 if TYPE_CHECKING:
@@ -111,10 +110,10 @@ def over_time(supply: Supply, seconds: float) -> tuple[Array, Array]:
         supply: the drive.
         seconds: length of the load (s).
     """
-    wave, tissue = supply.wave, supply.circuit.dielectric
+    wave = supply.wave
     factor = (supply.h_0 + REFERENCE) / REFERENCE
     count = int(np.clip(POINTS / max(seconds * (wave.frequency or 0.0), 1.0), _FEW, _MANY))
-    if wave.carrier is None and isinstance(tissue, ColeCole):
+    if wave.carrier is None and supply.circuit.dielectric.debye() is not None:
         t, u = (np.array(each) for each in zip(*wave.samples(seconds, 24 / count), strict=True))
         network = Network.of(supply.circuit, REFERENCE, *supply.behind)
         return t, factor * network.response(t, u)

@@ -38,8 +38,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from fingerpad.model.adhesion import sticking
-from fingerpad.model.cautions import BALANCED
+from fingerpad.model.cautions import BALANCED, sticking
 from fingerpad.reduced.cylinders import over_forces
 from fingerpad.results.closures import KNOWN, RECORD
 from fingerpad.scene import Scene

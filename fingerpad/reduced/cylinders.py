@@ -37,9 +37,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from fingerpad.model import breakdown
-from fingerpad.model.adhesion import sticking
-from fingerpad.model.cautions import on_states
+from fingerpad.model.cautions import on_scene, sticking
 from fingerpad.reduced import cylinder_errors, uncharged
 from fingerpad.reduced.footprint import Footprint
 from fingerpad.reduced.footprint import from_run as from_run
@@ -53,7 +51,7 @@ from fingerpad.results.states import WORDS
 from fingerpad.scene import Scene, SceneError
 from fingerpad.scene.fingers import ADULT
 from fingerpad.scene.messages import show
-from fingerpad.scene.remarks import coefficient, leakage, remarks, skin_modulus, used
+from fingerpad.scene.remarks import coefficient, leakage, skin_modulus, used
 from fingerpad.slices import errors
 from geometry.parameters import Fingertip
 from geometry.profiles import Profiles
@@ -172,7 +170,7 @@ def solve(scene: Scene, footprint: Footprint | None = None) -> Result:
     footprint = footprint or fitted(scene)
     found: dict[str, ContactState] = {}
     exact = "a closed form, without a mesh: no discretisation error but that of the contact length it is given"
-    cautions, states = [*remarks(scene)], dict[str, RidgeState]()
+    cautions, states = list[str](), dict[str, RidgeState]()
     for state in STATES:
         n, length = np.array([footprint.ridges[state]]), np.array([footprint.length[state]])
         ((found[state], states[state]),) = _solved(scene, [scene.f_ext], length, n, state, footprint.charged)
@@ -186,8 +184,8 @@ def solve(scene: Scene, footprint: Footprint | None = None) -> Result:
         "the bone's height is not in this model",
         *leakage(scene),
     )
-    cautions += on_states(found.values(), scene.closure())
-    cautions += breakdown.of_gaps(scene, [(WORDS[state], ridge.d_eq, scene.volts) for state, ridge in states.items()])
+    gaps = [(WORDS[state], ridge.d_eq, scene.volts) for state, ridge in states.items()]
+    cautions += on_scene(scene, found.values(), gaps)
     more: dict[str, Any] = {
         f"{state}_{name}": getattr(ridge, name) for state, ridge in states.items() for name in ("p_c", "d_eq")
     }

@@ -140,7 +140,7 @@ class Chain:
 
     def _path(self, model: "FingerModel") -> "FullSlips":
         """Return the full slips at the end of a path, with what the path turns out to need."""
-        from fingerpad.model.adhesion import lost
+        from fingerpad.model.cautions import lost
         from fingerpad.model.full_slip import FullSlips
         from fingerpad.model.simulation import RestartRequired, Simulation
         from fingerpad.runs.restarts import finer
