@@ -9,7 +9,7 @@ import numpy as np
 
 from fingerpad.cli import output
 from fingerpad.cli.arguments import Parser, echo, path, scene_of
-from fingerpad.ctrl_c import raises
+from fingerpad.launcher import raising_at_ctrl_c
 from fingerpad.reduced.model import STATES, Model
 from fingerpad.reduced.registry import MODELS
 from fingerpad.results.files import below, check_folder
@@ -85,7 +85,7 @@ def main(argv: Sequence[str]) -> int:
         except SceneError as error:
             return Result(scene, model.name, None, None, None, failure=str(error))
 
-    with raises():
+    with raising_at_ctrl_c():
         results = [answer_or_refusal(model) for name, model in MODELS.items() if name in args.model]
     echo(table(results))
     return max(1 if result.failure else 0 for result in results)

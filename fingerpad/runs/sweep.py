@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from fingerpad import launcher
-from fingerpad.installed import source, version
+from fingerpad.launcher import source, version
 from fingerpad.reduced.registry import MODELS, find
 from fingerpad.report.write import attempt
 from fingerpad.results.files import FORMAT, below, check_folder, replace_json
