@@ -30,11 +30,11 @@ from geometry.parameters import Fingertip, MeshSize
 from variational import compat
 from variational.body import Body
 from variational.contact.augmented import AugmentedLagrangian
+from variational.contact.interface import Interface
 from variational.contact.nitsche import Nitsche
 from variational.contact.penalty import Penalty
 from variational.kinematics import deformation_gradient
 from variational.materials.ogden import Ogden
-from variational.problem import Interface
 from variational.roughness.bam import BearingArea
 from variational.solvers.continuation import Attempt, Continuation, StepFailed, Target
 from variational.solvers.coupling import Coupling

@@ -48,11 +48,6 @@ def coefficient(scene: "Scene") -> float | None:
     return None if isinstance(scene.friction, Kept | Friction) else scene.friction
 
 
-def skin_modulus(scene: "Scene") -> float:
-    """Return the plane strain modulus of the stratum corneum, E* = 2 G / (1 - nu) (Pa), unloaded."""
-    return scene.solids()[LAYERS["stratum_corneum"]].plane_modulus
-
-
 # -- in words ------------------------------------------------------------------------------------------
 def used(scene: "Scene") -> dict[str, str]:
     """Return every law of a scene in words: its numbers in SI units, which are named where the law names them.

@@ -44,6 +44,8 @@ class Closure(ABC):
     none."""
     end: ClassVar[str] = ""
     """What the largest of :attr:`pressures` is, in words."""
+    extrapolates: ClassVar[bool] = True
+    """Whether the air gap beyond :attr:`pressures` is an answer of the model; that of a table is held, and is none."""
 
     @property
     def pressures(self) -> tuple[float, float]:

@@ -76,6 +76,7 @@ class TabulatedClosure(Named, Closure):
     """Hurst exponent of the roughness; tables of boundary elements are for 0.6 to 0.9."""
     shared: ClassVar[tuple[str, ...]] = ("h_0", "h_rms", "wavelength", "young", "p_floor", "shortest_wave", "hurst")
     end: ClassVar[str] = "the end of the table of gaps"
+    extrapolates: ClassVar[bool] = False
 
     def __post_init__(self) -> None:
         """Refuse numbers that are no lengths and pressures.
