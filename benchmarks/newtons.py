@@ -152,7 +152,7 @@ def refined(scenes: Found) -> list[dict[str, float]]:
 
 def raising() -> Scene:
     """Return the scene in which the force is raised while the finger slides."""
-    return traces.history(trace(CENTRE, HIGH, SIZE), "full_slip", CENTRE)
+    return traces.history(trace(CENTRE, HIGH, SIZE), CENTRE)
 
 
 def paths(scenes: Found, out: Path) -> list[dict[str, float]]:

@@ -174,7 +174,7 @@ def test_run_at_a_bound_has_its_newtons(bound, reached):
 @pytest.mark.parametrize("slide", [1e-9, 0.1])
 def test_trace_of_a_slide_at_a_bound_can_be_run_and_read(slide):
     """Its loads move the bone by a quarter of slide_length and by twice of it."""
-    trace = history(small(slide_length=slide), "full_slip", 1.0)
+    trace = history(small(slide_length=slide), 1.0)
     assert [load.bone_x for load in trace.loads()[2:]] == [slide / 4, slide, 2 * slide]
     assert as_kept(json.loads(json.dumps(trace.parameters()))) == trace
 

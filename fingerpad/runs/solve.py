@@ -13,7 +13,7 @@ from fingerpad import launcher
 from fingerpad.installed import needed_by, source, version
 from fingerpad.model import breakdown
 from fingerpad.reduced.registry import find
-from fingerpad.results.files import below, has_other_format, read_object
+from fingerpad.results.files import has_other_format, read_object
 from fingerpad.results.folder import Serial, identity, on_rank_0
 from fingerpad.results.quantities import Output
 from fingerpad.results.quantities import checked as checked_outputs
@@ -23,7 +23,6 @@ from fingerpad.runs.post import BEGUN, Entry, kept, of_outputs
 from fingerpad.scene import Scene
 from fingerpad.scene.messages import SceneError, show
 from fingerpad.scene.reading import DEFAULT_MODEL, flat
-from fingerpad.scene.supply import REFERENCE
 from variational.coefficients import LawError
 from variational.state import ContactState
 
@@ -140,7 +139,7 @@ def _section(scene: Scene, model: "Model", context: RunContext) -> Result:
         from fingerpad.slices import traces
 
         here = replace(context, folder=None)
-        return traces.with_sum(result, model, lambda each, _: _solved(each, model, here), context.outputs)
+        return traces.with_sum(result, model, lambda each: _solved(each, model, here), context.outputs)
 
     own = [Entry("newtons of the whole finger", lambda *_: model.sums, with_sum), *of_outputs(context.outputs)]
     return kept(result, context, own)
@@ -183,11 +182,7 @@ def _refuse_different(scene: Scene, comm: "MPI.Comm | Serial") -> None:
 
 
 def _whole(scene: Scene, model: "Model", context: RunContext) -> Result:
-    """Return the result of a force on the whole finger: a sweep of scenes without one, each in a folder of its own.
-
-    What an earlier run of the same scene has finished is taken from there, and what it began goes on.
-    """
-    from fingerpad.model import followed
+    """Return the result of a force on the whole finger; what an earlier run has finished is taken from its folder."""
     from fingerpad.slices import traces
 
     with context.place(scene, model.name) as place:
@@ -195,29 +190,15 @@ def _whole(scene: Scene, model: "Model", context: RunContext) -> Result:
             if on_rank_0(context.ranks, lambda: finished(scene, place.folder) is not None):
                 return Result.load(place.folder)
             place.take()  # the scene is then there for those who go on with it
-    notes = list[str]()
     if model.path:
         with needed_by(f"the model {model.name!r}"):
             from fingerpad.runs import newtons  # finite elements
         _refuse_different(scene, context.ranks)
         model.check(scene)
-        try:
-            return newtons.run(scene, context)
-        except newtons.Unsuited as why:
-            notes = [f"The traces are runs of their own: {why}."]
-            if followed.share(scene) is not None:
-                notes.append(f"All ridges then have the share of the drive at a gap of {1e6 * REFERENCE:g} µm.")
-
-    def solve(each: Scene, name: str) -> Result:
-        if not model.path:
-            return _solved(each, model, replace(context, folder=None))
-        if context.lines and context.ranks.rank == 0:
-            print(f"\nTrace of the cross-section, {name.replace('_', ' ')}", flush=True)
-        return gone_on(each, model, replace(context, folder=context.folder and below(context.folder, name)))
-
-    found = traces.whole(scene, model, solve, context.outputs)
-    found = replace(found, notes=(*found.notes, *notes))
-    return found if found.interrupted else kept(found, context, of_outputs(context.outputs))
+        return newtons.run(scene, context)
+    here = replace(context, folder=None)
+    found = traces.whole(scene, model, lambda each: _solved(each, model, here), context.outputs)
+    return kept(found, context, of_outputs(context.outputs))
 
 
 def gone_on(scene: Scene, model: "Model", context: RunContext) -> Result:
