@@ -5,8 +5,8 @@ environment/run python3 -m benchmarks.accuracy [--jobs 2] [--draw]     after ben
 Whole runs: scenes with an ``[accuracy]``, ten of them drawn at random, against their limits on finer meshes
 (benchmarks/limits.py), with the same penalty. Beside them the estimate for one mesh parameter at a time, from
 docs/errors.json, and for Hertz's contact: the cylinder of benchmarks/verification/normal_contact.py at half-widths that
-end anywhere in a facet. Writes docs/accuracy.json and docs/accuracy.md. fingerpad/richardson.py takes its factors of
-safety from them; tests/test_calibration.py checks the coverage.
+end anywhere in a facet. Writes docs/accuracy.json and docs/accuracy.md. fingerpad/accuracy/richardson.py takes its
+factors of safety from them; tests/test_calibration.py checks the coverage.
 """
 
 import itertools
@@ -23,8 +23,8 @@ from benchmarks import harness, limits
 from benchmarks.errors import DEFAULT, LEVELS, STATES, parted
 from benchmarks.limits import Limit
 from benchmarks.verification.normal_contact import E_STAR, HALF_WIDTH, RADIUS, SPAN, press
+from fingerpad.accuracy.richardson import MORE, ONCE, MeshParameter
 from fingerpad.model.options import by_rule, check
-from fingerpad.richardson import MORE, ONCE, MeshParameter
 from fingerpad.runs.batch import Summary
 from fingerpad.scene import Scene, SceneError, load, start
 from fingerpad.scene.parameters import Accuracy

@@ -4,7 +4,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from fingerpad.richardson import plus_minus
+from fingerpad.accuracy.richardson import plus_minus
 from fingerpad.scene import Scene
 from fingerpad.scene.dotted import value_of, with_values
 from fingerpad.scene.keys import by_name

@@ -31,8 +31,8 @@ if TYPE_CHECKING:
     from fingerpad.startup import MPI
 
 Summary = dict[str, Any]
-OF_THE_MACHINE = "MUMPS_OUT_OF_MEMORY"
-"""A failure that says nothing of the scene."""
+OUT_OF_MEMORY = "MUMPS_OUT_OF_MEMORY"
+"""Failure caused by the machine; the run can be repeated."""
 
 
 def run(
@@ -225,7 +225,7 @@ def finished(scene: Scene, place: Path) -> Summary | None:
 
 def ended(found: Summary | None) -> Summary | None:
     """Return a summary; None of a run that was stopped or killed or had too little memory, and of another format."""
-    if found is None or OF_THE_MACHINE in str(found.get("failure")):
+    if found is None or OUT_OF_MEMORY in str(found.get("failure")):
         return None
     return None if found.get("interrupted") or BEGUN in found or has_other_format(found) else found
 
