@@ -2,29 +2,26 @@
 
 A scene's folder is named by a hash of all its parameters: run again, a sweep computes only what has changed, and runs
 that were cut short go on from their checkpoints. The hash does not depend on the program: after a change of the
-mechanics the folder must be deleted. A process is ``python3 -m fingerpad.runs.batch SCENE.json FOLDER LIMIT MODEL``.
+mechanics the folder must be deleted. A process is ``python3 -m fingerpad.runs.solve SCENE.json FOLDER LIMIT MODEL``.
 """
 
 import fcntl
 import hashlib
 import json
 import os
-import sys
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Executor
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from fingerpad.reduced.registry import find
 from fingerpad.results.files import below, lock_file, replace_json
-from fingerpad.results.folder import FolderError, identity
+from fingerpad.results.folder import identity
 from fingerpad.results.terminal import between, watched
 from fingerpad.runs import processes
-from fingerpad.runs.context import RunContext
-from fingerpad.runs.processes import End, limit_processor_time, run
-from fingerpad.runs.solve import OUT_OF_MEMORY, Summary, ended, gone_on, summary
-from fingerpad.scene import Scene, SceneError, from_data
+from fingerpad.runs.context import OUT_OF_MEMORY, Summary, ended, summary
+from fingerpad.runs.processes import End, run
+from fingerpad.scene import Scene
 from fingerpad.scene.reading import DEFAULT_MODEL
 
 if TYPE_CHECKING:
@@ -102,7 +99,7 @@ def point(parameters: Mapping[str, Any], folder: str, limit: float, model: str, 
             return End(0, "", "", "")
         (place / "summary.json").unlink(missing_ok=True)  # of a run that says nothing of this one
         replace_json(place / "asked.json", dict(parameters))
-        return run("fingerpad.runs.batch", [str(place / "asked.json"), folder, str(limit), model], limit, law_folders)
+        return run("fingerpad.runs.solve", [str(place / "asked.json"), folder, str(limit), model], limit, law_folders)
 
 
 class Task(NamedTuple):
@@ -199,26 +196,3 @@ def finish(
         shown = bar.add_task("points", total=total)
         processes.finish({k: task.call for k, task in enumerate(tasks)}, done, jobs, executor, look)
     return {name: result(scene, folder) or lost[name] for name, scene in scenes.items()}
-
-
-def main(scene: Path, folder: Path, model: str) -> None:
-    """Run a scene into a folder, from its checkpoint where it has one.
-
-    Args:
-        scene: file of its parameters in JSON.
-        folder: of the results.
-        model: a name of :data:`fingerpad.reduced.registry.MODELS`.
-    """
-    asked, way = from_data(json.loads(scene.read_text(encoding="utf-8"))), find(model)
-    try:
-        gone_on(asked, way, RunContext(folder, lines=way.path, bar=way.path, report=False))
-    except FolderError as error:  # another run is at it, or the disk is full: it may be gone the next time
-        print(error, file=sys.stderr)
-        sys.exit(os.EX_TEMPFAIL)
-    except SceneError as error:  # it would be the same the next time
-        replace_json(folder / "summary.json", {"failure": str(error)})
-
-
-if __name__ == "__main__":
-    limit_processor_time(float(sys.argv[3]))
-    main(Path(sys.argv[1]), Path(sys.argv[2]), sys.argv[4])

@@ -11,8 +11,8 @@ from typing import Any
 
 from fingerpad.results.files import lock_file, replace_json
 from fingerpad.runs import batch
+from fingerpad.runs.context import Summary
 from fingerpad.runs.processes import End, run
-from fingerpad.runs.solve import Summary
 from fingerpad.scene import Scene, SceneError, law_name
 from fingerpad.scene.law_keys import parameters
 from fingerpad.scene.messages import show

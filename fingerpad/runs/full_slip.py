@@ -37,7 +37,7 @@ from fingerpad.results.answer import Cost
 from fingerpad.results.files import below
 from fingerpad.results.provenance import provenance
 from fingerpad.results.result import Result
-from fingerpad.runs import batch, full
+from fingerpad.runs import batch
 from fingerpad.runs.context import RunContext
 from fingerpad.runs.post import kept
 from fingerpad.runs.processes import limit_processor_time
@@ -299,6 +299,8 @@ def _of_run(scene: Scene, why: str, clock: Clock, comm: MPI.Comm) -> Result:
         clock: of the point.
         comm: communicator of the run.
     """
+    from fingerpad.runs import full  # rarely
+
     found = full.run(scene, RunContext(comm=comm, bar=False, report=False))
     note = f"This is full slip of a run of its own, since it was not found from a state on larger elements: {why}."
     counts = Counts(found.cost.newton_iterations, found.cost.factorisations)

@@ -3,6 +3,7 @@
 import json
 import os
 import signal
+import sys
 import warnings
 from collections.abc import Callable, Sequence
 from dataclasses import replace
@@ -13,14 +14,15 @@ from fingerpad import launcher
 from fingerpad.installed import needed_by, source, version
 from fingerpad.model import breakdown
 from fingerpad.reduced.registry import find
-from fingerpad.results.files import has_other_format, read_object
-from fingerpad.results.folder import Serial, identity, on_rank_0
+from fingerpad.results.files import replace_json
+from fingerpad.results.folder import FolderError, Serial, on_rank_0
 from fingerpad.results.quantities import Output
 from fingerpad.results.quantities import checked as checked_outputs
 from fingerpad.results.result import Result
-from fingerpad.runs.context import RunContext
-from fingerpad.runs.post import BEGUN, Entry, kept, of_outputs
-from fingerpad.scene import Scene
+from fingerpad.runs.context import RunContext, finished
+from fingerpad.runs.post import Entry, kept, of_outputs
+from fingerpad.runs.processes import limit_processor_time
+from fingerpad.scene import Scene, from_data
 from fingerpad.scene.messages import SceneError, show
 from fingerpad.scene.reading import DEFAULT_MODEL, flat
 from variational.coefficients import LawError
@@ -29,10 +31,6 @@ from variational.state import ContactState
 if TYPE_CHECKING:
     from fingerpad.reduced.model import Model
     from fingerpad.startup import MPI
-
-Summary = dict[str, Any]
-OUT_OF_MEMORY = "MUMPS_OUT_OF_MEMORY"
-"""Failure caused by the machine; the run can be repeated."""
 
 
 def run(
@@ -216,23 +214,24 @@ def gone_on(scene: Scene, model: "Model", context: RunContext) -> Result:
         return solved(scene, model, replace(context, resume=False))
 
 
-def finished(scene: Scene, place: Path) -> Summary | None:
-    """Return the summary of a scene that has been run in a folder of its own to its end; None of another scene's."""
-    found = ended(summary(place))
-    own = json.loads(json.dumps(identity(scene.parameters())))
-    return found if found is not None and identity(found.get("parameters", {})) == own else None
+def main(file: Path, folder: Path, model: str) -> None:
+    """Run a point of a sweep into its folder, from its checkpoint where it has one.
 
-
-def ended(found: Summary | None) -> Summary | None:
-    """Return a summary; None of a run that was stopped or killed or had too little memory, and of another format."""
-    if found is None or OUT_OF_MEMORY in str(found.get("failure")):
-        return None
-    return None if found.get("interrupted") or BEGUN in found or has_other_format(found) else found
-
-
-def summary(place: Path) -> Summary | None:
-    """Return the summary in a folder; None without one, or with one that was damaged."""
+    Args:
+        file: the scene's parameters in JSON.
+        folder: of the results.
+        model: a name of :data:`fingerpad.reduced.registry.MODELS`.
+    """
+    scene, way = from_data(json.loads(file.read_text(encoding="utf-8"))), find(model)
     try:
-        return read_object(place / "summary.json")
-    except (OSError, ValueError):
-        return None
+        gone_on(scene, way, RunContext(folder, lines=way.path, bar=way.path, report=False))
+    except FolderError as error:  # another run is at it, or the disk is full: it may be gone the next time
+        print(error, file=sys.stderr)
+        sys.exit(os.EX_TEMPFAIL)
+    except SceneError as error:  # it would be the same the next time
+        replace_json(folder / "summary.json", {"failure": str(error)})
+
+
+if __name__ == "__main__":
+    limit_processor_time(float(sys.argv[3]))
+    main(Path(sys.argv[1]), Path(sys.argv[2]), sys.argv[4])
