@@ -6,7 +6,7 @@
 # make test-contact  rough contact beside the programs ContactMechanics and Adhesion of PyPI, in a venv; two minutes
 # make test-order  all tests with other rounding: cells numbered the other way round, other kernels of OpenBLAS
 # make fuzz   10 000 scenes and command lines and as many files, each read or refused in one sentence; an hour
-# make pages  every generated page and picture of docs/ from the numbers kept there; seconds, no run
+# make pages  puts the kept numbers in place in docs/ and draws the pictures; seconds, no run
 # make stale  the pages older than the code that they rest on; needs git
 # make docs   the documentation site, in build/docs/index.html; a minute
 # make notebook  a demo as a notebook of Jupyter, in results: make notebook DEMO=own_material
@@ -74,7 +74,6 @@ docs:
 
 pages:
 	$(run) python3 -m benchmarks.pages
-	$(run) python3 -m fingerpad calculator --out docs/calculator.html
 
 notebook:
 	$(run) python3 -m benchmarks.notebook $(or $(DEMO),first_run)

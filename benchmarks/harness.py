@@ -5,14 +5,13 @@ A study has three steps:
 1. :func:`run` computes those of its scenes that are missing in ``results/traces``, kept by their parameters, and
    :func:`solve` other problems;
 2. :func:`keep` writes the numbers that its page shows to ``docs/NAME.json``, with the version that made them;
-3. its function ``draw(docs)`` reads them by :func:`kept` and draws its pictures by :func:`picture` and its page by
-   :func:`page`, from a template in ``benchmarks/prose``. ``python3 -m benchmarks.pages`` draws all, without a run.
+3. its function ``draw(docs)`` reads them by :func:`kept`, draws its pictures by :func:`picture` and puts the numbers
+   in place in the pages of docs/ by :func:`page`. ``python3 -m benchmarks.pages`` does so for all, without a run.
 """
 
 import argparse
 import json
 import math
-import re
 import subprocess
 import time
 from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -26,6 +25,7 @@ from typing import Any
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from benchmarks import fill
 from fingerpad.cli.arguments import positive
 from fingerpad.results import style
 from fingerpad.results.files import replace
@@ -184,44 +184,26 @@ def kept(name: str, docs: Path = DOCS) -> Kept:
 
 # -- pages ---------------------------------------------------------------------------------------------------
 def page(docs: Path, name: str, command: str, names: Mapping[str, Any], *others: str) -> Path:
-    """Write docs/NAME.md from its template, benchmarks/prose/NAME.md; return its path.
-
-    A template is the page with expressions of Python in braces, as in an f-string. A line ``for TARGET in VALUES: | …``
-    is a row for each of the values. Lines from ``if CONDITION:`` to ``end`` are there where it holds. An image alone on
-    a line gets its words as a caption too.
+    """Put the numbers of a study in place in the pages that show them; return the first of these (``fill``).
 
     Args:
-        docs: folder of the page, its pictures and its numbers.
-        name: of page, template and numbers.
+        docs: folder of the pages, the pictures and the numbers.
+        name: of the study and its numbers.
         command: which computes the numbers anew.
-        names: what the expressions may use beside ``numbers``, the kept ones, :func:`cell` and :func:`cells`.
-        others: names of further numbers that the page shows.
+        names: what expressions may use beside ``numbers``, the kept ones, :func:`cell`, :func:`cells` and ``origin``.
+        others: names of further numbers that the study shows.
+
+    Raises:
+        ValueError: no page shows numbers of the study.
     """
-    found = kept(name, docs)
-    template = (ROOT / "benchmarks" / "prose" / f"{name}.md").read_text(encoding="utf-8")
-    text = _filled(template, {**names, "numbers": found.numbers, "cell": cell, "cells": cells})
-    text = re.sub(r"^!\[(.+)\]\((.+)\)$", r"![\1](\2)\n\n*\1*", text, flags=re.MULTILINE)
-    files = ", ".join(f"[{each}.json]({each}.json)" for each in (name, *others))
-    origin = (
-        f"{found.made} Computed by `{command}` into {files}; drawn from there by `make pages`: do not edit this page."
-    )
-    replace(docs / f"{name}.md", re.sub(r"\n{3,}", "\n\n", f"{text.strip()}\n\n---\n\n{origin}\n"))
-    return docs / f"{name}.md"
-
-
-def _filled(template: str, names: dict[str, Any]) -> str:
-    tables: list[str] = []
-
-    def chosen(part: re.Match[str]) -> str:
-        return part[2] if eval(part[1], names) else ""
-
-    def repeated(row: re.Match[str]) -> str:
-        tables.append("\n".join(eval(f"[rf'''{row[2]}''' for {row[1]}]", names)))
-        return f"{{_tables[{len(tables) - 1}]}}"
-
-    text = re.sub(r"^if (.+):\n((?s:.*?))^end\n", chosen, template, flags=re.MULTILINE)
-    text = re.sub(r"^for (.+?): (\|.*)$", repeated, text, flags=re.MULTILINE)
-    return str(eval(f"rf'''{text}'''", names | {"_tables": tables}))
+    found, files = kept(name, docs), ", ".join(f"[{each}.json]({each}.json)" for each in (name, *others))
+    origin = f"{found.made} Computed by `{command}` into {files}; put in place by `make pages`."
+    if not (paths := fill.pages(docs, name)):
+        raise ValueError(f"no page in {docs} has the comment <!--numbers {name}-->")
+    for path in paths:
+        given = {**names, "numbers": found.numbers, "cell": cell, "cells": cells, "origin": origin}
+        replace(path, fill.filled(path.read_text(encoding="utf-8"), name, given))
+    return paths[0]
 
 
 def table(head: Sequence[str], rows: Iterable[Sequence[Any]]) -> str:

@@ -18,10 +18,11 @@ import numpy as np
 import scipy  # its parts are imported where they are used first: to read a scene needs none
 from numpy.typing import ArrayLike, NDArray
 
+from geometry.parameters import Fingertip
+
 if TYPE_CHECKING:
     from scipy.spatial import cKDTree
 
-    from geometry.parameters import Fingertip
 
 Array = NDArray[np.float64]
 _ALONG = 400  # places a ridge, between which the skin is straight
@@ -36,7 +37,7 @@ class GeometryError(ValueError):
 class Profiles:
     """Outline, interfaces and receptor sites of a fingertip; lengths in m."""
 
-    finger: "Fingertip"
+    finger: Fingertip
 
     # -- outline ---------------------------------------------------------------------------------------
     @cached_property

@@ -53,6 +53,7 @@ _END = re.compile(r"(?<=[.!?])[*_)\"”]*\s+(?=[^a-z])")
 
 def sentences(page: str) -> tuple[list[str], list[str]]:
     """Return the sentences of a page's text, and those of its tables; without code, formulas, headings and pictures."""
+    page = re.sub(r"<!--.*?-->", "", page, flags=re.DOTALL)
     page = re.sub(r"^```.*?^```$|\$\$.*?\$\$", "", page, flags=re.DOTALL | re.MULTILINE)
     page = re.sub(r"^Not reached: .*$", "", page, flags=re.MULTILINE)  # a message of the program, quoted
     page = re.sub(r"^    (?![-*]).*$|^#.*$|^!\[.*$|^\|[-|: ]+$", "", page, flags=re.MULTILINE)

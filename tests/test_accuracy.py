@@ -22,7 +22,7 @@ from tests.measures import contact_state
 from variational.contact.penalty import Penalty
 from variational.solvers.continuation import StepFailed
 from variational.solvers.equations import Control
-from variational.solvers.snapshot import StateSnapshot
+from variational.solvers.state_snapshot import StateSnapshot
 
 pytestmark = pytest.mark.slow
 NOTHING = StateSnapshot(*(np.zeros(0) for _ in range(2)), {}, {}, {}, {}, np.zeros(2), Control(), 0.0)

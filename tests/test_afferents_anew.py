@@ -7,17 +7,13 @@ import pytest
 from scipy.integrate import quad
 
 import fingerpad as fp
-from fingerpad.afferents import pin
-from fingerpad.afferents.filtered import FilteredUnit
 from fingerpad.afferents.linear import FILTERS
 
 STEP = 1e-4
-FILTERED = FilteredUnit((20.0, 0.4, 0.0, 0.4, 0.1, 3.0, 1.0, 0.0, 0.0, 100.0, -0.3, 0.02, 0.0))
-"""A unit of numbers of one's own."""
 
 
 # -- where a law begins ----------------------------------------------------------------------------------------------
-@pytest.mark.parametrize("law", [*fp.afferents.LAWS.values(), FILTERED], ids=[*fp.afferents.LAWS, "filtered"])
+@pytest.mark.parametrize("law", fp.afferents.LAWS.values(), ids=fp.afferents.LAWS)
 def test_every_law_begins_in_the_steady_state(law):
     """3 s of the same stimulus before it changes move no spike: all decays are of 0.2 s or less. Exact.
 
@@ -145,25 +141,3 @@ def test_gain_is_that_of_a_pin_at_the_depth_of_the_class(law, depth):
         return force / (2 * math.pi * a) * 2 * math.pi * r * 3 * depth**3 / (2 * math.pi * (r**2 + depth**2) ** 2.5)
 
     assert law.gain == pytest.approx(1 / quad(ring, 0, math.pi / 2)[0], rel=1e-9)
-
-
-# -- filtered units --------------------------------------------------------------------------------------------------
-def test_gain_of_a_filtered_unit(tmp_path):
-    """A unit file of one's own with one weight, that of the dynamic input: a stress that rises evenly has one interval.
-
-    d is pi / (3 a) times its rate, a 1 mm, in MPa/s over mm; V = I tau (1 - (1 - 1/tau)^n) passes 1 after n samples.
-    """
-    row, tau, weight, rate = [50.0] + [0.0] * 12, 200.0, 0.5, 60e3  # Pa/s
-    row[3], row[9] = weight, tau
-    (file := tmp_path / "own.py").write_text("".join(f"affparams{name} = [{row}]\n" for name in ("SA", "RA", "PC")))
-    unit = fp.afferents.read_units(file)["RA1"][0]
-    spikes = unit.spikes(rate * unit.step * np.arange(5001), unit.step)
-    current = weight * math.pi / 3 * 0.06
-    every = math.ceil(math.log(1 - 1 / (current * tau)) / math.log(1 - 1 / tau))
-    assert np.diff(spikes)[5:] == pytest.approx(every * 2e-4) and len(spikes) > 50
-
-
-def test_dynamic_input_far_below_a_pin():
-    """The gain times the rate of the stress is (dP/dt) / (2 a z^2), to (a/z)^2."""
-    z = 0.05
-    assert FILTERED.dynamic_gain * pin.stress(1.0, z) == pytest.approx(pin.force(1.0) / (2 * 1e-3 * z**2), rel=1e-3)

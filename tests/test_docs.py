@@ -30,6 +30,11 @@ README, LAWS, COMMAND = (
 COMMANDS = [line.split("#")[0] for line in re.findall(r"^    (?:mpirun .*)?(fingerpad .*)$", COMMAND, re.MULTILINE)]
 
 
+def text(page: str | Path) -> str:
+    """Return a page as it is read: without comments, which hold the expressions of its numbers."""
+    return re.sub(r"<!--.*?-->", "", (ROOT / page).read_text(encoding="utf-8"), flags=re.DOTALL)
+
+
 def code(block: str) -> list[str]:
     return [line for line in (line.split("  #")[0].strip() for line in block.splitlines()) if line]
 
@@ -68,7 +73,7 @@ def test_full_run_of_the_readme_is_the_kept_one():
 
 def test_measured_findings_of_the_readme_are_those_of_their_page():
     """Of how many, how many are met, and how many in part: as docs/measured.md begins."""
-    page = (ROOT / "docs" / "measured.md").read_text(encoding="utf-8")
+    page = text("docs/measured.md")
     counts = re.search(r"^Of (\d+) measured findings this model meets (\d+), (\d+) more in part", page, re.MULTILINE)
     assert counts is not None
     of, met, part = counts.groups()
@@ -82,7 +87,7 @@ def test_claims_of_the_readme_are_those_of_its_pages():
     count = re.search(r"(\d+ of \d+) numbers", README)
     assert found is not None and f"from 0.25 to {float(found[1]):.2f}" in README
     assert forces is not None and README.index(f"fingertip {forces[1]}") < README.index("## ")
-    assert count is not None and count[1] in (ROOT / "docs" / "verification.md").read_text(encoding="utf-8")
+    assert count is not None and count[1] in text("docs/verification.md")
 
 
 def test_commands_are_known(capsys):
@@ -107,10 +112,6 @@ PRIVATE = [
 ]  # fmt: skip
 
 
-def text(page: str | Path) -> str:
-    return (ROOT / page).read_text(encoding="utf-8")
-
-
 @pytest.mark.parametrize("page", PAGES)
 def test_page(page):
     """Below 20 words on average, none above 40 (in a cell too); links lead somewhere; normal contact is the charged."""
@@ -124,7 +125,7 @@ def test_page(page):
 
 
 # -- places in the code that docs/model.md names; files are read, not imported ----------------------------
-PAGE = (ROOT / "docs" / "model.md").read_text(encoding="utf-8")
+PAGE = text("docs/model.md")
 PLACES = sorted(set(re.findall(r"`([a-z_.]+):(\w+)`", PAGE)))
 METHODS = re.findall(r"\| `(\w+)` \|$", PAGE, re.MULTILINE)
 

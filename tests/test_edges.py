@@ -19,7 +19,7 @@ from geometry.profiles import Profiles
 from tests.runs import path_of
 from tests.small_finger import NINE
 from variational.contact.penalty import Penalty
-from variational.solvers.snapshot import SkinState, StateSnapshot
+from variational.solvers.state_snapshot import SkinState, StateSnapshot
 from variational.solvers.target import Control
 
 PROFILES = Profiles(Fingertip())

@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 
 import geometry
-from fingerpad.afferents import read_units
 from fingerpad.measurements.table import read as measurements
 from fingerpad.scene import SceneError, from_data, load
 from geometry.meshfile import file as mesh
@@ -36,7 +35,6 @@ DOORS = {
     "scene.json": (load, "scene.json"),
     "voltages": (voltages, "a.csv"),
     "measurements": (measurements, "a.csv"),
-    "units of afferents": (read_units, "constants.py"),
     "topography": (topography, "a.csv"),
     "matrix": (scan, "a.npy"),
     "text": (scan, "a.csv"),

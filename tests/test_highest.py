@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from variational.highest import highest
+from variational.resultants import highest
 
 
 def facets(edges, p, closed=None):

@@ -20,7 +20,7 @@ from variational.history import BodyField, History, SkinField
 from variational.problem import Problem
 from variational.solvers.continuation import Continuation, StepFailed, Target
 from variational.solvers.outcome import NotConverged
-from variational.solvers.snapshot import take_snapshot
+from variational.solvers.state_snapshot import take_snapshot
 from variational.solvers.transfer import restore
 
 pytestmark = pytest.mark.mpi

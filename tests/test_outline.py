@@ -5,8 +5,7 @@ import pytest
 from matplotlib.tri import Triangulation
 
 from fingerpad.results.raster import along, bend, cells_at, pieces
-from variational.outline import loops, outline
-from variational.snapshot import Snapshot
+from variational.snapshot import Snapshot, loops, outline
 
 
 def square(n: int = 6) -> tuple[np.ndarray, np.ndarray]:

@@ -7,20 +7,19 @@ import shutil
 import pytest
 from matplotlib.image import imread
 
-from benchmarks import harness, hero, pages, same
+from benchmarks import fill, harness, hero, pages, same
 from benchmarks.harness import DOCS, Made, kept
 
 BY = Made("0.1.0", "abc1234", "2026-11-22", "0123456789ab")
 
 
 @pytest.mark.slow
-def test_pages_in_git_are_those_of_the_kept_numbers(tmp_path, capsys):
-    """Drawn anew, without a run, every page is the one in git."""
-    for path in [*DOCS.glob("*.json"), *DOCS.glob("*.png")]:
+def test_pages_in_git_have_the_kept_numbers(tmp_path, capsys):
+    """Put in place anew, without a run, every number of every page is the one in git."""
+    for path in DOCS.glob("*.*"):
         shutil.copy(path, tmp_path)
     assert pages.main(["--docs", str(tmp_path)]) == 0
-    drawn = capsys.readouterr().out.split()
-    assert len(drawn) == len(pages.PAGES)
+    assert len(capsys.readouterr().out.split()) == len(pages.PAGES)
     for path in tmp_path.glob("*.md"):
         assert path.read_text(encoding="utf-8") == (DOCS / path.name).read_text(encoding="utf-8"), path.name
 
@@ -124,12 +123,34 @@ def test_numbers_are_kept_as_they_are(tmp_path):
     assert '   {"k": 0, "value": 0.1},\n' in (tmp_path / "study.json").read_text(encoding="utf-8")
 
 
-def test_template_is_filled():
-    """Fields are f-strings, a row is repeated, a part is there where its condition holds."""
-    template = "{x:.2f}\nfor k, v in rows: | {k} | {cells(v, None)} |\nif not rows:\nnone\nend\n{len(rows)}\n"
-    names = {"x": 1.5, "rows": [("a", 0.123456), ("b", 2)], "cells": harness.cells}
-    assert harness._filled(template, names) == "1.50\n| a | 0.1235 | – |\n| b | 2 | – |\n2\n"
-    assert harness._filled(template, names | {"rows": []}) == "1.50\n\nnone\n0\n"
+PAGE = """# Page 9<!--=x:.2f-->
+<!--numbers study-->
+is (9<!--=x-->), 9<!--=x:.2f-->
+<!--rows k, v in rows: | {k} | {cells(v, None)} |
+| {len(rows)} |-->
+| k | v |
+|---|---|
+| old |
+| older |
+
+<!--block text-->
+old
+<!--end-->
+<!--numbers other-->
+9<!--=x-->
+"""
+
+
+def test_numbers_are_put_in_place():
+    """Values, rows and blocks of one study; other parts stay, and a second time changes nothing."""
+    names = {"x": 1.5, "rows": [("a", 0.123456), ("b", 2)], "cells": harness.cells, "text": "a\n\nb"}
+    found = fill.filled(PAGE, "study", names)
+    assert found.startswith("# Page 9<!--=x:.2f-->\n") and found.endswith("<!--numbers other-->\n9<!--=x-->\n")
+    assert "is (1.5<!--=x-->), 1.50<!--=x:.2f-->\n" in found and "\na\n\nb\n" in found and "old" not in found
+    assert "|---|---|\n| a | 0.1235 | – |\n| b | 2 | – |\n| 2 |\n\n" in found
+    assert fill.filled(found, "study", names) == found
+    with pytest.raises(ValueError, match="must be one word"):
+        fill.filled(PAGE, "study", {"x": "1 m", "rows": [], "text": ""})
 
 
 # -- The picture that opens the README is drawn from the numbers in git ---

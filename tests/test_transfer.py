@@ -13,7 +13,7 @@ from tests.measures import straightened
 from tests.test_contact import MU_F, over
 from variational.solvers.continuation import Continuation, StepFailed, Target
 from variational.solvers.outcome import NotConverged
-from variational.solvers.snapshot import take_snapshot
+from variational.solvers.state_snapshot import take_snapshot
 from variational.solvers.transfer import interpolate, restore, unfolded
 
 pytestmark = pytest.mark.mpi

@@ -33,7 +33,6 @@ sides of the jump. Where this error is larger than what is released even the sig
 """
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 from dolfinx import fem
@@ -43,9 +42,7 @@ from numpy.typing import NDArray
 from variational.attraction.dielectric import VACUUM_PERMITTIVITY
 from variational.attraction.electroadhesion import ELECTROSTATIC
 from variational.contact.formulation import SurfaceState
-
-if TYPE_CHECKING:
-    from variational.problem import Problem
+from variational.problem import Problem
 
 Array = NDArray[np.float64]
 
@@ -94,7 +91,7 @@ class EnergyBook:
     """Keeps the energies of accepted states; only reads the problem."""
 
     def __init__(
-        self, problem: "Problem", surface: SurfaceState, bone: Array, reaction: Array, d_eq: Array, copies: int = 1
+        self, problem: Problem, surface: SurfaceState, bone: Array, reaction: Array, d_eq: Array, copies: int = 1
     ) -> None:
         """Start from an equilibrium; arguments as in :meth:`step`, and of how many copies of it the body is made.
 

@@ -12,16 +12,14 @@ between solves (:mod:`~variational.contact.augmented`).
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from dolfinx import fem
 from numpy.typing import NDArray
 
 from variational import compat, jit
-
-if TYPE_CHECKING:
-    from variational.surface import Surface
+from variational.surface import Surface
 
 Array = NDArray[np.float64]
 Values = Mapping[str, Array]
@@ -106,7 +104,7 @@ class History:
         on_impose: called after these were written, to write what else follows from them.
     """
 
-    def __init__(self, surface: "Surface") -> None:
+    def __init__(self, surface: Surface) -> None:
         """Start without a field.
 
         Args:

@@ -8,13 +8,10 @@ part is p I, p positive in tension: an element may have a better p than the one 
 (:mod:`variational.element`).
 """
 
-from typing import TYPE_CHECKING
-
 import ufl
 from ufl.classes import Label, Variable
 
-if TYPE_CHECKING:
-    from variational.materials.material import Material
+from variational.materials.material import Material
 
 # What laws are differentiated by. A label's number is part of a kernel's name: with the next free one, as UFL gives
 # them out from 0 on, the stresses of each body in a process would be compiled anew.
@@ -60,7 +57,7 @@ def current_height(mesh, u):
     return ufl.SpatialCoordinate(mesh)[len(u) - 1] + u[len(u) - 1]
 
 
-def first_piola_kirchhoff(solid: "Material", F, p=None):
+def first_piola_kirchhoff(solid: Material, F, p=None):
     """Return the first Piola-Kirchhoff stress P = dW/dF (Pa), shape (2, 2); by default the pressure p is that of F."""
     F = Variable(F, GRADIENT)
     H = displacement_gradient(F)
@@ -68,7 +65,7 @@ def first_piola_kirchhoff(solid: "Material", F, p=None):
     return ufl.diff(solid.distortion(H), F) + p * cofactor(F)
 
 
-def cauchy(solid: "Material", F, p=None):
+def cauchy(solid: Material, F, p=None):
     """Return the Cauchy stress (Pa), shape (3, 3), z normal to the plane; by default the pressure p is that of F."""
     p = solid.pressure(displacement_gradient(F)) if p is None else p
     sigma = first_piola_kirchhoff(solid, F, p) * F.T / ufl.det(F)

@@ -1,11 +1,12 @@
 """What is evaluated inside of the body: means of each cell, and energy densities at receptor sites.
 
-Stress, strain and energy density jump from layer to layer, so that each cell has its own.
+Stress, strain and energy density jump from layer to layer, so that each cell has its own. States of the whole body are
+gathered on one rank.
 """
 
 from collections.abc import Mapping
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import basix
 import dolfinx
@@ -16,12 +17,15 @@ from mpi4py import MPI
 from numpy.typing import NDArray
 
 from variational import compat, jit, kinematics
-from variational.reference import reference_places
-
-if TYPE_CHECKING:
-    from variational.problem import Problem
+from variational.problem import Problem
+from variational.snapshot import Snapshot, outline
 
 Array = NDArray[np.float64]
+_NEWTON, _STEP = 12, 0.5  # iterations that find a place in a curved triangle, and the longest step of one
+_NEAR = 1e-7  # step after which a place is found to roundoff, by quadratic convergence
+_STRAIGHT = 1e-11  # of the triangle's size: what roundoff of the nodes leaves of an edge's bend
+_FLAT = 0.05  # of the straight triangle's area: least determinant, outside of the triangle
+_MIDDLES = np.array([[0.5, 0.5], [0.0, 0.5], [0.5, 0.0]])  # of the reference triangle's edges, by opposite vertex
 _ROUNDOFF = 1e-8  # of a barycentric coordinate: a site on a facet belongs to both cells
 _BEYOND = 1e-3  # of the body's size: what a curved edge may be beyond its nodes
 
@@ -74,13 +78,13 @@ class Cellwise:
         return values
 
 
-def _stresses(problem: "Problem") -> dict[tuple[int, ...], Any]:
+def _stresses(problem: Problem) -> dict[tuple[int, ...], Any]:
     """Return the Cauchy stress (Pa), shape (3, 3), of each law by the tags of its cells."""
     F = kinematics.deformation_gradient(ufl.grad(problem.u))
     return {tags: kinematics.cauchy(law, F, problem.pressures[tags]) for tags, law in problem.laws.items()}
 
 
-def tensors_per_cell(problem: "Problem") -> tuple[Array, Array]:
+def tensors_per_cell(problem: Problem) -> tuple[Array, Array]:
     """Return means over the corners of each cell of this rank, which for linear fields are those over the cell.
 
     Returns:
@@ -94,7 +98,7 @@ def tensors_per_cell(problem: "Problem") -> tuple[Array, Array]:
     return stress[:, [0, 4, 8, 1]], strain
 
 
-def sed_per_cell(problem: "Problem") -> tuple[NDArray[np.int32], Array]:
+def sed_per_cell(problem: Problem) -> tuple[NDArray[np.int32], Array]:
     """Return the cells of this rank and the mean strain energy density of each (J/m^3 of reference volume)."""
     # Degree 2 integrates the linear solid's energy at P2 exactly.
     points, weights = basix.make_quadrature(basix.CellType.triangle, 2)
@@ -115,7 +119,7 @@ class Receptors:
         sites: reference positions (m), shape (n, 2).
     """
 
-    def __init__(self, problem: "Problem", sites: Array) -> None:
+    def __init__(self, problem: Problem, sites: Array) -> None:
         """Find the sites' cells.
 
         Args:
@@ -200,3 +204,115 @@ def _find(mesh: dolfinx.mesh.Mesh, sites: Array) -> tuple[NDArray[np.int32], NDA
             numbers.extend([k] * int(inside.sum()))
             points.extend(places[inside])
     return np.array(cell, dtype=np.int32), np.array(numbers, dtype=np.int64), np.array(points).reshape(-1, 2)
+
+
+# -- states of the whole body on one rank ---------------------------------------------------------------------
+class Nodes:
+    """Brings values to every rank, numbered as the mesh was before it was distributed.
+
+    Attributes:
+        coordinates: nodes of the unloaded mesh (m), shape (nodes, 2).
+        triangles: nodes of each cell, shape (cells, 3).
+    """
+
+    def __init__(self, problem: Problem) -> None:
+        mesh = problem.mesh
+        self._comm, cells = mesh.comm, np.arange(mesh.topology.index_map(2).size_local)
+        # The first three degrees of freedom of a Lagrange triangle are its vertices, in the geometry's order.
+        self._dofs = problem.V.dofmap.list[cells][:, :3]
+        nodes = compat.cell_geometry(mesh)[cells][:, :3]
+        names = self._together(np.asarray(mesh.geometry.input_global_indices)[nodes])
+        self._sort = np.argsort(self._together(np.asarray(mesh.topology.original_cell_index)[cells]))
+        _, self._first, corners = np.unique(names[self._sort].ravel(), return_index=True, return_inverse=True)
+        self.triangles = corners.reshape(-1, 3)
+        self.coordinates = self._pick(mesh.geometry.x[nodes][:, :, :2])
+
+    def _together(self, mine: NDArray[Any]) -> NDArray[Any]:
+        return np.concatenate(self._comm.allgather(mine))
+
+    def by_cell(self, mine: NDArray[Any]) -> NDArray[Any]:
+        """Return one value a cell of those of own cells, on every rank; collective."""
+        return np.asarray(self._together(mine)[self._sort])
+
+    def _pick(self, mine: Array) -> Array:
+        """Return one value a node of values by cell and corner, shape (cells, 3, 2)."""
+        return np.asarray(self.by_cell(mine).reshape(-1, 2)[self._first])
+
+    def gather(self, problem: Problem) -> Array:
+        """Return the displacement of all nodes (m), shape (nodes, 2); collective."""
+        return self._pick(problem.displacement()[self._dofs])
+
+    def middles(self, problem: Problem) -> tuple[Array, Array]:
+        """Return place and displacement (m) of the middle of each cell's edges, shape (cells, 3, 2) each; collective.
+
+        An edge has the number of the opposite vertex.
+        """
+        cells = np.arange(len(self._dofs))
+        nodes = problem.mesh.geometry.x[compat.cell_geometry(problem.mesh)[cells]][:, :, :2]
+        straight = (nodes[:, [1, 0, 0]] + nodes[:, [2, 2, 1]]) / 2
+        basis = problem.V.element.basix_element.tabulate(0, _MIDDLES)[0, :, :, 0]
+        u = np.einsum("mk,cki->cmi", basis, problem.displacement()[problem.V.dofmap.list[cells]])
+        places = nodes[:, 3:] if nodes.shape[1] == 6 else straight
+        return self.by_cell(places), self.by_cell(u)
+
+
+class Lines:
+    """The lines of a body, found once, and its states with them; numbered as the mesh was before it was distributed."""
+
+    def __init__(self, problem: Problem) -> None:
+        self._nodes, cells = Nodes(problem), problem.mesh.topology.index_map(2).size_local
+        tag = np.zeros(cells, dtype=np.int32)
+        own = problem.cell_tags.indices < cells
+        tag[problem.cell_tags.indices[own]] = problem.cell_tags.values[own]
+        self._tag = self._nodes.by_cell(tag)
+        self._ends, self._beside, self._edge = outline(self._nodes.coordinates, self._nodes.triangles, self._tag)
+
+    def snapshot(self, problem: Problem, fields: bool = True) -> Snapshot | None:
+        """Bring the current state to rank 0, None on the others; collective.
+
+        Args:
+            problem: on the mesh of these lines.
+            fields: whether energy densities, stresses and strains are computed; densities are 0 otherwise.
+        """
+        nodes, edges = self._nodes, (self._beside[:, 0], self._edge)
+        vertices, middles = (nodes.coordinates, nodes.gather(problem)), nodes.middles(problem)
+        tensors = [nodes.by_cell(each) for each in tensors_per_cell(problem)] if fields else []
+        sed = nodes.by_cell(sed_per_cell(problem)[1]) if fields else np.zeros(len(self._tag))
+        if problem.mesh.comm.rank > 0:
+            return None
+        x, u = (np.concatenate([at, there[edges]]) for at, there in zip(vertices, middles, strict=True))
+        middle = len(nodes.coordinates) + np.arange(len(self._ends))
+        lines = np.stack([self._ends[:, 0], middle, self._ends[:, 1]], axis=1)
+        return Snapshot(x, u, nodes.triangles, sed, self._tag, lines, self._beside, *tensors)
+
+
+# -- places in the reference triangle -------------------------------------------------------------------------
+def reference_places(nodes: Array, places: Array) -> Array:
+    """Return the reference coordinates of a place each in triangles of first or second order, shape (n, 2).
+
+    Args:
+        nodes: the triangles' nodes (m), in basix' order, shape (n, 3 or 6, 2).
+        places: reference positions (m), in the triangle or not far from it, shape (n, 2).
+    """
+    a, b, c = np.moveaxis(nodes[:, :3], 1, 0)
+    X, straight = _solved(b - a, c - a, places - a)
+    if nodes.shape[1] == 3:
+        return X
+    element = basix.create_element(basix.ElementFamily.P, basix.CellType.triangle, 2)
+    bend = np.abs(nodes[:, 3:] - (nodes[:, [1, 0, 0]] + nodes[:, [2, 2, 1]]) / 2).max(axis=(1, 2))
+    far = np.flatnonzero(bend > _STRAIGHT * np.sqrt(np.abs(straight)))
+    for _ in range(_NEWTON):
+        basis = np.asarray(element.tabulate(1, X[far]))[:, :, :, 0]
+        there, a, b = np.einsum("dnk,nki->dni", basis, nodes[far])
+        step = np.clip(_solved(a, b, places[far] - there, _FLAT * straight[far])[0], -_STEP, _STEP)
+        X[far] += step
+        far = far[np.abs(step).max(axis=1) > _NEAR]
+    return X
+
+
+def _solved(a: Array, b: Array, right: Array, least: Array | float = 0.0) -> tuple[Array, Array]:
+    """Return what multiples of a and b, shape (n, 2) each, add up to the right side, and the determinants, (n,)."""
+    determinant = a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]
+    safe = np.where(np.abs(determinant) > np.abs(least), determinant, least)
+    first, second = right[:, 0] * b[:, 1] - right[:, 1] * b[:, 0], a[:, 0] * right[:, 1] - a[:, 1] * right[:, 0]
+    return np.stack([first, second], axis=1) / safe[:, None], determinant

@@ -19,7 +19,7 @@ they are then part. Both are written once a step (:meth:`Relaxation.prepare`), s
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, cast
+from typing import cast
 
 import basix
 import dolfinx
@@ -31,10 +31,8 @@ from numpy.typing import NDArray
 
 from variational import compat, jit
 from variational.history import BodyField, Values
-
-if TYPE_CHECKING:
-    from variational.materials.material import Material
-    from variational.materials.viscoelastic import Viscoelastic
+from variational.materials.material import Material
+from variational.materials.viscoelastic import Viscoelastic
 
 Array = NDArray[np.float64]
 _STRESS, _STRAIN = "isochoric stress", "strain"
@@ -60,7 +58,7 @@ class LayerField(BodyField):
 
 
 def relaxations(
-    laws: Mapping[tuple[int, ...], "Material"],
+    laws: Mapping[tuple[int, ...], Material],
     w: fem.Function,
     lapse: fem.Constant,
     cell_tags: dolfinx.mesh.MeshTags,
@@ -68,7 +66,7 @@ def relaxations(
 ) -> dict[tuple[int, ...], "Relaxation"]:
     """Return the history of each group of layers whose law is viscous; arguments as in :class:`Relaxation`."""
     return {
-        tags: Relaxation(cast("Viscoelastic", law), w, lapse, cell_tags, tags, quadrature_degree)
+        tags: Relaxation(cast(Viscoelastic, law), w, lapse, cell_tags, tags, quadrature_degree)
         for tags, law in laws.items()
         if law.times
     }
@@ -89,7 +87,7 @@ class Relaxation:
 
     def __init__(
         self,
-        law: "Viscoelastic",
+        law: Viscoelastic,
         w: fem.Function,
         lapse: fem.Constant,
         cell_tags: dolfinx.mesh.MeshTags,

@@ -1,21 +1,14 @@
 """The whole body on one rank, as a picture shows it: its vertices, triangles, densities, tensors and lines."""
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from variational import compat
-from variational.outline import outline
-from variational.output import sed_per_cell, tensors_per_cell
-
-if TYPE_CHECKING:
-    from variational.problem import Problem
-
 Array = NDArray[np.float64]
+Numbers = NDArray[np.int64]
 _ON_LINE = 1e-9  # m from x = 0, within which a vertex is its own image
-_MIDDLES = np.array([[0.5, 0.5], [0.0, 0.5], [0.5, 0.0]])  # of the reference triangle's edges, by opposite vertex
 
 
 @dataclass(frozen=True)
@@ -62,80 +55,65 @@ class Snapshot:
         )
 
 
-class Nodes:
-    """Brings values to every rank, numbered as the mesh was before it was distributed.
+class Outline(NamedTuple):
+    """Edges between parts and on the boundary; each is named once, and has the first of its cells on its left."""
 
-    Attributes:
-        coordinates: nodes of the unloaded mesh (m), shape (nodes, 2).
-        triangles: nodes of each cell, shape (cells, 3).
+    ends: Numbers
+    """Vertices where each begins and ends, shape (lines, 2)."""
+    cells: Numbers
+    """Cells on its left and on its right, -1 outside, shape (lines, 2)."""
+    edge: Numbers
+    """Number of the edge in the cell on its left, that of the opposite vertex, shape (lines,)."""
+
+
+def outline(x: Array, triangles: Numbers, tag: NDArray[Any]) -> Outline:
+    """Return the edges between cells of different tags and those of one cell alone.
+
+    Args:
+        x: positions of the vertices (m), shape (vertices, 2).
+        triangles: vertices of each cell, either way round, shape (cells, 3).
+        tag: of each cell, shape (cells,).
     """
-
-    def __init__(self, problem: "Problem") -> None:
-        mesh = problem.mesh
-        self._comm, cells = mesh.comm, np.arange(mesh.topology.index_map(2).size_local)
-        # The first three degrees of freedom of a Lagrange triangle are its vertices, in the geometry's order.
-        self._dofs = problem.V.dofmap.list[cells][:, :3]
-        nodes = compat.cell_geometry(mesh)[cells][:, :3]
-        names = self._together(np.asarray(mesh.geometry.input_global_indices)[nodes])
-        self._sort = np.argsort(self._together(np.asarray(mesh.topology.original_cell_index)[cells]))
-        _, self._first, corners = np.unique(names[self._sort].ravel(), return_index=True, return_inverse=True)
-        self.triangles = corners.reshape(-1, 3)
-        self.coordinates = self._pick(mesh.geometry.x[nodes][:, :, :2])
-
-    def _together(self, mine: NDArray[Any]) -> NDArray[Any]:
-        return np.concatenate(self._comm.allgather(mine))
-
-    def by_cell(self, mine: NDArray[Any]) -> NDArray[Any]:
-        """Return one value a cell of those of own cells, on every rank; collective."""
-        return np.asarray(self._together(mine)[self._sort])
-
-    def _pick(self, mine: Array) -> Array:
-        """Return one value a node of values by cell and corner, shape (cells, 3, 2)."""
-        return np.asarray(self.by_cell(mine).reshape(-1, 2)[self._first])
-
-    def gather(self, problem: "Problem") -> Array:
-        """Return the displacement of all nodes (m), shape (nodes, 2); collective."""
-        return self._pick(problem.displacement()[self._dofs])
-
-    def middles(self, problem: "Problem") -> tuple[Array, Array]:
-        """Return place and displacement (m) of the middle of each cell's edges, shape (cells, 3, 2) each; collective.
-
-        An edge has the number of the opposite vertex.
-        """
-        cells = np.arange(len(self._dofs))
-        nodes = problem.mesh.geometry.x[compat.cell_geometry(problem.mesh)[cells]][:, :, :2]
-        straight = (nodes[:, [1, 0, 0]] + nodes[:, [2, 2, 1]]) / 2
-        basis = problem.V.element.basix_element.tabulate(0, _MIDDLES)[0, :, :, 0]
-        u = np.einsum("mk,cki->cmi", basis, problem.displacement()[problem.V.dofmap.list[cells]])
-        places = nodes[:, 3:] if nodes.shape[1] == 6 else straight
-        return self.by_cell(places), self.by_cell(u)
+    cells = np.arange(len(triangles))
+    (ax, ay), (bx, by), (cx, cy) = np.moveaxis(x[triangles], 0, 2)
+    forward = ((bx - ax) * (cy - ay) - (by - ay) * (cx - ax) > 0)[:, None]
+    begin, end = triangles[:, [1, 2, 0]], triangles[:, [2, 0, 1]]
+    begin, end = np.where(forward, begin, end).ravel(), np.where(forward, end, begin).ravel()
+    key = np.minimum(begin, end) * (int(triangles.max(initial=0)) + 1) + np.maximum(begin, end)
+    order = np.argsort(key, kind="stable")
+    same = np.flatnonzero(np.diff(key[order]) == 0)
+    first, second = order[same], order[same + 1]
+    alone = np.ones(len(order), dtype=bool)
+    alone[first] = alone[second] = False
+    between = tag[first // 3] != tag[second // 3]
+    mine = np.concatenate([first[between], np.flatnonzero(alone)])
+    other = np.concatenate([cells[second[between] // 3], np.full(int(alone.sum()), -1)])
+    return Outline(np.stack([begin[mine], end[mine]], 1), np.stack([cells[mine // 3], other], 1), mine % 3)
 
 
-class Lines:
-    """The lines of a body, found once, and its states with them; numbered as the mesh was before it was distributed."""
+def loops(lines: Numbers, cells: Numbers, tag: NDArray[Any], part: int) -> list[Numbers]:
+    """Return the closed loops of lines around a part, which is on their left.
 
-    def __init__(self, problem: "Problem") -> None:
-        self._nodes, cells = Nodes(problem), problem.mesh.topology.index_map(2).size_local
-        tag = np.zeros(cells, dtype=np.int32)
-        own = problem.cell_tags.indices < cells
-        tag[problem.cell_tags.indices[own]] = problem.cell_tags.values[own]
-        self._tag = self._nodes.by_cell(tag)
-        self._ends, self._beside, self._edge = outline(self._nodes.coordinates, self._nodes.triangles, self._tag)
+    Args:
+        lines: points at which each line begins, has its middle and ends, shape (lines, 3).
+        cells: on their left and on their right, -1 outside, shape (lines, 2).
+        tag: of each cell, shape (cells,).
+        part: a tag, or 0 for all that is outside.
 
-    def snapshot(self, problem: "Problem", fields: bool = True) -> Snapshot | None:
-        """Bring the current state to rank 0, None on the others; collective.
-
-        Args:
-            problem: on the mesh of these lines.
-            fields: whether energy densities, stresses and strains are computed; densities are 0 otherwise.
-        """
-        nodes, edges = self._nodes, (self._beside[:, 0], self._edge)
-        vertices, middles = (nodes.coordinates, nodes.gather(problem)), nodes.middles(problem)
-        tensors = [nodes.by_cell(each) for each in tensors_per_cell(problem)] if fields else []
-        sed = nodes.by_cell(sed_per_cell(problem)[1]) if fields else np.zeros(len(self._tag))
-        if problem.mesh.comm.rank > 0:
-            return None
-        x, u = (np.concatenate([at, there[edges]]) for at, there in zip(vertices, middles, strict=True))
-        middle = len(nodes.coordinates) + np.arange(len(self._ends))
-        lines = np.stack([self._ends[:, 0], middle, self._ends[:, 1]], axis=1)
-        return Snapshot(x, u, nodes.triangles, sed, self._tag, lines, self._beside, *tensors)
+    Returns:
+        The lines of each loop in order and in its direction, shape (lines of the loop, 3).
+    """
+    left, right = (np.where(side >= 0, tag[side], 0) == part for side in cells.T)
+    around = np.concatenate([lines[left & ~right], lines[right & ~left][:, ::-1]])
+    onward: dict[int, list[int]] = {}
+    for k, begin in enumerate(around[:, 0].tolist()):
+        onward.setdefault(begin, []).append(k)
+    ends, found = around[:, 2].tolist(), []
+    for begin in list(onward):
+        while onward[begin]:
+            here, loop = begin, list[int]()
+            while onward.get(here):
+                loop.append(onward[here].pop())
+                here = ends[loop[-1]]
+            found.append(around[loop])
+    return found

@@ -1,6 +1,6 @@
 """The rules of the verdicts, the same for every row of a kind, and the forms that are fitted to curves.
 
-Their words are in ``benchmarks/prose/measured.md``. A measured form of a curve stands beside another one with as many
+Their words are in ``docs/measured.md``. A measured form of a curve stands beside another one with as many
 parameters.
 """
 

@@ -18,15 +18,14 @@ from mpi4py import MPI
 from numpy.typing import NDArray
 
 from benchmarks.peers import ours, plain
-from benchmarks.peers.__main__ import values
-from benchmarks.peers.at_equal_error import CURVED, OURS, STRAIGHT
+from benchmarks.peers.compared import CURVED, OURS, STRAIGHT, values
 from benchmarks.peers.exchange import Case, timed
 from fingerpad.accuracy import edges
 from geometry.bodies import ridge
 from geometry.mesh import TaggedMesh, load
 from geometry.parameters import MeshSize
 from variational.body import Body
-from variational.solvers.snapshot import StateSnapshot, take_snapshot
+from variational.solvers.state_snapshot import StateSnapshot, take_snapshot
 from variational.solvers.transfer import restore
 
 Array = NDArray[np.float64]

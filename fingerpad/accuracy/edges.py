@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geometry.parameters import MeshSize
-from variational.solvers.snapshot import SkinState, StateSnapshot
+from variational.solvers.state_snapshot import SkinState, StateSnapshot
 
 Array = NDArray[np.float64]
 Along = Callable[[Array], Array]

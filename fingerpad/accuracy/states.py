@@ -10,11 +10,11 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from fingerpad.model.finger import both_sides
-from fingerpad.results.drawing import View
+from fingerpad.results.fields import View
 from fingerpad.results.states import before_sliding
 from geometry.parameters import MeshSize
 from variational.output import Receptors
-from variational.solvers.snapshot import StateSnapshot, take_snapshot
+from variational.solvers.state_snapshot import StateSnapshot, take_snapshot
 from variational.state import RESULTS, ContactState
 
 if TYPE_CHECKING:

@@ -1,7 +1,7 @@
 """A class of mechanoreceptive afferents: what drives its units, and the spikes with which they answer.
 
 A law of one's own is a class with two methods, and selectable by its name once it is an entry of
-:data:`fingerpad.afferents.registry.LAWS`::
+:data:`fingerpad.afferents.LAWS`::
 
     class Threshold(Afferent):
         name, site, longest_step = "Threshold", "merkel", 5e-3
@@ -13,9 +13,10 @@ A law of one's own is a class with two methods, and selectable by its name once 
             above = stimulus > 5e3  # Pa
             return above & ~np.roll(above, 1, axis=1)
 
-Units answer to what changes: the first value of a stimulus has been there for ever.
+A unit starts in the steady state of the first value of its stimulus.
 """
 
+import reprlib
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from typing import Any, ClassVar
@@ -23,12 +24,10 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from fingerpad.scene.messages import SceneError, show
-
 Array = NDArray[np.float64]
 SITES = ("merkel", "meissner", "pacinian")
 """Kinds of sites."""
-_ROUNDOFF = 1e-9  # relative, of a step
+_STEP_TOLERANCE = 1e-9  # relative difference of two steps that are the same
 
 
 @dataclass(frozen=True, eq=False)
@@ -83,37 +82,37 @@ class Afferent(ABC):
             An array of one unit, a list of arrays of several.
 
         Raises:
-            SceneError: the samples are no numbers, or too far apart for the class.
+            ValueError: the samples are no numbers, or too far apart for the class.
         """
-        values, dt = checked(stimulus, dt, self)
-        fired = self.fire(resampled(np.atleast_2d(values), dt, self.step))
+        values, dt = _checked(stimulus, dt, self)
+        fired = self.fire(_resampled(np.atleast_2d(values), dt, self.step))
         times = [self.step * np.flatnonzero(mine) for mine in fired]
         return times[0] if values.ndim == 1 else times
 
 
-def checked(stimulus: ArrayLike, dt: float, law: Afferent) -> tuple[Array, float]:
+def _checked(stimulus: ArrayLike, dt: float, law: Afferent) -> tuple[Array, float]:
     """Return a stimulus and its step as numbers, for a law.
 
     Raises:
-        SceneError: they are none, or the step is too long.
+        ValueError: they are none, or the step is too long.
     """
     try:
         values, step = np.asarray(stimulus, dtype=float), float(dt)
     except (TypeError, ValueError):
-        raise SceneError(f"the stimulus of {law.name} or its dt is no number; give arrays of numbers in SI") from None
+        raise ValueError(f"the stimulus of {law.name} or its dt is no number; give arrays of numbers in SI") from None
     if not 0 < step < np.inf:
-        raise SceneError(f"dt is {show(dt)}; it must be greater than 0 s")
+        raise ValueError(f"dt is {step:g}; it must be greater than 0 s")
     if values.ndim not in (1, 2) or values.shape[-1] < 2 or not np.isfinite(values).all():
-        raise SceneError(
+        raise ValueError(
             f"the stimulus of {law.name} has the shape {values.shape}; it must have finite numbers along (samples,) or "
             "(units, samples), 2 samples at least"
         )
-    if step > law.longest_step * (1 + _ROUNDOFF):
-        raise SceneError(f"dt is {step:g} s; {law.name} needs {law.longest_step:.3g} s or less between two samples")
+    if step > law.longest_step * (1 + _STEP_TOLERANCE):
+        raise ValueError(f"dt is {step:g} s; {law.name} needs {law.longest_step:.3g} s or less between two samples")
     return values, step
 
 
-def resampled(values: Array, dt: float, step: float) -> Array:
+def _resampled(values: Array, dt: float, step: float) -> Array:
     """Return a stimulus at times that are a step apart, straight between its samples.
 
     Args:
@@ -121,37 +120,25 @@ def resampled(values: Array, dt: float, step: float) -> Array:
         dt: time between two samples (s).
         step: the new one (s).
     """
-    if abs(dt - step) <= _ROUNDOFF * step:
+    if abs(dt - step) <= _STEP_TOLERANCE * step:
         return values
-    place = np.arange(int((values.shape[1] - 1) * dt / step * (1 + _ROUNDOFF)) + 1) * (step / dt)
+    place = np.arange(int((values.shape[1] - 1) * dt / step * (1 + _STEP_TOLERANCE)) + 1) * (step / dt)
     before = np.minimum(place.astype(int), values.shape[1] - 2)
     share = place - before
     return np.asarray(values[:, before] * (1 - share) + values[:, before + 1] * share)
 
 
-def check_input(law: Any, inputs: tuple[str, ...]) -> None:
-    """Refuse an input that is none, and a gain that is not greater than 0.
+def check_keys(law: Any, inputs: tuple[str, ...] = ()) -> None:
+    """Refuse an input that a law does not have, and a gain that is not greater than 0.
 
     Args:
-        law: with ``input`` and ``gain``.
+        law: with ``gain``, and ``input`` where it has several.
         inputs: what it can be.
 
     Raises:
-        SceneError: the key, its value and what is allowed.
+        ValueError: the key, its value and what is allowed.
     """
-    if law.input not in inputs:
-        raise SceneError(f"input is {show(law.input)}; it must be {' or '.join(map(repr, inputs))}")
-    check_gain(law)
-
-
-def check_gain(law: Any) -> None:
-    """Refuse a gain that is not greater than 0.
-
-    Args:
-        law: with ``gain``.
-
-    Raises:
-        SceneError: its value and what is allowed.
-    """
+    if inputs and law.input not in inputs:
+        raise ValueError(f"input is {reprlib.repr(law.input)}; it must be {' or '.join(map(repr, inputs))}")
     if not (isinstance(law.gain, int | float) and 0 < law.gain < np.inf):
-        raise SceneError(f"gain is {show(law.gain)}; it must be greater than 0")
+        raise ValueError(f"gain is {reprlib.repr(law.gain)}; it must be greater than 0")

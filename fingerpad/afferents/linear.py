@@ -15,19 +15,30 @@ RA1 [6.995, 1.05, 0.8262, 2.524]
 PC [36.87, 1.289, 0.1744, 0.08364]
 """
 
+import reprlib
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
-from fingerpad.afferents.afferent import Array
-from fingerpad.scene.messages import SceneError, show
+from fingerpad.afferents.afferent import Afferent, Array
 
 V_TH = 15e-3
 """Potential (V) at the threshold."""
+V_MOST = 0.999
+"""Potential (V) beyond the threshold at which the rate is at its largest."""
 ALIASES = {"SA": "SA1", "RA": "RA1"}
 """Further names of classes."""
+
+INDENTATION = {"RA1": 7.706184900877857e-08, "PC": 1.0149760880828562e-07}
+r"""Indentation (m) of a flat pin of radius a = 1 mm for a stress of 1 Pa at the depth z of a class.
+
+.. math:: \sigma = \frac{E y}{\pi a (1 - \nu^2)} \, \frac{1 + 3 (z/a)^2}{(1 + (z/a)^2)^2}
+
+on the axis, I. N. Sneddon (1946), Proc. Camb. Phil. Soc. 42, 29, with E = 0.05 MPa, nu = 0.4, and z of 1.6 and 2 mm,
+which were fitted by Saal et al. (2017), doi 10.1073/pnas.1704856114, and are no anatomy.
+"""
 
 
 @dataclass(frozen=True)
@@ -78,6 +89,39 @@ FILTERS = {
 }
 
 
+class RateUnit(Afferent):
+    r"""A unit that fires where its potential V passes the threshold, and above it at the rate f.
+
+    .. math:: V = A_s (\langle q \rangle + c \langle -q \rangle), \qquad f = K_f \min(V - V_{th}, V_{most})
+
+    with the output q of the linear filter of its class. So a vibration just above the threshold gives one spike a
+    cycle. Without noise. Ouyang, Wu, Shao, Wu, Cao (2019), doi 10.3389/fninf.2019.00027: its public implementation has
+    c, K_f and V_most, and samples V every 4 ms, which is left out here. One gain a class turns a stress or a strain
+    into a displacement of the skin, so thresholds in Pa are relative.
+
+    Attributes:
+        gain: displacement of the skin (m) that stands for a stimulus of 1.
+        per_volt: K_f, rate over the potential (1/(s V)).
+        off: c, weight of the filter's negative output.
+    """
+
+    gain: float
+    per_volt: ClassVar[float]
+    off: ClassVar[float]
+
+    def fire(self, stimulus: Array) -> NDArray[np.bool_]:
+        """Return whether each unit fires at each sample."""
+        v = FILTERS[self.name].potential(self.gain * stimulus, self.step)
+        v = np.where(v > 0, v, -self.off * v)
+        above = v > V_TH
+        begins = above & ~np.roll(above, 1, axis=1)
+        begins[:, 0] = False
+        phase = np.cumsum(self.per_volt * self.step * np.clip(v - V_TH, 0, V_MOST), axis=1)
+        since = phase - np.maximum.accumulate(np.where(begins, phase, 0), axis=1)
+        count = np.where(above, 1 + np.floor(since), 0)
+        return np.asarray(np.diff(count, axis=1, prepend=count[:, :1]) > 0)
+
+
 def threshold(name: str, frequency: ArrayLike) -> Any:
     """Return the amplitude of the skin's displacement (m) at the threshold of a class, by its linear filter.
 
@@ -86,16 +130,16 @@ def threshold(name: str, frequency: ArrayLike) -> Any:
         frequency: of the displacement (Hz), of any shape.
 
     Raises:
-        SceneError: there is no such class, or a frequency is not greater than 0.
+        ValueError: there is no such class, or a frequency is not greater than 0.
     """
     known = ALIASES.get(name, name) if isinstance(name, str) else name
     if not (isinstance(known, str) and known in FILTERS):
-        raise SceneError(f"the class is {show(name)}; it must be {' or '.join(map(repr, FILTERS))}")
+        raise ValueError(f"the class is {reprlib.repr(name)}; it must be {' or '.join(map(repr, FILTERS))}")
     try:
         f = np.asarray(frequency, dtype=float)
     except (TypeError, ValueError):
         f = np.array(np.nan)
     if not ((f > 0) & np.isfinite(f)).all():
-        raise SceneError(f"the frequency is {show(frequency)}; it must be greater than 0 Hz")
+        raise ValueError(f"the frequency is {reprlib.repr(frequency)}; it must be greater than 0 Hz")
     found = FILTERS[known].threshold(f)
     return found if f.ndim else float(found)

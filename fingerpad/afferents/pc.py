@@ -1,8 +1,8 @@
 """Pacinian afferents (PC, RA-II) as one population, from the stress at one depth.
 
 Their fields cover the fingertip, so one unit stands for all and answers to the mean over the sites. It has the filter
-of its class (:mod:`fingerpad.afferents.rates`) and one gain, that of a flat pin on the skin
-(:mod:`fingerpad.afferents.pin`), which is relative.
+of its class (:class:`fingerpad.afferents.linear.RateUnit`) and one gain, that of a flat pin on the skin
+(:data:`fingerpad.afferents.linear.INDENTATION`), which is relative.
 
 A vibration a little above the threshold gives one spike a cycle, one below it none:
 
@@ -19,24 +19,22 @@ A vibration a little above the threshold gives one spike a cycle, one below it n
 
 from dataclasses import dataclass
 
-from fingerpad.afferents import pin
-from fingerpad.afferents.afferent import Array, History, check_gain
-from fingerpad.afferents.linear import FILTERS
-from fingerpad.afferents.rates import RateUnit
+from fingerpad.afferents.afferent import Array, History, check_keys
+from fingerpad.afferents.linear import FILTERS, INDENTATION, RateUnit
 
 
 @dataclass(frozen=True)
 class PC(RateUnit):
     """The population of Pacinian afferents."""
 
-    gain: float = pin.indentation_per_stress("PC")
+    gain: float = INDENTATION["PC"]
     """Displacement (m) for a stress of 1 Pa."""
     name, site, longest_step, population = "PC", "pacinian", 0.25 / FILTERS["PC"].high, True
     per_volt, off = 300.0, 0.11
 
     def __post_init__(self) -> None:
         """Refuse a gain that is not greater than 0."""
-        check_gain(self)
+        check_keys(self)
 
     def stimulus(self, history: History) -> Array:
         """Return the mean compressive stress over the sites (Pa), shape (1, samples)."""

@@ -1,11 +1,11 @@
 """Rapidly adapting units of type I (RA-I, FA-I), from a stress or a strain of the surface at a Meissner site.
 
 The filter of the class has no static part: the unit answers to the rate of what it is given
-(:mod:`fingerpad.afferents.rates`). That is the compressive stress, taken as the indentation of a flat pin with the same
-stress at the depth of the receptor (:mod:`fingerpad.afferents.pin`); or the compression of the surface along the skin,
-taken as the shortening of one ridge. Afferents at the onset of slip follow the rate of compressive strain of the
-surface, and compression more than stretch: Delhaye, Jarocka, Barrea, Thonnard, Edin, Lefèvre (2021), doi
-10.7554/eLife.64679, of which the abstract was read. Both gains are relative.
+(:class:`fingerpad.afferents.linear.RateUnit`). That is the compressive stress, taken as the indentation of a flat pin
+with the same stress at the depth of the receptor (:data:`fingerpad.afferents.linear.INDENTATION`); or the compression
+of the surface along the skin, taken as the shortening of one ridge. Afferents at the onset of slip follow the rate of
+compressive strain of the surface, and compression more than stretch: Delhaye, Jarocka, Barrea, Thonnard, Edin, Lefèvre
+(2021), doi 10.7554/eLife.64679, of which the abstract was read. Both gains are relative.
 
 A vibration a little above the threshold gives one spike a cycle, one below it none:
 
@@ -29,10 +29,8 @@ A ramp in 100 ms to 20 kPa that is held gives spikes in the ramp alone; number, 
 from dataclasses import dataclass
 from typing import Literal
 
-from fingerpad.afferents import pin
-from fingerpad.afferents.afferent import Array, History, check_input
-from fingerpad.afferents.linear import FILTERS
-from fingerpad.afferents.rates import RateUnit
+from fingerpad.afferents.afferent import Array, History, check_keys
+from fingerpad.afferents.linear import FILTERS, INDENTATION, RateUnit
 
 RIDGE = 483e-6
 """Width of a ridge (m) of the default finger."""
@@ -52,9 +50,9 @@ class RA1(RateUnit):
     def __post_init__(self) -> None:
         """Take the gain of the input where none is given; refuse another input, and a gain that is negative."""
         if self.gain == 0:
-            gain = pin.indentation_per_stress(self.name) if self.input == "stress" else RIDGE
+            gain = INDENTATION[self.name] if self.input == "stress" else RIDGE
             object.__setattr__(self, "gain", gain)
-        check_input(self, ("stress", "strain"))
+        check_keys(self, ("stress", "strain"))
 
     def stimulus(self, history: History) -> Array:
         """Return the compressive stress (Pa), or the compression of the surface."""

@@ -35,7 +35,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from fingerpad.afferents.afferent import Afferent, Array, History, check_input
+from fingerpad.afferents.afferent import Afferent, Array, History, check_keys
 
 TAU, K = (8e-3, 0.2, 1.7446, np.inf), (0.74, 0.2088, 0.07, 0.0312)
 CELLS, C, R, V_MOST = 8, 30e-12, 5e9, 30e-3
@@ -55,7 +55,7 @@ class SA1(Afferent):
 
     def __post_init__(self) -> None:
         """Refuse another input, and a gain that is not greater than 0."""
-        check_input(self, ("stress", "sed"))
+        check_keys(self, ("stress", "sed"))
 
     def stimulus(self, history: History) -> Array:
         """Return the compressive stress or the strain energy density (Pa)."""

@@ -14,10 +14,11 @@ from numpy.typing import NDArray
 
 from fingerpad.model.stimuli import SiteStimuli
 from fingerpad.results import motion, states
-from fingerpad.results.drawing import Drawing, View, sorted_along
+from fingerpad.results.drawing import Drawing
+from fingerpad.results.fields import View, sorted_along
 from fingerpad.scene import Load
-from variational.output import Receptors
-from variational.snapshot import Lines, Snapshot
+from variational.output import Lines, Receptors
+from variational.snapshot import Snapshot
 from variational.state import ContactState, Sites, Skin, StepRecord, Stimuli
 
 if TYPE_CHECKING:

@@ -1,8 +1,8 @@
 r"""What mechanoreceptive afferents answer to a run over time: stimuli at its sites, and spikes.
 
 Stimuli are known in the accepted states. Between two of a load they follow the monotone cubic curve of Fritsch and
-Carlson, cut at the ends of loads; a jump of the voltage takes half a sample. The state at time 0 has been there for
-ever. A class is refused where two states are further apart than its ``longest_step`` and its stimulus changes between
+Carlson, cut at the ends of loads; a jump of the voltage takes half a sample. The state at t = 0 is taken as a steady
+state. A class is refused where two states are further apart than its ``longest_step`` and its stimulus changes between
 them by more than :data:`CHANGE` of its range.
 """
 
@@ -14,8 +14,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from fingerpad.afferents.afferent import Afferent, History
-from fingerpad.afferents.registry import DEFAULT, find
+from fingerpad.afferents import DEFAULT, Afferent, History, find
 from fingerpad.results.over_time import without_parts_of_jumps
 from fingerpad.results.spikes import Densities, Span, Spikes, Unit
 from fingerpad.results.terminal import about
@@ -45,9 +44,12 @@ _TIME_TOLERANCE = 1e-9  # of the length of a run: two times that are one
 
 def afferents(result: "Answer", laws: str | Afferent | Iterable[str | Afferent] | None = None) -> Spikes:
     """Return the spikes of afferents over a run; see :meth:`fingerpad.results.result.Result.afferents`."""
-    asked: str | Afferent | Iterable[str | Afferent] = DEFAULT if laws is None else laws
-    named = [asked] if isinstance(asked, str | Afferent) else list(asked)
-    chosen = [find(law) for law in named]
+    given: str | Afferent | Iterable[str | Afferent] = DEFAULT if laws is None else laws
+    named = [given] if isinstance(given, str | Afferent) else list(given)
+    try:
+        chosen = [find(law) for law in named]
+    except ValueError as error:
+        raise SceneError(str(error)) from None
     names = [name if isinstance(name, str) else name.name for name in named]
     if not chosen:
         raise SceneError("no class of afferents is given; give one at least, such as 'SA1'")
@@ -91,9 +93,7 @@ def _states(result: "Answer") -> list[ContactState]:
             "the run has no load over time, so nothing is felt over time; give its loads a duration or a speed"
         )
     if states[-1].stimuli is None or states[-1].sites is None:
-        why = "output.receptors is false" if not result.scene.output.receptors else "its mesh is one of your own"
-        if result.scene.geometry.file is None and result.scene.output.receptors:
-            why = "its states were kept without them, by an earlier version or without result.nc"
+        why = "its mesh is one of your own" if result.scene.output.receptors else "output.receptors is false"
         raise SceneError(f"the run has no stimuli at receptor sites: {why}; run a finger of the package with receptors")
     begin = max(k for k, state in enumerate(states) if state.time == 0.0)
     return without_parts_of_jumps(states[begin:])

@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 from fingerpad.results import style
 from fingerpad.results.raster import cells_at, pieces
 from geometry import tags
-from variational.outline import loops
+from variational.snapshot import loops
 from variational.state import ContactState
 
 if TYPE_CHECKING:
@@ -103,7 +103,7 @@ def finger(
 
     Args:
         path: of the PNG file; None for the figure alone.
-        snapshot: state of the body, see :class:`variational.snapshot.Lines`.
+        snapshot: state of the body, see :class:`variational.output.Lines`.
         sites: current positions of Merkel sites (m), shape (n, 2), or None.
         title: what state it is, see :mod:`fingerpad.results.style`.
         ridges: current abscissa (m) of numbered ridges, number 0 at the centre.

@@ -26,15 +26,13 @@ of the virtual work with respect to the pressure makes the tangent unsymmetric.
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, ClassVar, Self
+from typing import Any, ClassVar, Self
 
 import numpy as np
 from numpy.typing import NDArray
 
 from variational.coefficients import LawError, Named, refuse_not_positive, said
-
-if TYPE_CHECKING:
-    from variational.contact.friction import Friction
+from variational.contact.friction import Friction
 
 Array = NDArray[np.float64]
 STICKS, SLIPS = 1e-9, -1e-9
@@ -153,7 +151,7 @@ class Contact:
         self.traction = ufl.as_vector([self.t_t, self.p_n])
 
 
-def _limit(friction: "Friction", p_n, memory):
+def _limit(friction: Friction, p_n, memory):
     """Return the limit of friction (Pa) as the weak form has it.
 
     Raises:

@@ -15,21 +15,18 @@ part (Allgower and Georg 1990, doi 10.1007/978-3-642-61257-2).
 """
 
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 from mpi4py import MPI
 from numpy.typing import NDArray
 
+from variational.contact.formulation import SurfaceState
+from variational.history import Values
+from variational.resultants import Observer
+from variational.solvers.coupling import Coupling
+from variational.solvers.newton import Solver
 from variational.solvers.outcome import NotConverged
 from variational.solvers.target import Control
-
-if TYPE_CHECKING:
-    from variational.contact.formulation import SurfaceState
-    from variational.history import Values
-    from variational.resultants import Observer
-    from variational.solvers.coupling import Coupling
-    from variational.solvers.newton import Solver
 
 Array = NDArray[np.float64]
 _LEFT = 1e-9  # part of the way back that is left, so that the last point stays at the limit of friction
@@ -44,7 +41,7 @@ class AcceptedState:
     """This rank's unknowns."""
     bone: Array
     """The bone's translation (m), shape (2,)."""
-    history: "Values"
+    history: Values
     """Accepted values of the history's fields."""
     d_eq: Array
     """Equivalent air gaps (m), shape (ridges,)."""
@@ -59,7 +56,7 @@ class AcceptedState:
         return float(self.bone[1]) if self.control.y is None else self.control.y
 
     @classmethod
-    def of(cls, coupling: "Coupling") -> "AcceptedState":
+    def of(cls, coupling: Coupling) -> "AcceptedState":
         """Return the present state; collective."""
         solver, problem = coupling.solver, coupling.solver.problem
         return cls(
@@ -72,7 +69,7 @@ class AcceptedState:
             solver.reaction.copy(),
         )
 
-    def restore(self, coupling: "Coupling") -> None:
+    def restore(self, coupling: Coupling) -> None:
         """Return to the state; collective."""
         solver, problem = coupling.solver, coupling.solver.problem
         solver.x.array_w[:] = self.x
@@ -90,7 +87,7 @@ class Place:
     """An accepted state of a continuation, on its own mesh."""
 
     accepted: AcceptedState
-    surface: "SurfaceState"
+    surface: SurfaceState
     slip: tuple[float, bool]
     """See :class:`variational.solvers.continuation.Continuation`."""
     gain: Array
@@ -99,7 +96,7 @@ class Place:
     """(s)"""
 
 
-def return_to_onset(solver: "Solver", observer: "Observer", way: float) -> float:
+def return_to_onset(solver: Solver, observer: Observer, way: float) -> float:
     """Translate a body in full slip back to where full slip began in the present step; collective.
 
     Args:
@@ -128,7 +125,7 @@ def return_to_onset(solver: "Solver", observer: "Observer", way: float) -> float
     return 0.0
 
 
-def relax(solver: "Solver", part: float, skin: bool = False) -> None:
+def relax(solver: Solver, part: float, skin: bool = False) -> None:
     """Bring the solver's state into balance at frozen air gaps; collective.
 
     Args:

@@ -9,7 +9,7 @@ short has to forget its own where its state is taken (:meth:`variational.solvers
 
 from collections.abc import Callable
 from dataclasses import fields, replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import ufl
@@ -19,9 +19,7 @@ from scipy.spatial import cKDTree
 
 from variational.contact.formulation import SurfaceState
 from variational.history import SkinField
-
-if TYPE_CHECKING:
-    from variational.solvers.continuation import Continuation
+from variational.solvers.continuation import Continuation
 
 Array = NDArray[np.float64]
 _MAX_DISTANCE = 1e-9  # m, within which two places are one
@@ -33,7 +31,7 @@ class OtherBody(ValueError):
     """A state of another mesh."""
 
 
-def take(path: "Continuation") -> dict[str, Any]:
+def take(path: Continuation) -> dict[str, Any]:
     """Return the accepted state; collective.
 
     Returns:
@@ -72,7 +70,7 @@ def take(path: "Continuation") -> dict[str, Any]:
     }
 
 
-def put(path: "Continuation", state: dict[str, Any]) -> None:
+def put(path: Continuation, state: dict[str, Any]) -> None:
     """Go on from a state; collective, with the whole of it on every rank.
 
     Raises:
@@ -109,7 +107,7 @@ def put(path: "Continuation", state: dict[str, Any]) -> None:
     path.resume()
 
 
-def order(path: "Continuation", places: dict[str, Array]) -> Callable[[str, Array], Array]:
+def order(path: Continuation, places: dict[str, Array]) -> Callable[[str, Array], Array]:
     """Return what picks this rank's values, by kind, among those of all places; collective.
 
     Raises:
@@ -126,7 +124,7 @@ def order(path: "Continuation", places: dict[str, Array]) -> Callable[[str, Arra
     return lambda kind, values: np.asarray(values[found[kind]])
 
 
-def _together(path: "Continuation") -> Callable[[Array], Array]:
+def _together(path: Continuation) -> Callable[[Array], Array]:
     comm = path.solver.layout.comm
 
     def together(own: Array) -> Array:
@@ -136,7 +134,7 @@ def _together(path: "Continuation") -> Callable[[Array], Array]:
     return together
 
 
-def _places(path: "Continuation") -> dict[str, Array]:
+def _places(path: Continuation) -> dict[str, Array]:
     """Return the places of this rank's values in the unloaded body (m), by kind."""
     surface, history = path.observer.surface, path.problem.history
     points = surface.evaluate(surface.compile(list(ufl.SpatialCoordinate(surface.mesh))))
@@ -144,7 +142,7 @@ def _places(path: "Continuation") -> dict[str, Array]:
     return {"unknowns": _unknowns(path), "points": np.moveaxis(points, 0, -1).reshape(-1, 2), **nodes}
 
 
-def _unknowns(path: "Continuation") -> Array:
+def _unknowns(path: Continuation) -> Array:
     """Return the places of this rank's unknowns in its part of a vector, set apart by kind."""
     layout, problem = path.solver.layout, path.problem
     places = np.zeros((layout.local_size, 3))

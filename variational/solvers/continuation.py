@@ -10,7 +10,6 @@ attempt restores the last accepted state.
 
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 from mpi4py import MPI
@@ -18,11 +17,9 @@ from numpy.typing import NDArray
 from petsc4py import PETSc
 
 from variational.solvers.accepted import AcceptedState, Place, relax, return_to_onset
+from variational.solvers.coupling import Coupling
 from variational.solvers.outcome import NotConverged
 from variational.solvers.target import Control, Progress, Target, Way
-
-if TYPE_CHECKING:
-    from variational.solvers.coupling import Coupling
 
 Array = NDArray[np.float64]
 
@@ -83,7 +80,7 @@ class Continuation:
 
     def __init__(
         self,
-        coupling: "Coupling",
+        coupling: Coupling,
         on_accept: Callable[[Target, float, Attempt], bool | None] = lambda target, part, attempt: None,
         touch_depth: float = 5e-6,
         step_scale: float = 1.0,

@@ -25,7 +25,6 @@ does not help, pseudo-transient continuation follows at once. Solves at air gaps
 """
 
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 from mpi4py import MPI
@@ -35,11 +34,9 @@ from variational.contact.formulation import SurfaceState
 from variational.resultants import Observer
 from variational.roughness.closure import Closure, air_gaps, check
 from variational.solvers.iteration import EXACT, StopRule
+from variational.solvers.newton import Solver
 from variational.solvers.outcome import NotConverged
 from variational.solvers.secant import Secants
-
-if TYPE_CHECKING:
-    from variational.solvers.newton import Solver
 
 Array = NDArray[np.float64]
 # Solves at air gaps that change again are not exact. They leave a part of what the load brought out of balance, at most
@@ -77,7 +74,7 @@ class Coupling:
 
     def __init__(
         self,
-        solver: "Solver",
+        solver: Solver,
         observer: Observer,
         closure: Closure | None,
         tolerance: float = 1e-6,

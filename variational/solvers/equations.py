@@ -1,7 +1,6 @@
 """Residual and tangent of a load: the weak form in the solver's unknowns, with rows that are prescribed."""
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
 from dolfinx import fem
@@ -9,12 +8,10 @@ from mpi4py import MPI
 from numpy.typing import NDArray
 from petsc4py import PETSc
 
+from variational.problem import Problem
 from variational.solvers.layout import RigidRimLayout
 from variational.solvers.outcome import OUTSIDE, Timings
 from variational.solvers.target import Control
-
-if TYPE_CHECKING:
-    from variational.problem import Problem
 
 Array = NDArray[np.float64]
 Rows = NDArray[np.int64]
@@ -38,7 +35,7 @@ class Equations:
 
     def __init__(
         self,
-        problem: "Problem",
+        problem: Problem,
         rim_facets: NDArray[np.int32],
         fixed: Sequence[tuple[NDArray[np.int32], float]] = (),
         moving_sides: NDArray[np.int32] | None = None,

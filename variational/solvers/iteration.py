@@ -18,19 +18,16 @@ the layer stays as it is.
 """
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 from mpi4py import MPI
 from petsc4py import PETSc
 
+from variational.solvers.equations import Equations
 from variational.solvers.outcome import OUT_OF_WORKSPACE, OUTSIDE, Counts, linear_failure
 from variational.solvers.skin_layer import SkinLayer
 from variational.solvers.tangent import Anderson, Tangent
 from variational.solvers.transient import EulerShift
-
-if TYPE_CHECKING:
-    from variational.solvers.equations import Equations
 
 PREFIX = "fingerpad_"
 # MUMPS, an LU of an unsymmetric matrix; full Newton steps, see above.
@@ -85,7 +82,7 @@ class Iteration:
             roundoff, above its tolerance; zero if it met that.
     """
 
-    def __init__(self, equations: "Equations", counts: Counts, force_scale: float, tolerance: float) -> None:
+    def __init__(self, equations: Equations, counts: Counts, force_scale: float, tolerance: float) -> None:
         """Set SNES up; the arguments are those of :class:`variational.solvers.newton.Solver`."""
         self.equations, self.layout, self.counts = equations, equations.layout, counts
         self.tangent, self.force_scale = Tangent(equations, counts), force_scale

@@ -15,8 +15,6 @@ The pressures of a mixed element (:mod:`variational.element`) come first among t
 goes on from the displacement's local unknowns to the pressure's, and forms are added to the matrix block by block.
 """
 
-from typing import TYPE_CHECKING
-
 import dolfinx
 import numpy as np
 from dolfinx import fem
@@ -24,8 +22,7 @@ from dolfinx.fem import petsc as fem_petsc
 from numpy.typing import NDArray
 from petsc4py import PETSc
 
-if TYPE_CHECKING:
-    from variational.element import LayerwisePressure
+from variational.element import LayerwisePressure
 
 Array = NDArray[np.float64]
 

@@ -14,7 +14,6 @@ equilibrium that is lost and ends in one of the unchanged equations.
 """
 
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 from mpi4py import MPI
@@ -22,12 +21,10 @@ from numpy.typing import NDArray
 from petsc4py import PETSc
 
 from variational.contact.formulation import SLIPS, STICKS
+from variational.solvers.equations import Equations
 from variational.solvers.iteration import EXACT, Iteration, StopRule
 from variational.solvers.outcome import OUTSIDE, Counts, snes_failure
 from variational.solvers.target import Control
-
-if TYPE_CHECKING:
-    from variational.solvers.equations import Equations
 
 Array = NDArray[np.float64]
 _SIDEWAYS = 0.95  # part of the last residual that is friction's, above which points do not come to stick (0.999 where
@@ -49,7 +46,7 @@ class Solver:
         timings: seconds by phase.
     """
 
-    def __init__(self, equations: "Equations", force_scale: float, tolerance: float = 1e-9) -> None:
+    def __init__(self, equations: Equations, force_scale: float, tolerance: float = 1e-9) -> None:
         """Set SNES up.
 
         Args:

@@ -17,7 +17,6 @@ move. A second row of elements saves no factorisation.
 """
 
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 import ufl
@@ -28,10 +27,8 @@ from numpy.typing import NDArray
 from petsc4py import PETSc
 
 from variational import jit
+from variational.solvers.equations import Equations
 from variational.solvers.outcome import OUTSIDE
-
-if TYPE_CHECKING:
-    from variational.solvers.equations import Equations
 
 Array = NDArray[np.float64]
 Nodes = NDArray[np.bool_]
@@ -65,7 +62,7 @@ class _Weak:
 class SkinLayer:
     """The skin near the screen and the elements behind it."""
 
-    def __init__(self, equations: "Equations") -> None:
+    def __init__(self, equations: Equations) -> None:
         """Start without a layer; collective.
 
         Args:

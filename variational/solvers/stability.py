@@ -26,17 +26,14 @@ examined one after the other: the tangent of the whole does not couple the two.
 """
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 from petsc4py import PETSc
 
 from variational.contact.formulation import SLIPS
+from variational.solvers.newton import Solver
 from variational.solvers.outcome import NotConverged, linear_failure
-
-if TYPE_CHECKING:
-    from variational.solvers.newton import Solver
 
 Array = NDArray[np.float64]
 Rows = NDArray[np.int64]
@@ -66,7 +63,7 @@ class Stability:
 class StabilityCheck:
     """Examines the solver's present state; leaves solver and problem as they were."""
 
-    def __init__(self, solver: "Solver") -> None:
+    def __init__(self, solver: Solver) -> None:
         """Examine a solver's states."""
         self.solver = solver
         # Kept from check to check with the analysis of the pattern, which is always the same.

@@ -10,18 +10,14 @@ few differences :math:`\Delta x_j, \Delta r_j` of one factorisation say what K m
 differences are of no use to another factorisation, but go on being of use where the loads or air gaps change a little.
 """
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 from mpi4py import MPI
 from numpy.typing import NDArray
 from petsc4py import PETSc
 
+from variational.solvers.equations import Equations
+from variational.solvers.layout import RigidRimLayout
 from variational.solvers.outcome import Counts
-
-if TYPE_CHECKING:
-    from variational.solvers.equations import Equations
-    from variational.solvers.layout import RigidRimLayout
 
 Array = NDArray[np.float64]
 _DEPTH = 6  # differences
@@ -31,7 +27,7 @@ _INDEPENDENT = 1e-8  # singular value below which, over the largest, differences
 class _Relative:
     """The derivative of the residual by the relative unknowns: the tangent K after their change to displacements."""
 
-    def __init__(self, layout: "RigidRimLayout", K: PETSc.Mat) -> None:
+    def __init__(self, layout: RigidRimLayout, K: PETSc.Mat) -> None:
         self.layout, self.K = layout, K
         self._moved = layout.create_vector()
 
@@ -55,7 +51,7 @@ class Tangent:
         kept: the present iteration uses a factorisation made before it.
     """
 
-    def __init__(self, equations: "Equations", counts: Counts) -> None:
+    def __init__(self, equations: Equations, counts: Counts) -> None:
         """Start without a factorisation; factorisations are added to ``counts``."""
         self.equations, self.counts = equations, counts
         self.matrix = equations.layout.create_matrix()

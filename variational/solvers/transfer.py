@@ -36,10 +36,10 @@ from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from variational import compat
+from variational.output import reference_places
 from variational.problem import Problem
-from variational.reference import reference_places
 from variational.solvers.coupling import Coupling
-from variational.solvers.snapshot import SkinState, StateSnapshot, gauss, reference_of_points
+from variational.solvers.state_snapshot import SkinState, StateSnapshot, gauss, reference_of_points
 
 Array = NDArray[np.float64]
 _CANDIDATES = 8  # triangles about a point, those of the nearest centroids, by distance over size

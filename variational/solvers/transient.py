@@ -12,14 +12,11 @@ Where q is small eta falls, else it rises. So the skin is followed from the equi
 which hardly depends on the numbers here.
 """
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 from mpi4py import MPI
 from petsc4py import PETSc
 
-if TYPE_CHECKING:
-    from variational.solvers.equations import Equations
+from variational.solvers.equations import Equations
 
 _START = 2e9  # Pa/m, eta at the start
 _FALL, _RISE = 0.3, 4.0  # of eta an iteration, the former where
@@ -31,7 +28,7 @@ _STEADY = 2.0  # eta at least, over a negative stiffness along the last Euler st
 class EulerShift:
     """The shift eta of a problem's tangent, from step to step."""
 
-    def __init__(self, equations: "Equations") -> None:
+    def __init__(self, equations: Equations) -> None:
         """Take the equations; the skin's mass is assembled where it is first needed."""
         self._equations, self._layout, self._eta = equations, equations.layout, equations.problem.eta
         self._skin_mass: PETSc.Mat | None = None

@@ -1,19 +1,16 @@
 """A snapshot of an accepted state, the same on every rank and free of its mesh."""
 
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 from mpi4py import MPI
 from numpy.typing import NDArray
 
 from variational import compat
+from variational.contact.formulation import SurfaceState
+from variational.problem import Problem
+from variational.solvers.coupling import Coupling
 from variational.solvers.target import Control
-
-if TYPE_CHECKING:
-    from variational.contact.formulation import SurfaceState
-    from variational.problem import Problem
-    from variational.solvers.coupling import Coupling
 
 Array = NDArray[np.float64]
 _IMAGE = np.array([-1.0, 1.0, -1.0, 1.0, 1.0])  # of x, y, current x and y and gap in the mirror image
@@ -65,7 +62,7 @@ class StateSnapshot:
     voltage: float
 
 
-def take_snapshot(coupling: "Coupling", state: "SurfaceState") -> StateSnapshot:
+def take_snapshot(coupling: Coupling, state: SurfaceState) -> StateSnapshot:
     """Take the accepted state of a coupling; collective.
 
     Args:
@@ -106,7 +103,7 @@ def gauss(n: int) -> Array:
     return (1 + np.polynomial.legendre.leggauss(n)[0]) / 2
 
 
-def reference_of_points(problem: "Problem", state: "SurfaceState") -> tuple[Array, Array]:
+def reference_of_points(problem: Problem, state: SurfaceState) -> tuple[Array, Array]:
     """Return the reference positions (m) of this rank's Gauss points, shape (facets, points) each."""
     u_x, u_y = problem.surface.evaluate(problem.surface.compile([problem.u[0], problem.u[1]]))
     return state.x - u_x, state.y - u_y
