@@ -89,7 +89,7 @@ def main(argv: Sequence[str]) -> int:
         raise SceneError("--target is given without --over; a map draws it, and fingerpad solve finds its value")
     key = "force" if args.force is not None or (scene.force is not None and args.f_ext is None) else "f_ext"
     forces = several(args, scene, key)
-    over = scene.supply is not None and args.voltage is None
+    over = scene.drive is not None and args.voltage is None
     voltages = [scene.volts] if over else several(args, scene, "voltage")
     rows, lost = grid(scene, forces, voltages, key)
     most = scene if over else scene.replace(voltage=max(voltages, key=abs))
@@ -138,7 +138,7 @@ def grid(
     refuse_many(len(forces) * len(voltages), "table")
     with progress(not watched()) as bar:
         for force, voltage in bar.track([*itertools.product(forces, voltages)], description="points"):
-            changed = {} if scene.supply is not None and voltage == scene.volts else {"voltage": voltage}
+            changed = {} if scene.drive is not None and voltage == scene.volts else {"voltage": voltage}
             row: dict[str, Any] = {_NAME[key]: force, "voltage": voltage}
             try:
                 given: dict[str, Any] = {"force": force} if key == "force" else {"force": None, "f_ext": force}
@@ -149,7 +149,7 @@ def grid(
                 lost.append(f"At {force:g} {unit} and {voltage:g} V: {error}.")
             rows.append(row)
     if not any("state" in row for row in rows):
-        beyond = breakdown.ahead(scene if scene.supply is not None else scene.replace(voltage=max(voltages, key=abs)))
+        beyond = breakdown.ahead(scene if scene.drive is not None else scene.replace(voltage=max(voltages, key=abs)))
         raise SceneError("; ".join([*beyond, lost[-1].partition(": ")[2].rstrip(".")]))
     return rows, list(dict.fromkeys(lost))
 

@@ -256,7 +256,7 @@ def _solved(
     """
     radius, closure = tips * tip_radius(scene.geometry), scene.closure()
     forces, length = np.array(f_ext) / ridges, length / ridges
-    voltage = scene.volts if scene.supply is None else scene.supply.effective
+    voltage = scene.volts if scene.drive is None else scene.drive.effective
     try:
         if charged:
             cylinder = Cylinder(radius, skin_modulus(scene), scene.h_0, closure)

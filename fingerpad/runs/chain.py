@@ -56,13 +56,13 @@ class Chain:
             half_arc: ``mesh.touching_half_arc`` (m) where they give none.
             comm: communicator of the mesh.
         """
-        from fingerpad.model.followed import share
+        from fingerpad.model.drive_loads import gap_factor
         from fingerpad.model.options import plan
 
         self._scenes, self._half_arc, self._comm = scenes, half_arc, comm
         strongest = max(scenes, key=lambda scene: abs(scene.volts))
         self._options = plan(strongest)
-        self._shared = any(share(scene) is not None for scene in scenes)
+        self._shared = any(gap_factor(scene) is not None for scene in scenes)
         self._slips: FullSlips | None = None
         self._sharpener: Sharpener | None = None  # of their states
         self._solved: list[Solved | None] = []  # of the present mesh, by scene
@@ -78,14 +78,14 @@ class Chain:
 
     def model(self, scene: Scene) -> "FingerModel":
         """Return the model of a scene, with the parts and the ridges of all."""
-        from fingerpad.model.followed import SAME
+        from fingerpad.model.drive_loads import EQUAL
         from fingerpad.model.options import FingerModel, by_rule
 
         if self._half_arc is not None and scene.mesh.touching_half_arc is None:
             mesh = scene.mesh.model_copy(update={"touching_half_arc": self._half_arc})
             scene = scene.model_copy(update={"mesh": mesh})
         found = FingerModel(by_rule(scene), self._options).of_path()
-        return found.changed(share=SAME) if self._shared and found.share is None else found
+        return found.changed(share=EQUAL) if self._shared and found.share is None else found
 
     def _next(self, scene: Scene) -> Result:
         """Return the result of a scene, from the one before or by a path."""

@@ -144,7 +144,7 @@ def solve(
     scene, way = checked(scene).resolved(), find(model)
     form = ClosedForm(Cylinders() if way.path else way)
     form.model.check(scene)
-    if over == "voltage" and scene.supply is not None:
+    if over == "voltage" and scene.drive is not None:
         raise SceneError("voltage is a drive and over is voltage; give one of its keys, as voltage.rms")
     newtons = over == "force" or (scene.force is not None and over != "f_ext")
     goal, notes = read(target, over != "f_ext"), list[str]()

@@ -21,9 +21,9 @@ from fingerpad.results.result import Result
 from fingerpad.runs.context import RunContext
 from fingerpad.runs.post import BEGUN, Entry, kept, of_outputs
 from fingerpad.scene import Scene
+from fingerpad.scene.drive import REFERENCE
 from fingerpad.scene.messages import SceneError, show
 from fingerpad.scene.reading import DEFAULT_MODEL, flat
-from fingerpad.scene.supply import REFERENCE
 from variational.coefficients import LawError
 from variational.state import ContactState
 
@@ -187,7 +187,7 @@ def _whole(scene: Scene, model: "Model", context: RunContext) -> Result:
 
     What an earlier run of the same scene has finished is taken from there, and what it began goes on.
     """
-    from fingerpad.model import followed
+    from fingerpad.model import drive_loads
     from fingerpad.slices import traces
 
     with context.place(scene, model.name) as place:
@@ -205,7 +205,7 @@ def _whole(scene: Scene, model: "Model", context: RunContext) -> Result:
             return newtons.run(scene, context)
         except newtons.Unsuited as why:
             notes = [f"The traces are runs of their own: {why}."]
-            if followed.share(scene) is not None:
+            if drive_loads.gap_factor(scene) is not None:
                 notes.append(f"All ridges then have the share of the drive at a gap of {1e6 * REFERENCE:g} µm.")
 
     def solve(each: Scene, name: str) -> Result:
