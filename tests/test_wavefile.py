@@ -79,9 +79,7 @@ def test_columns_are_chosen_by_name(tmp_path):
         assert wave.voltages[5] == pytest.approx(factor * U[5], rel=1e-5)
         assert wave.column is None, "a scene keeps the points alone"
     for column, given in ((None, "is not given"), ("CH3", "is 'CH3'")):
-        with pytest.raises(
-            fp.SceneError, match=f"'CH2', and voltage.column {given}; it must be one of"
-        ):
+        with pytest.raises(fp.SceneError, match=f"'CH2', and voltage.column {given}; it must be one of"):
             fp.Scene(voltage={"waveform": "file", "file": file, "column": column})
 
 

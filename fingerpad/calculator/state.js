@@ -3,27 +3,19 @@
 const state = (function () {
   const { show } = numerics;
   const fields = data.fields, by_key = Object.fromEntries(fields.map((field) => [field.key, field]));
-  const FOOTPRINT = ["length", "ridges"];
   const NUMBER = /^[-+]?(\d+\.?\d*|\.\d+)(e[-+]?\d{1,3})?$/i;
   const CHOICES = { // by name in the address: what may be chosen, the first by default
     load: ["whole", "metre"],
-    finger: ["default", "given"],
     quantity: ["mu_app", "f_t"],
     x: ["electric.d_i", ...fields.map(({ key }) => key)],
     y: ["voltage", ...fields.map(({ key }) => key)],
-    waveform: ["sine", "square", "triangle"],
-    circuit: Object.keys(data.circuits),
-  };
-  const FREE = { // further numbers: words, ends and unit
-    frequency: { key: "frequency", low: 1e-3, high: 1e6, unit: "Hz", value: 100, per: 1 },
-    offset: { key: "offset", low: -500, high: 500, unit: "V", value: 0, per: 1 },
   };
   const clip = (text) => (text.length > 24 ? text.slice(0, 23) + "…" : text);
 
   /** Return the texts and choices at the start. */
   function start() {
     const found = { target: "" };
-    for (const { key, value } of [...fields, ...Object.values(FREE)]) found[key] = String(value);
+    for (const { key, value } of fields) found[key] = String(value);
     for (const [name, [first]] of Object.entries(CHOICES)) found[name] = first;
     return found;
   }
@@ -35,7 +27,6 @@ const state = (function () {
     if (/^[-+]?\d*,\d+$/.test(given)) return `${name} is ${clip(given)}; write it with a point, as ${clip(given).replace(",", ".")}.`;
     if (given === "") return `${name} is no number; ${allowed}.`;
     if (!NUMBER.test(given) || !Number.isFinite(value)) return `${name} is ${clip(given)}, which is no number; ${allowed}.`;
-    if (field.whole && !Number.isInteger(value)) return `${name} is ${show(value, 12)}; it must be a whole number.`;
     const inside = (value >= field.low && value <= field.high) || (field.zero && value === 0);
     return inside ? "" : `${name} is ${show(value, 12)}${unit}; ${allowed}.`;
   }
@@ -55,21 +46,15 @@ const state = (function () {
   }
 
   /** Return whether a field has no part in the answer. */
-  const unread = (texts, key) => (FOOTPRINT.includes(key) && texts.finger !== "given") ||
-    key === (texts.load === "whole" && texts.finger !== "given" ? "f_ext" : "force");
+  const unread = (texts, key) => key === (texts.load === "whole" ? "f_ext" : "force");
 
-  /** Return the values of texts: {values, given}; or {refused: sentence by key}. */
+  /** Return the values of texts: {values, goal}; or {refused: sentence by key}. */
   function read(texts) {
-    const given = texts.finger === "given", newtons = texts.load === "whole" && !given, said = {}, values = { newtons };
+    const newtons = texts.load === "whole", said = {}, values = { newtons };
     for (const field of fields) {
       const text = unread(texts, field.key) ? "" : refused(field, texts[field.key]);
       if (text) said[field.key] = text;
       values[field.key] = in_si(field, unread(texts, field.key) ? field.value : Number(texts[field.key]));
-    }
-    for (const [name, field] of Object.entries(FREE)) {
-      const text = refused(field, texts[name]);
-      if (text) said[name] = text;
-      values[name] = Number(texts[name]);
     }
     const goal = target(texts.target, texts.quantity);
     if (typeof goal === "string") said.target = goal;
@@ -78,7 +63,7 @@ const state = (function () {
       const why = closedForm.refuse(values), key = "roughness.p_floor";
       if (why) said[key] = `p_floor is ${show(values[key], 12)} Pa; ${why}.`;
     }
-    return Object.keys(said).length ? { refused: said } : { values, given, goal };
+    return Object.keys(said).length ? { refused: said } : { values, goal };
   }
 
   // -- the address ---------------------------------------------------------------------------------------
@@ -116,11 +101,10 @@ const state = (function () {
 
   function wrong(key, text) {
     if (Object.hasOwn(by_key, key)) return refused(by_key[key], text);
-    if (Object.hasOwn(FREE, key)) return refused(FREE[key], text);
     if (Object.hasOwn(CHOICES, key)) return CHOICES[key].includes(text) ? "" : `${key} is ${clip(text) || "empty"}, which is no choice`;
     if (key === "target") return typeof target(text, "mu_app") === "string" ? target(text, "mu_app") : "";
     return `${clip(key)} is no field of this page`;
   }
 
-  return { start, refused, in_si, target, unread, read, to_fragment, from_fragment, CHOICES, FREE, by_key };
+  return { start, refused, in_si, target, unread, read, to_fragment, from_fragment, CHOICES, by_key };
 })();

@@ -15,7 +15,8 @@ from fingerpad.model.options import FingerModel
 from fingerpad.model.report import Clock, Report
 from fingerpad.model.simulation import RestartRequired, Simulation
 from fingerpad.model.state import broken, force_error
-from fingerpad.results.checkpoint import Checkpoint, CheckpointError, Growing
+from fingerpad.results import fields
+from fingerpad.results.folder import CheckpointError
 from fingerpad.results.interrupt import Interrupt, Interrupted
 from fingerpad.results.provenance import provenance, refuse_unread
 from fingerpad.results.quantities import Output, valued
@@ -23,6 +24,7 @@ from fingerpad.results.result import Result
 from fingerpad.results.terminal import Console, in_words
 from fingerpad.results.writing import Writer
 from fingerpad.runs import post
+from fingerpad.runs.checkpoint import Checkpoint
 from fingerpad.runs.context import RunContext
 from fingerpad.runs.restarts import Restarts, finer, hint
 from fingerpad.scene import Scene
@@ -114,7 +116,6 @@ class Attempt:
             state = {
                 "simulation": self.simulation.kept(),
                 "report": self.report.kept(),
-                "states": Growing(self.report.record.states),
                 "recorder": recorder,
                 "restarts": self._restarts.kept(),
                 "mesh": self._model.mesh.model_dump(),
@@ -123,17 +124,17 @@ class Attempt:
                 "seconds": self._clock.present(),
             }
             if self._comm.rank == 0:
-                self._checkpoint.write(state)
+                self._checkpoint.write(state, self.report.record.states)
         self._has_kept = True
 
     def resume(self, kept: dict[str, Any]) -> None:
-        """Go on from a checkpoint, as :func:`fingerpad.runs.checkpoints.read` gives it; collective.
+        """Go on from a checkpoint, as :func:`fingerpad.runs.checkpoint.read` gives it; collective.
 
         Raises:
             CheckpointError: it is of another mesh.
         """
         self._has_kept, self._done = True, kept["done"]
-        states = kept["states"].items
+        states = kept["items"]
         try:
             self.simulation.resume(kept["simulation"], [*states])
         except OtherBody as error:
@@ -235,7 +236,7 @@ class Attempt:
             drawing=record.drawing(mu_0, final, self._model.mesh.contact if final else None, named),
             outputs=tuple(self._outputs),
         )
-        motion = self.report.motion() if self._writer.folder is not None and scene.output.each_load else None
+        motion = self.report.motion() if self._writer.folder is not None and scene.output.each_load else {}
 
         def with_estimate(result: Result) -> Result:
             found = result.named if estimate is None else with_errors(estimate, result.named, self._outputs)
@@ -254,9 +255,8 @@ class Attempt:
             with self._clock.phase("output"):
                 self.report.final(final)
                 if result.folder is not None and result.drawing is not None:
+                    fields.write(result.folder, {**result.drawing.groups(scene.output.each_load), **motion})
                     result.drawing.write(result.folder, scene.output.each_load)
-                if result.folder is not None and motion is not None:
-                    motion(result.folder)
             return result
 
         def with_cost(result: Result) -> Result:  # collective, and never fails on one rank alone
