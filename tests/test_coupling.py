@@ -31,7 +31,6 @@ from variational.solvers.continuation import Target
 from variational.solvers.coupling import Coupling
 from variational.solvers.iteration import EXACT
 from variational.solvers.outcome import NotConverged, Timings
-from variational.solvers.secant import Secants
 
 H_0, EPS_0, FOLD_VOLTAGE = 0.514e-6, 8.854e-12, 200.0
 CENTRE = 2e-6  # m
@@ -100,14 +99,6 @@ def test_linear_ridge_takes_few_iterations(gain):
     assert stub.coupling.d_eq[0] == pytest.approx(CENTRE, rel=1e-6)
     assert stub.coupling.gain[0] == pytest.approx(gain, abs=1e-9)
     assert not stub.coupling.history.jumped
-
-
-def test_ridges_of_different_gains():
-    """Each ridge has a secant of its own: together they take an iteration or two more than the slowest alone."""
-    stub = line([-3.0, 0.2, 0.99])
-    stub.coupling.solve()
-    assert len(stub.coupling.history.changes) <= 7
-    np.testing.assert_allclose(stub.coupling.d_eq, CENTRE, rtol=1e-6)
 
 
 @pytest.mark.parametrize("gain", [1.01, 1.5, 4.0])
@@ -187,26 +178,6 @@ def test_small_changes_of_the_load_leave_no_error(gain):
     assert error < 1e-2 * stub.coupling.tolerance
 
 
-def test_only_the_last_solves_are_exact():
-    """Solves at air gaps that will change leave something out of balance; the state that is left is solved for."""
-    stub = line(0.5)
-    stub.coupling.solve()
-    assert EXACT not in stub.stops[:2]
-    assert stub.stops[-1] == EXACT
-
-
-def test_ridge_past_its_fold_is_given_the_free_air_gap_at_once():
-    """It is once its gain is seen to be above one while its air gap opens by far; the other ridge stays where it is."""
-    free, gain = 12e-6, np.array([1.5, 0.5])
-    secants = Secants(np.full(2, 2e-6), np.full(2, np.nan), free)
-    d = np.array([2e-6, 2e-6])
-    for _ in range(3):
-        secants.record(d, np.array([0.4e-6, 1e-9]) + (gain - 1) * (d - 2e-6))
-        d = secants.step()
-    assert d[0] == free
-    assert 2e-6 < d[1] < 2e-6 + 2e-9, "its fixed point"
-
-
 @pytest.mark.parametrize("also_free", [False, True])
 def test_ridge_that_lets_go_is_given_the_free_air_gap(also_free):
     """Where the skin finds no equilibrium while its air gap opens, it does at that of a ridge without contact.
@@ -224,24 +195,6 @@ def test_ridge_that_lets_go_is_given_the_free_air_gap(also_free):
     assert stub.coupling.d_eq[0] == free
     assert stub.coupling.history.jumped == {0}
     assert ("pseudo-transient" in stub.stops) == also_free
-
-
-def test_last_solve_is_exact_where_a_ridge_lets_go_late():
-    """The exact solve finds no equilibrium, and that at the air gap of a ridge without contact is exact in its place.
-
-    Nothing touches any more, so that the loop ends there.
-    """
-    free = float(BearingArea(H_0)(0.0).d_eq)
-    stub = flat(float(BearingArea(H_0).external_pressure(BearingArea(H_0).pull_off_fold(FOLD_VOLTAGE), FOLD_VOLTAGE)))
-    touches, stub.coupling.closure = stub.pressure, BearingArea(H_0)
-    stub.pressure = lambda d: np.where(d < 0.99 * free, touches(d) + 50.0, 0.0)
-    attempt = stub.attempt
-    stub.attempt = lambda stop: attempt(stop) and (stop.part > 0 or float(stub.d[0]) >= free)
-    start = float(BearingArea(H_0).air_gap(np.array([0.9 * BearingArea(H_0).pull_off_fold(FOLD_VOLTAGE)]))[0])
-    stub.coupling.set_air_gaps(np.array([start]))
-    stub.coupling.solve()
-    assert stub.coupling.d_eq[0] == free
-    assert [stop.part for stop in stub.stops[-2:]] == [0.0, 0.0]
 
 
 @pytest.mark.slow

@@ -17,7 +17,7 @@ from geometry.mesh import load
 from variational import kinematics
 from variational.contact.interface import Interface
 from variational.contact.penalty import Penalty
-from variational.element import ELEMENTS, LayerwisePressure
+from variational.element import ELEMENTS
 from variational.materials.ogden import Ogden
 from variational.materials.saint_venant import SaintVenant
 from variational.output import Cellwise
@@ -233,17 +233,6 @@ def test_pressures_are_numbered_by_layer():
     solver, plain = layered("P2-P1"), layered("P2")
     assert MPI.COMM_WORLD.allreduce(solver.problem.pressure.owned) == 9 * 2 + 9 * 3
     assert solver.layout.global_size == plain.layout.global_size + 9 * 2 + 9 * 3
-
-
-@pytest.mark.mpi
-def test_pressure_is_compiled_once():
-    """Its scale, which goes with the mesh and the moduli, is no part of the compiled forms."""
-    signatures = set()
-    for size in (0.25e-3, 0.125e-3):
-        body = load(MPI.COMM_WORLD, block(WIDTH, HEIGHT, size))
-        pressure = LayerwisePressure(body.mesh, body.cell_tags, (tags.STRATUM_CORNEUM,), 1e9 * size)
-        signatures.add((pressure.p * ufl.dx).signature())
-    assert len(signatures) == 1
 
 
 # -- a layered ridge -----------------------------------------------------------------------------------

@@ -71,17 +71,6 @@ def test_slide_goes_on_the_way_it_came(end):
     assert slid[-1].f_t == pytest.approx(np.sign(end) * 0.25, rel=1e-6)
 
 
-def test_slide_of_no_length_is_none():
-    """A move by nothing until full slip, where full slip is: the bone stays, whichever way it came."""
-    press, back = {"name": "press", "f_ext": 1.0}, {"name": "back", "bone_x": -5e-3, "until_full_slip": True}
-    stay = {"name": "stay", "bone_x_by": 0.0, "until_full_slip": True}
-    scene = small(output={"receptors": False}).replace(history=[press, back, stay])
-    simulation = followed(scene)
-    last = [state for state in simulation.states if state.load == "back"][-1]
-    assert all(state.bone_x == last.bone_x for state in simulation.states if state.load == "stay")
-    assert last.slip_held and last.f_t < 0
-
-
 def test_time_goes_on_where_full_slip_is_not_steady_at_once(monkeypatch):
     """The slide goes on from where it is, and so does its time, at the speed of the bone."""
     steady = iter([False])
@@ -144,32 +133,6 @@ def test_place_of_full_slip_does_not_depend_on_the_step(contact, way):
     assert long.state.all_slip and short.state.all_slip
     assert long.state.bone_x == pytest.approx(short.state.bone_x, abs=0.3e-6)
     assert way * long.state.f_t == pytest.approx(MU_F * long.state.f_contact, rel=1e-8)
-
-
-def test_work_of_friction_does_not_depend_on_the_step():
-    """There and back to full slip, under steps of 60 and of 15 um.
-
-    Tolerance: the trapezoidal rule on the way to full slip, measured 2 %. Without the way back the longer steps
-    have nine times the work of the shorter ones.
-    """
-    spent = []
-    for scale in (1.0, 0.25):
-        body = Body(RIDGE, SKIN, contact=SPRINGS, friction=MU_F, step_scale=scale).press(FORCE)
-        body.slide(until_full_slip=True).slide(-0.5e-3, until_full_slip=True)
-        spent.append(body.energy.dissipated)
-    assert spent[0] == pytest.approx(spent[1], rel=5e-2)
-
-
-def test_full_slip_begins_at_once_where_it_is():
-    """A second slide the same way moves nothing and spends nothing; one by a given length goes on from there."""
-    body = charged(SPRINGS).slide(until_full_slip=True)
-    x, spent, f_t = body.state.bone_x, body.energy.dissipated, body.state.f_t
-    body.slide(until_full_slip=True)
-    assert body.state.bone_x == pytest.approx(x, rel=1e-6)
-    assert body.energy.dissipated == pytest.approx(spent, rel=1e-5)
-    body.slide(50e-6)
-    assert body.state.bone_x == pytest.approx(x + 50e-6, rel=1e-6)
-    assert body.energy.dissipated - spent == pytest.approx(f_t * 50e-6, rel=1e-4)
 
 
 def test_body_that_something_else_holds_stays_where_it_is():

@@ -91,25 +91,6 @@ def test_stability_is_examined_on_the_whole_finger(monkeypatch):
     assert examined[:2] == ["press", "charge"]
 
 
-def test_work_of_the_half_is_counted():
-    path = follow(HISTORY, True)
-    counted = path.finger.solver.counts.newton
-    assert counted >= sum(state.record.newton_iterations for state in path.states)
-
-
-def test_record_is_that_of_the_state_and_not_of_a_probe(monkeypatch):
-    """Sliding on, which is not accepted, may end at another floor of roundoff than the state itself."""
-    placed, path = simulation.FullSlip.placed, Simulation(model(HISTORY[:3]), MPI.COMM_SELF)
-
-    def and_probed(self, *args):
-        path.finger.solver.iteration.floor = 1.0
-        return placed(self, *args)
-
-    monkeypatch.setattr(simulation.FullSlip, "placed", and_probed)
-    path.run()
-    assert all(state.record.floor < 1e-6 for state in path.states)
-
-
 @pytest.mark.mpi
 def test_mixed_element_is_in_balance_on_the_whole_finger():
     """The pressure comes over with the displacement. Solved for again it left up to 5e-8, with a floor of 0."""
@@ -166,11 +147,3 @@ def test_no_half_with_multipliers_that_a_step_corrects():
     scene = from_data(NINE | {"history": HISTORY, "contact": {"formulation": "augmented"}})
     assert not plan(scene).symmetric_start
     assert plan(scene.replace(contact={"formulation": "nitsche"})).symmetric_start
-
-
-def test_half_leads_a_path_that_ends_before_sliding():
-    """As the accuracy's paths with other steps do."""
-    charged = model(HISTORY).changed(loads=model(HISTORY).loads[:2])
-    path = Simulation(charged, MPI.COMM_SELF)
-    assert path.run() is None
-    assert path.states[-1].load == "charge"

@@ -5,15 +5,12 @@ import re
 import shutil
 import subprocess
 import sys
-import sysconfig
 import tomllib
 import zipfile
-from importlib.metadata import distributions
 from pathlib import Path
 
 import pytest
 
-from fingerpad.launcher import COMPILER, need_compiler
 from tests.commands import python
 
 ROOT = Path(__file__).parent.parent
@@ -194,30 +191,6 @@ def test_lint_runs_its_checks(tool):
     ]
 
 
-def test_docs_are_built_in_the_versions_of_pyproject(tool):
-    tool("docs", "--get")
-    wanted = (Path(tool("docs", "--place").stdout.strip()) / "wanted").read_text().split()
-    assert [name.partition("==")[0] for name in wanted] == ["sphinx", "myst-parser", "furo", "math-core", "ziamath"]
-    command = tool("docs", "out", "-v").stdout.split()
-    assert command[:4] == ["run", "python3", "-m", "sphinx"] and command[-3:] == ["-v", ".", "out"]
-
-
-def test_another_version_of_a_wheel_is_replaced(tool, tmp_path):
-    """It goes first: pip leaves out what is there, which the old one may have brought."""
-    place = tmp_path / "cache" / "root" / "usr" / PACKAGES
-    (place / "surfacetopography-1.0.0.dist-info").mkdir()
-    tool("wheels")
-    assert sorted(path.name for path in place.iterdir()) == sorted(WHEELS)
-
-
-@pytest.mark.skipif("FINGERPAD_ROOT" not in os.environ, reason="not in the private root")
-def test_wheels_hide_nothing_of_debian():
-    """No package is there twice, so that none of Debian's has another version with them than without."""
-    folders = sysconfig.get_path("purelib"), "/usr/lib/python3/dist-packages"
-    ours, debian = ({re.sub(r"[-_.]+", "-", d.name).lower() for d in distributions(path=[f])} for f in folders)
-    assert debian and not ours & debian
-
-
 # -- the venv ------------------------------------------------------------------------------------------
 @pytest.fixture
 def variables(tmp_path) -> dict[str, str]:
@@ -255,10 +228,3 @@ def test_what_a_venv_lacks_is_one_sentence(variables, name):
     done = call(name, "true", **variables, LACKS=lacks)
     assert (done.returncode, done.stdout, done.stderr.count("\n")) == (1, "", 1)
     assert done.stderr.startswith(f"fingerpad: {lacks}; or name another Python")
-
-
-def test_no_compiler(monkeypatch):
-    monkeypatch.setenv("CC", "nosuchcompiler -O2")
-    with pytest.raises(ImportError, match="nosuchcompiler is not on the path; .* gcc") as found:
-        need_compiler()
-    assert found.value.name == COMPILER

@@ -1,7 +1,6 @@
 """The paper's figures: names, numbers of runs that are made up, pictures of the kept ones."""
 
 import json
-from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -9,23 +8,9 @@ import pytest
 
 from benchmarks.harness import kept
 from benchmarks.paper import loads, maps, scenes, section, sine
-from benchmarks.paper.figures import FIGURES, compute, draw, main
+from benchmarks.paper.figures import FIGURES, draw, main
 from benchmarks.runs import Unfinished
 from variational.snapshot import Snapshot
-
-
-def test_list(capsys):
-    """Without a figure the command lists them with what they cost."""
-    assert main([]) == 0
-    lines = capsys.readouterr().out.splitlines()
-    assert [line.split()[1].rstrip(",") for line in lines] == list(FIGURES)
-    assert any("40 states" in line for line in lines)
-
-
-def test_unknown_figure(capsys):
-    with pytest.raises(SystemExit):
-        main(["10"])
-    assert "no figure 10" in capsys.readouterr().err
 
 
 def test_closed_forms(tmp_path):
@@ -45,16 +30,6 @@ def test_a_run_that_fails(tmp_path, monkeypatch):
     with pytest.raises(Unfinished, match="did not reach its end: Newton's method"):
         main(["9A", "--out", str(tmp_path)])
     assert not (tmp_path / "figure_9A.png").exists()
-
-
-def test_numbers_are_strict_json(tmp_path):
-    """What is no number, as between ridges, is null: other programs cannot read NaN."""
-    x = {"f_ext": 1.0, "voltage": 0.0, "scale": 1.0, "states": {}}
-    for state in ("charged", "partial", "full_slip"):
-        x["states"][state] = {name: [1.0, float("nan"), 2.0] for name in ("x", "p", "p_el", "t", "d_eq")}
-    _, kept_in = compute(replace(FIGURES["2"], numbers=lambda *_: x), tmp_path, 1)
-    found = json.loads(kept_in.read_text(encoding="utf-8"), parse_constant=pytest.fail)
-    assert found["states"]["partial"]["p"] == [1.0, None, 2.0]
 
 
 def test_sites_by_what_voltage_does():
@@ -104,15 +79,6 @@ def test_pictures_of_the_kept_numbers(name, tmp_path):
     """Those of docs/paper.json and docs/paper_figures.json; null is no number."""
     figure, numbers = FIGURES[name], KEPT[name]
     draw(figure, numbers, tmp_path / "picture.png")
-    assert (tmp_path / "picture.png").stat().st_size > 5000
-
-
-def test_picture_of_a_sine(tmp_path):
-    """One line a site, which has the paper's number for what it does."""
-    values = [1.0] * len(scenes.PHASES)
-    sites = [{"kind": kind, "ridge": k, "sed": values} for k, kind in enumerate(scenes.NAMED)]
-    columns = {"phase": scenes.PHASES.tolist(), "voltage": values, "mu_app": values}
-    draw(FIGURES["9B"], {"f_ext": 75.0, "sites": sites} | columns, tmp_path / "picture.png")
     assert (tmp_path / "picture.png").stat().st_size > 5000
 
 

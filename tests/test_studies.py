@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 
 from benchmarks import assumptions
-from benchmarks.assumptions import LEAST_GAP, NEAR, PAPER
 from benchmarks.harness import DOCS, ROOT, kept
 from benchmarks.measured import __main__ as command
 from benchmarks.measured import fingers, rows, rules
@@ -73,24 +72,6 @@ def test_pressures_find_their_own_curves(form):
     assert 0.005 < rules.of_largest(other, x, pressure).misfit < 0.1
 
 
-def test_kept_rows_are_those_of_the_other_pages(judged):
-    """Where the numbers of one of those are made anew, ``make measured`` has to be given again."""
-    own = kept("measured").numbers
-    again = command.numbers(own["runs"], own["held"], DOCS)
-    for table in ("rows", "others"):
-        verdicts = [{key: row["verdict"] for key, row in of[table].items()} for of in (again, own)]
-        assert verdicts[0] == verdicts[1]
-        for key, row in again[table].items():
-            assert row["numbers"] == pytest.approx(own[table][key]["numbers"], rel=1e-6, abs=1e-9), key
-    for name, values in again["curves"].items():
-        assert values == pytest.approx(own["curves"][name], rel=1e-9)
-
-
-def test_no_verdict_is_typed_where_a_scene_has_a_key():
-    """Adhesion without a voltage alone has none."""
-    assert [text["key"] for text in command._read("rows") if text["verdict"]] == ["adhesion"]
-
-
 @pytest.mark.parametrize(("form", "parameter"), [(rules.first_order, 0.2), (rules.ramp, 0.4)])
 def test_rises_find_their_own_curves(form, parameter):
     """Time and end come back; the other form leaves some per cent."""
@@ -139,33 +120,3 @@ def test_printed_options_give_the_scene(monkeypatch):
     for name, options in (assumptions.runs() | assumptions.profiles()).items():
         scene = scene_of(parser.parse_args(shlex.split(options)))
         assert scene.parameters() == assumptions.scene(options).parameters(), name
-
-
-def test_sentences_hold_of_the_numbers(found):
-    """What the prose says without a number of its own."""
-    full, shaped, words = found["full"], found["profiles"], assumptions.sentences(found)
-    others = {*assumptions.LAWS, "flat 0", "blunt 25"}  # other friction laws and forces, and no voltage
-    mechanical = [name for name in full if not {"voltage", "friction"} & {*name.split("=")} and name not in others]
-    changes = {name: abs(full[name]["mu_app"] / full["reference"]["mu_app"] - 1) for name in mechanical}
-    profiles = {name for name in assumptions.PARAMETERS if "ridge_profile" in name}
-    assert changes["flat 200"] > max(changes[name] for name in mechanical if name != "flat 200")
-    assert max(changes[name] for name in assumptions.LITTLE) < min(changes[name] for name in profiles)
-    flat, inside = full["flat"], words["counts"]("flat")
-    assert inside[0] == inside[2] and abs(flat["mu_app"] / PAPER - 1) <= NEAR  # both statements at 170 V
-    assert max(flat["gaps"]["full_slip"]) in (flat["gaps"]["full_slip"][0], flat["gaps"]["full_slip"][-1])
-    at_200 = [row for name, row in shaped.items() if name.endswith("] at 200 V")]
-    assert len(at_200) == 7 and not any(
-        row["d_eq"] >= LEAST_GAP and abs(row["mu_app"] / PAPER - 1) <= NEAR for row in at_200
-    )
-    low = shaped["[1, -0.25] at 150 V"]
-    assert low["d_eq"] > LEAST_GAP and low["mu_app"] < PAPER * (1 - NEAR)
-    assert min(words["met"]) < 170 < max(words["met"])
-    assert min(words["change"](*pair, "charged") for pair in (assumptions.LIGHT, ("flat 200", "flat 0"))) > 0
-
-
-def test_default_is_that_of_other_pages(found):
-    """The same scene at 10 µm, run for the models' page; the other counts the ridges that can touch by a rule."""
-    models = kept("models").numbers["scenes"]["75 N/m, 200 V"]["full"]["summary"]
-    reference = found["full"]["reference"]
-    assert reference["mu_app"] == pytest.approx(models["full_slip_mu_app"], rel=1e-5)
-    assert reference["charged"] == pytest.approx(models["charged_contact_length"], rel=1e-3)

@@ -1,6 +1,5 @@
 """Snapshots restored on other meshes: what returns exactly; full slip is the path's; on any number of ranks."""
 
-from contextlib import nullcontext
 from dataclasses import replace
 
 import numpy as np
@@ -11,7 +10,7 @@ from geometry.bodies import block, ridge
 from geometry.mesh import load
 from tests.measures import straightened
 from tests.test_contact import MU_F, over
-from variational.solvers.continuation import Continuation, StepFailed, Target
+from variational.solvers.continuation import Continuation, Target
 from variational.solvers.outcome import NotConverged
 from variational.solvers.state_snapshot import take_snapshot
 from variational.solvers.transfer import interpolate, restore, unfolded
@@ -256,70 +255,6 @@ def test_a_state_not_found_at_once_is_found(bodies, reached, monkeypatch, failur
         np.testing.assert_array_equal(calls[3][2], calls[1][2])
     assert solver.equations.load_part == 0
     assert -solver.reaction[0] == pytest.approx(reached[FINE][2], rel=2e-6)
-
-
-@pytest.mark.parametrize(
-    ("largest", "tried", "end"),
-    [(0.3, [0.5, 0.75, 0.5, 0.25, 0.0], nullcontext()), (0.1, [0.5, 0.75, 0.875], pytest.raises(NotConverged))],
-)
-def test_bits_are_halved_down_to_an_eighth(bodies, reached, monkeypatch, largest, tried, end):
-    """What is held after each bit, where none above a size can be let go."""
-    path = prepare(bodies[FINE])
-    restore(reached[COARSE][1], path.coupling, SLIDE)
-    solver, held, done = path.solver, [], 1.0
-
-    def solve(pseudo_transient=False):
-        nonlocal done
-        held.append(solver.equations.load_part)
-        if done - solver.equations.load_part > largest:
-            raise NotConverged("DIVERGED_LOCAL_MIN", False)
-        done = solver.equations.load_part
-
-    monkeypatch.setattr(solver, "solve", solve)
-    with end:
-        path._relax(0.5)
-    assert held == tried
-    assert solver.equations.load_part == 0
-
-
-def test_bits_are_let_go_where_the_body_cannot_be_settled(bodies, reached, monkeypatch):
-    """And the state is then the one put in, not what settling left behind. Tolerance: two ends of the loop at 1e-6."""
-    path = prepare(bodies[FINE])
-    restore(reached[COARSE][1], path.coupling, SLIDE)
-    solve, solver, calls, started = path.coupling.solve, path.solver, [], []
-    put_in, hold, once = solver.x.array_r.copy(), solver.equations.hold, solver.solve
-
-    def fails_once(pseudo_transient):
-        calls.append(pseudo_transient)
-        if len(calls) == 1:
-            raise NotConverged("DIVERGED_LOCAL_MIN", False)
-        solve(pseudo_transient)
-
-    def noted(x, skin=False):
-        started.append(solver.x.array_r.copy())
-        hold(x, skin)
-
-    def not_with_skin_held(*how):
-        once(*how)
-        if len(started) == 1 and len(calls) == 1:
-            raise NotConverged("DIVERGED_FUNCTION_DOMAIN", True)
-
-    monkeypatch.setattr(path.coupling, "solve", fails_once)
-    monkeypatch.setattr(solver.equations, "hold", noted)
-    monkeypatch.setattr(solver, "solve", not_with_skin_held)
-    attempt = path.re_equilibrate("full slip")
-    assert len(attempt.cutbacks) == 2
-    np.testing.assert_array_equal(started, [put_in, put_in])
-    assert calls == [False, False]
-    assert -solver.reaction[0] == pytest.approx(reached[FINE][2], rel=2e-6)
-
-
-def test_failure_names_the_state(bodies, reached):
-    """A voltage at which nothing was solved: the ridge cannot be had from there, and the sentence says which."""
-    path = prepare(bodies[FINE])
-    restore(replace(reached[COARSE][1], voltage=float("nan")), path.coupling, SLIDE)
-    with pytest.raises(StepFailed, match="full slip.*found no equilibrium"):
-        path.re_equilibrate("full slip")
 
 
 def test_another_body_and_other_ridges_are_refused(bodies, reached):

@@ -26,8 +26,8 @@ from fingerpad.accuracy.richardson import of_two_meshes, rigid
 from fingerpad.accuracy.solves import solve_again
 from fingerpad.accuracy.states import Solve, StateRecorder, with_values
 from fingerpad.model.adhesion import lost
+from fingerpad.model.drive_loads import EQUAL, gap_factor
 from fingerpad.model.finger import Finger
-from fingerpad.model.followed import SAME, share
 from fingerpad.model.full_slip import Conditions, FullSlips, Solved
 from fingerpad.model.options import FingerModel, by_rule, plan
 from fingerpad.model.report import Clock
@@ -125,7 +125,7 @@ class Chain:
         """
         self._scenes, self._half_arc, self._comm = scenes, half_arc, comm
         self._options = plan(max(scenes, key=lambda scene: abs(scene.volts)))
-        self._shared = any(share(scene) is not None for scene in scenes)
+        self._shared = any(gap_factor(scene) is not None for scene in scenes)
         self._slips: FullSlips | None = None
         self._fine: FineSolver | None = None  # of their states
         self._solved: list[Solved | None] = []  # of the present mesh, by scene
@@ -144,7 +144,7 @@ class Chain:
             mesh = scene.mesh.model_copy(update={"touching_half_arc": self._half_arc})
             scene = scene.model_copy(update={"mesh": mesh})
         found = FingerModel(by_rule(scene), self._options).of_path()
-        return found.changed(share=SAME) if self._shared and found.share is None else found
+        return found.changed(share=EQUAL) if self._shared and found.share is None else found
 
     def _next(self, scene: Scene) -> Result:
         """Return the result of a scene, from the one before or by a path."""

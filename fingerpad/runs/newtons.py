@@ -16,7 +16,7 @@ from typing import Any
 import fingerpad.startup  # noqa: F401
 from fingerpad.accuracy.solves import solve_again
 from fingerpad.accuracy.states import State
-from fingerpad.model import followed
+from fingerpad.model import drive_loads
 from fingerpad.model.finger import Step
 from fingerpad.model.options import FingerModel, by_rule, plan
 from fingerpad.model.report import Clock
@@ -121,7 +121,7 @@ class _Newtons:
         section, states = self.branches.section, traces.states(self._scene)
         model = FingerModel(by_rule(section), replace(plan(section), receptors=False, errors=False))
         loads = model.loads[: 1 + bool(self._scene.volts) + ("full_slip" in states)]
-        model = model.changed(loads=loads, share=followed.share(self._scene))
+        model = model.changed(loads=loads, share=drive_loads.gap_factor(self._scene))
         model = model.changed(mesh=model.coarser(model.mesh), final=model.mesh)
         self._console.expect(1 + len(states))
         self._console.head()
