@@ -19,10 +19,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from fingerpad.model import followed
+from fingerpad.model import drive_loads
 from fingerpad.scene import Scene
+from fingerpad.scene.drive import Drive, drive_of
 from fingerpad.scene.remarks import remarks
-from fingerpad.scene.supply import Supply, supply_of
 from fingerpad.scene.waveform import Waveform
 from variational.contact.formulation import Formulation
 from variational.roughness.closure import PAST_THE_FOLD, Closure, air_gaps
@@ -235,9 +235,9 @@ class _Across(NamedTuple):
 
 def breakdown_in_gaps(scene: Scene, gaps: Iterable[Gap]) -> list[str]:
     """Return the caution on the gap in which air is the farthest beyond breakdown."""
-    supply, h_0 = scene.supply, scene.h_0
+    drive, h_0 = scene.drive, scene.h_0
     return _breakdown(
-        _Across(name, gap, abs(voltage) * gap / (gap + h_0)) if supply is None else _over_period(supply, name, gap)
+        _Across(name, gap, abs(voltage) * gap / (gap + h_0)) if drive is None else _over_period(drive, name, gap)
         for name, gap, voltage in gaps
     )
 
@@ -248,12 +248,12 @@ def breakdown_ahead(scene: Scene) -> list[str]:
     Ridges at the edge of a contact bear as little. Their gaps are the widest, and have the largest part of the voltage.
     """
     gap, name = float(scene.closure()(_LIGHT).d_eq), f"a ridge under {_LIGHT * 1e-3:g} kPa"
-    if scene.supply is not None:
-        return _breakdown([_over_period(scene.supply, name, gap)])
-    share, loads = followed.share(scene), scene.loads()
+    if scene.drive is not None:
+        return _breakdown([_over_period(scene.drive, name, gap)])
+    share, loads = drive_loads.gap_factor(scene), scene.loads()
     part = gap / (gap + scene.h_0) * (1.0 if share is None else float(share(gap)))
     found = [_Across(name, gap, abs(load.level) * part) for load in loads if load.level]
-    found += [_over_period(_supply(scene, load.wave), name, gap) for load in loads if load.wave is not None]
+    found += [_over_period(_drive(scene, load.wave), name, gap) for load in loads if load.wave is not None]
     return _breakdown(found)
 
 
@@ -278,19 +278,19 @@ def _breakdown(points: Iterable[_Across]) -> list[str]:
     ]
 
 
-def _supply(scene: Scene, wave: Waveform) -> Supply:
-    return supply_of(wave, scene.electric, scene.geometry.sc_thickness)
+def _drive(scene: Scene, wave: Waveform) -> Drive:
+    return drive_of(wave, scene.electric, scene.geometry.sc_thickness)
 
 
-def _over_period(supply: Supply, name: str, gap: float) -> _Across:
-    period = np.abs(supply.across(gap))
-    when = int(period.argmax()) / len(period) / supply.frequency
+def _over_period(drive: Drive, name: str, gap: float) -> _Across:
+    period = np.abs(drive.across(gap))
+    when = int(period.argmax()) / len(period) / drive.frequency
     return _Across(f"{name} {when:.3g} s after the start of a period", gap, float(period.max()))
 
 
 def _instants(scene: Scene, states: Sequence[ContactState]) -> Iterator[_Across]:
     """Yield the farthest gap of each state at its voltage."""
-    share, loads = followed.share(scene), scene.loads()
+    share, loads = drive_loads.gap_factor(scene), scene.loads()
     for state in states:
         touching, gaps = _touching(state)
         if not len(gaps):
@@ -311,14 +311,14 @@ def _periods(scene: Scene, states: Sequence[ContactState]) -> Iterator[_Across]:
     for state in states:
         wave = loads[state.load_number - 1].wave if 0 < state.load_number <= len(loads) else None
         mean = wave is not None and (scene.electric.follows == "mean" or wave.carrier is not None)
-        if scene.supply is not None or mean:
+        if scene.drive is not None or mean:
             places = [f"ridge {number} in {state.load!r}, step {state.step}," for number in _touching(state)[0]]
-            under = wave if scene.supply is None else scene.supply.wave
+            under = wave if scene.drive is None else scene.drive.wave
             assert under is not None
             of_wave.setdefault(under, []).extend(zip(map(float, _touching(state)[1]), places, strict=True))
     for wave, found in of_wave.items():
         for gap, where in {min(found), max(found)} if found else ():
-            yield _over_period(_supply(scene, wave), where, gap)
+            yield _over_period(_drive(scene, wave), where, gap)
 
 
 def _touching(state: ContactState) -> tuple[np.ndarray, np.ndarray]:
