@@ -70,7 +70,7 @@ def test_period_counts_where_states_have_a_mean(drive, electric):
     drive = drive | {"amplitude": 500.0}
     scene = fp.Scene(voltage=drive, electric=electric)
     (found,) = breakdown.of_states(scene, [state(scene.volts)])
-    peak = float(np.abs(scene.supply.across(1.7e-6)).max())
+    peak = float(np.abs(scene.drive.across(1.7e-6)).max())
     assert found.startswith(f"{peak:.4g} V are across a gap of 1.7 µm in ridge 1") and "start of a period" in found
     assert breakdown.of_states(fp.Scene(voltage=scene.volts), [state(scene.volts)]) == []
     if "follows" in electric:

@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from fingerpad.model import followed
-from fingerpad.scene.supply import Supply, supply_of
+from fingerpad.model import drive_loads
+from fingerpad.scene.drive import Drive, drive_of
 from variational.roughness.statistics import breakdown_voltage
 from variational.state import ContactState
 
@@ -47,9 +47,9 @@ def of_gaps(scene: "Scene", points: Iterable[tuple[str, float, float]]) -> list[
         scene: with the drive, or a voltage without losses.
         points: name of a ridge or a state, air gap (m), and voltage (V) of Eq. 3 where the scene has no drive.
     """
-    supply, h_0 = scene.supply, scene.h_0
+    drive, h_0 = scene.drive, scene.h_0
     return _caution(
-        Across(name, gap, abs(voltage) * gap / (gap + h_0)) if supply is None else _over_period(supply, name, gap)
+        Across(name, gap, abs(voltage) * gap / (gap + h_0)) if drive is None else _over_period(drive, name, gap)
         for name, gap, voltage in points
     )
 
@@ -60,14 +60,14 @@ def ahead(scene: "Scene") -> list[str]:
     Ridges at the edge of a contact bear as little. Their gaps are the widest, and have the largest part of the voltage.
     """
     gap, name = float(scene.closure()(_LIGHT).d_eq), f"a ridge under {_LIGHT * 1e-3:g} kPa"
-    if scene.supply is not None:
-        return _caution([_over_period(scene.supply, name, gap)])
-    share = followed.share(scene)
+    if scene.drive is not None:
+        return _caution([_over_period(scene.drive, name, gap)])
+    share = drive_loads.gap_factor(scene)
     part = gap / (gap + scene.h_0) * (1.0 if share is None else float(share(gap)))
     found = [Across(name, gap, abs(load.level) * part) for load in scene.loads() if load.level]
     waves = [load.wave for load in scene.loads() if load.wave is not None]
-    supplies = (supply_of(wave, scene.electric, scene.geometry.sc_thickness) for wave in waves)
-    return _caution([*found, *(_over_period(supply, name, gap) for supply in supplies)])
+    drives = (drive_of(wave, scene.electric, scene.geometry.sc_thickness) for wave in waves)
+    return _caution([*found, *(_over_period(drive, name, gap) for drive in drives)])
 
 
 def of_states(scene: "Scene", states: Iterable[ContactState]) -> list[str]:
@@ -91,15 +91,15 @@ def _caution(points: Iterable[Across]) -> list[str]:
     ]
 
 
-def _over_period(supply: Supply, name: str, gap: float) -> Across:
-    period = np.abs(supply.across(gap))
-    when = int(period.argmax()) / len(period) / supply.frequency
+def _over_period(drive: Drive, name: str, gap: float) -> Across:
+    period = np.abs(drive.across(gap))
+    when = int(period.argmax()) / len(period) / drive.frequency
     return Across(f"{name} {when:.3g} s after the start of a period", gap, float(period.max()))
 
 
 def _instants(scene: "Scene", states: Sequence[ContactState]) -> Iterator[Across]:
     """Yield the farthest gap of each state at its voltage."""
-    share, loads = followed.share(scene), scene.loads()
+    share, loads = drive_loads.gap_factor(scene), scene.loads()
     for state in states:
         touching, gaps = _touching(state)
         if not len(gaps):
@@ -123,15 +123,15 @@ def _periods(scene: "Scene", states: Sequence[ContactState]) -> Iterator[Across]
             places = (f"ridge {number} in {state.load!r}, step {state.step}," for number in _touching(state)[0])
             of_wave.setdefault(wave, []).extend(zip(map(float, _touching(state)[1]), places, strict=True))
     for wave, found in of_wave.items():
-        supply = supply_of(wave, scene.electric, scene.geometry.sc_thickness)
+        drive = drive_of(wave, scene.electric, scene.geometry.sc_thickness)
         for gap, where in {min(found), max(found)} if found else ():
-            yield _over_period(supply, where, gap)
+            yield _over_period(drive, where, gap)
 
 
 def _averaged(scene: "Scene", state: ContactState) -> "Waveform | None":
     """Return the drive of which a state has a mean; None where its voltage is that of an instant."""
-    if scene.supply is not None:
-        return scene.supply.wave
+    if scene.drive is not None:
+        return scene.drive.wave
     loads = scene.loads()
     wave = loads[state.load_number - 1].wave if 0 < state.load_number <= len(loads) else None
     return wave if wave is not None and (scene.electric.follows == "mean" or wave.carrier is not None) else None

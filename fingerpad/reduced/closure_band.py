@@ -162,11 +162,11 @@ def friction(scene: Scene, slip: ContactState, law: Closure, press: ContactState
 
 def _solved(scene: Scene, slip: ContactState, law: Closure, press: ContactState | None, tips: float = 1.0) -> Slip:
     """Return :func:`friction`; raise SceneError without an equilibrium, and for a finger that is none of cylinders."""
-    found = _cylinders(scene if scene.supply is not None else _at(scene, slip.voltage), slip, law, press, tips)
+    found = _cylinders(scene if scene.drive is not None else _at(scene, slip.voltage), slip, law, press, tips)
     if not isinstance(law, TabulatedClosure):
         return Slip(found.mu_app)
     p_c = found.f_contact / found.contact_length
-    voltage = slip.voltage if scene.supply is None else float(scene.supply.effective(law(p_c).d_eq))
+    voltage = slip.voltage if scene.drive is None else float(scene.drive.effective(law(p_c).d_eq))
     if p_c > law.pressures[1]:
         return Slip(np.inf, _adhere(scene, law, voltage) or "the ridges' pressure is beyond the table")
     balanced = float(law.balanced(p_c, voltage))
@@ -189,7 +189,7 @@ def _at(scene: Scene, voltage: float) -> Scene:
 
 def _adhere(scene: Scene, law: Closure, voltage: float) -> str:
     """Return that ridges adhere, empty where they do not; the voltage that a circuit leaves is another by closure."""
-    under = f"at {voltage:.4g} V" if scene.supply is None else "under the drive"
+    under = f"at {voltage:.4g} V" if scene.drive is None else "under the drive"
     return f"ridges adhere {under}" if sticking(law, voltage) else ""
 
 

@@ -218,7 +218,7 @@ def _over_forces(
     radius, closure = tips * tip_radius(scene.geometry), scene.closure()
     forces, lengths = np.array(f_ext) / ridges, tips**0.5 * length / ridges
     moduli, stiffening = hertz_modulus(radius, forces, lengths), _stiffening(scene, state, shear)
-    voltage = scene.volts if scene.supply is None else scene.supply.effective
+    voltage = scene.volts if scene.drive is None else scene.drive.effective
     try:
         found = Cylinder(radius, moduli, scene.h_0, closure, stiffening).under_loads(forces, voltage)
     except NoEquilibriumError as error:

@@ -19,12 +19,10 @@ from fingerpad.results.folder import Serial
 from fingerpad.results.quantities import Output, checked
 from fingerpad.results.result import Result
 from fingerpad.results.writing import Writer
-from fingerpad.runs.context import RunContext
+from fingerpad.runs.context import BEGUN, RunContext
 from fingerpad.scene.messages import SceneError, alike, clip
 from variational.state import ContactState
 
-BEGUN = "begun"
-"""Key of a summary that was written before the entries, for runs that end in between."""
 _LONGEST = 300  # characters of a failure in a note, whose traceback is in run.log
 _BEGUN = "The run ended before what follows from its states was computed: no newtons, bands, cautions or pictures."
 

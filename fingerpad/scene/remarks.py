@@ -12,11 +12,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from fingerpad.scene.drive import drive_of, leak_in_words, remains
 from fingerpad.scene.fingers import ADULT, FINGERS
 from fingerpad.scene.law_keys import Kept
 from fingerpad.scene.materials import LAYERS
 from fingerpad.scene.messages import clip, show
-from fingerpad.scene.supply import leak_in_words, remains, supply_of
 from fingerpad.scene.viscosity import elastic, viscous_layers
 from fingerpad.scene.waveform import Waveform
 from variational.attraction.circuit import GapCircuit
@@ -118,7 +118,7 @@ def leakage(scene: "Scene") -> list[str]:
     """
     circuit = scene.electric.circuit(scene.geometry.sc_thickness)
     found = [_drive_in_words(name, wave, scene) for name, wave in scene.drives().items()]
-    constant = scene.supply is None and any(load.level for load in scene.loads())
+    constant = scene.drive is None and any(load.level for load in scene.loads())
     if constant and circuit.lossless:
         found += [] if offsets(scene) else [LEAKAGE]
     elif constant:
@@ -131,7 +131,7 @@ def drive_in_short(scenes: Iterable["Scene"]) -> str:
     found = dict[str, None]()
     for scene in scenes:
         lossless = scene.electric.circuit(scene.geometry.sc_thickness).lossless
-        if scene.supply is not None:
+        if scene.drive is not None:
             found["a drive without losses" if lossless else "a drive with the losses of each finger's circuit"] = None
         elif scene.volts:
             found["a voltage without losses (Eq. 3)"] = None
@@ -140,16 +140,16 @@ def drive_in_short(scenes: Iterable["Scene"]) -> str:
 
 def other_under_a_drive(scenes: Iterable["Scene"]) -> list[str]:
     """Return a sentence where a constant voltage is put on a finger whose circuit would lose it; none elsewhere."""
-    constant = (scene for scene in scenes if scene.supply is None and scene.volts)
+    constant = (scene for scene in scenes if scene.drive is None and scene.volts)
     loses = any(not scene.electric.circuit(scene.geometry.sc_thickness).lossless for scene in constant)
     return [UNDER_A_DRIVE] if loses else []
 
 
 def _drive_in_words(name: str, wave: Waveform, scene: "Scene") -> str:
-    supply = supply_of(wave, scene.electric, scene.geometry.sc_thickness)
-    losses = "without losses (Eq. 3)" if supply.circuit.lossless else circuit_in_words(supply.circuit)
+    drive = drive_of(wave, scene.electric, scene.geometry.sc_thickness)
+    losses = "without losses (Eq. 3)" if drive.circuit.lossless else circuit_in_words(drive.circuit)
     return (
-        f"Drive {name}: {wave}, {losses}. {supply.measures()}, as a constant {supply.reference:.4g} V does without "
+        f"Drive {name}: {wave}, {losses}. {drive.measures()}, as a constant {drive.reference:.4g} V does without "
         "losses."
     )
 
