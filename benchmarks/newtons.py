@@ -22,13 +22,14 @@ from benchmarks.models import SIZE, name
 from benchmarks.runs import FORCES, VOLTAGES, Run, trace
 from fingerpad.reduced import uncharged
 from fingerpad.results import style
+from fingerpad.results.quantities import RESULTS
 from fingerpad.scene import Scene
 from fingerpad.scene.parameters import Slices
 from fingerpad.slices import errors, estimate, traces
 from fingerpad.slices.total import Profile, Total, at_force, at_indentation, profile
 from fingerpad.slices.trace import Trace
 from fingerpad.slices.trace import trace as trace_of
-from variational.state import RESULTS, ContactState
+from variational.state import ContactState
 
 _LIMIT = 3600.0  # s of processor time of the run
 RADII = (15e-3, 28e-3, 40e-3)  # m, R_z

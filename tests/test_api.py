@@ -10,7 +10,8 @@ from mpi4py import MPI
 
 import fingerpad as fp
 from fingerpad import runs
-from fingerpad.results.answer import Cost
+from fingerpad.results.quantities import CONDITIONS, RESULTS
+from fingerpad.results.result import Cost
 from fingerpad.results.states import STATES
 from fingerpad.runs import attempt, full
 from fingerpad.runs.processes import End
@@ -21,7 +22,6 @@ from tests.runs import no_pictures
 from tests.small_finger import NINE
 from variational.solvers.continuation import StepFailed
 from variational.solvers.outcome import NotConverged
-from variational.state import CONDITIONS, RESULTS
 
 pytestmark = pytest.mark.slow
 SMALL = NINE | {"f_ext": 1.0, "voltage": 60.0, "output": {"receptors": False}}

@@ -13,8 +13,7 @@ import fingerpad as fp
 from fingerpad.accuracy.sharpened import Sharpened
 from fingerpad.accuracy.states import Solve
 from fingerpad.model.full_slip import Conditions, Solved
-from fingerpad.results.answer import Cost
-from fingerpad.results.result import Result
+from fingerpad.results.result import Cost, Result
 from fingerpad.runs import chain
 from fingerpad.runs import chains as of_sweep
 from fingerpad.runs.chain import Chain

@@ -9,11 +9,11 @@ from fingerpad.cli import compare
 from fingerpad.reduced import cylinders
 from fingerpad.reduced.cylinder_errors import REGIONS
 from fingerpad.reduced.model import STATES
+from fingerpad.results.quantities import RESULTS
 from fingerpad.results.result import Result
 from fingerpad.scene import SceneError, from_data
 from tests.test_laws import Held
 from variational.contact.friction import Derjaguin
-from variational.state import RESULTS
 
 
 def scene(**data):

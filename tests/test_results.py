@@ -14,7 +14,8 @@ from fingerpad.model import report
 from fingerpad.model.checks import FullSlip
 from fingerpad.model.state import force_error
 from fingerpad.results import drawing, fields
-from fingerpad.results.states import RESULTS, named
+from fingerpad.results.quantities import RESULTS
+from fingerpad.results.states import named
 from fingerpad.scene import from_data
 from tests.measures import rows_of
 from tests.runs import followed, path_of, run

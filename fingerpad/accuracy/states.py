@@ -11,11 +11,12 @@ from numpy.typing import ArrayLike, NDArray
 
 from fingerpad.model.finger import both_sides
 from fingerpad.results.fields import View
+from fingerpad.results.quantities import RESULTS
 from fingerpad.results.states import before_sliding
 from geometry.parameters import MeshSize
 from variational.output import Receptors
 from variational.solvers.state_snapshot import StateSnapshot, take_snapshot
-from variational.state import RESULTS, ContactState
+from variational.state import ContactState
 
 if TYPE_CHECKING:
     from fingerpad.model.finger import Step

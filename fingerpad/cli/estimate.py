@@ -14,9 +14,8 @@ from fingerpad.cli.arguments import Parser, echo, scene_of, several
 from fingerpad.model import breakdown
 from fingerpad.model.cautions import on_states
 from fingerpad.reduced import cylinder_errors, cylinders
-from fingerpad.results.answer import Number
 from fingerpad.results.quantities import FINGER, FRICTION, PER_LENGTH, QUANTITIES, Output, plus_minus_of
-from fingerpad.results.result import Result
+from fingerpad.results.result import Number, Result
 from fingerpad.results.terminal import watched
 from fingerpad.runs.axis import refuse_many
 from fingerpad.runs.batch import progress

@@ -46,9 +46,8 @@ from fingerpad.reduced.footprint import from_run as from_run
 from fingerpad.reduced.footprint import given as given
 from fingerpad.reduced.model import STATES, Model, reduced_state, refuse_others
 from fingerpad.reduced.similarity import Similar, similar
-from fingerpad.results.answer import MODEL_ERROR, Cost
 from fingerpad.results.quantities import MODEL
-from fingerpad.results.result import Result
+from fingerpad.results.result import MODEL_ERROR, Cost, Result
 from fingerpad.results.states import WORDS
 from fingerpad.scene import Scene, SceneError
 from fingerpad.scene.fingers import ADULT

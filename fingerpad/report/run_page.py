@@ -13,7 +13,7 @@ from fingerpad.report.felt import felt
 from fingerpad.report.frames import conditions_of, frames, section, slider
 from fingerpad.report.trust import head
 from fingerpad.results import fields
-from fingerpad.results.closures import RECORD, in_words
+from fingerpad.results.headline import BAND, band_in_words
 from fingerpad.results.over_time import HARMONICS, NOTE
 from fingerpad.results.quantities import PER_LENGTH, STEPS, plus_minus_of
 from fingerpad.results.result import Result
@@ -161,7 +161,7 @@ def _trust(result: Result) -> str:
         f"{html.typeset(each.words)}</span></li>"
         for each in found
     )
-    band = in_words(result.record.get(RECORD, {}))
+    band = band_in_words(result.record.get(BAND, {}))
     note = (
         "All this is about the mathematics. The finger is less certain: its law of friction, ridge tips and roughness "
         "move µ_app by 10 % and more (docs/assumptions.md)." + (f" {band}" if band else "")

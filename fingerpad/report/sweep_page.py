@@ -17,7 +17,6 @@ from fingerpad.report.page import BAD, CARE, GOOD
 from fingerpad.results.files import read_object, refuse_other_format
 from fingerpad.results.headline import SECTION, WHOLE
 from fingerpad.results.quantities import PER_LENGTH, Output
-from fingerpad.results.quantities import read as read_outputs
 from fingerpad.results.states import WORDS
 from fingerpad.runs.sweep_columns import (
     FORCE,
@@ -125,7 +124,7 @@ def table_of(folder: Path) -> Table:
         refuse_other_format(asked, f"the sweep in {name}")
         more = model_name(asked["model"]), str(asked.get("version", ""))
         cautions, notes = (tuple(map(str, asked.get(name, ()))) for name in ("cautions", "notes"))
-        outputs = read_outputs(asked.get("outputs", ()))
+        outputs = tuple(Output(**each) for each in asked.get("outputs", ()))
         return Table(folder, axes, rows, dict(asked["parameters"]), *more, cautions, notes, outputs)
     except KeyError as missing:
         raise SceneError(f"sweep.json in {name} has no {missing}; give the command of the sweep again") from None

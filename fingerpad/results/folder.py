@@ -29,10 +29,6 @@ if TYPE_CHECKING:
 LEFT = (
     *(
         "steps.csv",
-        "ridges.csv",
-        "receptors.csv",
-        "*_final.csv",
-        "coupling.csv",
         "summary.json",
         "summary.json*.part",
         "run.log",

@@ -6,23 +6,24 @@ of :data:`OUTPUTS`; one of a user is the same, given to ``fingerpad.run(scene, o
 
 import math
 import re
-from collections.abc import Callable, Iterable, MutableMapping, Sequence
+from collections.abc import Callable, Collection, Iterable
 from dataclasses import dataclass, fields, replace
 from typing import Any
 
 from fingerpad.richardson import plus_minus
-from fingerpad.scene.messages import SceneError, show
+from fingerpad.scene.messages import SceneError
 from geometry.units import in_si
-from variational.state import EXTREMES as EXTREMES
-from variational.state import ContactState, StepRecord
+from variational.state import ContactState
 
 _NOTHING = 1e-6  # in the units of tables: below it all is roundoff
 _PRINTED = {
     "": ("1", 1.0), "%": ("1", 100.0), "mm": ("m", 1e3), "µm": ("m", 1e6), "mm²": ("m^2", 1e6), "kPa": ("Pa", 1e-3)
 }  # fmt: skip
 """Units of tables that are not those of files, which are SI units, and the factor from SI."""
-_SUMS = {"N/m": ("N", 1), "J/m": ("J", 2), "m": ("mm²", 1), "m^2": ("m^3", 2)}
+SUMS = {"N/m": ("N", 1), "J/m": ("J", 2), "m": ("mm²", 1), "m^2": ("m^3", 2)}
 """Of quantities per metre of finger: the unit of their sum, and :attr:`Output.power`."""
+TABLES = frozenset({"result", "load", "sweep"})
+"""Tables that outputs may stand in: the printed result, extremes and means of loads, and sweeps."""
 SYMBOL = re.compile(r"(?<![\w.-])([µdfFhLp])_(app|eq|ext|el|max|[0cRT])(?![\w(=])")
 """A symbol in words, which pages and pictures typeset: its letter and its subscript."""
 
@@ -48,6 +49,12 @@ class Output:
     """Digits after the point, where no error is estimated."""
     sum: str = ""
     """``"slices"`` to integrate a quantity per metre of finger, such as N/m, over the slices of the whole finger."""
+    tables: Collection[str] = TABLES
+    """Where it stands, by the names of :data:`TABLES`; an output of one's own stands everywhere."""
+
+    def __post_init__(self) -> None:
+        """Take the tables as a set, also of a file."""
+        object.__setattr__(self, "tables", frozenset(self.tables))
 
     @property
     def si(self) -> str:
@@ -62,12 +69,12 @@ class Output:
     @property
     def power(self) -> int:
         """Exponent of the width of similar slices, with which the quantity grows at equal stress."""
-        return _SUMS.get(self.si, ("", 1))[1]
+        return SUMS.get(self.si, ("", 1))[1]
 
     @property
     def whole(self) -> "Output":
         """The sum over the slices of a whole finger, of a quantity per metre of it."""
-        return replace(self, unit=_SUMS[self.si][0])
+        return replace(self, unit=SUMS[self.si][0])
 
     @property
     def symbol(self) -> str:
@@ -107,7 +114,8 @@ class Output:
 
     def to_dict(self) -> dict[str, Any]:
         """Return all but how it is computed, ready for JSON."""
-        return {f.name: getattr(self, f.name) for f in fields(self) if f.name != "compute"}
+        found = {f.name: getattr(self, f.name) for f in fields(self) if f.name != "compute"}
+        return found | {"tables": sorted(self.tables)}
 
     def of(self, state: ContactState) -> float:
         """Return the value of a state (SI).
@@ -133,9 +141,24 @@ def _of_unit(unit: str) -> tuple[str, float]:
     return in_si(unit)
 
 
-def _listed(*rows: tuple[Any, ...]) -> dict[str, Output]:
-    """Return quantities that states have, by name: of each its name, unit, meaning, and words and digits of tables."""
-    return {name: Output(name, unit, None, *more) for name, unit, *more in rows}
+def _listed(*rows: tuple[Any, ...], **tables: str) -> dict[str, Output]:
+    """Return quantities that states have, by name.
+
+    Args:
+        rows: of each its name, unit, meaning, and words and digits of tables.
+        tables: names of the quantities of a table, in one text.
+    """
+
+    def of(name: str) -> frozenset[str]:
+        return frozenset(table for table, names in tables.items() if name in names.split())
+
+    return {name: Output(name, unit, None, *more, tables=of(name)) for name, unit, *more in rows}
+
+
+def _table(name: str, order: str = "") -> dict[str, Output]:
+    """Return the quantities of a state in a table by name, the first ones in a given order."""
+    mine = {key: each for key, each in STEPS.items() if name in each.tables}
+    return {key: mine[key] for key in dict.fromkeys((*order.split(), *mine))}
 
 
 STEPS = _listed(
@@ -181,6 +204,14 @@ STEPS = _listed(
     ("viscous_least", "", "least dissipation of a branch at a point over the largest in the step; < 0: energy made"),
     ("mesh_contact", "m", "contact size of the mesh"),
     ("time", "s", "time since the start of the first load over time"),
+    result="f_ext voltage mu_app f_t f_electrostatic f_contact contact_length p_max ridges_in_contact bone_height",
+    given="step load f_ext voltage bone_x",
+    found="f_t mu_app f_electrostatic f_contact bone_height ridges_in_contact contact_length p_max",
+    load="mu_app f_t contact_length f_electrostatic",
+    sweep="mu_app f_t contact_length f_electrostatic ridges_in_contact",
+    slip="mu_app f_t",
+    sliding="bone_x f_t mu_app contact_length ridges_in_contact",
+    work="newton_iterations factorisations cutbacks jump",
 )  # fmt: skip
 """Of a state, in the order of ``steps.csv``."""
 STABILITY = _listed(
@@ -253,21 +284,26 @@ SLICES = _listed(
     ("pressure", "Pa", "mean contact pressure of the slice over its length in contact"),
 )
 """Of the slices of a whole finger."""
-_OF_FINGER = {*FINGER, *SLICES, "centre", "carried", "slices", "trace"}
 OUTPUTS: tuple[Output, ...] = ()
 """Outputs of the package that are computed from a state, as those of a user are. A new one is an entry here."""
 
 _SI = {"N/m", "V", "N", "m", "Pa", "J/m", "J/m^3", "s", "Hz", "Pa/m"}
-_PRINTED_FIRST = ("f_ext", "voltage", "mu_app", "f_t", "f_electrostatic", "f_contact", "contact_length", "p_max")
-QUANTITIES = {name: STEPS[name] for name in (*_PRINTED_FIRST, "ridges_in_contact", "bone_height")}
+_ORDER = "f_ext voltage mu_app f_t f_electrostatic f_contact contact_length p_max ridges_in_contact"
+QUANTITIES = _table("result", _ORDER)
 """The quantities of a state that are printed, in this order."""
+CONDITIONS, RESULTS = _table("given"), _table("found", "f_t mu_app f_electrostatic f_contact")
+"""Those of a named state in ``summary.json``."""
+EXTREMES = _table("load", "mu_app f_t contact_length")
+"""Those of a load of which extremes and means are kept, beside outputs of one's own."""
+SWEPT = _table("sweep", "mu_app f_t contact_length f_electrostatic")
+"""Those of a named state in the table of a sweep, beside outputs of one's own."""
+FRICTION = _table("slip")
+"""Those that are printed at full slip alone."""
+SLIDING, WORK = _table("sliding"), _table("work")
+"""Those of the charts of sliding, and of the solver's work, in a report."""
 CHANGES = {"error": "whole known error", "penalty": "estimated change for a rigid screen"}
 MESH, PENALTY, MODEL = "mesh", "penalty", "closed form"
 """Parts of the error of a section, in words; those of a whole finger are in :mod:`fingerpad.slices.errors`."""
-SWEPT = (*EXTREMES, "ridges_in_contact")
-"""Quantities of a named state in the table of a sweep, beside outputs of one's own."""
-FRICTION = ("mu_app", "f_t")
-"""Quantities that are printed at full slip alone."""
 PER_LENGTH = (
     "N/m: force per metre of finger out of the plane of the cross-section; 75 N/m at its centre correspond to about "
     "0.5 N on the whole default finger."
@@ -279,70 +315,6 @@ def plus_minus_of(parts: Iterable[str]) -> str:
     words = ", ".join(dict.fromkeys(parts))
     said = f"±: error by {words}; what the finger and the model assume is not in it (docs/assumptions.md)."
     return said if words else ""
-
-
-def checked(outputs: Any) -> tuple[Output, ...]:
-    """Return outputs of the package and of a user.
-
-    Args:
-        outputs: of the user.
-
-    Raises:
-        SceneError: one is no output, or has a name that a state has.
-    """
-    given = list(outputs) if isinstance(outputs, Iterable) else [outputs]
-    if isinstance(outputs, Output) or not all(isinstance(each, Output) for each in given):
-        raise SceneError(f"outputs is {show(outputs)}; it must be a list of fingerpad.Output")
-    names = {f.name for each in (ContactState, StepRecord) for f in fields(each)} | set(dir(ContactState))
-    every = tuple(dict.fromkeys((*OUTPUTS, *given)))
-    for each in every:
-        if not (isinstance(each.name, str) and each.name.isidentifier()) or each.name in names:
-            raise SceneError(f"an output is called {show(each.name)}; it must have a name of its own, such as 'p_mean'")
-        if not isinstance(each.unit, str) or not callable(each.compute):
-            raise SceneError(f"the output {each.name} must have a unit, such as 'kPa', and a function of a state")
-        if each.sum not in ("", "slices"):
-            raise SceneError(f"the output {each.name} has sum = {show(each.sum)}; it must be 'slices', or left out")
-        if each.sum and each.si not in _SUMS:
-            units = f"the unit {show(each.unit)}; it must be one per metre of finger: {', '.join(_SUMS)}"
-            raise SceneError(f"the output {each.name} has sum = 'slices' and {units}")
-        if each.sum and each.name in _OF_FINGER:
-            raise SceneError(f"an output is called {show(each.name)}, as a quantity of the whole finger; rename it")
-        names.add(each.name)
-    return every
-
-
-def valued(
-    state: ContactState, outputs: Iterable[Output], lost: MutableMapping[str, str] | None = None
-) -> ContactState:
-    """Return a state with the values of outputs.
-
-    Args:
-        state: the state.
-        outputs: what is computed from it.
-        lost: takes by name why an output has no value, which is NaN then; without it that is an error. A state
-            between those of a trace keeps the value that was interpolated.
-
-    Raises:
-        SceneError: an output cannot be computed.
-    """
-
-    def value(each: Output) -> float:
-        try:
-            return each.of(state)
-        except SceneError as error:
-            if each.sum and each.name in state.own:
-                return state.own[each.name]
-            if lost is None:
-                raise
-            lost.setdefault(each.name, str(error))
-            return math.nan
-
-    return replace(state, own={**state.own, **{each.name: value(each) for each in outputs if each.compute}})
-
-
-def read(kept: Sequence[dict[str, Any]]) -> tuple[Output, ...]:
-    """Return outputs that a file describes, see :meth:`Output.to_dict`; how they are computed is not known."""
-    return tuple(Output(**each) for each in kept)
 
 
 def cell(key: str, value: float, error: float = math.nan) -> str:

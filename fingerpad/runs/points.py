@@ -4,8 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
-from fingerpad.results.answer import Cost
-from fingerpad.results.result import Result
+from fingerpad.results.result import Cost, Result
 from fingerpad.runs.context import RunContext
 from fingerpad.runs.sweep_columns import OTHER
 from fingerpad.scene import Scene

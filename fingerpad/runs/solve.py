@@ -15,8 +15,8 @@ from fingerpad.model import breakdown
 from fingerpad.reduced.registry import find
 from fingerpad.results.files import below, has_other_format, read_object
 from fingerpad.results.folder import Serial, identity, on_rank_0
+from fingerpad.results.outputs import checked as checked_outputs
 from fingerpad.results.quantities import Output
-from fingerpad.results.quantities import checked as checked_outputs
 from fingerpad.results.result import Result
 from fingerpad.runs.context import RunContext
 from fingerpad.runs.post import BEGUN, Entry, kept, of_outputs

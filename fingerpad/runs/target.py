@@ -10,10 +10,9 @@ import re
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from fingerpad.results.quantities import FINGER, QUANTITIES, Output
+from fingerpad.results.quantities import EXTREMES, FINGER, QUANTITIES, Output
 from fingerpad.scene.messages import SceneError, clip, show
 from geometry.units import finite, to_si
-from variational.state import EXTREMES
 
 CONTRAST = "contrast"
 _NUMBER = re.compile(r"([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d{1,3})?)\s*(.*)")

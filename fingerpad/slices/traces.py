@@ -15,9 +15,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from fingerpad.results.answer import Cost
 from fingerpad.results.quantities import PENALTY, STABILITY, Output
-from fingerpad.results.result import Result
+from fingerpad.results.result import Cost, Result
 from fingerpad.results.states import WORDS
 from fingerpad.scene import Scene
 from fingerpad.scene.messages import SceneError
