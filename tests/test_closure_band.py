@@ -68,7 +68,7 @@ def test_text_and_files_have_the_band(result):
     assert " The largest number, by boundary elements, is an upper bound: attraction balances 24 % of" in band
     assert len(result.record[BAND]["upper_bounds"]) == 2 and band.count("largest number") == 1
     assert f"\n  {band}\n" in text and band.endswith("Which one holds for a finger is open (docs/microscale.md).")
-    again = fp.Result.from_dict(result.to_dict())
+    again = fp.Result.from_xarray(result.to_xarray())
     assert again.closures == result.closures != {}
 
 

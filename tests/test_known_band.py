@@ -183,7 +183,7 @@ def test_none_without_voltage_or_friction():
 def test_text_files_and_picture_have_it(result):
     ends = f"{result.known['low']:.2f} to {result.known['high']:.2f}"
     assert f"\n  Likely range {ends}.\n  With one assumption changed: rough contact " in str(result)
-    again = fp.Result.from_dict(result.to_dict())
+    again = fp.Result.from_xarray(result.to_xarray())
     assert again.known == result.known and KNOWN in again.record
     picture = bars(result)
     names = ("solved to", "likely range", "rough contact", "friction law", "tips")
