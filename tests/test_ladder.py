@@ -8,12 +8,13 @@ import pytest
 from fingerpad.cli import compare
 from fingerpad.reduced import cylinders
 from fingerpad.reduced.cylinder_errors import REGIONS
-from fingerpad.reduced.model import STATES
 from fingerpad.results.quantities import RESULTS
 from fingerpad.results.result import Result
 from fingerpad.scene import SceneError, from_data
+from tests.measures import contact_state
 from tests.test_laws import Held
 from variational.contact.friction import Derjaguin
+from variational.state import Errors
 
 
 def scene(**data):
@@ -115,8 +116,7 @@ def keep(folder, **values):
     ridges = {"charged_ridges_in_contact": 17, "full_slip_ridges_in_contact": 16}
     cost = {"wall_seconds": 9.0, "factorisations": 3, "unknowns": 5, "full_slip": True}
     flat, at = names | lengths | ridges, {"f_ext": 75.0, "voltage": 200.0}
-    states = {name: at | {key: flat[f"{name}_{key}"] for key in RESULTS} for name in STATES}
-    summary = at | {"parameters": scene().parameters(), "states": states} | flat | cost | values
+    summary = at | {"parameters": scene().parameters()} | flat | cost | values
     (folder / "summary.json").write_text(json.dumps(summary), encoding="utf-8")
     return summary
 
@@ -161,11 +161,10 @@ def test_missing_run_is_refused(tmp_path):
         cylinders.from_run(scene(), tmp_path)
 
 
-def test_errors_of_a_run_stand_beside_its_values(tmp_path):
+def test_errors_of_a_run_stand_beside_its_values():
     """With what ± is; a state that comes without an error has its value alone."""
-    summary = keep(tmp_path)
-    summary["states"]["full_slip"]["error"] = {"contact_length": 2e-5}
-    answer = Result.from_dict(summary)
+    slip = contact_state(contact_length=1.6e-3, error=Errors(contact_length=2e-5))
+    answer = Result(scene(), "full", None, contact_state(contact_length=1.7e-3, voltage=100.0), slip)
     assert answer.full_slip.error.known() == {"contact_length": 2e-5}
     lines = compare.table([answer]).splitlines()
     assert next(line for line in lines if line.startswith("full slip: contact length")).endswith("1.600 ± 0.020")

@@ -5,7 +5,8 @@ from collections.abc import Iterable, MutableMapping
 from dataclasses import fields, replace
 from typing import Any
 
-from fingerpad.results.quantities import FINGER, OUTPUTS, SLICES, SUMS, TABLES, Output
+from fingerpad.results import quantities
+from fingerpad.results.quantities import FINGER, SLICES, SUMS, TABLES, Output
 from fingerpad.scene.messages import SceneError, show
 from variational.state import ContactState, StepRecord
 
@@ -25,7 +26,7 @@ def checked(outputs: Any) -> tuple[Output, ...]:
     if isinstance(outputs, Output) or not all(isinstance(each, Output) for each in given):
         raise SceneError(f"outputs is {show(outputs)}; it must be a list of fingerpad.Output")
     names = {f.name for each in (ContactState, StepRecord) for f in fields(each)} | set(dir(ContactState))
-    every = tuple(dict.fromkeys((*OUTPUTS, *given)))
+    every = tuple(dict.fromkeys((*quantities.OUTPUTS, *given)))
     for each in every:
         if not (isinstance(each.name, str) and each.name.isidentifier()) or each.name in names:
             raise SceneError(f"an output is called {show(each.name)}; it must have a name of its own, such as 'p_mean'")
