@@ -78,7 +78,7 @@ def read(folder: Path) -> "Result | Table":
     name = clip(str(folder), 80)
     if not folder.is_dir():
         raise SceneError(f"{name} is not a folder; give one that fingerpad run or fingerpad sweep wrote")
-    if (folder / "summary.json").exists():
+    if any((folder / kept).exists() for kept in ("result.nc", "summary.json")):
         return Result.load(folder)
     if (folder / "table.csv").exists():
         from fingerpad.report.sweep_page import table_of
