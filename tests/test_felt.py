@@ -1,5 +1,6 @@
 """Spikes of a run over time: stimuli at its sites by symmetry and translation, jumps, tables, and what is refused."""
 
+import csv
 import shutil
 from dataclasses import replace
 

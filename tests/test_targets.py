@@ -1,5 +1,7 @@
 """What was asked of speed and accuracy, beside what kept numbers have reached."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
