@@ -248,7 +248,8 @@ def test_law_of_the_package_is_one_line_of_a_registry(kind, law, table, key, mon
     assert words <= set(re.findall('"description": "([^"]*)"', json.dumps(schema(Scene))))
     with pytest.raises(SceneError, match=f"{key} is '1 s'; its unit is not a unit of"):
         load(None, flat(table) | {key: "1 s"})
-    cylinders.solve(scene, cylinders.given(1.5e-3, 15))
+    if kind in (FRICTION_LAWS, CLOSURES):  # with others the contact length is another
+        cylinders.solve(scene)
 
 
 def test_registries_of_the_recipes_are_there():

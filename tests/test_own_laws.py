@@ -13,7 +13,7 @@ from fingerpad.model.simulation import Simulation
 from fingerpad.reduced import cylinders
 from fingerpad.runs import full
 from fingerpad.runs.context import RunContext
-from fingerpad.scene import Scene, SceneError, from_data, remarks
+from fingerpad.scene import Scene, SceneError, from_data
 from geometry import tags
 from tests.measures import rows_of
 from tests.runs import followed, tables_alone
@@ -21,7 +21,6 @@ from tests.small_finger import NINE, small
 from tests.test_laws import DERJAGUIN, OWN, Held, Mine
 from variational.contact.friction import CONE_ROUNDOFF, Coulomb, Derjaguin, Friction
 from variational.materials.neo_hooke import NeoHooke
-from variational.materials.ogden import Ogden
 from variational.roughness.bam import BearingArea
 from variational.roughness.closure import AirGap, check
 from variational.solvers.coupling import Coupling
@@ -85,15 +84,6 @@ def test_cylinders_know_the_default_fingers_lengths_alone():
     scene = Scene(materials={"stratum_corneum": NeoHooke(1e5)})
     with pytest.raises(SceneError, match="materials is not that of the default finger or of one similar to it, whose"):
         cylinders.solve(scene)
-    given = cylinders.given(1.5e-3, 15)
-    own, default = (cylinders.solve(one, given).full_slip.f_electrostatic for one in (scene, Scene()))
-    assert own != default
-
-
-def test_modulus_of_the_skin_is_the_given_materials():
-    """The same solid given as a key and as an object has the same modulus. Tolerance: roundoff."""
-    own = Scene(materials={"stratum_corneum": Ogden(86.76e3, -14.53, 0.48)})
-    assert remarks.skin_modulus(own) == pytest.approx(remarks.skin_modulus(Scene()), rel=1e-12)
 
 
 def test_rule_of_thumb_takes_a_law():

@@ -8,10 +8,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from fingerpad.cli import output
-from fingerpad.cli.arguments import Parser, echo, path, positive, quantity, scene_of
-from fingerpad.ctrl_c import raises
-from fingerpad.reduced import cylinders
-from fingerpad.reduced.cylinders import Cylinders
+from fingerpad.cli.arguments import Parser, echo, path, scene_of
+from fingerpad.launcher import raising_at_ctrl_c
 from fingerpad.reduced.model import STATES, Model
 from fingerpad.reduced.registry import MODELS
 from fingerpad.results.files import below, check_folder
@@ -20,8 +18,7 @@ from fingerpad.results.result import Result
 from fingerpad.results.states import WORDS, called
 from fingerpad.runs.context import RunContext
 from fingerpad.runs.solve import solved
-from fingerpad.scene import Scene
-from fingerpad.scene.messages import SceneError, clip, counted, ends
+from fingerpad.scene.messages import SceneError, clip, ends
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -72,16 +69,9 @@ def main(argv: Sequence[str]) -> int:
         default=list(MODELS),
         help="models to compare (default: all; full takes minutes)",
     )
-    parser.add_argument("--contact-length", type=quantity, metavar="M", help="cylinders: the length in contact, 1.6 mm")
-    parser.add_argument("--ridges", type=positive, metavar="N", help="cylinders: on so many ridges")
-    parser.add_argument("--run", type=path, metavar="DIR", help="cylinders: contact lengths of this full run")
     args = parser.read(argv, petsc=True)
-    given = [name for name in ("contact_length", "ridges", "run") if getattr(args, name) is not None]
-    if given and Cylinders.name not in args.model:
-        raise SceneError(f"--{given[0].replace('_', '-')} is given without the model cylinders, which reads it; add it")
     scene = scene_of(args)
     check_folder(args.out)
-    models = MODELS | {Cylinders.name: Cylinders(_footprint(scene, args.contact_length, args.ridges, args.run))}
     from fingerpad.startup import start
 
     start(args.petsc)
@@ -94,30 +84,10 @@ def main(argv: Sequence[str]) -> int:
         except SceneError as error:
             return Result(scene, model.name, None, None, None, failure=str(error))
 
-    with raises():
-        results = [answer_or_refusal(model) for name, model in models.items() if name in args.model]
+    with raising_at_ctrl_c():
+        results = [answer_or_refusal(model) for name, model in MODELS.items() if name in args.model]
     echo(table(results))
     return max(1 if result.failure else 0 for result in results)
-
-
-def _footprint(scene: Scene, length: float | None, ridges: int | None, run: Path | None) -> cylinders.Footprint | None:
-    if run is not None:
-        if length is not None or ridges is not None:
-            raise SceneError("--run is given and a contact length too; give one of the two")
-        return cylinders.from_run(scene, run)
-    if (length is None) != (ridges is None):
-        raise SceneError("one of --contact-length and --ridges is given without the other; give both or none")
-    if length is None or ridges is None:
-        return None
-    finger = scene.geometry
-    if ridges > finger.ridge_count:
-        raise SceneError(f"--ridges is {ridges}, and the finger has {finger.ridge_count}; count those that touch")
-    if length > ridges * finger.ridge_wavelength:
-        whole = 1e3 * ridges * finger.ridge_wavelength
-        raise SceneError(
-            f"--contact-length is {1e3 * length:g} mm, longer than {counted(ridges, 'ridge')}, {whole:.3g} mm"
-        )
-    return cylinders.given(length, ridges)
 
 
 def table(results: Sequence[Result]) -> str:
