@@ -267,7 +267,9 @@ class ContactState:
 
 
 _FIELDS = fields(ContactState)[: [f.name for f in fields(ContactState)].index("record")]
-_VISCOUS = ("viscous", "viscous_dissipation", "viscous_least")  # columns of a record where layers are viscous
+_VISCOUS = tuple(
+    f.name for f in fields(StepRecord) if f.name.startswith("viscous")
+)  # columns of a record where layers are viscous
 _LAST = tuple(f for f in fields(ContactState) if f.name in ("mesh_contact", "time"))  # columns where they are known
 
 

@@ -16,7 +16,7 @@ from fingerpad.report import page as html
 from fingerpad.report.page import BAD, CARE, GOOD
 from fingerpad.results.files import read_object, refuse_other_format
 from fingerpad.results.headline import SECTION, WHOLE
-from fingerpad.results.quantities import PER_LENGTH, Output
+from fingerpad.results.quantities import FINGER, PER_LENGTH, Output, in_table
 from fingerpad.results.states import WORDS
 from fingerpad.runs.sweep_columns import (
     FORCE,
@@ -37,7 +37,7 @@ from fingerpad.scene.reading import DEFAULT_MODEL, model_name
 from fingerpad.slices.errors import remarks
 from variational.files import read
 
-_CHARTS = ("mu_app", "f_t", "contact_length", "contact_area")
+_CHARTS = dict.fromkeys((*in_table("short"), *in_table("first", FINGER)))
 _MAX_CAUTIONS = 3  # in the headline
 _MAX_VALUES = 6  # of a key in the headline
 _MAX_TITLE = 30  # characters beside an axis, beyond which they take two lines

@@ -18,7 +18,7 @@ from fingerpad.results import files, quantities
 from fingerpad.results.quantities import RIDGES, SITES, SKIN, SLICES, STEPS, STIMULI, Output
 from fingerpad.results.states import STATES, UNLOADED
 from fingerpad.scene.reading import flat
-from variational.state import ContactState, Errors
+from variational.state import ContactState, Errors, Sites
 
 if TYPE_CHECKING:
     import xarray
@@ -31,7 +31,7 @@ COORDINATES = ("step", "load", "state", "ridge", "side", "iteration", "harmonic"
 Variables = dict[str, tuple[tuple[str, ...], Any, dict[str, str]]]
 """Dimensions, values, and attributes by name."""
 OF_RIDGES = {name: "length" if name == "contact_length" else name for name in RIDGES}
-OF_SITES = {"merkel_sed": "merkel", "meissner_left": "left", "meissner_right": "right"}
+OF_SITES = dict(zip(SITES, [each.name for each in fields(Sites)][1:], strict=True))
 """Attribute of :class:`RidgeStates`, and of :class:`Sites`, by quantity."""
 CHANGED = tuple(field.name for field in fields(Errors) if field.name != "own")
 

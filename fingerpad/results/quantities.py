@@ -6,7 +6,7 @@ of :data:`OUTPUTS`; one of a user is the same, given to ``fingerpad.run(scene, o
 
 import math
 import re
-from collections.abc import Callable, Collection, Iterable
+from collections.abc import Callable, Collection, Iterable, Mapping
 from dataclasses import dataclass, fields, replace
 from typing import Any
 
@@ -49,6 +49,8 @@ class Output:
     """Digits after the point, where no error is estimated."""
     sum: str = ""
     """``"slices"`` to integrate a quantity per metre of finger, such as N/m, over the slices of the whole finger."""
+    error: str = ""
+    """Of a quantity of the whole finger: the quantity of the section whose relative error it has."""
     tables: Collection[str] = TABLES
     """Where it stands, by the names of :data:`TABLES`; an output of one's own stands everywhere."""
 
@@ -141,24 +143,19 @@ def _of_unit(unit: str) -> tuple[str, float]:
     return in_si(unit)
 
 
-def _listed(*rows: tuple[Any, ...], **tables: str) -> dict[str, Output]:
+def _listed(*rows: tuple[Any, ...], error: Mapping[str, str] | None = None, **tables: str) -> dict[str, Output]:
     """Return quantities that states have, by name.
 
     Args:
         rows: of each its name, unit, meaning, and words and digits of tables.
+        error: the quantity of the section whose relative error each has.
         tables: names of the quantities of a table, in one text.
     """
-
-    def of(name: str) -> frozenset[str]:
-        return frozenset(table for table, names in tables.items() if name in names.split())
-
-    return {name: Output(name, unit, None, *more, tables=of(name)) for name, unit, *more in rows}
-
-
-def _table(name: str, order: str = "") -> dict[str, Output]:
-    """Return the quantities of a state in a table by name, the first ones in a given order."""
-    mine = {key: each for key, each in STEPS.items() if name in each.tables}
-    return {key: mine[key] for key in dict.fromkeys((*order.split(), *mine))}
+    found = {}
+    for name, unit, *more in rows:
+        mine = (table for table, names in tables.items() if name in names.split())
+        found[name] = Output(name, unit, None, *more, tables=frozenset(mine), error=(error or {}).get(name, ""))
+    return found
 
 
 STEPS = _listed(
@@ -204,14 +201,18 @@ STEPS = _listed(
     ("viscous_least", "", "least dissipation of a branch at a point over the largest in the step; < 0: energy made"),
     ("mesh_contact", "m", "contact size of the mesh"),
     ("time", "s", "time since the start of the first load over time"),
-    result="f_ext voltage mu_app f_t f_electrostatic f_contact contact_length p_max ridges_in_contact bone_height",
+    result="f_ext voltage bone_height mu_app f_t f_electrostatic f_contact contact_length p_max ridges_in_contact",
     given="step load f_ext voltage bone_x",
     found="f_t mu_app f_electrostatic f_contact bone_height ridges_in_contact contact_length p_max",
     load="mu_app f_t contact_length f_electrostatic",
     sweep="mu_app f_t contact_length f_electrostatic ridges_in_contact",
+    short="mu_app f_t contact_length",
     slip="mu_app f_t",
     sliding="bone_x f_t mu_app contact_length ridges_in_contact",
+    chart="bone_x mu_app contact_length",
     work="newton_iterations factorisations cutbacks jump",
+    estimated="f_t mu_app f_electrostatic contact_length p_max bone_height",
+    edges="contact_length f_t mu_app f_electrostatic bone_height",
 )  # fmt: skip
 """Of a state, in the order of ``steps.csv``."""
 STABILITY = _listed(
@@ -270,6 +271,11 @@ FINGER = _listed(
         "effective_width", "mm", "external force of the finger over that of its centre, the slice that touches first",
         "F_ext over f_ext of the centre", 2,
     ),
+    error={"contact_area": "contact_length", "indentation": "bone_height"}
+          | {name: name for name in ("mu_app", "f_t", "f_electrostatic")},
+    sweep="mu_app f_t f_electrostatic gross_area contact_area",
+    file="f_ext mu_app f_t f_electrostatic gross_area contact_area indentation",
+    first="f_ext mu_app f_t contact_area",
 )  # fmt: skip
 """Of the whole finger in a named state."""
 SLICES = _listed(
@@ -282,25 +288,32 @@ SLICES = _listed(
     ("contact_length", "m", "length of the slice in contact, of the ridges"),
     ("gross_width", "m", "width between the outermost touching ridges of the slice"),
     ("pressure", "Pa", "mean contact pressure of the slice over its length in contact"),
+    trace="f_ext f_t f_electrostatic contact_length gross_width",
 )
 """Of the slices of a whole finger."""
 OUTPUTS: tuple[Output, ...] = ()
 """Outputs of the package that are computed from a state, as those of a user are. A new one is an entry here."""
 
 _SI = {"N/m", "V", "N", "m", "Pa", "J/m", "J/m^3", "s", "Hz", "Pa/m"}
-_ORDER = "f_ext voltage mu_app f_t f_electrostatic f_contact contact_length p_max ridges_in_contact"
-QUANTITIES = _table("result", _ORDER)
+_ORDER = "f_ext voltage mu_app f_t f_electrostatic f_contact contact_length p_max ridges_in_contact".split()
+
+
+def in_table(table: str, of: Mapping[str, Output] = STEPS) -> dict[str, Output]:
+    """Return the quantities of a table, by default of a state, in the order in which they are printed."""
+    mine = {key: each for key, each in of.items() if table in each.tables}
+    return mine if of is not STEPS else {key: mine[key] for key in dict.fromkeys((*_ORDER, *mine)) if key in mine}
+
+
+QUANTITIES = in_table("result")
 """The quantities of a state that are printed, in this order."""
-CONDITIONS, RESULTS = _table("given"), _table("found", "f_t mu_app f_electrostatic f_contact")
+CONDITIONS, RESULTS = in_table("given"), in_table("found")
 """Those of a named state in ``summary.json``."""
-EXTREMES = _table("load", "mu_app f_t contact_length")
+EXTREMES = in_table("load")
 """Those of a load of which extremes and means are kept, beside outputs of one's own."""
-SWEPT = _table("sweep", "mu_app f_t contact_length f_electrostatic")
+SWEPT = in_table("sweep")
 """Those of a named state in the table of a sweep, beside outputs of one's own."""
-FRICTION = _table("slip")
+FRICTION = in_table("slip")
 """Those that are printed at full slip alone."""
-SLIDING, WORK = _table("sliding"), _table("work")
-"""Those of the charts of sliding, and of the solver's work, in a report."""
 CHANGES = {"error": "whole known error", "penalty": "estimated change for a rigid screen"}
 MESH, PENALTY, MODEL = "mesh", "penalty", "closed form"
 """Parts of the error of a section, in words; those of a whole finger are in :mod:`fingerpad.slices.errors`."""
