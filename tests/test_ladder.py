@@ -34,7 +34,7 @@ def test_forces_balance(default, state):
 
 def test_what_it_cannot_know_is_absent(default):
     unknown = [(state, name) for state, s in default.named.items() for name in RESULTS if np.isnan(getattr(s, name))]
-    assert unknown == [(state, name) for state in ("charged", "full_slip") for name in ("bone_height", "p_max")]
+    assert unknown == [(state, name) for state in ("charged", "full_slip") for name in ("p_max", "bone_height")]
     assert default.to_dict()["full_slip_bone_height"] is None and default.uncharged is None
     assert any("bone's height" in note for note in default.notes)
 
