@@ -10,6 +10,7 @@ import xarray
 import fingerpad as fp
 from fingerpad.reduced import cylinder_errors
 from fingerpad.reduced.cylinders import Cylinders, indentation, over_forces
+from fingerpad.results.printing import cells
 from fingerpad.results.quantities import FINGER
 from fingerpad.runs.closed_form import ClosedForm
 from fingerpad.scene.parameters import Slices
@@ -118,4 +119,4 @@ def test_error_of_an_output_is_read_as_it_was_written():
     slip = replace(slip, error=Errors.of({"f_t": 0.5, "p_mean": 2e3}))
     again = fp.Result.from_xarray(replace(result, full_slip=slip).to_xarray())
     assert again.full_slip.error.known() == {"f_t": 0.5, "p_mean": 2e3}
-    assert again.cells("p_mean")[-1] == f"{1e-3 * slip.p_mean:.1f} ± 2.0"
+    assert cells(again, "p_mean")[-1] == f"{1e-3 * slip.p_mean:.1f} ± 2.0"

@@ -15,6 +15,7 @@ from fingerpad.report.trust import head
 from fingerpad.results import fields
 from fingerpad.results.headline import BAND, band_in_words
 from fingerpad.results.over_time import HARMONICS, NOTE
+from fingerpad.results.printing import cells
 from fingerpad.results.quantities import PER_LENGTH, STEPS, in_table, plus_minus_of
 from fingerpad.results.result import Result
 from fingerpad.results.states import WORDS, before_sliding, called
@@ -123,7 +124,7 @@ def _cell(reached: list[Any]) -> str:
 def _numbers(result: Result) -> str:
     if not result.named:
         return html.section("numbers", "Key numbers", html.paragraph("The run has no named state."))
-    every = [(quantity.title, *result.cells(key)) for key, quantity in result.printed.items()]
+    every = [(quantity.title, *cells(result, key)) for key, quantity in result.printed.items()]
     rows = [row for row in every if set(row[1:]) - {"–"}]
     slip = result.full_slip
     notes = []

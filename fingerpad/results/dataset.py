@@ -15,10 +15,22 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fingerpad.results import files, quantities
-from fingerpad.results.quantities import RIDGES, SITES, SKIN, SLICES, STEPS, STIMULI, Output
+from fingerpad.results.quantities import (
+    CHANGES,
+    CONDITIONS,
+    RESULTS,
+    RIDGES,
+    SITES,
+    SKIN,
+    SLICES,
+    STABILITY,
+    STEPS,
+    STIMULI,
+    Output,
+)
 from fingerpad.results.states import STATES, UNLOADED
 from fingerpad.scene.reading import flat
-from variational.state import ContactState, Errors, Sites
+from variational.state import PATH, ContactState, Errors, Sites
 
 if TYPE_CHECKING:
     import xarray
@@ -165,7 +177,7 @@ def _of_states(
 def _verdicts(named: Sequence[ContactState | None], known: Mapping[str, Output]) -> Variables:
     """Return stability, errors and changes of the named states; of outputs of one's own where they are known."""
     found: Variables = {}
-    for name, output in quantities.STABILITY.items():
+    for name, output in STABILITY.items():
         given = [None if state is None else getattr(state, name) for state in named]
         if name == "stable":
             values = np.array([-1 if each is None else each for each in given], np.int32)
@@ -174,7 +186,7 @@ def _verdicts(named: Sequence[ContactState | None], known: Mapping[str, Output])
         found[f"state_{name}"] = ("state",), values, output.about()
     ways = np.array(["" if state is None else state.reached for state in named], object)
     found["state_reached"] = ("state",), ways, _about("how the state was reached, by its path or from another state")
-    for kind, words in quantities.CHANGES.items():
+    for kind, words in CHANGES.items():
         own = {key: None for state in named if state is not None for key in getattr(state, kind).own}
         for key in (*CHANGED, *own):
             changes = [None if state is None else getattr(getattr(state, kind), key, None) for state in named]
@@ -276,3 +288,28 @@ def _traces(whole: "WholeFinger") -> Variables:
             about = (SLICES | own).get(name, SLICES["indentation"] if name == "depth" else STEPS["ridges_in_contact"])
             found[f"trace_{name}"] = ("state", "trace"), _padded(rows), about.about("of a trace: ")
     return found
+
+
+# -- one flat record --------------------------------------------------------------------------------------
+def values(result: "Result") -> dict[str, Any]:
+    """Return what is known of the named states, flat: ``full_slip_mu_app``; None where a state is missing."""
+    found: dict[str, Any] = {}
+    names = (*CONDITIONS, *RESULTS, *STABILITY, *(each.name for each in result.outputs))
+    for name in STATES:
+        state = result.named.get(name)
+        found |= {f"{name}_{key}": None if state is None else getattr(state, key) for key in names}
+        for kind in CHANGES if state is not None else ():
+            found |= {f"{name}_{key}_{kind}": value for key, value in getattr(state, kind).known().items()}
+    return {key: None if value != value else value for key, value in found.items()}
+
+
+def summary(result: "Result") -> dict[str, Any]:
+    """Return a result without its headline as ``summary.json`` has it."""
+    last = result.last
+    found: dict[str, Any] = {"format": files.FORMAT, "model": result.model, "full_slip": result.full_slip is not None}
+    found |= {key: 0.0 if last is None else getattr(last, key) for key in ("f_ext", "voltage")}
+    found |= asdict(result.cost) | values(result) | ({} if result.finger is None else result.finger.flat())
+    found |= {f"{name}_reached": each.reached for name, each in result.named.items() if each.reached != PATH}
+    found |= {"parameters": result.scene.parameters()} | result.record
+    found |= {name: text for name in ("failure", "interrupted") if (text := getattr(result, name))}
+    return found | {name: list(kept) for name in ("notes", "cautions") if (kept := getattr(result, name))}

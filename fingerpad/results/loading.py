@@ -2,7 +2,7 @@
 
 import json
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from dataclasses import fields, replace
 from io import BytesIO
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -60,8 +60,12 @@ def _without_result(folder: Path) -> str:
         return f"{name} is not a folder of a finished run"
 
 
-def parts(data: "xarray.Dataset") -> dict[str, Any]:
-    """Return the fields of the result of a dataset, but for its costs and its folder.
+def parts(data: "xarray.Dataset", cost: type) -> dict[str, Any]:
+    """Return the fields of the result of a dataset, but for its folder.
+
+    Args:
+        data: the dataset.
+        cost: the class of its costs.
 
     Raises:
         SceneError: it is not of a result, or its parameters are no valid scene.
@@ -78,6 +82,7 @@ def parts(data: "xarray.Dataset") -> dict[str, Any]:
         found = {name: named.get(name) for name in STATES} | {"scene": scene, "model": model_name(about["model"])}
         found |= {name: about.get(name, "") for name in ("failure", "interrupted")}
         found |= {name: tuple(filter(None, about.get(name, "").split("\n"))) for name in ("notes", "cautions")}
+        found["cost"] = cost(**{each.name: type(each.default)(about[each.name]) for each in fields(cost)})
         found |= {"steps": steps, "loads": loads_of(scene, steps, stable), "record": record, "outputs": outputs}
         return found | {"finger": _finger(data, outputs, scene.slices)}
     except (KeyError, ValueError, TypeError, IndexError, AttributeError) as error:  # a SceneError is a ValueError

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from fingerpad import notebook
 from fingerpad.results.headline import BAND, band_in_words
-from fingerpad.results.quantities import PER_LENGTH, QUANTITIES, cell, plus_minus_of
+from fingerpad.results.quantities import FRICTION, PER_LENGTH, QUANTITIES, cell, plus_minus_of
 from fingerpad.results.states import LoadResult, called
 from fingerpad.scene.reading import DEFAULT_MODEL
 
@@ -47,12 +47,21 @@ def _title(result: "Result") -> str:
 def _table(result: "Result") -> tuple[list[str], list[list[str]]]:
     """Return the heads and the rows of the named states side by side, the first of which are words."""
     shown = result.named
-    values = ((quantity.title, result.cells(key)) for key, quantity in result.printed.items())
+    values = ((quantity.title, cells(result, key)) for key, quantity in result.printed.items())
     rows = [[title, *each] for title, each in values if set(each) - {"–"}]
     if any(state.stable is not None for state in shown.values()):
         verdicts = {True: "yes", False: "no", None: "–"}
         rows.append(["stable", *(verdicts[state.stable] for state in shown.values())])
     return ["", *(called(name, state.voltage) for name, state in shown.items())], rows
+
+
+def cells(result: "Result", key: str) -> list[str]:
+    """Return a printed quantity in each named state, with its error; a dash where it is not shown."""
+    of, shown = result.printed[key], []
+    for name, state in result.named.items():
+        error = getattr(state.error, key, math.nan)
+        shown.append("–" if key in FRICTION and name != "full_slip" else of.shown(getattr(state, key), error))
+    return shown
 
 
 def _timed(result: "Result") -> list[str]:

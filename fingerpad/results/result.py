@@ -2,31 +2,25 @@
 
 import math
 from collections.abc import Iterable
-from dataclasses import asdict, dataclass, field, fields, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from fingerpad import launcher
 from fingerpad.results import dataset, loading, printing
-from fingerpad.results.files import FORMAT
 from fingerpad.results.headline import BAND, KNOWN, Headline, headline
 from fingerpad.results.outputs import checked, valued
 from fingerpad.results.quantities import (
-    CHANGES,
-    CONDITIONS,
-    FRICTION,
     MESH,
     MODEL,
     PENALTY,
     QUANTITIES,
-    RESULTS,
-    STABILITY,
     Output,
 )
 from fingerpad.results.states import STATES, LoadResult
 from fingerpad.scene.messages import SceneError, clip
 from fingerpad.scene.remarks import coefficient
-from variational.state import PATH, ContactState
+from variational.state import ContactState
 
 if TYPE_CHECKING:
     import pyvista
@@ -199,14 +193,6 @@ class Result:
         mesh, penalty = (key in names if key else bool(names) for names in known)
         return (*[MESH] * mesh, *[PENALTY] * (mesh and penalty))
 
-    def cells(self, key: str) -> list[str]:
-        """Return a printed quantity in each named state, with its error; a dash where it is not shown."""
-        of, shown = self.printed[key], []
-        for name, state in self.named.items():
-            error = getattr(state.error, key, math.nan)
-            shown.append("–" if key in FRICTION and name != "full_slip" else of.shown(getattr(state, key), error))
-        return shown
-
     # -- pictures and fields ---------------------------------------------------------------------------
     def _drawn(self) -> "Drawing | None":
         """Return what pictures are drawn from, of a result that was read from its folder; None off rank 0."""
@@ -327,9 +313,7 @@ class Result:
         Raises:
             SceneError: it is not of a result.
         """
-        kept = loading.parts(data)
-        cost = Cost(**{each.name: type(each.default)(data.attrs[each.name]) for each in fields(Cost)})
-        return cls(**kept, cost=cost, folder=folder)
+        return cls(**loading.parts(data, Cost), folder=folder)
 
     @classmethod
     def load(cls, folder: str | Path) -> "Result":
@@ -344,32 +328,13 @@ class Result:
         except SceneError as error:
             raise error if name in str(error) else SceneError(f"run {name} cannot be read: {error}") from None
 
-    def values(self) -> dict[str, Any]:
-        """Return what is known of the named states, flat: ``full_slip_mu_app``; None where a state is missing."""
-        found: dict[str, Any] = {}
-        names = (*CONDITIONS, *RESULTS, *STABILITY, *(each.name for each in self.outputs))
-        for name in STATES:
-            state = getattr(self, name)
-            found |= {f"{name}_{key}": None if state is None else getattr(state, key) for key in names}
-            for kind in CHANGES if state is not None else ():
-                found |= {f"{name}_{key}_{kind}": value for key, value in getattr(state, kind).known().items()}
-        return {key: None if value != value else value for key, value in found.items()}
-
     def to_dict(self, headline: bool = True) -> dict[str, Any]:
         """Return the content of ``summary.json``, flat and ready for JSON, by default with the headline; SI units.
 
         Quantities of named states begin with the state's name, ``full_slip_mu_app``, and those of the whole finger
-        with that and ``finger``: ``full_slip_finger_f_t``. Nothing reads it.
+        with that and ``finger``: ``full_slip_finger_f_t``.
         """
-        last = self.last
-        found: dict[str, Any] = {"headline": self.headline.to_dict()} if headline else {}
-        found |= {"format": FORMAT, "model": self.model, "full_slip": self.full_slip is not None}
-        found |= {key: 0.0 if last is None else getattr(last, key) for key in ("f_ext", "voltage")}
-        found |= asdict(self.cost) | self.values() | ({} if self.finger is None else self.finger.flat())
-        found |= {f"{name}_reached": each.reached for name, each in self.named.items() if each.reached != PATH}
-        found |= {"parameters": self.scene.parameters()} | self.record
-        found |= {name: text for name in ("failure", "interrupted") if (text := getattr(self, name))}
-        return found | {name: list(kept) for name in ("notes", "cautions") if (kept := getattr(self, name))}
+        return ({"headline": self.headline.to_dict()} if headline else {}) | dataset.summary(self)
 
     def __str__(self) -> str:
         """Return the text *Result* at the end of a run: the named states side by side, with units and errors."""

@@ -11,6 +11,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
+from fingerpad.results import dataset
 from fingerpad.results.headline import SECTION, WHOLE
 from fingerpad.results.quantities import FINGER, FRICTION, QUANTITIES, SWEPT, Output, cell, in_table
 from fingerpad.results.states import STATES, LoadResult
@@ -35,7 +36,7 @@ def row(result: "Result") -> dict[str, Any]:
     """Return the values of a point in SI units by column, and its failure."""
     if result.whole:
         return (_newtons(result.finger) if result.finger is not None else {}) | {"failure": result.failure}
-    values, keys = result.values(), (*SWEPT, *(each.name for each in result.outputs))
+    values, keys = dataset.values(result), (*SWEPT, *(each.name for each in result.outputs))
     alone = "reached" in result.record  # full slip without a path
     names = [f"{state}_{key}" for state in (STATES[-1:] if alone else STATES) for key in keys]
     cells = {key: values.get(key) for name in names for key in (name, f"{name}_error") if key in values}
