@@ -1,7 +1,7 @@
 """Breakdown of air between skin and screen: a caution by the field in the gap of each ridge in contact.
 
 A ridge's gap is its equivalent air gap d_eq, and the voltage across it is that of the circuit at each instant. It
-breaks down by :func:`variational.roughness.statistics.breakdown_voltage`, in which the total voltage does not count.
+breaks down by :func:`variational.roughness.gaps.breakdown_voltage`, in which the total voltage does not count.
 Loads over time are looked at in their states. Where a state has the mean attraction of a drive, a period of the drive
 counts, in its steady state. *Assumption*: skin beside the contact, and ridges above the screen, are not looked at.
 """
@@ -13,7 +13,7 @@ import numpy as np
 
 from fingerpad.model import drive_loads
 from fingerpad.scene.drive import Drive, drive_of
-from variational.roughness.statistics import breakdown_voltage
+from variational.roughness.gaps import breakdown_voltage
 from variational.state import ContactState
 
 if TYPE_CHECKING:
