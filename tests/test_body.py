@@ -160,50 +160,6 @@ def test_there_and_back():
     assert body.energy.dissipated > 0
 
 
-def test_the_sign_of_a_voltage_does_not_matter():
-    """Nor a change of sign, through no voltage at all; air gaps are accepted within 1e-6 of themselves."""
-    charged = [ridge(friction=0.0).press(FORCE).charge(voltage) for voltage in (VOLTAGE, -VOLTAGE)]
-    plus, minus = (body.state for body in charged)
-    assert plus.f_electrostatic > 0
-    assert minus.f_electrostatic == pytest.approx(plus.f_electrostatic, rel=1e-10)
-    turned = charged[0].charge(-VOLTAGE).state
-    assert turned.voltage == -VOLTAGE
-    assert turned.f_electrostatic == pytest.approx(plus.f_electrostatic, rel=1e-5)
-
-
-def test_full_slip_goes_on():
-    """Sliding on at full slip changes nothing; it is the same full slip."""
-    body = ridge().press(FORCE).slide(until_full_slip=True)
-    first = body.state
-    body.slide(100e-6)
-    assert body.state.f_t == pytest.approx(first.f_t, rel=1e-6)
-    assert body.state.f_t == pytest.approx(MU_F * body.state.f_contact, rel=1e-6)
-    assert body.state.slip_began == first.slip_began
-    assert body.state.bone_x == pytest.approx(first.bone_x + 100e-6)
-
-
-@pytest.mark.mpi
-def test_lifted_body_bears_nothing():
-    """Pressed by height, charged and lifted: strain energy is gone, what friction spent is not."""
-    body = ridge().press(height=-30e-6).charge(100.0).slide(20e-6).charge(0.0).lift(5e-6)
-    state = body.state
-    assert (state.f_contact, state.contact_length, state.ridges_in_contact) == (0.0, 0.0, 0)
-    assert state.f_ext == pytest.approx(0.0, abs=1e-8)  # N/m, ten times the tolerance of the solves
-    assert np.isnan(state.mu_app), "friction over a force that is roundoff"
-    assert body.energy.stored == pytest.approx(0.0, abs=1e-12)
-    assert body.energy.dissipated > 0
-    assert np.abs(body.displacement - [20e-6, 5e-6]).max() < 1e-10
-
-
-@pytest.mark.slow
-def test_load_is_a_text_with_a_unit():
-    """The texts are converted in decimals, so that the loads are the same numbers."""
-    text = ridge(roughness=None).press("0.0044 N/mm").slide("1 µm").state
-    number = ridge(roughness=None).press(4.4).slide(1e-6).state
-    assert text.bone_x == number.bone_x
-    assert text.f_t == pytest.approx(number.f_t, rel=1e-12)
-
-
 # -- materials, meshes -------------------------------------------------------------------------------------
 
 

@@ -44,18 +44,6 @@ def restarted(tmp_path_factory):
     return folder, press(folder, 0.6e-3)
 
 
-def test_run_starts_again_with_more_ridges(restarted):
-    folder, summary = restarted
-    assert "failure" not in summary
-    (restart,) = summary["restarts"]
-    assert restart["load"] == "press" and restart["factorisations"] > 0
-    assert restart["reason"] in ("ridge 1, the last one that is meshed to touch, is in contact",
-                              "ridge -1, the last one that is meshed to touch, is in contact")  # fmt: skip
-    assert restart["touching_half_arc"] == pytest.approx(3 * WAVELENGTH, rel=1e-12)
-    log = (folder / "run.log").read_text(encoding="utf-8")
-    assert f"{restart['reason']}; all loads again with mesh.touching_half_arc 0.001449 m" in log
-
-
 def test_restarted_run_is_the_one_that_had_the_ridges(restarted, tmp_path):
     """Step for step and digit for digit; nothing is left of the steps before."""
     folder, summary = restarted
@@ -124,15 +112,6 @@ def half(tmp_path_factory):
         return folder, press(folder, 1.3e-3)
 
 
-def test_half_that_is_not_stable_is_made_whole(half):
-    folder, summary = half
-    (restart,) = summary["restarts"]
-    assert restart["both_halves"] is True and restart["touching_half_arc"] == 1.3e-3
-    assert restart["reason"] == "the half of the finger is not stable, so that the whole may not be symmetric"
-    assert not [omission for omission in summary["omitted"] if "half" in omission["what"]]
-    assert "1.3e-3 m and both halves" in (folder / "run.log").read_text(encoding="utf-8").replace("0.0013", "1.3e-3")
-
-
 def test_finger_made_whole_is_the_one_that_was_whole(half, tmp_path, monkeypatch):
     """Step for step and digit for digit."""
     folder, summary = half
@@ -198,17 +177,6 @@ def lean(tmp_path_factory):
     """A lightly pressed finger whose ridges the rule chose."""
     folder = tmp_path_factory.mktemp("lean")
     return folder, run(from_data(LIGHT), folder, COMM)
-
-
-def test_run_reports_what_was_left_out(lean):
-    folder, summary = lean
-    assert summary["omitted"][-1] == {
-        "what": "contact of the ridges beyond ±3",
-        "reason": "they are not expected to touch, which each accepted step is checked for",
-    }
-    assert "contact of the ridges beyond ±3 left out" in (folder / "run.log").read_text(encoding="utf-8")
-    assert summary["charged_ridges_in_contact"] == 3
-    assert summary["parameters"]["mesh"]["touching_half_arc"] is None
 
 
 @pytest.mark.long

@@ -15,12 +15,12 @@ from scipy.optimize import brentq
 
 from fingerpad.runs import full
 from fingerpad.runs.context import RunContext
-from fingerpad.scene import Scene, from_data
+from fingerpad.scene import Scene
 from geometry import tags
 from geometry.bodies import ridge
 from geometry.mesh import load
 from tests.runs import followed
-from tests.small_finger import NINE, small
+from tests.small_finger import small
 from variational.body import Body
 from variational.contact.interface import Interface
 from variational.contact.penalty import Penalty
@@ -112,20 +112,6 @@ def test_state_past_the_fold_is_left(gain, side):
     assert failure.value.cycling
     assert stub.coupling.history.jumped == {0}
     assert np.sign(stub.coupling.d_eq[0] - CENTRE) == np.sign(side - 1)
-
-
-def test_ridges_that_feel_each_other():
-    """A pressure that follows the neighbours' air gaps by a hundredth disturbs the secants, but not for long.
-
-    Tolerance: the loop's, twice for what one ridge's error does to the others.
-    """
-    weak = 0.01 * (np.ones((3, 3)) - np.eye(3)) + np.diag([0.3, 0.9, -0.5])
-    stub = Stub(Linear(), lambda d: weak @ (d - CENTRE), 3)
-    stub.coupling.set_air_gaps(CENTRE * np.array([1.1, 0.9, 1.0]))
-    stub.coupling.solve()
-    assert len(stub.coupling.history.changes) <= 12
-    np.testing.assert_allclose(stub.coupling.d_eq, CENTRE, rtol=2e-6)
-    assert not stub.coupling.history.jumped
 
 
 # -- a flat ridge of the bearing area model ----------------------------------------------------------------
@@ -226,20 +212,6 @@ def test_past_the_pull_off_fold(beyond):
     assert stub.coupling.d_eq[0] == closure(0.0).d_eq
 
 
-def test_past_the_pull_in_fold():
-    """A little beyond the other fold the ridge comes down to the branch in contact."""
-    closure = BearingArea(H_0, p_floor=1.0)
-    stub = flat(110.0)  # the fold is at 107 Pa
-    stub.coupling.set_air_gaps(closure.air_gap(np.array([12e-6])))
-    stub.coupling.solve()
-    assert stub.coupling.history.jumped == {0}
-    assert stub.coupling.d_eq[0] == pytest.approx(closure.air_gap_at_external(110.0, FOLD_VOLTAGE), rel=1e-6)
-    parts = [stop.part for stop in stub.stops]
-    assert 0.5 in parts, "on its way down the ridge is solved for roughly,"
-    assert any(0 < part < 0.5 for part in parts), "and where it arrives it is not"
-    assert stub.stops[-1] == EXACT
-
-
 # -- the length of Eq. 4 -----------------------------------------------------------------------------------
 @pytest.mark.parametrize("by_gap", [False, True])
 def test_mean_pressure_is_over_the_length_chosen(by_gap):
@@ -267,18 +239,3 @@ def finger(scene: Scene) -> tuple[Array, Array]:
     made = full.run(scene.replace(history=loads), RunContext(comm=MPI.COMM_SELF))
     touching = made.charged.p_c > 0
     return made.charged.p_c[touching], made.charged.d_eq[touching]
-
-
-@pytest.mark.slow
-def test_scene_chooses_the_length():
-    """By default each air gap is the closure's at the pressure over the length under pressure; by gap it is larger.
-
-    Tolerance: the loop's, which ends with an iteration or two to spare. A longer length by a twentieth opens the gap by
-    some 2 %.
-    """
-    mesh = NINE["mesh"] | {"contact": 30e-6}
-    scene = from_data(NINE | {"mesh": mesh, "output": {"receptors": False, "errors": False}})
-    for length, least, most in (("pressure", 1 - 1e-6, 1 + 1e-6), ("gap", 1.02, 2.5)):
-        p_c, d_eq = finger(scene.replace(contact={"length": length}))
-        ratio = d_eq / scene.closure()(p_c).d_eq
-        assert ((least < ratio) & (ratio < most)).all()

@@ -1,7 +1,6 @@
 """The page on what is felt: rules of its verdicts on numbers made by hand, and what needs no finite elements."""
 
 import copy
-import json
 
 import numpy as np
 import pytest
@@ -9,8 +8,6 @@ import pytest
 from benchmarks.feel import __main__ as feel
 from benchmarks.feel import rules, scenes, subfield
 from benchmarks.measured.rules import HIT, MISS
-from fingerpad.results.files import FORMAT
-from fingerpad.results.result import Result
 
 STEP = {
     "rise": {"RA1": 20, "f_t": 2.0, "length": 2.0, "strain": 2.0},
@@ -66,20 +63,6 @@ def test_each_rule_can_miss(number):
         part = part[step]
     part[key] = value
     assert rules.judge(numbers)[number - 1].verdict == MISS
-
-
-def test_run_of_another_scene_is_not_taken(tmp_path, monkeypatch):
-    """A folder that has the run of one scene is not read for another."""
-    (tmp_path / "onset").mkdir()
-    kept = {"format": FORMAT, "parameters": json.loads(json.dumps(scenes.step(25.0).parameters()))}
-    (tmp_path / "onset" / "summary.json").write_text(json.dumps(kept), encoding="utf-8")
-    asked, done = [], Result(scenes.step(25.0), "full", None, None, None)
-    monkeypatch.setattr(scenes.fp, "run", lambda scene, out: asked.append(scene) or done)
-    monkeypatch.setattr(scenes.fp.Result, "load", lambda place: done)
-    scenes.run("onset", scenes.onset(), tmp_path)
-    assert asked == [scenes.onset()]
-    scenes.run("onset", scenes.step(25.0), tmp_path)
-    assert len(asked) == 1
 
 
 def test_gain_and_what_it_leaves():

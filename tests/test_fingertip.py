@@ -5,20 +5,18 @@ from functools import partial
 import numpy as np
 import pytest
 import ufl
-from dolfinx.mesh import entities_to_geometry
 from mpi4py import MPI
 from scipy.spatial import cKDTree
 
 from fingerpad.scene import Scene
 from geometry import fingertip, sizing, tags
 from geometry.mesh import load
-from geometry.parameters import Fingertip, MeshSize
+from geometry.parameters import Fingertip
 from geometry.profiles import GeometryError
 from geometry.reflection import HalfMesh, swapped
-from geometry.sizing import touching_ridges
 from tests.measures import integral, vertices
 from tests.small_finger import SMALL
-from tests.test_profiles import MM, UM, WAVE, dense
+from tests.test_profiles import UM, WAVE, dense
 
 
 def shoelace(*chains) -> float:
@@ -56,12 +54,6 @@ def test_area(finger_mesh, profiles, layer):
     tag = tags.LAYERS[layer]
     off = {"viable epidermis": 6e-3, "nail": 3e-3}.get(layer, 1e-3)  # the nail's edge is such a tip, too
     assert integral(finger_mesh, tag) == pytest.approx(areas(profiles)[tag], rel=off)
-
-
-@pytest.mark.mpi
-def test_ridges_that_can_touch(finger_mesh, coarse):
-    """Those with a tip within 2 mm of the centre, and half of one."""
-    assert finger_mesh.ridges() == list(range(-4, 5)) == list(touching_ridges(Fingertip(), coarse))
 
 
 def away_from(curve, points) -> float:
@@ -118,31 +110,6 @@ def test_interfaces_of_the_mesh(finger_mesh, profiles, layers, depth, within):
     """Nodes between two layers are on their curve. Tolerance: splines, above all at the VE-D junction's sharp tips."""
     nodes = vertices(finger_mesh, interface(finger_mesh, *layers))
     assert away_from(dense(profiles, getattr(profiles, depth)), nodes) < within
-
-
-RECEPTOR = 5 * UM
-
-
-def at_the_tips(receptors=True, growth=0.25):
-    """Return half a finger, coarse but for the tips below the Merkel sites, where ridges 0 to 2 can touch."""
-    size = MeshSize(contact=40 * UM, receptor=RECEPTOR, growth=growth, touching_half_arc=1 * MM)
-    return load(MPI.COMM_WORLD, partial(fingertip.build, Fingertip(), size, receptors, half=True))
-
-
-def test_elements_at_the_tips_below_the_merkel_sites(profiles):
-    """Where ridges can touch their edges are as long as asked, elsewhere several times as long.
-
-    Tolerance: an edge has the size asked for at its middle, 4/3 of that at the tip, to an eighth of it.
-    """
-    mesh = at_the_tips().mesh
-    own = np.arange(mesh.topology.index_map(1).size_local, dtype=np.int32)
-    ends = mesh.geometry.x[entities_to_geometry(mesh, 1, own)][:, :, :2]
-    s = np.arange(4) * WAVE
-    means = []
-    for tip in profiles.point(s, profiles.ve_d(s)):
-        here = ends[np.linalg.norm(ends - tip, axis=2).min(axis=1) < 1e-3 * UM]
-        means.append(np.concatenate(mesh.comm.allgather(np.linalg.norm(here[:, 1] - here[:, 0], axis=1))).mean())
-    assert max(means[:3]) < 1.5 * RECEPTOR < 4 * RECEPTOR < means[3]
 
 
 @pytest.mark.mpi

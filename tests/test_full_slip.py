@@ -4,22 +4,16 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from mpi4py import MPI
 
 from fingerpad.accuracy.states import StateRecorder
 from fingerpad.model.checks import FullSlip
 from fingerpad.scene import from_data
-from geometry.bodies import block
-from geometry.mesh import load
 from tests.runs import followed, path_of
 from tests.small_finger import NINE, small
 from tests.test_body import FORCE, MU_F, RIDGE, SKIN, SPRINGS, VOLTAGE, Body
-from tests.test_contact import HEIGHT, WIDTH, over
 from variational.contact.augmented import AugmentedLagrangian
 from variational.contact.nitsche import Nitsche
 from variational.roughness.bam import BearingArea
-from variational.solvers.accepted import return_to_onset
-from variational.solvers.continuation import Target
 
 pytestmark = pytest.mark.slow
 SCENE = NINE | {"f_ext": 1.0, "voltage": 100.0}
@@ -133,14 +127,3 @@ def test_place_of_full_slip_does_not_depend_on_the_step(contact, way):
     assert long.state.all_slip and short.state.all_slip
     assert long.state.bone_x == pytest.approx(short.state.bone_x, abs=0.3e-6)
     assert way * long.state.f_t == pytest.approx(MU_F * long.state.f_contact, rel=1e-8)
-
-
-def test_body_that_something_else_holds_stays_where_it_is():
-    """The lateral facets of a block are held in place: translated back the forces would not balance, so it stays."""
-    run = over(load(MPI.COMM_WORLD, block(WIDTH, HEIGHT, 0.25e-3)), MU_F, 1e11, 1e10).continuation
-    run.run(Target("press", bone_height=-2e-6))
-    run.run(Target("slide", bone_x=0.1e-3))
-    x, unknowns = run.solver.control.x, run.solver.x.array_r.copy()
-    assert return_to_onset(run.solver, run.observer, 0.1e-3) == 0.0
-    assert run.solver.control.x == x
-    np.testing.assert_allclose(run.solver.x.array_r, unknowns, rtol=0, atol=1e-18)

@@ -265,17 +265,6 @@ def test_parameters_tell_laws_apart(tmp_path):
     assert json.dumps(Scene(geometry={"file": file}).parameters(), sort_keys=True) != texts[-1]
 
 
-def test_mesh_is_read_when_it_is_given(tmp_path):
-    """A run of hours ends with the hash of what it began with, be the file gone."""
-    file = tmp_path / "mine.msh"
-    file.write_text("one", encoding="utf-8")
-    scene = Scene(geometry={"file": file})
-    before = scene.parameters()
-    file.unlink()
-    assert scene.parameters() == before
-    assert len(before["geometry"]["file_sha256"]) == 64
-
-
 def test_laws_of_a_run_tell_its_folder():
     """Kept results are found by the parameters, which have the laws with module, numbers and the hash of their file."""
     given = Scene(**OWN).parameters()

@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 import ufl
 from dolfinx import fem, mesh
-from dolfinx.fem.petsc import assemble_matrix
 from mpi4py import MPI
 from numpy.testing import assert_allclose
 
@@ -96,21 +95,6 @@ def test_matrix_is_the_reduced_one(space, layout, transposed):
     layout.add_to_unknowns(nodal, expected)
     (A.multTranspose if transposed else A.mult)(unknowns(layout, f), product)
     assert_allclose(product.array_r, expected.array_r, rtol=0, atol=1e-13 * expected.norm(3))
-
-
-def test_every_entry(space, layout):
-    """On one rank: the matrix is T^T A T of the plain one, entry by entry. Tolerance: roundoff."""
-    if space.mesh.comm.size > 1:
-        pytest.skip("the plain matrix is compared as a whole")
-    plain = assemble_matrix(fem.form(bilinear(space)))
-    plain.assemble()
-    n = plain.getSize()[0]
-    T = np.zeros((n, layout.global_size))
-    T[np.arange(n), layout.rows] = 1
-    every = range(layout.global_size)
-    reduced = T.T @ plain.getValues(range(n), range(n)) @ T
-    entries = matrix(layout, space).getValues(every, every)
-    assert_allclose(entries, reduced, rtol=0, atol=1e-14 * np.abs(reduced).max())
 
 
 def test_assembling_again_gives_the_same(space, layout):

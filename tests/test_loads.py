@@ -2,7 +2,6 @@
 
 import itertools
 import json
-import math
 
 import pytest
 
@@ -105,17 +104,6 @@ def test_band_with_enough_states_has_an_error(monkeypatch):
     finger = {"force": 0.5, "voltage": 100.0, "friction": 0.5, "electric": {"d_i": 2e-6}}
     (outside,) = cylinder_errors.outside(from_data(finger))
     assert (outside.key, outside.known) == ("force", "sections alone")
-
-
-def test_region_ends_where_the_full_model_has_no_result():
-    """Of sections over force every second one above 60 N/m is not reached: the region ends with a tenth of those."""
-    some = [each._replace(force=5.0 + 2.5 * k, attraction=2.0 + k) for k, each in enumerate(made_up(40))]
-    lost = [each._replace(error=math.nan) if each.force > 60 and k % 2 else each for k, each in enumerate(some)]
-    band = compared.bands(lost, [])[1]
-    assert len(band.some) + len(band.without) < len(some)
-    assert 0 < len(band.without) <= compared.WITHOUT * (len(band.some) + len(band.without))
-    assert max(each.force for each in band.some) == compared.region_of(band)["ranges"]["f_ext"][1] > 60
-    assert len(compared.bands(some, [])[1].some) == len(some)
 
 
 def test_tables_go_on_by_the_kept_states(numbers):

@@ -223,16 +223,6 @@ def test_file_is_refused(place, case):
     assert "\n" not in str(error.value)
 
 
-def test_triangles_outside_the_layers_are_refused(place):
-    def partly():
-        two_parts()
-        gmsh.model.removePhysicalGroups([(2, 2)])
-        gmsh.option.setNumber("Mesh.SaveAll", 1)
-
-    with pytest.raises(GeometryError, match=r"\d+ of \d+ triangles are in no group of cells"):
-        load(MPI.COMM_WORLD, geometry.file(write(place, partly)))
-
-
 @pytest.mark.mpi
 def test_no_file_is_refused_on_every_rank(place):
     with pytest.raises(GeometryError, match="mine.msh: the mesh file cannot be read: No such file or directory"):
@@ -290,10 +280,3 @@ def test_numbers_of_nodes_do_not_matter(place, build, version):
     for dim in (0, 2):
         assert made.mesh.topology.index_map(dim).size_global == own.mesh.topology.index_map(dim).size_global
     assert MPI.COMM_WORLD.allreduce(len(made.rim)) == MPI.COMM_WORLD.allreduce(len(own.rim))
-
-
-def test_partitions_are_refused(place):
-    """Their groups are of pieces, whose edges are more than the outline."""
-    written = write(place, changed(lambda: gmsh.model.mesh.partition(2)))
-    with pytest.raises(GeometryError, match="mine.msh: the mesh is cut into partitions; write it whole, as by gmsh's"):
-        load(MPI.COMM_WORLD, geometry.file(written))

@@ -7,7 +7,6 @@ from mpi4py import MPI
 from geometry.bodies import block, ridge
 from geometry.mesh import load
 from tests.test_contact import HEIGHT, MU_F, WIDTH, make
-from variational.contact.formulation import SLIPS, STICKS
 from variational.solvers import iteration as module
 from variational.solvers.equations import Control
 from variational.solvers.outcome import NotConverged
@@ -99,13 +98,6 @@ def test_step_that_inverts_is_halved(flat, monkeypatch):
         solver.solve()
 
 
-@pytest.mark.parametrize(("slipping", "guess"), [(True, SLIPS), (False, STICKS)])
-def test_guess_of_a_load(flat, slipping, guess):
-    solver = make(flat, MU_F)
-    solver.new_load(Control(), 0.0, slipping)
-    assert float(solver.problem.guess.value) == guess
-
-
 def test_steady_slip_is_solved_at_once(body):
     """At full slip a further translation is the first step of Newton's method if points are taken to slip on."""
     solver = make(body, MU_F, eps_t=5e10, held=False)
@@ -133,19 +125,6 @@ def test_shift_is_no_part_of_roundoff(body):
     assert shifted == pytest.approx(plain, rel=1e-9) and plain > 0
     assert float(eta.value) == 1e16
     assert tangent.matrix.norm() == larger
-
-
-def test_error_in_a_callback_is_raised_as_it_was(flat, monkeypatch):
-    """Not as PETSc's error -1, which names no cause."""
-
-    def fail(*args):
-        raise OSError("the cause")
-
-    solver = make(flat)
-    monkeypatch.setattr(solver.equations, "residual", fail)
-    solver.new_load(Control(0.0, -1e-6), 0.0)
-    with pytest.raises(OSError, match="^the cause$"):
-        solver.solve()
 
 
 # -- Anderson acceleration with a kept factorisation -----------------------------------------------------------------

@@ -150,16 +150,6 @@ def test_receptors(problem):
     assert np.abs(receptors.positions() - sites @ F_GIVEN.T).max() < 1e-17
 
 
-def test_receptor_between_cells(problem):
-    """A site on an edge and one on a vertex have the mean over their cells: on a mesh line half of the sheared side."""
-    problem.w.interpolate(lambda x: np.stack([0 * x[0], np.maximum(0.3 * (x[0] - 0.5e-3), 0)]))
-    sites = np.array([[0.5e-3, 0.8e-3], [0.5e-3, 5e-3 / 6], [0.501e-3, 0.8e-3]])
-    sheared = energy_3d(NAIL, np.array([[1.0, 0.0], [0.3, 1.0]]))
-    receptors = Receptors(problem, sites)
-    assert receptors.sed() == pytest.approx([sheared / 2, sheared / 2, sheared], rel=ROUNDOFF)
-    assert np.abs(receptors.positions()[:2] - sites[:2]).max() < 1e-17
-
-
 def test_receptor_outside(problem):
     """The message names the site, on every rank."""
     with pytest.raises(ValueError, match="receptor site 1 at x = 0.002 m, y = 0.0005 m lies outside the mesh"):

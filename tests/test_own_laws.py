@@ -5,17 +5,13 @@ from dataclasses import dataclass
 import numpy as np
 import pytest
 import ufl
-from mpi4py import MPI
 
 import fingerpad as fp
 from fingerpad.model import options
 from fingerpad.model.simulation import Simulation
 from fingerpad.reduced import cylinders
-from fingerpad.runs import full
-from fingerpad.runs.context import RunContext
 from fingerpad.scene import Scene, SceneError, from_data
-from tests.measures import rows_of
-from tests.runs import followed, tables_alone
+from tests.runs import followed
 from tests.small_finger import NINE, small
 from tests.test_laws import DERJAGUIN, OWN, Held
 from variational.contact.friction import CONE_ROUNDOFF, Coulomb, Derjaguin, Friction
@@ -96,11 +92,6 @@ class Shape(Held):
         return AirGap(np.array([1e-6, 1e-6]))
 
 
-class Telling(Held):
-    def state(self, p_c, voltage):
-        return repr(p_c)
-
-
 class Plain(Held):
     def __call__(self, p_c):
         return np.full_like(p_c, 1e-6)
@@ -132,23 +123,6 @@ def test_what_is_no_closure_is_refused(closure, sentence):
         check(closure)
     with pytest.raises(ValueError, match=sentence):
         Coupling(None, None, closure)
-
-
-@pytest.mark.slow
-def test_notes_are_of_the_pressures_that_the_closure_gets(tmp_path):
-    """Held air gaps make the forces the same whatever the length of Eq. 4 is; below them the skin is longer."""
-    history = [{"name": "press", "f_ext": 1.0}, {"name": "charge", "voltage": 100.0}]
-    data = {key: value for key, value in SMALL.items() if isinstance(value, dict)} | {"history": history}
-    told = {}
-    for length in ("pressure", "gap"):
-        scene = from_data(data | {"contact": {"length": length}}).replace(roughness=Telling())
-        with tables_alone():
-            full.run(scene, RunContext(tmp_path / length, MPI.COMM_SELF))
-        rows = [row for row in rows_of(tmp_path / length, "ridges") if float(row["p_c"]) > 0]
-        told[length] = np.array([[float(row["p_c"]), float(row["note"])] for row in rows])
-    np.testing.assert_array_equal(told["pressure"][:, 0], told["pressure"][:, 1])
-    np.testing.assert_array_equal(told["gap"][:, 0], told["pressure"][:, 0])
-    assert (told["gap"][:, 1] < 0.98 * told["gap"][:, 0]).all()
 
 
 @pytest.fixture(scope="module")

@@ -91,18 +91,6 @@ def test_file_that_cannot_be_is_refused(given, words, tmp_path, monkeypatch):
     assert "\n" not in str(refused.value)
 
 
-def test_mesh_is_that_of_the_scene(place, tmp_path, monkeypatch):
-    """Also where the program goes to another folder that has a file of its name; a file that changed is refused."""
-    write(place, finger(2e-3))
-    monkeypatch.chdir(place.parent)
-    given = scene().replace(geometry={"file": place.name})
-    monkeypatch.chdir(tmp_path.parent)
-    assert given.replace(friction=0.1).geometry.file == str(place)
-    write(place, finger(1e-3))
-    with pytest.raises(fp.SceneError, match=r"mine\.msh has changed since the scene was made; make the scene again"):
-        fp.run(given)
-
-
 def test_scene_is_kept_with_its_mesh(tmp_path):
     """For processes and for going on; a mesh that was changed since is refused."""
     file = write_text(tmp_path / "one.msh", "one")

@@ -112,21 +112,6 @@ def test_wheel_runs(wheel, tmp_path):
 
 
 # -- environment/lint, docs, wheels and venv -------------------------------------------------------------------------
-RUFF = "0.17.6"
-WANTED = re.search(r"^wanted=\((.*)\)$", (ROOT / "environment/wheels").read_text(), re.MULTILINE)[1].lower().split()
-WHEELS = [f"{name.replace('==', '-')}.dist-info" for name in WANTED]
-PACKAGES = "local/lib/python3.13/dist-packages"
-# Names the root's folder of packages, or installs as pip does, from nowhere; other commands are told and not run.
-ENTER = f"""#!/bin/bash
-[ "$2" != -c ] || {{ echo "$FOLDER"; exit; }}
-words=("$@")
-while [ $# -gt 0 ] && [ "$1" != --target ] && [ "$1" != --prefix ]; do shift; done
-[ $# -gt 0 ] || {{ echo "run ${{words[*]}}"; exit; }}
-[ -z "$OFFLINE" ] || {{ echo "no network"; exit 1; }}
-mkdir -p "$2/bin" {" ".join(f'"$2/{PACKAGES}/{wheel}"' for wheel in WHEELS)}
-echo "${{@:3}}" >"$2/wanted"
-cp "$RUFF" "$2/bin/ruff"
-"""
 # A Python that lacks something for the wheel, or nothing; it makes an empty venv, and writes what it is to install.
 PYTHON = f"""#!/bin/bash
 case "$*" in
@@ -142,53 +127,6 @@ def script(file: Path, text: str) -> None:
     file.parent.mkdir(exist_ok=True)
     file.write_text(text)
     file.chmod(0o755)
-
-
-@pytest.fixture
-def tool(tmp_path):
-    """Return a function that runs one of the scripts in a checkout whose root is a stand-in with an older ruff."""
-    environment, root = tmp_path / "checkout" / "environment", tmp_path / "cache" / "root" / "usr" / PACKAGES
-    root.mkdir(parents=True)
-    environment.mkdir(parents=True)
-    for name in ("docs", "lint", "pip", "wheels"):
-        shutil.copy(ROOT / "environment" / name, environment)
-    shutil.copy(ROOT / "pyproject.toml", environment.parent)
-    script(environment / "run", ENTER)
-    script(tmp_path / "bin" / "ruff", "#!/bin/sh\necho ruff 0.0.1\n")
-    script(tmp_path / "ruff", f'#!/bin/sh\n[ "$1" = --version ] && echo ruff {RUFF} || echo "ruff {RUFF} $*"\n')
-    variables = {name: value for name, value in os.environ.items() if name != "FINGERPAD_ROOT"}
-    variables |= {"PATH": f"{tmp_path / 'bin'}:{os.environ['PATH']}", "XDG_CACHE_HOME": str(tmp_path / "cache")}
-    variables |= {"FOLDER": str(root), "RUFF": str(tmp_path / "ruff")}
-
-    def run(name: str, *words: str, **more: str) -> subprocess.CompletedProcess[str]:
-        command = [environment / name, *words]
-        return subprocess.run(command, env=variables | more, capture_output=True, text=True, check=False)
-
-    return run
-
-
-TOOLS = {"lint": ((), f"ruff {RUFF}", 1), "docs": (("--get",), "Sphinx", 1), "wheels": ((), "SurfaceTopography", 0)}
-
-
-@pytest.mark.parametrize("name", TOOLS)
-def test_it_is_got_once(tool, name):
-    """After a try without a network, which is one sentence more."""
-    words, what, code = TOOLS[name]
-    failed = tool(name, *words, OFFLINE="yes")
-    assert failed.returncode == code and "cannot be had from PyPI" in failed.stderr.splitlines()[-1]
-    assert failed.stderr.splitlines()[-1].startswith(f"fingerpad: {what}") and "is there a network?" in failed.stderr
-    first, second = tool(name, *words), tool(name, *words)
-    assert (first.returncode, second.returncode, second.stderr) == (0, 0, "")
-    assert first.stderr.startswith(f"fingerpad: getting {what}") and first.stderr.count("\n") == 1
-
-
-def test_lint_runs_its_checks(tool):
-    """By the version that pyproject.toml names, whatever is on the path."""
-    assert tool("lint").stdout.splitlines()[-3:] == [
-        f"ruff {RUFF} check .",
-        f"ruff {RUFF} format --check .",
-        "run mypy",
-    ]
 
 
 # -- the venv ------------------------------------------------------------------------------------------

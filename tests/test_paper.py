@@ -84,15 +84,6 @@ def test_verdict_on_a_skin(words, run, verdict):
     assert by(fields.section(run, run_of(skin(**STICK))), words).verdict == verdict
 
 
-def test_missing_runs_are_named(tmp_path, capsys):
-    """Without a run the statements on the microscale are made all the same, and the page lists what is missing."""
-    numbers = command.collect(tmp_path / "runs")
-    assert [s["figure"] for s in numbers["statements"]] == ["4, Eq. 14", "5, Eq. 15"]
-    keep("paper", numbers, MADE, tmp_path)
-    assert "**Not run yet:** Fig. 2, Figs. 6 to 8" in command.draw(tmp_path).read_text(encoding="utf-8")
-    assert "missing: Fig. 2, run" in capsys.readouterr().out
-
-
 def test_grid_beside_its_limits(monkeypatch):
     """Friction at full slip and the contact lengths of both states at 75 N/m and 200 V, the load of the limits."""
     limits = {"charged_contact_length": 2.0, "full_slip_f_t": 10.0, "full_slip_contact_length": 1.0}

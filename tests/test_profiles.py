@@ -52,18 +52,6 @@ def test_depths(profiles, theta):
     assert profiles.d_sub(s) - HALF_DEPTH == pytest.approx(2000 * UM, rel=1e-12, abs=0)
 
 
-def test_waves_fade_beyond_the_last_ridge(profiles):
-    """At the nail all layers are offset curves, reached smoothly: no step where the last ridge ends.
-
-    Tolerance: roundoff; what a groove's curvature makes of a nanometre, 4e-15 m.
-    """
-    end = np.array(profiles.nail_arc)
-    for depth, mean in ((profiles.skin, 0), (profiles.sc_ve, 425), (profiles.ve_d, 600)):
-        assert depth(end) - HALF_DEPTH == pytest.approx(mean * UM, abs=1e-15)
-        s = profiles.ridged_arc + np.array([-1e-9, 1e-9])
-        assert np.ptp(depth(s)) < 1e-8 * UM
-
-
 def test_measured_profile_keeps_the_amplitude():
     """Fourier coefficients of any size are scaled to the height between groove and tip; tips stay on the outline.
 
@@ -97,16 +85,6 @@ def test_lowest_point_is_on_the_screen_wherever_the_crest_is(profile, crests):
     s = np.linspace(0, WAVE, 20001)
     assert np.ptp(profiles.skin(s)) == pytest.approx(100 * UM, rel=1e-6)
     assert profiles.skin(s).min() == pytest.approx(0, abs=1e-12)
-
-
-def test_fine_facets_are_about_the_crests():
-    """Parts of 0.2 wavelengths about two crests, no farther than the ridge."""
-    arcs = Profiles(Fingertip(ridge_profile=(0.0, -1.0))).touching_arcs(0.2, 1e-6) / WAVE
-    distance = np.abs(np.abs(arcs) - 0.25)
-    assert distance.max() == pytest.approx(0.1, abs=1e-9)
-    assert distance.min() <= 0.5 * UM / WAVE
-    grooves = Profiles(Fingertip(ridge_profile=(-1.0,))).touching_arcs(0.2, 1e-6) / WAVE
-    assert (np.abs(grooves).min(), np.abs(grooves).max()) == pytest.approx((0.4, 0.5), abs=0.5 * UM / WAVE)
 
 
 @pytest.mark.parametrize(

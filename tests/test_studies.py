@@ -1,18 +1,13 @@
 """Measured findings beside ours: rules of the verdicts, fits with known answers, and what the page claims in words."""
 
-import argparse
-import shlex
-
 import numpy as np
 import pytest
 
-from benchmarks import assumptions
-from benchmarks.harness import DOCS, ROOT, kept
+from benchmarks.harness import DOCS, kept
 from benchmarks.measured import __main__ as command
-from benchmarks.measured import fingers, rows, rules
+from benchmarks.measured import rows, rules
 from benchmarks.measured.rules import HIT, MISS, PART, by_factor, by_form, by_share
-from benchmarks.runs import FORCES, VOLTAGES
-from fingerpad.cli.arguments import scene_of
+from benchmarks.runs import VOLTAGES
 
 
 @pytest.fixture(scope="module")
@@ -82,41 +77,7 @@ def test_rises_find_their_own_curves(form, parameter):
     assert rules.of_largest(other, x, form(x, parameter)).misfit > 0.02
 
 
-def test_kept_friction_follows_the_attraction():
-    """At full slip f_T = µ_0 (f_ext + attraction), so that both rise by the same power of the voltage."""
-    found = rows.grid(kept("paper").numbers, kept("models").numbers)
-    coarse, forces = found.coarse, np.array(FORCES)[:, None]
-    # The slide ends where f_T is steady to 1e-6 of itself.
-    expected = 0.25 * (forces + coarse["full_slip_f_electrostatic"])
-    np.testing.assert_allclose(coarse["full_slip_f_t"], expected, rtol=1e-6)
-    known = [row for row in kept("newtons").numbers["friction"] if row["radius"] == 28e-3 and row["voltage"] == 200]
-    for name in ("gross_area", "contact_area"):  # of the page of newtons
-        sums = dict(zip(fingers.NEWTONS, found.full_finger[f"full_slip_200_{name}"], strict=True))
-        for row in known:
-            assert sums[round(row["f_ext"], 6)] == pytest.approx(row[name], rel=1e-9)
-
-
-def test_runs_of_the_page_balance_their_force():
-    wanted, runs = fingers.scenes(), kept("measured").numbers["runs"]
-    assert set(runs) == set(wanted)
-    for run in runs.values():
-        total = sum(run["pressure"]) * wanted["dry 20"].geometry.ridge_wavelength
-        assert total == pytest.approx(fingers.FORCE, rel=1e-6) and len(run["place"]) == run["ridges"]
-
-
 # -- the page of assumptions -----------------------------------------------------------------------------------------
 @pytest.fixture(scope="module")
 def found():
     return kept("assumptions").numbers
-
-
-@pytest.mark.slow
-def test_printed_options_give_the_scene(monkeypatch):
-    """As the command line reads them."""
-    monkeypatch.chdir(ROOT)
-    parser = argparse.ArgumentParser()
-    parser.add_argument("scene", nargs="?", type=assumptions.Path)
-    parser.add_argument("--set", action="append", default=[])
-    for name, options in (assumptions.runs() | assumptions.profiles()).items():
-        scene = scene_of(parser.parse_args(shlex.split(options)))
-        assert scene.parameters() == assumptions.scene(options).parameters(), name

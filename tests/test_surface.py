@@ -11,7 +11,7 @@ from mpi4py import MPI
 from numpy.testing import assert_allclose
 
 from geometry import tags
-from geometry.bodies import block, ridge
+from geometry.bodies import block
 from geometry.mesh import TaggedMesh, load
 from tests.measures import integral
 from variational.surface import Surface
@@ -90,17 +90,6 @@ def test_every_facet_is_counted_once(name, request):
         assert lengths[k] == pytest.approx(integral(body, tags.ridge(j), kind="ds"), rel=1e-12, abs=0)
 
 
-def test_integrals_do_not_depend_on_the_ranks():
-    """The sum over ranks is the sum on one. Tolerance: roundoff of another order of the terms."""
-    values = []
-    for comm in (MPI.COMM_WORLD, MPI.COMM_SELF):
-        surface = make(load(comm, ridge(20e-6)))
-        x, y = points(surface)
-        lengths = surface.sum_over_facets(surface.closed_length(x, y, y - 9e-6))
-        values.append([*surface.per_ridge(np.cos(2e4 * x) * y), *lengths])
-    assert_allclose(values[0], values[1], rtol=1e-12)
-
-
 # -- contact patches -----------------------------------------------------------------------------------
 def below(surface, x, y, level) -> float:
     """Return the current length below a level on all ranks."""
@@ -116,21 +105,6 @@ def test_flat_skin_partly_below(square, slope, part):
     y = 1e-4 + slope * (x + 0.5e-3)
     expected = part * 1e-3 * np.hypot(1, slope)
     assert below(surface, x, y, 1e-4 + part * slope * 1e-3) == pytest.approx(expected, rel=1e-10, abs=1e-13)
-
-
-def test_parabolas_in_a_facet():
-    """One that dips below inside a facet, and one that rises above and leaves the two sides.
-
-    Tolerance: roundoff of the roots, and of a height of 1e-12 m.
-    """
-    surface = make(load(MPI.COMM_WORLD, block(1e-3, 1e-3, 1e-3 / 3)))
-    x, _ = points(surface)
-    half, curvature = 0.05e-3, 50.0
-    t = 2 * curvature * half
-    arc = (t * np.hypot(1, t) + np.arcsinh(t)) / (2 * curvature)
-    dip, hump = curvature * ((x - 0.02e-3) ** 2 - half**2), -1e-3 * (x**2 - half**2)
-    assert below(surface, x, dip, 0.0) == pytest.approx(arc, rel=1e-12, abs=0)
-    assert below(surface, x, hump, 0.0) == pytest.approx(1e-3 - 2 * half, rel=2e-12, abs=0)
 
 
 def test_order_of_the_contact_length():

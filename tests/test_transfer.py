@@ -1,12 +1,10 @@
 """Snapshots restored on other meshes: what returns exactly; full slip is the path's; on any number of ranks."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 from mpi4py import MPI
 
-from geometry.bodies import block, ridge
+from geometry.bodies import ridge
 from geometry.mesh import load
 from tests.measures import straightened
 from tests.test_contact import MU_F, over
@@ -101,16 +99,6 @@ def test_state_returns_on_its_own_mesh(bodies, reached):
     np.testing.assert_allclose(back.u, normal.u, atol=1e-16)
     path.re_equilibrate("normal contact")
     np.testing.assert_allclose(path.solver.bone, normal.bone, atol=1e-11)
-
-
-def test_skin_of_a_ridge_higher_than_wide_is_in_order():
-    """Its points lie farthest apart along its height, in which the skin turns back. Tolerance: roundoff of 1 mm."""
-    path = prepare(load(MPI.COMM_WORLD, ridge(COARSE, height=900e-6, amplitude=500e-6)))
-    path.solver.problem.w.interpolate(lambda x: np.stack([100 * x[0], 200 * x[0]]) * (900e-6 - x[1]))
-    state = take_snapshot(path.coupling, path.observer.state())
-    assert abs(state.skin[0].chord) == pytest.approx([1, 0], abs=1e-3)
-    restore(state, path.coupling)
-    np.testing.assert_allclose(take_snapshot(path.coupling, path.observer.state()).u, state.u, atol=1e-16)
 
 
 @pytest.mark.parametrize(("old", "new"), [(COARSE, FINE), (FINE, COARSE)])
@@ -255,15 +243,6 @@ def test_a_state_not_found_at_once_is_found(bodies, reached, monkeypatch, failur
         np.testing.assert_array_equal(calls[3][2], calls[1][2])
     assert solver.equations.load_part == 0
     assert -solver.reaction[0] == pytest.approx(reached[FINE][2], rel=2e-6)
-
-
-def test_another_body_and_other_ridges_are_refused(bodies, reached):
-    other = prepare(load(MPI.COMM_WORLD, block(2e-3, 2e-3, 0.25e-3)))
-    with pytest.raises(ValueError, match="of another body"):
-        restore(reached[COARSE][1], other.coupling)
-    state = reached[COARSE][1]
-    with pytest.raises(ValueError, match="ridges 1 to 1 that can touch and the mesh 0 to 0"):
-        restore(replace(state, d_eq={1: 1e-6}), prepare(bodies[FINE]).coupling)
 
 
 def test_element_that_a_displacement_folds_is_unfolded(bodies):

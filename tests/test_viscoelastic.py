@@ -9,7 +9,6 @@ from mpi4py import MPI
 from geometry import tags
 from geometry.bodies import block
 from geometry.mesh import load
-from tests.test_element import confined_stress
 from variational import kinematics
 from variational.body import Body
 from variational.contact.interface import Interface
@@ -134,19 +133,6 @@ def test_convolution(body):
         np.testing.assert_allclose(strained.value(f"overstress {k}"), direct, atol=1e-10 * np.abs(direct).max())
 
 
-def test_second_order(body):
-    """Under a ramp the error of Q falls with the square of the step; the limit is the convolution's closed form."""
-    errors = []
-    for steps in (4, 8, 16, 32):
-        strained = Strained(over(body, Viscoelastic(NeoHooke(1e3), MOUSE)).problem)
-        for k in range(steps):
-            strained.to(np.eye(2) + np.array([[0, 1e-6], [0, 0]]) * (k + 1) / steps, 0.1 / steps)
-        S = strained.value("isochoric stress")[2]
-        closed = sum(beta * S * tau / 0.1 * -np.expm1(-0.1 / tau) for beta, tau in LAW.branches)
-        errors.append(abs(sum(strained.value(f"overstress {k}")[2] for k in (1, 2)) / closed - 1))
-    np.testing.assert_allclose(np.log2(np.array(errors[:-1]) / errors[1:]), 2.0, atol=0.05)
-
-
 @pytest.mark.parametrize("frequency", [0.1, 1.0, 10.0, 100.0])
 def test_storage_and_loss(body, frequency):
     """Stress under a small oscillation has the complex modulus's two parts.
@@ -199,40 +185,6 @@ def test_creep(body):
         errors.append(creep / (compliance(K, G, seconds) - compliance(K, G, 0.0)) / (-f / 1e-3 * HEIGHT) - 1)
     assert abs(errors[0]) < 1e-3
     assert abs(errors[1]) < 0.4 * abs(errors[0])
-
-
-@pytest.mark.parametrize("held", ["force", "depth"])
-def test_convolution_of_a_solved_body(body, held):
-    """At each step of a creep or a relaxation the pressure is the convolution of all strains before it.
-
-    The confined block has the closed form of its elastic stress; the sum over all past steps is independent of the
-    recursion. Tolerance: 1e-10 of the pressure, that of the solve.
-    """
-    made, path = (found := over(body)), found.continuation
-    bulk, places, jumps, before = ELASTIC.bulk, [], [], 0.0
-    last = 0.0
-
-    def check(target, part, attempt):
-        nonlocal before, last
-        p_n = float(path.surface_state.p_n.max(initial=0.0))
-        p_n = MPI.COMM_WORLD.allreduce(p_n, op=MPI.MAX)
-        stretch = 1 + (float(made.solver.bone[1]) + p_n / Penalty().eps_n) / HEIGHT
-        S = (confined_stress(ELASTIC, stretch) - bulk * (stretch - 1)) / stretch
-        places.append((last + path.time) / 2)
-        jumps.append(S - before)
-        Q = sum(
-            beta * np.exp(-(path.time - place) / tau) * jump
-            for beta, tau in LAW.branches
-            for place, jump in zip(places, jumps, strict=True)
-        )
-        before, last = S, path.time
-        assert -(bulk * (stretch - 1) + stretch * (S + Q)) == pytest.approx(p_n, rel=1e-10)
-
-    path.on_accept = check
-    load = {"force": {"f_ext": 20.0}, "depth": {"bone_height": -20e-6}}[held]
-    path.run(Target("press", **load, duration=0.02))
-    path.run(Target("hold", **load, duration=0.5))
-    assert path.steps > 5
 
 
 def compliance(K: float, G: float, t: float) -> float:
