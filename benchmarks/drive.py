@@ -21,7 +21,7 @@ from fingerpad.results import style
 from fingerpad.runs.drive import FREQUENCIES as TABLED
 from fingerpad.runs.drive import drive, thresholds
 from fingerpad.scene import Scene
-from fingerpad.scene.supply import REFERENCE, remains
+from fingerpad.scene.drive import REFERENCE, remains
 from fingerpad.scene.waveform import MEASURES
 from variational.attraction.circuit import LEAKS
 
@@ -76,8 +76,8 @@ def _scene(wave: Mapping[str, Any], electric: Mapping[str, Any]) -> Scene:
 def _share(frequency: float, electric: Mapping[str, Any]) -> float:
     """Return the square of the voltage across the reference gap, over that of the drive."""
     scene = _scene(SINE | {"frequency": frequency}, electric)
-    assert scene.supply is not None
-    return float(scene.supply.circuit.share(frequency, REFERENCE, *scene.supply.behind))
+    assert scene.drive is not None
+    return float(scene.drive.circuit.share(frequency, REFERENCE, *scene.drive.layers))
 
 
 def _friction(frequency: float, electric: Mapping[str, Any]) -> float:
@@ -95,8 +95,8 @@ def _left_out(frequency: float, electric: Mapping[str, Any]) -> float:
 def _wave(wave: Mapping[str, Any], electric: Mapping[str, Any]) -> dict[str, float]:
     """Return measures of a drive and its friction (V, Pa, N/m)."""
     scene = _scene(wave, electric)
-    assert scene.supply is not None
-    found, measures = drive(scene), scene.supply.measures()
+    assert scene.drive is not None
+    found, measures = drive(scene), scene.drive.measures()
     f = float(wave["frequency"])
     friction = {"mean": found.f_t.mean(), "low": found.f_t.min(), "high": found.f_t.max()}
     friction |= {"at_f": found.at(f), "at_2f": found.at(2 * f)}

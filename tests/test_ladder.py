@@ -8,7 +8,6 @@ import pytest
 from fingerpad.cli import compare
 from fingerpad.reduced import cylinders
 from fingerpad.reduced.cylinder_errors import REGIONS
-from fingerpad.results.quantities import RESULTS
 from fingerpad.scene import SceneError, from_data
 from tests.test_laws import Held
 from variational.contact.friction import Derjaguin
@@ -32,13 +31,6 @@ def test_forces_balance(default, state):
     assert s.f_contact - s.f_electrostatic == pytest.approx(75.0, rel=1e-9)
 
 
-def test_what_it_cannot_know_is_absent(default):
-    unknown = [(state, name) for state, s in default.named.items() for name in RESULTS if np.isnan(getattr(s, name))]
-    assert unknown == [(state, name) for state in ("charged", "full_slip") for name in ("p_max", "bone_height")]
-    assert default.to_dict()["full_slip_bone_height"] is None and default.uncharged is None
-    assert any("bone's height" in note for note in default.notes)
-
-
 def test_uncharged_length_is_the_runs(default):
     """At a force of the runs nothing is interpolated; they are kept with four digits."""
     found = cylinders.solve(scene(f_ext=50.0, voltage=0.0))
@@ -53,13 +45,6 @@ def nearest(key: str, value: float, friction: float) -> str:
     regions = [r.ranges for r in REGIONS[1:] if r.ranges["friction"][0] <= friction <= r.ranges["friction"][1]]
     low, high = min((r[key] for r in regions), key=lambda ends: np.abs(np.log(np.array(ends) / value)).min())
     return f"{key} is {value:g} {'m' if '.' in key else 'N/m'}, and it is known for {low:g} to {high:g}"
-
-
-def test_force_beyond_the_runs_is_said():
-    found = cylinders.solve(scene(f_ext=1.0, voltage=20.0))
-    assert "extrapolated" in found.notes[0]
-    assert any(nearest("f_ext", 1.0, 0.25) in text for text in found.cautions)
-    assert not cylinders.solve(scene()).cautions
 
 
 def test_other_screen_than_the_runs_is_said():
@@ -82,11 +67,6 @@ def test_other_screen_than_the_runs_is_said():
 def test_scene_it_does_not_know_is_refused(data, sentence):
     with pytest.raises(SceneError, match=sentence):
         cylinders.solve(scene(**data))
-
-
-def test_ridge_without_a_round_tip_is_refused():
-    with pytest.raises(SceneError, match="gives a ridge 2 crests; the model 'cylinders' takes ridges for cylinders"):
-        cylinders.tip_radius(scene(geometry={"ridge_profile": [1.0, -0.5]}).geometry)
 
 
 def test_errors_of_a_run_stand_beside_its_values(default):

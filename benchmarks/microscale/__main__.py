@@ -103,7 +103,7 @@ def friction(law: Law, f_ext: float, voltage: float | Mapping[str, Any]) -> dict
     slip = found.full_slip
     assert slip is not None
     p_c, d_eq = (found.record[f"full_slip_{name}"] for name in ("p_c", "d_eq"))
-    effective = slip.voltage if scene.supply is None else float(scene.supply.effective(np.array(d_eq)))
+    effective = slip.voltage if scene.drive is None else float(scene.drive.effective(np.array(d_eq)))
     inside = law.statistics(np.clip(p_c, *law.pressures))
     beyond, balanced = False, 0.0
     if isinstance(law, TabulatedClosure):

@@ -10,7 +10,7 @@ from collections.abc import Callable, Collection, Iterable, Mapping
 from dataclasses import dataclass, fields, replace
 from typing import Any
 
-from fingerpad.richardson import plus_minus
+from fingerpad.accuracy.richardson import plus_minus
 from fingerpad.scene.messages import SceneError
 from geometry.units import in_si
 from variational.state import ContactState
