@@ -25,7 +25,7 @@ from fingerpad.accuracy.estimate import errors_of
 from fingerpad.accuracy.richardson import of_two_meshes, rigid
 from fingerpad.accuracy.solves import solve_again
 from fingerpad.accuracy.states import Solve, StateRecorder, with_values
-from fingerpad.model.adhesion import lost
+from fingerpad.model.cautions import lost
 from fingerpad.model.drive_loads import EQUAL, gap_factor
 from fingerpad.model.finger import Finger
 from fingerpad.model.full_slip import Conditions, FullSlips, Solved
@@ -33,10 +33,9 @@ from fingerpad.model.options import FingerModel, by_rule, plan
 from fingerpad.model.report import Clock
 from fingerpad.model.simulation import RestartRequired, Simulation
 from fingerpad.model.state import broken
-from fingerpad.results.answer import Cost
 from fingerpad.results.files import below
 from fingerpad.results.provenance import provenance
-from fingerpad.results.result import Result
+from fingerpad.results.result import Cost, Result
 from fingerpad.runs import batch
 from fingerpad.runs.context import RunContext
 from fingerpad.runs.post import kept
