@@ -11,7 +11,7 @@ from fingerpad.cli import main
 from fingerpad.model.cautions import breakdown_ahead, breakdown_in_states
 from fingerpad.runs import newtons
 from tests.small_finger import NINE
-from variational.roughness.statistics import breakdown_voltage, breaking_gaps
+from variational.roughness.gaps import breakdown_voltage, breaking_gaps
 from variational.state import ContactState, RidgeStates
 
 SINE = {"waveform": "sine", "amplitude": 400.0, "frequency": 100.0}

@@ -7,7 +7,7 @@ do so at a voltage at which the bearing area model has none; the states then dep
 found.
 
 **Breakdown.** A ridge's gap is its equivalent air gap d_eq, and the voltage across it is that of the circuit at each
-instant. It breaks down by :func:`variational.roughness.statistics.breakdown_voltage`, in which the total voltage does
+instant. It breaks down by :func:`variational.roughness.gaps.breakdown_voltage`, in which the total voltage does
 not count. Where a state has the mean attraction of a drive, a period of the drive counts, in its steady state.
 *Assumption*: skin beside the contact, and ridges above the screen, are not examined.
 """
@@ -26,7 +26,7 @@ from fingerpad.scene.remarks import remarks
 from fingerpad.scene.waveform import Waveform
 from variational.contact.formulation import Formulation
 from variational.roughness.closure import PAST_THE_FOLD, Closure, air_gaps
-from variational.roughness.statistics import breakdown_voltage
+from variational.roughness.gaps import breakdown_voltage
 from variational.state import ContactState
 
 Array = NDArray[np.float64]

@@ -146,8 +146,8 @@ class Topography(Table):
     pixel: tuple[Length, Length] | None = None
     """Lengths of a pixel along x and y (m), in place of the map's lengths."""
     missing: str | None = None
-    """Mark of missing pixels besides nan and empty places: a number, in a plain matrix also a word. Without it a value
-    far from all other heights is refused; "nan" takes all values and lines as measured."""
+    """Number that marks missing pixels, besides nan and empty places. Without it a value far from all other heights is
+    refused; "nan" takes all values and lines as measured."""
 
     def roughness(self, law: type[BearingArea | TabulatedClosure]) -> dict[str, Any]:
         """Return the parameters of a law that the map gives.

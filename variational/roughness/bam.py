@@ -19,7 +19,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from variational.coefficients import OF_SCENE, Named, parameter, refuse_not_positive
 from variational.roughness.closure import PAST_THE_FOLD, AirGap, Closure, Progress
-from variational.roughness.statistics import Slopes, Statistics, breaking_gaps
+from variational.roughness.gaps import Slopes, Statistics, breaking_gaps
 
 if TYPE_CHECKING:
     from variational.roughness.topography import HeightMap
