@@ -11,13 +11,14 @@ import numpy as np
 from pydantic import ValidationError
 
 from fingerpad.cli import output, ranges
-from fingerpad.cli.arguments import PICTURE, Parser, echo, path, quantity, scene_of, several
+from fingerpad.cli.arguments import PICTURE, Parser, echo, path, scene_of, several
 from fingerpad.model.cautions import on_closure
 from fingerpad.results.quantities import QUANTITIES, Output
 from fingerpad.scene import Scene, from_data, override
 from fingerpad.scene.materials import CLOSURES, Topography
 from fingerpad.scene.messages import SceneError, clip, first_error
 from fingerpad.scene.remarks import on_waves, remarks
+from geometry.units import to_si
 from variational.attraction.electroadhesion import VACUUM_PERMITTIVITY
 from variational.roughness.bam import STICKING, BearingArea
 from variational.roughness.heightfile import Found, scan
@@ -80,10 +81,14 @@ def microscale(argv: Sequence[str]) -> int:
 
 
 def _pressures(text: str) -> list[float]:
+    values = ranges.read("--p", text)
     try:
-        return [quantity(str(value), "Pa") for value in ranges.read("--p", text)]
-    except argparse.ArgumentTypeError as error:
-        raise SceneError(f"--p: {error}") from None
+        found = [to_si(each, "Pa") if isinstance(each, str) else float(each) for each in values]
+    except ValueError as error:
+        raise SceneError(f"--p is {clip(text)}; {error}") from None
+    if not all(0 < p < math.inf for p in found):
+        raise SceneError(f"--p is {clip(text)}; it must be greater than 0")
+    return found
 
 
 def _scatter(closure: BearingArea | TabulatedClosure, pressures: Sequence[float]) -> Iterator[str]:
