@@ -68,7 +68,7 @@ def microscale(argv: Sequence[str]) -> int:
     echo(output.text(_COLUMNS, rows))
     begin = "roughness.p_floor" if low == closure.p_floor * 1e-3 else "the beginning of the table of gaps"
     echo(
-        "\npressure: mean contact pressure of the ridge; external: pressure less attraction; separation: the mean one.\n"
+        "\npressure: mean contact pressure of the ridge; external: pressure less attraction; separation: mean.\n"
         f"The air gap stays constant below {low:.4g} kPa ({begin}) and above {high:.4g} kPa, {closure.end}."
     )
     pressures = [row["p_c"] for row in rows]
