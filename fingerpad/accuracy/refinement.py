@@ -37,7 +37,7 @@ from typing import TYPE_CHECKING, Any
 from fingerpad.accuracy.estimate import Estimate, of_key
 from fingerpad.accuracy.richardson import MeshParameter, errors, rigid, to_refine
 from fingerpad.accuracy.states import Solve, quantities
-from fingerpad.model.adhesion import lost
+from fingerpad.model.cautions import lost
 from fingerpad.model.simulation import RestartRequired
 from fingerpad.results.interrupt import Interrupted
 from fingerpad.results.states import WORDS

@@ -25,7 +25,7 @@ from fingerpad.accuracy.estimate import errors_of
 from fingerpad.accuracy.richardson import of_two_meshes, rigid
 from fingerpad.accuracy.solves import solve_again
 from fingerpad.accuracy.states import Solve, StateRecorder, with_values
-from fingerpad.model.adhesion import lost
+from fingerpad.model.cautions import lost
 from fingerpad.model.drive_loads import EQUAL, gap_factor
 from fingerpad.model.finger import Finger
 from fingerpad.model.full_slip import Conditions, FullSlips, Solved

@@ -50,19 +50,16 @@ def with_cautions(result: Result, found: Iterable[str]) -> Result:
 
 def _cautions(result: Result, states: Sequence[ContactState]) -> Result:
     """Return a result of the full model with the notes on its drives, and the cautions on scene, states and loads."""
-    from fingerpad.model import breakdown, cautions
-    from fingerpad.model.adhesion import without_slip
+    from fingerpad.model.cautions import on_scene, without_slip
     from fingerpad.results.over_time import NOTE
     from fingerpad.results.states import long_steps
-    from fingerpad.scene.remarks import leakage, remarks
+    from fingerpad.scene.remarks import leakage
 
     scene, loads = result.scene, result.scene.loads()
     notes = [*leakage(scene), *([NOTE] if any(load.takes_time for load in loads) else [])]
     lacks_slip = result.full_slip is None and any(load.until_full_slip for load in loads) and not result.failure
     found = [
-        *remarks(scene),
-        *cautions.on_states(states, scene.closure(), scene.contact.law),
-        *breakdown.of_states(scene, states),
+        *on_scene(scene, states),
         *long_steps(result.loads, result.record.get("force_error", 0.0)),
         *(without_slip(states, scene.closure()) if lacks_slip else []),
     ]
