@@ -184,16 +184,6 @@ def test_output_of_ones_own_has_its_error_from_the_same_two_meshes(monkeypatch):
     assert "skin" not in state.error.known(), "not of the states that are solved again"
 
 
-@pytest.mark.parametrize("formulation", ["nitsche", "augmented"])
-def test_formulations_without_a_penalty_tell_none(monkeypatch, formulation):
-    monkeypatch.setattr(solves, "solve_again", springs)
-    model = model_of({"contact": {"formulation": formulation}})
-    found = refinement(model, springs(model, {}, None))
-    found.run()
-    assert found.penalty == {}
-    assert with_errors(found, {"full_slip": contact()})["full_slip"].penalty.known() == {}
-
-
 def lost(model, states, comm, views=False, stiffer=None):
     raise StepFailed("full slip found no equilibrium")
 

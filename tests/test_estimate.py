@@ -4,7 +4,7 @@ import pytest
 
 from benchmarks.errors import stiffer
 from fingerpad.accuracy import solves
-from fingerpad.accuracy.richardson import MORE, ONCE, ORDER, MeshParameter, errors, plus_minus, rigid, to_refine
+from fingerpad.accuracy.richardson import ONCE, ORDER, MeshParameter, errors, plus_minus, rigid, to_refine
 from fingerpad.scene import SceneError, from_data
 from variational.contact.penalty import Penalty
 
@@ -26,11 +26,6 @@ def parameter(q, *at: int) -> MeshParameter:
 def test_first_order_is_found_exactly(at):
     """What is left at the size in use. Roundoff of a difference of ones."""
     assert parameter(law(1.0), *at).share("q") == pytest.approx(0.1 / 2 ** (at[-1] + 1), rel=1e-12)
-
-
-def test_second_order_is_overestimated_three_times():
-    """First order is taken: the whole of the last change, of which second order leaves a third."""
-    assert parameter(law(2.0), 0, 1).share("q") == pytest.approx(3 * 0.1 / 16, rel=1e-12)
 
 
 @pytest.mark.parametrize(("degree", "left"), [(1, 0.3), (2, 0.1), (3, 0.1)])
@@ -62,12 +57,6 @@ def test_errors_of_parameters_add_up_whatever_their_signs():
     """Two parameters of first order whose errors cancel on this mesh."""
     parameters = {"a": parameter(law(1.0, 0.1), 0), "b": parameter(law(1.0, -0.1), 0)}
     assert errors(parameters, ["q"])["q"] == pytest.approx(ONCE * 0.1, rel=1e-12)
-
-
-def test_each_parameter_has_its_own_factor_of_safety():
-    """Shares of 0.05, known from one change, and 0.025, from two."""
-    parameters = {"a": parameter(law(1.0), 0), "b": parameter(law(1.0), 0, 1)}
-    assert errors(parameters, ["q"])["q"] == pytest.approx(ONCE * 0.05 + MORE * 0.025, rel=1e-12)
 
 
 def test_nothing_is_halved_within_the_tolerance():

@@ -96,13 +96,6 @@ def test_frictionless_finger_has_its_areas(tmp_path):
     assert "the ridge contact area of the whole finger goes from" in write(tmp_path).read_text(encoding="utf-8")
 
 
-def test_smaller_forces_of_one_run(found):
-    """Read from traces with other points than those of a run to the force: within 1 %, which docs/results.md says."""
-    for k in range(2):
-        under = found[3 * k + 2].finger.under(0.1).values("full_slip")
-        assert under["f_t"] == pytest.approx(found.array("f_t")[k, 0], rel=1e-2)
-
-
 def test_force_that_no_trace_reaches_fails_alone(tmp_path):
     """It says what to do; the others are there, and a chart has no point for it."""
     found = fp.sweep(fp.Scene(), tmp_path, model="cylinders", force=[0.2, 60.0])
