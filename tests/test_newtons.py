@@ -134,7 +134,7 @@ def test_force_that_was_interrupted_goes_on(tmp_path, of, method, words):
     assert not (out / "checkpoint").exists()
     with tables_alone(), pytest.MonkeyPatch.context() as patch:
         patch.setattr(Simulation, "_accepted", None)  # nothing is solved again
-        assert fp.run(scene(), out=out).finger.to_dict() == went_on.finger.to_dict()
+        assert fp.run(scene(), out=out).finger.flat() == went_on.finger.flat()
     with pytest.raises(SceneError, match=r"its force was 0.002, and is 0.0022 now"):
         fp.run(scene().replace(force=1.1 * FORCE), out=out)
 

@@ -215,7 +215,7 @@ def test_report_and_text_of_a_force_begin_with_the_whole_finger(tmp_path):
     assert text.startswith(f"{result.headline}\nWhole finger, as a sum of slices")
     assert text.index("Middle section of the finger (model 'cylinders')") > 0
     read = fp.Result.load(tmp_path).finger
-    assert read.under(1.0).to_dict() == result.finger.under(1.0).to_dict()
+    assert read.under(1.0).flat() == result.finger.under(1.0).flat()
     for force, off in ((1.0, 5e-3), (0.4, 1e-2)):
         less = fp.run(fp.Scene(force=force), model="cylinders").finger.values("full_slip")
         found = read.under(force).values("full_slip")

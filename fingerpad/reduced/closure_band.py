@@ -40,7 +40,7 @@ import numpy as np
 
 from fingerpad.model.cautions import BALANCED, sticking
 from fingerpad.reduced.cylinders import over_forces
-from fingerpad.results.closures import KNOWN, RECORD
+from fingerpad.results.headline import BAND, KNOWN
 from fingerpad.scene import Scene
 from fingerpad.scene.messages import SceneError
 from fingerpad.scene.remarks import coefficient
@@ -203,7 +203,7 @@ def with_band(result: "Result") -> "Result":
     except SceneError as error:
         why, _, _ = str(error).partition(";")
         return replace(result, notes=(*result.notes, f"No likely range of µ_app is computed: {why}."))
-    more = ({RECORD: found} if found else {}) | ({KNOWN: all_parts} if all_parts else {})
+    more = ({BAND: found} if found else {}) | ({KNOWN: all_parts} if all_parts else {})
     return replace(result, record=result.record | more)
 
 

@@ -16,8 +16,8 @@ from fingerpad.model.cautions import breakdown_ahead
 from fingerpad.reduced.registry import find
 from fingerpad.results.files import replace_json
 from fingerpad.results.folder import CheckpointError, FolderError, Serial, on_rank_0
+from fingerpad.results.outputs import checked as checked_outputs
 from fingerpad.results.quantities import Output
-from fingerpad.results.quantities import checked as checked_outputs
 from fingerpad.results.result import Result
 from fingerpad.runs.context import RunContext, finished
 from fingerpad.runs.post import Entry, kept, of_outputs
