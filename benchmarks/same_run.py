@@ -71,7 +71,10 @@ def scene(case: dict[str, Any], folder: Path) -> dict[str, Any]:
     if "force" not in case:  # with one a program has steps and states of its own choice beside the finger's slices
         found |= {"steps": result.steps, "loads": result.loads, "named": result.named}
     if result.finger is not None:
-        found["finger"] = result.finger.to_dict()
+        found["finger"] = {
+            name: total.slices() | {"values": total.values, "error": result.finger.error[name]}
+            for name, total in result.finger.states.items()
+        }
     return {name: plain(value) for name, value in found.items()}
 
 

@@ -6,18 +6,18 @@ from pathlib import Path
 
 from fingerpad.cli import mesh as meshes
 from fingerpad.cli.arguments import Parser, echo, scene_of
-from fingerpad.model import breakdown
+from fingerpad.model.cautions import breakdown_ahead, on_scene
 from fingerpad.model.options import COARSER, FingerModel, ModelOptions, by_rule, memory, plan, refuse_mesh, unknowns
 from fingerpad.reduced import cylinders
 from fingerpad.reduced.closure_band import with_band
 from fingerpad.reduced.cylinder_errors import REGIONS, where, within
-from fingerpad.results.closures import KNOWN
 from fingerpad.results.files import check_folder
+from fingerpad.results.headline import KNOWN
 from fingerpad.results.terminal import about
 from fingerpad.scene import Load, Scene, SceneError
 from fingerpad.scene.loads import ways
 from fingerpad.scene.messages import counted
-from fingerpad.scene.remarks import finger_in_words, leakage, remarks, used
+from fingerpad.scene.remarks import finger_in_words, leakage, used
 from fingerpad.scene.viscosity import elastic, viscous_layers
 from geometry.profiles import GeometryError
 
@@ -114,8 +114,8 @@ def _aims(load: Load) -> Iterator[str]:
 
 
 def _model(scene: Scene, needed: ModelOptions) -> Iterator[str]:
-    yield from (*finger_in_words(scene), *remarks(scene), *leakage(scene), *too_short(scene), *_adhering(scene))
-    yield from breakdown.ahead(scene)
+    yield from (*finger_in_words(scene), *on_scene(scene), *leakage(scene), *too_short(scene), *_adhering(scene))
+    yield from breakdown_ahead(scene)
     if caution := scene.contact.law.caution:
         yield caution
     if scene.geometry.file is None:

@@ -21,7 +21,6 @@ from fingerpad.scene.messages import SceneError
 from fingerpad.scene.wavefile import POINTS
 from fingerpad.scene.waveform import Waveform
 from geometry.units import computed
-from variational.attraction.dielectric import ColeCole
 from variational.attraction.network import Network
 
 if TYPE_CHECKING:
@@ -104,10 +103,10 @@ def _over_time(drive: Drive, seconds: float) -> tuple[Array, Array]:
         drive: the drive.
         seconds: length of the load (s).
     """
-    wave, tissue = drive.wave, drive.circuit.dielectric
+    wave = drive.wave
     factor = (drive.h_0 + REFERENCE) / REFERENCE
     count = int(np.clip(POINTS / max(seconds * (wave.frequency or 0.0), 1.0), _FEWEST, _MOST))
-    if wave.carrier is None and isinstance(tissue, ColeCole):
+    if wave.carrier is None and drive.circuit.dielectric.debye() is not None:
         t, u = (np.array(each) for each in zip(*wave.samples(seconds, 24 / count), strict=True))
         network = Network.of(drive.circuit, REFERENCE, *drive.layers)
         return t, factor * network.response(t, u)

@@ -32,20 +32,17 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from fingerpad.model import breakdown
-from fingerpad.model.adhesion import sticking
-from fingerpad.model.cautions import on_states
+from fingerpad.model.cautions import on_scene, sticking
 from fingerpad.reduced import cylinder_errors, uncharged
 from fingerpad.reduced.model import STATES, Model, reduced_state, refuse_others
 from fingerpad.reduced.similarity import Similar, similar
-from fingerpad.results.answer import MODEL_ERROR, Cost
 from fingerpad.results.quantities import MODEL
-from fingerpad.results.result import Result
+from fingerpad.results.result import MODEL_ERROR, Cost, Result
 from fingerpad.results.states import WORDS
 from fingerpad.scene import Scene, SceneError
 from fingerpad.scene.fingers import ADULT
 from fingerpad.scene.messages import show
-from fingerpad.scene.remarks import coefficient, leakage, remarks, used
+from fingerpad.scene.remarks import coefficient, leakage, used
 from fingerpad.slices import errors
 from geometry.parameters import Fingertip
 from geometry.profiles import Profiles
@@ -147,7 +144,7 @@ def solve(scene: Scene) -> Result:
     refuse_others(scene, Cylinders.name)
     source, ridges = _source(scene, _scaled(scene)), dict[str, RidgeState]()
     exact = "a closed form, without a mesh: no discretisation error but that of the contact length it is given"
-    cautions, found = [*remarks(scene)], dict[str, ContactState]()
+    cautions, found = list[str](), dict[str, ContactState]()
     for state in STATES:
         ((found[state], ridges[state]),) = _over_forces(scene, [scene.f_ext], state)
         cautions += _others(state, ridges[state])
@@ -160,8 +157,8 @@ def solve(scene: Scene) -> Result:
         "the bone's height is not in this model",
         *leakage(scene),
     )
-    cautions += on_states(found.values(), scene.closure())
-    cautions += breakdown.of_gaps(scene, [(WORDS[state], ridge.d_eq, scene.volts) for state, ridge in ridges.items()])
+    gaps = [(WORDS[state], ridge.d_eq, scene.volts) for state, ridge in ridges.items()]
+    cautions += on_scene(scene, found.values(), gaps)
     more: dict[str, Any] = {
         f"{state}_{name}": getattr(ridge, name) for state, ridge in ridges.items() for name in ("p_c", "d_eq")
     }

@@ -23,7 +23,7 @@ from fingerpad.scene.waveform import Waveform
 from variational.attraction.circuit import LEAKS, GapCircuit
 from variational.attraction.dielectric import VACUUM_PERMITTIVITY
 from variational.attraction.network import Network
-from variational.roughness.statistics import BREAKDOWN_FIELD, BREAKDOWN_PLATEAU, breakdown_voltage
+from variational.roughness.gaps import BREAKDOWN_FIELD, BREAKDOWN_PLATEAU, breakdown_voltage
 
 Array = NDArray[np.float64]
 SAMPLES = 4096
