@@ -21,13 +21,14 @@ from benchmarks.models import name
 from benchmarks.runs import FORCES, VOLTAGES
 from fingerpad.reduced import uncharged
 from fingerpad.results import style
+from fingerpad.results.quantities import RESULTS
 from fingerpad.scene import Scene
 from fingerpad.scene.parameters import Slices
 from fingerpad.slices import errors, estimate
 from fingerpad.slices.total import Profile, Total, at_force, profile
 from fingerpad.slices.trace import Trace
 from fingerpad.slices.trace import trace as trace_of
-from variational.state import RESULTS, ContactState
+from variational.state import ContactState
 
 RADII = (15e-3, 28e-3, 40e-3)  # m, R_z
 NEWTONS = (0.05, 0.1, 0.2, 0.3, 0.5, 0.75)  # N
