@@ -24,9 +24,10 @@ from collections.abc import Mapping
 from copy import copy
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING
 
+from fingerpad.model.drive_loads import GapFactor
 from fingerpad.results.terminal import about
+from fingerpad.scene import Load, Numerics, Scene
 from fingerpad.scene.messages import SceneError, qualify
 from fingerpad.scene.viscosity import viscous_layers
 from geometry import sizing
@@ -34,10 +35,6 @@ from geometry.parameters import Fingertip, MeshSize
 from geometry.profiles import GeometryError
 from variational.contact.formulation import Formulation
 from variational.materials.material import Material
-
-if TYPE_CHECKING:
-    from fingerpad.model.drive_loads import GapFactor
-    from fingerpad.scene import Load, Numerics, Scene
 
 COARSER = 2.0
 """Sizes of the elements on which a path is followed over those with which its named states are solved again."""
@@ -97,7 +94,7 @@ _HALF = Omission(
 )
 
 
-def plan(scene: "Scene") -> ModelOptions:
+def plan(scene: Scene) -> ModelOptions:
     """Return what a scene needs; a pure function of it."""
     voltage = any(load.voltage for load in scene.loads())
     friction, receptors = scene.friction_law() is not None, scene.output.receptors
@@ -149,7 +146,7 @@ class FingerModel:
         asked: largest relative errors allowed, by quantity; empty where no accuracy is asked for.
     """
 
-    def __init__(self, scene: "Scene", options: ModelOptions) -> None:
+    def __init__(self, scene: Scene, options: ModelOptions) -> None:
         """Read a scene.
 
         Args:
@@ -199,9 +196,9 @@ class FingerModel:
         final: MeshSize | None = None,
         edges: tuple[float, ...] | None = None,
         contact: Formulation | None = None,
-        loads: tuple["Load", ...] | None = None,
-        numerics: "Numerics | None" = None,
-        share: "GapFactor | None" = None,
+        loads: tuple[Load, ...] | None = None,
+        numerics: Numerics | None = None,
+        share: GapFactor | None = None,
     ) -> "FingerModel":
         """Return a copy with some values changed, as the attributes are described; those left out stay."""
         found = copy(self)
@@ -234,7 +231,7 @@ class FingerModel:
         return (*self.options.omitted, Omission(f"contact of the ridges beyond ±{last}", reason))
 
 
-def check(scene: "Scene") -> None:
+def check(scene: Scene) -> None:
     """Refuse a scene whose finger cannot be built or meshed.
 
     Raises:
@@ -251,7 +248,7 @@ def check(scene: "Scene") -> None:
         raise SceneError(qualify(message, "geometry.", Fingertip.model_fields)) from None
 
 
-def by_rule(scene: "Scene") -> "Scene":
+def by_rule(scene: Scene) -> Scene:
     """Return the scene with a ``mesh.touching_half_arc``, by the rule of thumb where it gives none."""
     if scene.mesh.touching_half_arc is not None:
         return scene
@@ -305,7 +302,7 @@ def refuse_mesh(points: int, triangles: int, model: FingerModel) -> None:
             model.mesh)  # fmt: skip
 
 
-def refuse_sizes(finger: Fingertip, size: MeshSize, numerics: "Numerics", needed: ModelOptions) -> None:
+def refuse_sizes(finger: Fingertip, size: MeshSize, numerics: Numerics, needed: ModelOptions) -> None:
     """Refuse element sizes whose mesh would need more memory than is allowed, by a lower bound, before it is made.
 
     Args:
@@ -322,7 +319,7 @@ def refuse_sizes(finger: Fingertip, size: MeshSize, numerics: "Numerics", needed
             size)  # fmt: skip
 
 
-def _refuse(has: str, triangles: int, number: int, numerics: "Numerics", finger: Fingertip, size: MeshSize) -> None:
+def _refuse(has: str, triangles: int, number: int, numerics: Numerics, finger: Fingertip, size: MeshSize) -> None:
     allowed = f"numerics.memory allows {numerics.memory / 1e9:g} GB"
     if numerics.memory <= PROGRAM:
         raise GeometryError(f"{allowed}, and the program takes {PROGRAM / 1e9:g} GB without a mesh; raise it")

@@ -19,7 +19,7 @@ from variational.state import ContactState, StepRecord
 if TYPE_CHECKING:
     from mpi4py import MPI
 
-OnStep = Callable[[ContactState, float], None]
+_OnStep = Callable[[ContactState, float], None]
 _TERMINAL = r"/dev/(pts/\d+|tty\w*|console)"
 _LEGEND = (
     "f_ext: external force on the bone; U: voltage; bone x, bone y: its place; f_T: friction; µ_app = f_T / f_ext",
@@ -113,7 +113,7 @@ class Pace:
 class Console:
     """Prints the lines of a run, or nothing but the progress bar, or nothing."""
 
-    def __init__(self, comm: "MPI.Comm", lines: bool = True, bar: bool = True, on_step: "OnStep | None" = None) -> None:
+    def __init__(self, comm: "MPI.Comm", lines: bool = True, bar: bool = True, on_step: _OnStep | None = None) -> None:
         """Start the progress bar, where a person watches: in a terminal, or in the cell of a notebook.
 
         Args:
