@@ -158,15 +158,13 @@ def test_program_of_the_page_prints_what_the_model_has():
 
 def test_lengths_between_known_forces_are_a_power_law():
     """Halfway on logarithmic axes, between each force and the next; beyond the last as between the two before."""
-    forces = default_finger.FORCES
+    forces, known = default_finger.FORCES, default_finger.LENGTHS["charged"]
     for k, between in enumerate(np.sqrt(np.array(forces[1:]) * np.array(forces[:-1]))):
-        lengths = default_finger.LENGTHS["charged"][k : k + 2]
-        assert default_finger.interpolate(between, default_finger.LENGTHS["charged"]) == pytest.approx(
-            np.sqrt(np.prod(lengths))
-        )
-    ratio = default_finger.LENGTHS["charged"][1] / default_finger.LENGTHS["charged"][0]
-    below = default_finger.interpolate(forces[0] ** 2 / forces[1], default_finger.LENGTHS["charged"])
-    assert below == pytest.approx(default_finger.LENGTHS["charged"][0] / ratio)
+        lengths = known[k : k + 2]
+        assert default_finger.interpolate(between, known) == pytest.approx(np.sqrt(np.prod(lengths)))
+    ratio = known[1] / known[0]
+    below = default_finger.interpolate(forces[0] ** 2 / forces[1], known)
+    assert below == pytest.approx(known[0] / ratio)
 
 
 def test_kept_answers_are_those_of_the_program():

@@ -4,8 +4,8 @@ n ridges bear :math:`f = f_{ext} / n` each; :mod:`variational.attraction.cylinde
 air gap of a ridge. Friction at full slip is the limit of the friction law at the mean pressure, over the length in
 contact; Coulomb's is :math:`f_T = \mu_0 (f_{ext} + f_{el})`. The number of ridges in contact and the length of their
 contact are those of the default finger *without* voltage, or of one similar to it
-(:mod:`fingerpad.reduced.default_finger`), interpolated between full runs. The modulus E* of the cylinders is then the one
-with which Hertz's law gives that length, which includes finite strain, layers and shear. The length under voltage
+(:mod:`fingerpad.reduced.default_finger`), interpolated between full runs. The modulus E* of the cylinders is then the
+one with which Hertz's law gives that length, which includes finite strain, layers and shear. The length under voltage
 follows from Maugis's equations. More shear stress stiffens the ridges, see below.
 
 **Shear.** The table's finger has a friction coefficient of 0.25. Stronger friction leans the finger and its ridges

@@ -4,11 +4,11 @@ r"""The default finger's contact without voltage, and fingers that are similar t
 of 10 µm, of docs/models.json. Beyond, they are the last of these, times the ratios of states on a coarser mesh, of
 docs/loads.json. ``benchmarks.models`` and ``benchmarks.loads`` print them.
 
-**Similar fingers** have all lengths on one scale, and all soft layers stiffer by one factor. Without voltage the contact
-of a finger depends on forces, lengths and moduli alone. With lengths :math:`s` and moduli :math:`m` times those of the
-default finger, dimensional analysis gives its contact length from the default one, :math:`L(f) = s\,L_0(f / (s m))`,
-with as many ridges in contact; forces are per length, N/m. *Assumption*: nail and nail bed, which stay as they are, have
-no influence, nor have differences of 1 % between lengths or between moduli.
+**Similar fingers** have all lengths on one scale, and all soft layers stiffer by one factor. Without voltage the
+contact of a finger depends on forces, lengths and moduli alone. With lengths :math:`s` and moduli :math:`m` times those
+of the default finger, dimensional analysis gives its contact length from the default one,
+:math:`L(f) = s\,L_0(f / (s m))`, with as many ridges in contact; forces are per length, N/m. *Assumption*: nail and
+nail bed, which stay as they are, have no influence, nor have differences of 1 % between lengths or between moduli.
 """
 
 from collections.abc import Iterable
