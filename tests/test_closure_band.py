@@ -36,7 +36,7 @@ def test_band_is_that_of_runs_with_these_closures(result):
 def test_band_scales_the_result(result):
     """A result with twice the friction has twice the band."""
     twice = replace(result, full_slip=replace(result.full_slip, mu_app=2 * result.full_slip.mu_app))
-    found, kept = closure_band.band(twice)["mu_app"], result.record[BAND]["mu_app"]
+    found, kept = closure_band.with_band(twice).record[BAND]["mu_app"], result.record[BAND]["mu_app"]
     assert found == {words: pytest.approx(2 * value) for words, value in kept.items()}
 
 

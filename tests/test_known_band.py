@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import fingerpad as fp
-from fingerpad.reduced.closure_band import Slip, friction, known, powers, with_band
+from fingerpad.reduced.closure_band import Slip, friction, powers, with_band
 from fingerpad.report import trust
 from fingerpad.report.known import bars
 from fingerpad.results.headline import KNOWN, known_in_words
@@ -91,7 +91,7 @@ def test_band_of_a_section_beside_a_finger_without_full_slip(result):
 
 def test_law_of_ones_own(result):
     """It has no roughness and no insulator to change, and no other closures."""
-    found = known(replace(result, scene=result.scene.replace(roughness=Held())), {})
+    found = with_band(replace(result, scene=result.scene.replace(roughness=Held()), record={})).known
     assert [part["name"] for part in found["parts"]] == ["friction law", "tips", "slices"]
 
 

@@ -14,9 +14,9 @@ from fingerpad.results.printing import cells
 from fingerpad.results.quantities import FINGER
 from fingerpad.runs.closed_form import ClosedForm
 from fingerpad.scene.parameters import Slices
-from fingerpad.slices.grid import grid
 from fingerpad.slices.total import at_force, profile
 from fingerpad.slices.trace import trace
+from fingerpad.slices.traces import grid
 from variational.state import Errors
 
 SLIP = "full_slip"

@@ -22,12 +22,12 @@ from fingerpad.runs.sweep_columns import (
     FORCE,
     LOAD,
     described,
+    description,
     head_of,
     in_time,
     loads,
     of_finger,
     printed,
-    said_of,
     shown,
     tables,
 )
@@ -242,7 +242,7 @@ def _study(table: Table) -> str:
         '<noscript><p class="note">The charts need JavaScript; the table below has the same numbers.</p></noscript>'
     )
     charts = (html.chart(place, f"{words} at {state} over the sweep") for place, words in drawn)
-    title = f"Friction and contact of the {said_of(columns)} at {state}"
+    title = f"Friction and contact of the {description(columns)} at {state}"
     return html.section("study", title, without, *charts, html.paragraph(note, "note"))
 
 
