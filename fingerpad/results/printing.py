@@ -38,7 +38,7 @@ def page(result: ResultData, headline: str) -> str:
 
 def _title(result: ResultData) -> str:
     model = f" (model '{result.model}')" if result.model != DEFAULT_MODEL else ""
-    return (ResultData if result.finger is None else _SECTION) + model
+    return ("Result" if result.finger is None else _SECTION) + model
 
 
 def _table(result: ResultData) -> tuple[list[str], list[list[str]]]:
