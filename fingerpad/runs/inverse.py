@@ -14,8 +14,9 @@ from dataclasses import dataclass
 
 from fingerpad.reduced.cylinders import Cylinders
 from fingerpad.reduced.registry import find
+from fingerpad.results.data import Number
 from fingerpad.results.quantities import EXTREMES, FINGER, QUANTITIES, Output, plus_minus_of
-from fingerpad.results.result import Number, Result
+from fingerpad.results.result import Result
 from fingerpad.runs.closed_form import STATE, ClosedForm
 from fingerpad.runs.roots import EQUAL, Axis, Roots, axis
 from fingerpad.runs.solve import checked
