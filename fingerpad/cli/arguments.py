@@ -1,6 +1,7 @@
 """What subcommands have in common on the command line: a scene, values for its keys, and PETSc's own options."""
 
 import argparse
+import math
 import os
 import re
 import shlex
@@ -18,6 +19,7 @@ from fingerpad.scene import Scene, from_data, load, override
 from fingerpad.scene.keys import every
 from fingerpad.scene.law_code import allow
 from fingerpad.scene.messages import SceneError, clip, ends
+from geometry.units import to_si
 
 _PETSC = "-fingerpad_"  # prefix of PETSc's options
 _MIN_LIKENESS = 0.6  # likeness, from 0 to 1, at which an option may have been meant
@@ -266,6 +268,22 @@ def positive(text: str) -> int:
             f"{clip(text) or 'an empty text'} is not allowed; it must be a whole number greater than 0"
         )
     return int(text)
+
+
+def quantities(option: str, text: str, unit: str) -> list[float]:
+    """Return the positive numbers of a range (:mod:`fingerpad.cli.ranges`) in a unit.
+
+    Raises:
+        SceneError: one of them is no such number.
+    """
+    given = ranges.read(option, text)
+    try:
+        found = [to_si(each, unit) if isinstance(each, str) else float(each) for each in given]
+    except ValueError as error:
+        raise SceneError(f"{option} is {clip(text)}; {error}") from None
+    if not all(0 < value < math.inf for value in found):
+        raise SceneError(f"{option} is {clip(text)}; it must be greater than 0")
+    return found
 
 
 def refuse_file(file: Path, kind: Kind) -> None:

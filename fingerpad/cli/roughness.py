@@ -10,15 +10,14 @@ from typing import Any
 import numpy as np
 from pydantic import ValidationError
 
-from fingerpad.cli import output, ranges
-from fingerpad.cli.arguments import PICTURE, Parser, echo, path, scene_of, several
+from fingerpad.cli import output
+from fingerpad.cli.arguments import PICTURE, Parser, echo, path, quantities, scene_of, several
 from fingerpad.model.cautions import on_closure
 from fingerpad.results.quantities import QUANTITIES, Output
 from fingerpad.scene import Scene, from_data, override
 from fingerpad.scene.materials import CLOSURES, Topography
 from fingerpad.scene.messages import SceneError, clip, first_error
 from fingerpad.scene.remarks import on_waves, remarks
-from geometry.units import to_si
 from variational.attraction.electroadhesion import VACUUM_PERMITTIVITY
 from variational.roughness.bam import STICKING, BearingArea
 from variational.roughness.heightfile import Found, scan
@@ -59,7 +58,7 @@ def microscale(argv: Sequence[str]) -> int:
     scene = scene_of(args, meshed=False)
     if args.voltage is None and scene.history is not None:
         raise SceneError("history is given, whose loads have their own voltages; name those wanted by --voltage")
-    rows = table(scene, several(args, scene, "voltage"), _pressures(args.p))
+    rows = table(scene, several(args, scene, "voltage"), quantities("--p", args.p, "Pa"))
     closure = microscopic(scene)
     um, low, high = 1e6, *(p * 1e-3 for p in closure.pressures)
     echo(
@@ -86,17 +85,6 @@ def microscale(argv: Sequence[str]) -> int:
         echo(f"{text[0].upper()}{text[1:]}.")
     output.write_files(args, _COLUMNS, rows, draw_microscale)
     return 0
-
-
-def _pressures(text: str) -> list[float]:
-    values = ranges.read("--p", text)
-    try:
-        found = [to_si(each, "Pa") if isinstance(each, str) else float(each) for each in values]
-    except ValueError as error:
-        raise SceneError(f"--p is {clip(text)}; {error}") from None
-    if not all(0 < p < math.inf for p in found):
-        raise SceneError(f"--p is {clip(text)}; it must be greater than 0")
-    return found
 
 
 def microscopic(scene: Scene) -> BearingArea | TabulatedClosure:

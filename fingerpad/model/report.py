@@ -15,10 +15,10 @@ from fingerpad.model.options import Omission
 from fingerpad.model.record import PathRecord, Viewer
 from fingerpad.model.simulation import Simulation
 from fingerpad.results import motion, states
+from fingerpad.results.data import Cost
 from fingerpad.results.fields import View
 from fingerpad.results.outputs import valued
 from fingerpad.results.quantities import Output
-from fingerpad.results.result import Cost
 from fingerpad.results.terminal import Console
 from fingerpad.results.writing import Writer
 from fingerpad.scene.messages import counted
