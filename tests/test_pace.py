@@ -1,10 +1,6 @@
 """How far a run is and what time is left of it, in a terminal, in a file, and in quiet."""
 
-import os
-import subprocess
-import sys
 from dataclasses import fields
-from pathlib import Path
 
 import pytest
 from mpi4py import MPI
@@ -28,15 +24,6 @@ def after(seconds, done, **more):
     pace = Pace(clock=lambda: next(times), **more)
     pace.at(done)
     return pace.left()
-
-
-def test_half_done_leaves_as_long_again():
-    """Within a factor of the root of two."""
-    assert after(50.0, 0.5) == "35 to 71 s"
-
-
-def test_time_left_is_not_known_before_a_tenth():
-    assert after(10.0, 0.09) == "not known" != after(10.0, 0.11)
 
 
 @pytest.mark.parametrize("part", [0.1, 0.3, 0.6, 0.9])
@@ -119,7 +106,6 @@ def test_run_in_quiet_prints_the_result_alone(tmp_path, write, capsys):
 
 
 # -- whether a person watches the output -----------------------------------------------------------------------------
-ROOT = Path(__file__).resolve().parents[1]
 
 
 class Screen:
@@ -152,18 +138,6 @@ def test_the_launchers_output_counts(bare, output, watches):
     bare.setenv("OMPI_COMM_WORLD_RANK", "0")
     bare.setattr("os.readlink", lambda path: output)
     assert terminal.watched(Screen(True)) == watches
-
-
-def test_closed_output_costs_nothing(tmp_path):
-    """After ``>&-``: the command does its work, and no file that it opens takes the number of the output."""
-    code = "import os, sys; from fingerpad.__main__ import main; sys.argv[1:] = ['params', 'f_ext']; code = main()\n"
-    code += f"open({str(tmp_path / 'found')!r}, 'w').write(f'{{code}} {{os.readlink(\"/proc/self/fd/1\")}}')"
-    done = subprocess.run(
-        [sys.executable, "-P", "-c", code],
-        env={**os.environ, "PYTHONPATH": str(ROOT)},
-        preexec_fn=lambda: [os.close(number) for number in range(3)],
-    )
-    assert (done.returncode, (tmp_path / "found").read_text()) == (0, "0 /dev/null")
 
 
 @pytest.mark.parametrize("error", [BrokenPipeError(), SystemExit(1)])
