@@ -1,6 +1,10 @@
 """How far a run is and what time is left of it, in a terminal, in a file, and in quiet."""
 
+import os
+import subprocess
+import sys
 from dataclasses import fields
+from pathlib import Path
 
 import pytest
 from mpi4py import MPI
@@ -8,7 +12,7 @@ from mpi4py import MPI
 from fingerpad import launcher
 from fingerpad.cli import main
 from fingerpad.results import terminal
-from fingerpad.results.terminal import Console, Pace, between
+from fingerpad.results.terminal import Console, Pace, in_words
 from fingerpad.runs.batch import times_left
 from tests.measures import contact_state
 from variational.state import StepRecord
@@ -24,12 +28,6 @@ def after(seconds, done, **more):
     pace = Pace(clock=lambda: next(times), **more)
     pace.at(done)
     return pace.left()
-
-
-@pytest.mark.parametrize("part", [0.1, 0.3, 0.6, 0.9])
-def test_range_holds_what_is_left_of_an_even_run(part):
-    low, _, high, _ = after(50.0 * part, part).split()
-    assert float(low) < 50.0 * (1 - part) < float(high)
 
 
 def test_load_that_ends_with_full_slip_is_as_far_as_its_friction():
@@ -64,7 +62,7 @@ def test_time_left_is_not_known_before_a_waveform_has_its_pace():
     ],
 )
 def test_range_is_in_the_unit_of_the_longer_time(low, high, words):
-    assert between(low, high) == words
+    assert in_words(low, high) == words
 
 
 def test_time_left_of_a_sweep_is_by_its_runs():
@@ -106,6 +104,7 @@ def test_run_in_quiet_prints_the_result_alone(tmp_path, write, capsys):
 
 
 # -- whether a person watches the output -----------------------------------------------------------------------------
+ROOT = Path(__file__).resolve().parents[1]
 
 
 class Screen:
@@ -138,6 +137,18 @@ def test_the_launchers_output_counts(bare, output, watches):
     bare.setenv("OMPI_COMM_WORLD_RANK", "0")
     bare.setattr("os.readlink", lambda path: output)
     assert terminal.watched(Screen(True)) == watches
+
+
+def test_closed_output_costs_nothing(tmp_path):
+    """After ``>&-``: the command does its work, and no file that it opens takes the number of the output."""
+    code = "import os, sys; from fingerpad.__main__ import main; sys.argv[1:] = ['params', 'f_ext']; code = main()\n"
+    code += f"open({str(tmp_path / 'found')!r}, 'w').write(f'{{code}} {{os.readlink(\"/proc/self/fd/1\")}}')"
+    done = subprocess.run(
+        [sys.executable, "-P", "-c", code],
+        env={**os.environ, "PYTHONPATH": str(ROOT)},
+        preexec_fn=lambda: [os.close(number) for number in range(3)],
+    )
+    assert (done.returncode, (tmp_path / "found").read_text()) == (0, "0 /dev/null")
 
 
 @pytest.mark.parametrize("error", [BrokenPipeError(), SystemExit(1)])
