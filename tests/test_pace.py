@@ -30,15 +30,6 @@ def after(seconds, done, **more):
     return pace.left()
 
 
-def test_half_done_leaves_as_long_again():
-    """Within a factor of the root of two."""
-    assert after(50.0, 0.5) == "35 to 71 s"
-
-
-def test_time_left_is_not_known_before_a_tenth():
-    assert after(10.0, 0.09) == "not known" != after(10.0, 0.11)
-
-
 def test_load_that_ends_with_full_slip_is_as_far_as_its_friction():
     """Not as far as its way, of which it needs a part alone."""
     pace = Pace(2)
