@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from fingerpad.report.sweep_page import Table
 
 NAME = "report.html"
+_NO_STEP = "has no accepted step yet; make the report when it has one"
 
 
 def write(folder: Path) -> Path:
@@ -33,12 +34,12 @@ def write(folder: Path) -> Path:
         SceneError: the folder holds nothing that a report can be made of, or files that are not of a run, or it cannot
             be written to.
     """
-    found = read(folder)
+    found, name = read(folder), clip(str(folder), 80)
     try:
         page = _page(found)
     except (LookupError, ValueError, TypeError, AttributeError) as error:  # of files that somebody else has written
-        where, kind = clip(str(folder), 80), type(error).__name__
-        raise SceneError(f"no report of {where} can be made of its files ({kind}: {clip(str(error), 400)})") from error
+        why = f"{type(error).__name__}: {clip(str(error), 400)}"
+        raise SceneError(f"no report of {name} can be made of its files ({why})") from error
     try:
         replace(folder / NAME, page)
     except OSError as error:
@@ -54,13 +55,9 @@ def of_result(result: Result) -> None:
 
 
 def _page(found: "Result | Table") -> str:
-    if isinstance(found, Result):
-        from fingerpad.report import run_page
+    from fingerpad.report import run_page, sweep_page  # Matplotlib and Jinja
 
-        return run_page.page(found)
-    from fingerpad.report import sweep_page
-
-    return sweep_page.page(found)
+    return run_page.page(found) if isinstance(found, Result) else sweep_page.page(found)
 
 
 def attempt(folder: Path) -> Path | None:
@@ -95,31 +92,22 @@ def read(folder: Path) -> "Result | Table":
     if done or any(any(place.glob("*/asked.json")) for place in points):
         raise SceneError(f"the sweep in {name} has not ended ({done} runs are there); give its command again to go on")
     if (folder / "scene.json").exists():
-        raise SceneError(f"the run in {name} has no accepted step yet; make the report when it has one")
+        raise SceneError(f"the run in {name} {_NO_STEP}")
     raise SceneError(f"{name} holds no results of fingerpad; give a folder that fingerpad run or fingerpad sweep wrote")
 
 
 def _unfinished(folder: Path) -> Result:
     """Return the steps that a run has written so far."""
+    name = clip(str(folder), 80)
     try:
-        parameters = read_object(folder / "scene.json")
-        scene = as_kept(parameters)
-        steps = steps_of(folder)
+        scene, steps = as_kept(read_object(folder / "scene.json")), steps_of(folder)
     except (OSError, ValueError, KeyError, TypeError, AttributeError, csv.Error) as error:
-        raise SceneError(f"the unfinished run in {clip(str(folder), 80)} cannot be read: {error}") from None
+        raise SceneError(f"the unfinished run in {name} cannot be read: {error}") from None
     if not steps:
-        raise SceneError(
-            f"the run in {clip(str(folder), 80)} has no accepted step yet; make the report when it has one"
-        )
+        raise SceneError(f"the run in {name} {_NO_STEP}")
     found = named(steps, [load.name for load in scene.loads()])
     return Result(
-        scene,
-        DEFAULT_MODEL,
-        found.get("uncharged"),
-        found.get("charged"),
-        found.get("full_slip"),
-        steps=steps,
-        loads=tuple(load_results(steps, scene.loads(), lambda k, end: None, coefficient(scene))),
+        scene, DEFAULT_MODEL, *(found.get(state) for state in ("uncharged", "charged", "full_slip")), steps=steps,
+        loads=tuple(load_results(steps, scene.loads(), lambda k, end: None, coefficient(scene))), folder=folder,
         failure=f"the run has not ended, or was killed, after step {steps[-1].step}: these are its steps so far",
-        folder=folder,
-    )
+    )  # fmt: skip
