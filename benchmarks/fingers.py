@@ -77,8 +77,8 @@ def _full(summary: Summary | None) -> dict[str, Any] | None:
     """Return the friction of a whole finger by a run, and its force (N)."""
     if summary is None or summary.get("full_slip") is None:
         return None
-    whole = summary["finger"]
-    return {"mu_app": whole["states"]["full_slip"]["mu_app"], "force": whole["f_ext"], "f_ext": summary["f_ext"]}
+    whole = {key: summary[f"full_slip_finger_{name}"] for key, name in (("mu_app", "mu_app"), ("force", "f_ext"))}
+    return whole | {"f_ext": summary["f_ext"]}
 
 
 # -- page ----------------------------------------------------------------------------------------------------

@@ -19,10 +19,10 @@ import numpy as np
 from benchmarks import harness
 from benchmarks.runs import FORCES, VOLTAGES, trace
 from fingerpad.reduced import cylinder_errors, cylinders, uncharged
+from fingerpad.results.quantities import RESULTS
 from fingerpad.runs.batch import Summary
 from fingerpad.scene import Scene, load
 from fingerpad.scene.reading import override
-from variational.state import RESULTS
 
 _SOFT = ("subcutis", "dermis", "viable_epidermis")
 _LIMIT = 3600.0  # s of processor time for one run

@@ -15,11 +15,11 @@ from tests.small_finger import NINE
 from variational.body import Body
 from variational.contact.aging import Occlusion, Speed
 from variational.contact.augmented import AugmentedLagrangian
+from variational.contact.interface import Interface
 from variational.contact.nitsche import Nitsche
 from variational.contact.penalty import Penalty
 from variational.energy import EnergyBook
 from variational.materials.ogden import Ogden
-from variational.problem import Interface
 from variational.solvers.continuation import Target
 
 pytestmark = pytest.mark.mpi
@@ -67,20 +67,6 @@ def test_dry_out_of_contact():
     np.testing.assert_allclose(memory(), 1 - np.exp(-1), rtol=1e-12)
     path.run(Target("lift", bone_height=1e-6))
     np.testing.assert_array_equal(memory(), 0.0)
-
-
-def test_renewed_contact():
-    """On a ridge that rolls on, points that touched for long have more friction than new ones: by point."""
-    made = over(GROWS, body=load(MPI.COMM_WORLD, ridge(30e-6)))
-    path = made.continuation
-    path.run(Target("press", f_ext=2.0))
-    path.run(Target("hold", f_ext=2.0, duration=0.5))
-    path.run(Target("deeper", f_ext=4.0))
-    state = path.surface_state
-    touching, memory = state.p_n > 0, path.problem.history.accepted["memory"]
-    values = np.concatenate(MPI.COMM_WORLD.allgather(memory[touching]))
-    assert values.min() == 0.0
-    assert values.max() == pytest.approx(1 - np.exp(-1), rel=1e-9)
 
 
 @pytest.mark.parametrize("speed", [1e-3, 10e-3])

@@ -10,7 +10,9 @@ from mpi4py import MPI
 
 import fingerpad as fp
 from fingerpad import runs
-from fingerpad.results.answer import Cost
+from fingerpad.results.dataset import content
+from fingerpad.results.quantities import CONDITIONS, RESULTS
+from fingerpad.results.result import Cost
 from fingerpad.results.states import STATES
 from fingerpad.runs import attempt, full
 from fingerpad.runs.processes import End
@@ -21,7 +23,6 @@ from tests.runs import no_pictures
 from tests.small_finger import NINE
 from variational.solvers.continuation import StepFailed
 from variational.solvers.outcome import NotConverged
-from variational.state import CONDITIONS, RESULTS
 
 pytestmark = pytest.mark.slow
 SMALL = NINE | {"f_ext": 1.0, "voltage": 60.0, "output": {"receptors": False}}
@@ -70,14 +71,14 @@ def test_changes_of_the_scene_are_arguments(ran):
 
 
 def test_summary_is_the_result(ran):
-    """summary.json is to_dict(), in JSON's numbers; each state is there flat, by its prefix, and by its name."""
+    """summary.json is to_dict(), in JSON's numbers; each state is there flat, by its prefix."""
     result, folder = ran
     kept = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
     assert kept == json.loads(json.dumps(result.to_dict()))
     for name in STATES:
         state = getattr(result, name)
         for key in (*CONDITIONS, *RESULTS):
-            assert kept[f"{name}_{key}"] == kept["states"][name][key] == getattr(state, key), key
+            assert kept[f"{name}_{key}"] == getattr(state, key), key
 
 
 def test_arrays_have_documented_shapes(ran):
@@ -96,7 +97,7 @@ def test_arrays_have_documented_shapes(ran):
 def test_model_without_its_libraries_is_refused_in_a_sentence(monkeypatch):
     monkeypatch.setitem(sys.modules, "fingerpad.runs.full", None)
     monkeypatch.delattr(runs, "full", raising=False)
-    monkeypatch.setattr("fingerpad.installed.OPTIONAL", ("fingerpad",))
+    monkeypatch.setattr("fingerpad.launcher.OPTIONAL", ("fingerpad",))
     with pytest.raises(ImportError, match="the model 'full' needs fingerpad, which is not installed;"):
         fp.run(from_data(SMALL))
 
@@ -171,6 +172,7 @@ def test_sweep_is_taken_up_again(tmp_path, monkeypatch):
         if scene["voltage"] > 0:
             return End(1, "CRASH_1", "out of luck", "")
         done = fp.Result(from_data(scene), "full", None, None, contact_state(mu_app=0.52), cost=Cost(1.0))
+        (Path(arguments[1]) / "result.nc").write_bytes(content(done.to_xarray()))
         (Path(arguments[1]) / "summary.json").write_text(json.dumps(done.to_dict()), encoding="utf-8")
         return End(0, "", "", "")
 

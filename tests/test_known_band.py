@@ -10,7 +10,7 @@ import fingerpad as fp
 from fingerpad.reduced.closure_band import Slip, friction, known, powers, with_band
 from fingerpad.report import trust
 from fingerpad.report.known import bars
-from fingerpad.results.closures import KNOWN, known_in_words
+from fingerpad.results.headline import KNOWN, known_in_words
 from tests.test_closure_band import Held
 
 
@@ -183,7 +183,7 @@ def test_none_without_voltage_or_friction():
 def test_text_files_and_picture_have_it(result):
     ends = f"{result.known['low']:.2f} to {result.known['high']:.2f}"
     assert f"\n  Likely range {ends}.\n  With one assumption changed: rough contact " in str(result)
-    again = fp.Result.from_dict(result.to_dict())
+    again = fp.Result.from_xarray(result.to_xarray())
     assert again.known == result.known and KNOWN in again.record
     picture = bars(result)
     names = ("solved to", "likely range", "rough contact", "friction law", "tips")

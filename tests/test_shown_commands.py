@@ -11,7 +11,7 @@ import pytest
 
 import fingerpad as fp
 from fingerpad import cli
-from fingerpad.results.checkpoint import Checkpoint
+from fingerpad.runs.checkpoint import Checkpoint
 from fingerpad.scene import from_data
 from tests.pages import alike, blocks, printed
 from tests.runs import no_pictures

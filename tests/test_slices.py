@@ -185,11 +185,15 @@ def whole() -> WholeFinger:
 
 
 def test_result_from_its_file():
-    """What summary.json holds gives the same finger again."""
+    """What result.nc holds gives the same finger again; its states have their quantities as attributes."""
     finger = whole()
-    again = WholeFinger.from_dict(json.loads(json.dumps(finger.to_dict())), Slices(count=8))
-    assert again.to_dict() == finger.to_dict() and str(again) == str(finger)
-    assert again.under(0.2).to_dict() == finger.under(0.2).to_dict()
+    bare = fp.Result(Scene(slices={"count": 8}), "full", None, None, None, finger=finger)
+    again = fp.Result.from_xarray(bare.to_xarray()).finger
+    assert again.flat() == finger.flat() and str(again) == str(finger)
+    assert again.under(0.2).flat() == finger.under(0.2).flat()
+    slip = again.full_slip
+    assert again.charged is None and slip.f_t == finger.values("full_slip")["f_t"]
+    assert slip.error.f_t == finger.error["full_slip"]["f_t"]
 
 
 def test_finger_under_another_force_is_read_from_its_traces():

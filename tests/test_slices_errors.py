@@ -213,7 +213,7 @@ def test_everything_that_is_printed_and_kept_has_the_whole_error():
     words = "±: error by mesh of the cross-section, points of the traces; what the finger and"
     assert words in printed and words in drawn
     assert row(result)["full_slip_finger_gross_area_error"] == error
-    assert result.finger.to_dict()["states"]["full_slip"]["error"]["gross_area"] == error
+    assert result.to_dict()["full_slip_finger_gross_area_error"] == error
     assert float(finger(result.finger)["finger_gross_area_error"][1][STATES.index("full_slip")]) == error
 
 

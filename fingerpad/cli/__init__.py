@@ -13,7 +13,7 @@ from collections.abc import Sequence
 from difflib import get_close_matches
 
 from fingerpad import launcher
-from fingerpad.installed import OPTIONAL, needed_by, version
+from fingerpad.launcher import OPTIONAL, needed_by, version
 
 COMMANDS = {
     "estimate": "friction over force and voltage by a closed form, in seconds, without finite elements",
@@ -22,8 +22,7 @@ COMMANDS = {
     "report": "a run or a sweep as one HTML file; a run's animation or spikes; the closed form as a page with sliders",
     "compare": "models of a scene side by side: their results and their cost",
     "compare-data": "tables of measurements beside a run or a sweep: misfit as a ratio, picture",
-    "check": "what a run contains, omits and costs, and a picture of its mesh; solves nothing",
-    "mesh": "the mesh of the unloaded finger as a file for gmsh, in m, with names of its parts",
+    "check": "what a run contains, omits and costs, a picture of its mesh, its mesh for gmsh; solves nothing",
     "solve": "the voltage, coating or other key at which friction has a given value, by the closed form, at once",
     "drive": "friction over the period of an alternating voltage, its spectrum, and whether it is felt, in a second",
     "microscale": "air gap, attraction and real area of contact of a ridge over its pressure",

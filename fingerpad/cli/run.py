@@ -5,8 +5,8 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from fingerpad.cli.arguments import Parser, echo, path, refuse_twice, scene_of
-from fingerpad.ctrl_c import raises
-from fingerpad.model import breakdown
+from fingerpad.launcher import raising_at_ctrl_c
+from fingerpad.model.cautions import breakdown_ahead
 from fingerpad.reduced.registry import MODELS, find
 from fingerpad.report.write import NAME
 from fingerpad.results.files import check_folder
@@ -67,9 +67,9 @@ def main(argv: Sequence[str]) -> int:
     # PETSc has its options from here on.
     from fingerpad.runs.full import exit_code
 
-    for caution in breakdown.ahead(scene.resolved()) if shown else ():
+    for caution in breakdown_ahead(scene.resolved()) if shown else ():
         echo(f"Caution: {caution}.")
-    with raises():
+    with raising_at_ctrl_c():
         result = solved(scene, model, context)
     if args.quiet or not model.path or scene.force is not None:  # else the run has printed it
         echo(f"\n{in_words(result)}" if result.finger or scene.force is None else result.failure)

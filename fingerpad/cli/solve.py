@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from fingerpad.cli.arguments import Parser, echo, scene_of
-from fingerpad.ctrl_c import raises
+from fingerpad.launcher import raising_at_ctrl_c
 from fingerpad.reduced.cylinders import Cylinders
 from fingerpad.reduced.registry import MODELS, find
 from fingerpad.runs.context import RunContext
@@ -54,7 +54,7 @@ def main(argv: Sequence[str]) -> int:
     # PETSc has its options from here on.
     from fingerpad.runs.full import exit_code
 
-    with raises():
+    with raising_at_ctrl_c():
         found = found.confirmed(RunContext(lines=True))
     echo(f"\n{found}")
     return max(exit_code(root.full) for root in found.roots if root.full is not None)

@@ -12,7 +12,7 @@ from matplotlib.path import Path
 from matplotlib.ticker import MaxNLocator
 
 from fingerpad.report.page import render
-from fingerpad.results.closures import notes, span
+from fingerpad.results.headline import notes, span
 
 COLOURS = ("blue", "vermilion", "green", "purple", "orange", "ink")
 DASHES = ("", "6 3", "2 3", "8 3 2 3", "10 4")
@@ -132,7 +132,8 @@ def _panel(panel: Panel, top: float, across: Any) -> dict[str, Any]:
 
     groups = sum(series.kind == "bars" for series in panel.series)
     return {
-        "top": top, "height": panel.height, "label": panel.label, "image": panel.image, "scale": f"{low:.9g} {high:.9g}",
+        "top": top, "height": panel.height, "label": panel.label, "image": panel.image,
+        "scale": f"{low:.9g} {high:.9g}",
         "zero": up(0.0) if low < 0 < high else None, "ticks": [(up(y), f"{y:g}") for y in _ticks(low, high)],
         "series": [_drawn(each, k, groups, across, up) for k, each in enumerate(panel.series)],
     }  # fmt: skip

@@ -12,9 +12,10 @@ from fingerpad.report import page as html
 from fingerpad.report import trust
 from fingerpad.report.charts import Panel, Series, bars, chart
 from fingerpad.report.frames import conditions_of, frames
-from fingerpad.results.closures import KNOWN, RECORD, in_words
+from fingerpad.results.headline import BAND, KNOWN, band_in_words
 from fingerpad.results.over_time import HARMONICS, NOTE, without_parts_of_jumps
-from fingerpad.results.quantities import PER_LENGTH, STEPS, plus_minus_of
+from fingerpad.results.printing import cells
+from fingerpad.results.quantities import PER_LENGTH, STEPS, in_table, plus_minus_of
 from fingerpad.results.result import Result
 from fingerpad.results.spikes import Spikes
 from fingerpad.results.states import WORDS, before_sliding, called
@@ -22,7 +23,6 @@ from fingerpad.scene.messages import SceneError
 from fingerpad.scene.remarks import coefficient
 
 _MM, _MS, _KPA = 1e3, 1e3, 1e-3
-_SLIDING = ("bone_x", "f_t", "mu_app", "contact_length", "ridges_in_contact")
 _PICTURES = {
     "surface.png": "Pressure, shear traction, attraction and gap along the skin in the named states",
     "history.png": "Friction force, contact length and ridges in contact over sliding",
@@ -49,7 +49,7 @@ def page(result: Result) -> str:
         sure=_claims(result), bars=_bars(result), frames=shown, scale=scale, face=face,
         newtons=None if result.finger is None else result.finger, numbers=_numbers(result), notes=_notes(result),
         asked=list(_asked(result)), of_path=_of_path(result), per_length=PER_LENGTH,
-        band=in_words(result.record.get(RECORD, {})), sliding=_sliding(result), over_time=_over_time(result), note=NOTE,
+        band=band_in_words(result.record.get(BAND, {})), sliding=_sliding(result), over_time=_over_time(result), note=NOTE,
         receptors=_receptors(result), spikes=spikes, raster=None if spikes is None else _raster(result, spikes),
         refusal=refusal, pictures=[each for each in pictures if each != face], laws=_laws(result),
         model=MODELS[result.model].words if result.model in MODELS else "A model that is not registered here",
@@ -114,7 +114,7 @@ def _numbers(result: Result) -> list[list[str]]:
     """Return the table of key numbers, its heads first; empty without a named state."""
     if not result.named:
         return []
-    every = [[quantity.title, *result.cells(key)] for key, quantity in result.printed.items()]
+    every = [[quantity.title, *cells(result, key)] for key, quantity in result.printed.items()]
     heads = ["", *(called(name, state.voltage) for name, state in result.named.items())]
     return [heads, *(row for row in every if set(row[1:]) - {"–"})]
 
@@ -140,7 +140,7 @@ def _sliding(result: Result) -> dict[str, Any] | None:
     still, known = len(before_sliding(result.steps)), []
     if still in (0, len(result.steps)):
         return None
-    steps, shown = result.steps[still - 1 :], [STEPS[key] for key in _SLIDING]
+    steps, shown = result.steps[still - 1 :], list(in_table("sliding").values())
     rows = [
         [str(s.step), *(each.shown(getattr(s, each.name)) for each in shown), "jump" * trust.jumped(s)] for s in steps
     ]

@@ -4,13 +4,13 @@ import math
 from collections.abc import Iterator
 from typing import NamedTuple
 
+from fingerpad.accuracy.richardson import FEW_FACETS
 from fingerpad.reduced.cylinder_errors import in_words
 from fingerpad.reduced.registry import follows_path
 from fingerpad.report.page import BAD, CARE, GOOD
-from fingerpad.results.closures import KNOWN, why_not_known
+from fingerpad.results.headline import KNOWN, why_not_known
 from fingerpad.results.result import Result
 from fingerpad.results.states import called
-from fingerpad.richardson import FEW_FACETS
 from variational.state import ContactState
 
 _SMALL, _LARGE = 0.02, 0.1

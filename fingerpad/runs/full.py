@@ -6,17 +6,17 @@ from contextlib import closing
 from typing import Any
 
 import fingerpad.startup  # noqa: F401
-from fingerpad.model import breakdown
+from fingerpad.model.cautions import breakdown_ahead
 from fingerpad.model.options import FingerModel, by_rule, plan
 from fingerpad.model.report import Clock
 from fingerpad.results.interrupt import Interrupt, all_together, no_room
+from fingerpad.results.outputs import checked
 from fingerpad.results.provenance import check_options
-from fingerpad.results.quantities import checked
 from fingerpad.results.result import Result
 from fingerpad.results.terminal import Console
 from fingerpad.results.writing import Writer
 from fingerpad.runs.attempt import Attempt, Session
-from fingerpad.runs.checkpoints import checkpoint_of, read
+from fingerpad.runs.checkpoint import checkpoint_of, read
 from fingerpad.runs.context import RunContext
 from fingerpad.runs.post import in_words
 from fingerpad.runs.restarts import Restarts
@@ -77,7 +77,7 @@ def _run(scene: Scene, session: Session, kept: dict[str, Any] | None, context: R
     comm, writer, console = session.comm, session.writer, session.console
     clock, restarts, checkpoint = session.clock, session.restarts, session.checkpoint
     writer.log.info("scene %s", json.dumps(scene.parameters()))
-    for caution in breakdown.ahead(scene):
+    for caution in breakdown_ahead(scene):
         writer.log.warning(caution)
     model = FingerModel(by_rule(scene), plan(scene)).of_path()
     if kept is not None:
@@ -86,7 +86,7 @@ def _run(scene: Scene, session: Session, kept: dict[str, Any] | None, context: R
         more = kept["both_halves"] and not model.options.both_halves
         options = model.options.with_both_halves() if more else model.options
         model = model.changed(mesh=MeshSize(**kept["mesh"]), options=options)
-        writer.log.info("goes on after step %d of an earlier run", len(kept["states"].items))
+        writer.log.info("goes on after step %d of an earlier run", len(kept["items"]))
         console.show(f"fingerpad: going on with a run of {kept['seconds'][0]:.0f} s; its steps are listed again")
     try:
         with session.interrupt:

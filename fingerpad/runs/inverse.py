@@ -14,9 +14,8 @@ from dataclasses import dataclass, replace
 
 from fingerpad.reduced.cylinders import Cylinders
 from fingerpad.reduced.registry import find
-from fingerpad.results.answer import Number
 from fingerpad.results.quantities import EXTREMES, FINGER, QUANTITIES, Output, plus_minus_of
-from fingerpad.results.result import Result
+from fingerpad.results.result import Number, Result
 from fingerpad.runs.closed_form import STATE, ClosedForm
 from fingerpad.runs.context import RunContext
 from fingerpad.runs.roots import EQUAL, Axis, Roots, axis
@@ -197,7 +196,7 @@ def solve(
         raise SceneError(f"{given}; give one quantity and its value, such as mu_app=0.4")
     form = ClosedForm(Cylinders() if way.path else way)
     form.model.check(scene)
-    if over == "voltage" and scene.supply is not None:
+    if over == "voltage" and scene.drive is not None:
         raise SceneError("voltage is a drive and over is voltage; give one of its keys, as voltage.rms")
     newtons = over == "force" or (scene.force is not None and over != "f_ext")
     ((name, value),), notes = target.items(), list[str]()

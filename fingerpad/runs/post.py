@@ -14,17 +14,15 @@ from dataclasses import replace
 from pkgutil import resolve_name
 from typing import NamedTuple
 
-from fingerpad.results import dataset
 from fingerpad.results.folder import Serial
-from fingerpad.results.quantities import Output, checked
+from fingerpad.results.outputs import checked
+from fingerpad.results.quantities import Output
 from fingerpad.results.result import Result
 from fingerpad.results.writing import Writer
-from fingerpad.runs.context import RunContext
+from fingerpad.runs.context import BEGUN, RunContext
 from fingerpad.scene.messages import SceneError, alike, clip
 from variational.state import ContactState
 
-BEGUN = "begun"
-"""Key of a summary that was written before the entries, for runs that end in between."""
 _LONGEST = 300  # characters of a failure in a note, whose traceback is in run.log
 _BEGUN = "The run ended before what follows from its states was computed: no newtons, bands, cautions or pictures."
 
@@ -52,19 +50,16 @@ def with_cautions(result: Result, found: Iterable[str]) -> Result:
 
 def _cautions(result: Result, states: Sequence[ContactState]) -> Result:
     """Return a result of the full model with the notes on its drives, and the cautions on scene, states and loads."""
-    from fingerpad.model import breakdown, cautions
-    from fingerpad.model.adhesion import without_slip
+    from fingerpad.model.cautions import on_scene, without_slip
     from fingerpad.results.over_time import NOTE
     from fingerpad.results.states import long_steps
-    from fingerpad.scene.remarks import leakage, remarks
+    from fingerpad.scene.remarks import leakage
 
     scene, loads = result.scene, result.scene.loads()
     notes = [*leakage(scene), *([NOTE] if any(load.takes_time for load in loads) else [])]
     lacks_slip = result.full_slip is None and any(load.until_full_slip for load in loads) and not result.failure
     found = [
-        *remarks(scene),
-        *cautions.on_states(states, scene.closure(), scene.contact.law),
-        *breakdown.of_states(scene, states),
+        *on_scene(scene, states),
         *long_steps(result.loads, result.record.get("force_error", 0.0)),
         *(without_slip(states, scene.closure()) if lacks_slip else []),
     ]
@@ -94,11 +89,6 @@ def _words(result: Result) -> Result:
 
 
 # -- files -------------------------------------------------------------------------------------------------
-def _dataset(result: Result) -> None:
-    if missing := dataset.save(result):
-        raise SceneError(missing)
-
-
 def _picture(kind: str) -> Callable[[Result], None]:
     def draw(result: Result) -> None:
         assert result.folder is not None
@@ -132,7 +122,6 @@ POST: list[Entry] = [
     BANDS,
     cautions_on(),
     WORDS,
-    Entry("result.nc", lambda result, _: result.folder is not None, _dataset, files=True),
     Entry("footprint.png", lambda r, c: _page(r, c) and r.finger is not None, _picture("footprint"), files=True),
     Entry("solid.png", lambda r, c: _page(r, c) and r.finger is not None and r.whole, _picture("solid"), files=True),
     Entry("report", _page, "fingerpad.report.write:of_result", files=True),
@@ -183,16 +172,16 @@ def completed(result: Result, context: RunContext, writer: Writer, own: Sequence
     """Write a result, compute what follows from it, and write it again; collective; see :func:`kept`."""
     writer.take()
     written = result = replace(result, folder=writer.folder)
-    writer.summary(_unfinished(result).to_dict(headline=False))
+    writer.result(_unfinished(result), headline=False)
     in_words = True
     for entry in sorted((*own, *POST), key=lambda each: each.files):
         if entry.files and result is not written:
-            writer.summary(result.to_dict(headline=in_words))
+            writer.result(result, in_words)
             written = result
         result, done = _tried(entry, result, context, writer)
         in_words &= done or entry is not WORDS
     if result is not written:
-        writer.summary(result.to_dict(headline=in_words))
+        writer.result(result, in_words)
     if result.failure:
         writer.log.error(result.failure)
     return result

@@ -11,8 +11,9 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
+from fingerpad.results import dataset
 from fingerpad.results.headline import SECTION, WHOLE
-from fingerpad.results.quantities import FINGER, FRICTION, QUANTITIES, SWEPT, Output, cell
+from fingerpad.results.quantities import FINGER, FRICTION, QUANTITIES, SWEPT, Output, cell, in_table
 from fingerpad.results.states import STATES, LoadResult
 from fingerpad.scene import Scene
 from fingerpad.scene.keys import Key, by_name
@@ -27,11 +28,7 @@ LOAD = "load"
 """Beginning of the columns of a load over time."""
 FORCE = "full_slip_finger_f_ext"
 """Column of the force on the whole finger at full slip."""
-_WHOLE = ("mu_app", "f_t", "f_electrostatic", "contact_area", "gross_area")
-_FIRST = ("f_ext", "mu_app", "f_t", "contact_area")  # of a sweep without a force in newtons
-_SECOND = ("mu_app", "f_t", "contact_length")  # of its middle section
-_NEWTONS = ("f_ext", *_WHOLE, "indentation")
-_IN_TIME = ("mu_app", "f_t", "contact_length")
+_IN_TIME = in_table("short")
 _ENDS = {"min": "least", "max": "largest", "mean": "mean"}
 
 
@@ -39,7 +36,7 @@ def row(result: "Result") -> dict[str, Any]:
     """Return the values of a point in SI units by column, and its failure."""
     if result.whole:
         return (_newtons(result.finger) if result.finger is not None else {}) | {"failure": result.failure}
-    values, keys = result.values(), (*SWEPT, *(each.name for each in result.outputs))
+    values, keys = dataset.values(result), (*SWEPT, *(each.name for each in result.outputs))
     alone = "reached" in result.record  # full slip without a path
     names = [f"{state}_{key}" for state in (STATES[-1:] if alone else STATES) for key in keys]
     cells = {key: values.get(key) for name in names for key in (name, f"{name}_error") if key in values}
@@ -58,7 +55,7 @@ def _newtons(finger: WholeFinger) -> dict[str, float]:
     for state in finger.states:
         values, error = finger.values(state), finger.error.get(state, {})
         own = (key for key in finger.quantities if key not in FINGER and key in values)
-        for key in (*_NEWTONS, *own):
+        for key in (*in_table("file", FINGER), *own):
             if key in FRICTION and state != "full_slip":
                 continue
             name = _of_finger(state, key)
@@ -97,14 +94,15 @@ def shown(columns: Iterable[str], whole: bool, outputs: Iterable[Output] = ()) -
     there = set(columns)
     if not whole:
         summed = _of_finger("full_slip", "mu_app") in there
-        finger = {_of_finger("full_slip", key): FINGER[key] for key in _FIRST} if summed else {}
-        known = {key: QUANTITIES[key] for key in SWEPT}
-        known = {key: _of_section(known[key]) for key in _SECOND} if summed else known
+        finger = (
+            {_of_finger("full_slip", key): each for key, each in in_table("first", FINGER).items()} if summed else {}
+        )
+        known = {key: _of_section(each) for key, each in in_table("short").items()} if summed else dict(SWEPT)
         finger |= {_of_finger("full_slip", each.name): each.whole for each in outputs if each.sum} if summed else {}
         known |= {each.name: _of_section(each) if summed and each.sum else each for each in outputs}
         return "full_slip", finger | {f"full_slip_{key}": each for key, each in known.items()}
     state = next((name for name in reversed(STATES) if _of_finger(name, "contact_area") in there), "full_slip")
-    keys = [key for key in _WHOLE if state == "full_slip" or key not in FRICTION]
+    keys = [key for key in in_table("sweep", FINGER) if state == "full_slip" or key not in FRICTION]
     own = {_of_finger(state, each.name): each.whole for each in outputs if each.sum}
     return state, {_of_finger(state, key): FINGER[key] for key in keys} | own
 
