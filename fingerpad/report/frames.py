@@ -52,7 +52,7 @@ class Frame(NamedTuple):
 
 def frames(result: Result) -> tuple[list[Frame], list[str]]:
     """Return the states that a folder has arrays of, a dozen at most, and the ends of their colours (kPa)."""
-    if result.folder is None:
+    if result.folder is None or not result.steps:
         return [], []
     found = [each for each in _listed(result, result.folder) if each[2].skin is not None]
     found = [found[int(k)] for k in np.unique(np.linspace(0, len(found) - 1, _MAX_FRAMES).round())] if found else []

@@ -46,12 +46,12 @@ def page(result: Result) -> str:
     return html.page(
         "run.html", f"fingerpad: {headline.sentence}", result=result, headline=headline, factor=_factor(result),
         name="" if result.folder is None else result.folder.name, verdict=trust.verdict(found), findings=found,
-        sure=_claims(result), bars=_bars(result), frames=shown, scale=scale, face=face,
+        sure=_claims(result), bars=bars_of(result), frames=shown, scale=scale, face=face,
         newtons=None if result.finger is None else result.finger, numbers=_numbers(result), notes=_notes(result),
         asked=list(_asked(result)), of_path=_of_path(result), per_length=PER_LENGTH,
-        band=band_in_words(result.record.get(BAND, {})), sliding=_sliding(result), over_time=_over_time(result), note=NOTE,
+        band=band_in_words(result.record.get(BAND, {})), sliding=_sliding(result), over_time=_over_time(result),
         receptors=_receptors(result), spikes=spikes, raster=None if spikes is None else _raster(result, spikes),
-        refusal=refusal, pictures=[each for each in pictures if each != face], laws=_laws(result),
+        note=NOTE, refusal=refusal, pictures=[each for each in pictures if each != face], laws=_laws(result),
         model=MODELS[result.model].words if result.model in MODELS else "A model that is not registered here",
         omitted=[f"{each['what']}: {each['reason']}" for each in result.record.get("omitted") or []],
         work=_work(result), cost=_cost(result), parameters=html.parameters(result.parameters), versions=versions,
@@ -74,7 +74,8 @@ def _claims(result: Result) -> list[str]:
     return [words for words in (found.solved, *known, found.remark.removesuffix(".")) if words]
 
 
-def _bars(result: Result) -> Markup:
+def bars_of(result: Result) -> Markup:
+    """Return the bars of a result's band; empty without one."""
     found = result.headline
     return bars(result.record[KNOWN], found.error, found.of) if found.known else Markup()
 

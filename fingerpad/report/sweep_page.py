@@ -36,7 +36,7 @@ from fingerpad.scene.reading import DEFAULT_MODEL, model_name
 from fingerpad.slices.errors import remarks
 from variational.files import read
 
-_CHARTS = dict.fromkeys((*in_table("short"), *in_table("first", FINGER)))
+_CHARTS = dict.fromkeys(key for key in (*in_table("short"), *in_table("first", FINGER)) if key != "f_ext")
 _MAX_CAUTIONS = 3  # in the headline
 _MAX_VALUES = 6  # of a key in the headline
 _RUBS = 1e-6  # µ_app that is no roundoff
