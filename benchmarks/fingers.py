@@ -17,8 +17,8 @@ from matplotlib.figure import Figure
 
 import fingerpad as fp
 from benchmarks import harness
+from fingerpad.reduced.default_finger import Similar, similar
 from fingerpad.reduced.registry import find
-from fingerpad.reduced.similarity import Similar, similar
 from fingerpad.results import style
 from fingerpad.runs.batch import Summary
 from fingerpad.runs.context import RunContext

@@ -18,7 +18,7 @@ import numpy as np
 
 from benchmarks import harness
 from benchmarks.runs import FORCES, VOLTAGES, trace
-from fingerpad.reduced import cylinder_errors, cylinders, uncharged
+from fingerpad.reduced import cylinder_errors, cylinders, default_finger
 from fingerpad.results.quantities import RESULTS
 from fingerpad.runs.batch import Summary
 from fingerpad.scene import Scene, load
@@ -103,7 +103,7 @@ def in_the_program(kept: Mapping[str, Any]) -> str:
     """Return the tables of :mod:`fingerpad.reduced.cylinders` and the known errors as kept numbers have them."""
     runs = [kept["scenes"][name(f, 0.0)]["full"]["summary"] for f in FORCES]
     lines = []
-    for state in uncharged.LENGTHS:
+    for state in default_finger.LENGTHS:
         lengths, ridges, heights = (
             [run[f"{state}_{key}"] for run in runs] for key in ("contact_length", "ridges_in_contact", "bone_height")
         )
@@ -112,7 +112,7 @@ def in_the_program(kept: Mapping[str, Any]) -> str:
         lines += [f"INDENTATIONS {state}: {', '.join(f'{-1e3 * each:.4f}e-3' for each in heights)}"]
     every = [*kept["scenes"].values(), *kept["held_out"].values()]
     known = cylinder_errors.REGIONS[0].errors
-    for key in (f"{state}_{quantity}" for state in uncharged.LENGTHS for quantity in known[state]):
+    for key in (f"{state}_{quantity}" for state in default_finger.LENGTHS for quantity in known[state]):
         errors = [_error(found, key) for found in every if value(found, "cylinders", key)]
         off = [abs(1 / (1 + each / 100) - 1) for each in errors if each is not None]  # over the printed value
         lines += [f"KNOWN_ERROR {key}: {np.ceil(1e3 * max(off) - _ROUNDOFF) / 1e3:.3f}"]
@@ -131,11 +131,6 @@ def draw(docs: Path) -> Path:
     numbers = harness.kept("models", docs).numbers
     every = [*numbers["scenes"].values(), *numbers["held_out"].values()]
 
-    def largest(key: str) -> str:
-        """Return the largest error, rounded up to 0.1 % as the program prints it."""
-        found = [abs(each) for scene in every if (each := _error(scene, key)) is not None]
-        return f"{np.ceil(10 * max(found) - _ROUNDOFF) / 10:.1f} %"
-
     def medians(model: str) -> list[float]:
         costs = [each[model]["cost"] for each in every if "cost" in each[model]]
         return [float(np.median([cost[key] for cost in costs])) for key in _COST]
@@ -144,7 +139,7 @@ def draw(docs: Path) -> Path:
         return dict(numbers["scenes"].get(name(f_ext, voltage), {}))
 
     names = {
-        "every": every, "largest": largest, "medians": medians, "at": at, "error": _error,
+        "every": every, "medians": medians, "at": at,
         "errors": lambda key, f: [_error(at(f, u), key) for u in VOLTAGES],
         "slips": sum(bool(each["full"].get("summary", {}).get("full_slip")) for each in every),
     }  # fmt: skip

@@ -10,9 +10,9 @@ from mpi4py import MPI
 
 import fingerpad as fp
 from fingerpad import runs
+from fingerpad.results.data import Cost
 from fingerpad.results.dataset import content
 from fingerpad.results.quantities import CONDITIONS, RESULTS
-from fingerpad.results.result import Cost
 from fingerpad.results.states import STATES
 from fingerpad.runs import attempt, full
 from fingerpad.runs.processes import End
@@ -150,18 +150,6 @@ def test_a_run_starts_again_with_smaller_elements(monkeypatch):
 
 
 # -- sweeps ------------------------------------------------------------------------------------------------
-def test_sweep_of_the_closed_form(tmp_path):
-    """Fifteen points at once: friction rises with the voltage and falls with the force; the table is kept."""
-    found = fp.sweep(fp.Scene(), tmp_path, model="cylinders", voltage=[0, 50, 100, 150, 200], f_ext=[25, 50, 75])
-    mu = found.array("mu_app")
-    assert mu.shape == (5, 3) and len(found) == 15
-    np.testing.assert_allclose(mu[0], 0.25, rtol=1e-9)
-    assert (np.diff(mu, axis=0) > 0).all() and (np.diff(mu[1:], axis=1) < 0).all()
-    assert found.points()[4] == {"voltage": 50.0, "f_ext": 50.0}
-    lines = (tmp_path / "table.csv").read_text(encoding="utf-8").splitlines()
-    assert lines[0].startswith("voltage,f_ext,") and len(lines) == 16
-
-
 def test_sweep_is_taken_up_again(tmp_path, monkeypatch):
     """One of two points is there; the other one is run, and its crash is in the table."""
     asked = []

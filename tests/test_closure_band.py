@@ -8,7 +8,8 @@ import pytest
 import fingerpad as fp
 from fingerpad.reduced import closure_band
 from fingerpad.report.trust import GOOD, Finding, verdict
-from fingerpad.results.headline import BAND, band_in_words
+from fingerpad.results.headline import band_in_words
+from fingerpad.results.quantities import BAND
 from fingerpad.scene import from_data
 
 
@@ -36,7 +37,7 @@ def test_band_is_that_of_runs_with_these_closures(result):
 def test_band_scales_the_result(result):
     """A result with twice the friction has twice the band."""
     twice = replace(result, full_slip=replace(result.full_slip, mu_app=2 * result.full_slip.mu_app))
-    found, kept = closure_band.band(twice)["mu_app"], result.record[BAND]["mu_app"]
+    found, kept = closure_band.with_band(twice).record[BAND]["mu_app"], result.record[BAND]["mu_app"]
     assert found == {words: pytest.approx(2 * value) for words, value in kept.items()}
 
 

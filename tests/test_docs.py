@@ -16,10 +16,7 @@ import pytest
 
 import fingerpad
 from fingerpad import cli
-from fingerpad.cli.params import page
 from fingerpad.results.quantities import FINGER
-from fingerpad.scene import Scene
-from fingerpad.scene.keys import every
 from tests.pages import ROOT, alike, blocks, printed, sentences, words
 
 PAGES = ["README.md", "CONTRIBUTING.md", "demos/README.md"]
@@ -172,14 +169,6 @@ def test_every_equation_of_the_paper_has_a_place():
     assert len(PLACES) > 25
     ranges = re.findall(r"(?:Eqs?\. |^\| )(\d+)(?:(?: and |, )(\d+))?", PAGE, re.MULTILINE)
     assert {int(number) for pair in ranges for number in pair if number} >= set(range(1, 16))
-
-
-# -- the scene reference -----------------------------------------------------------------------------------
-
-
-def test_page_is_the_generated_one():
-    """If not: fingerpad params --markdown > docs/scene.md."""
-    assert text("docs/scene.md") == page(list(every(Scene))) + "\n"
 
 
 # -- the documentation site: built as by make docs, with its links followed ------------------------------------------

@@ -7,10 +7,16 @@ import numpy as np
 import pytest
 
 import fingerpad as fp
-from fingerpad.reduced.closure_band import Slip, friction, known, powers, with_band
+from fingerpad.reduced.closure_band import Slip, friction, powers, with_band
 from fingerpad.report import run_page, trust
-from fingerpad.results.headline import KNOWN, known_in_words
+from fingerpad.results.headline import known_in_words
+from fingerpad.results.quantities import KNOWN
 from tests.test_closure_band import Held
+
+
+def bars(result: fp.Result) -> str:
+    """Return the bars of a result's band, as its report has them."""
+    return run_page.bars_of(result).replace("\u00a0", " ")
 
 
 @pytest.fixture(scope="module")
@@ -20,11 +26,6 @@ def result():
 
 def parts(result):
     return {part["name"]: (part["low"], part["high"]) for part in result.known["parts"]}
-
-
-def bars(result: fp.Result) -> str:
-    """Return the bars of a result's band, as its report has them."""
-    return run_page.bars_of(result).replace("\u00a0", " ")
 
 
 def test_parts(result):
@@ -95,7 +96,7 @@ def test_band_of_a_section_beside_a_finger_without_full_slip(result):
 
 def test_law_of_ones_own(result):
     """It has no roughness and no insulator to change, and no other closures."""
-    found = known(replace(result, scene=result.scene.replace(roughness=Held())), {})
+    found = with_band(replace(result, scene=result.scene.replace(roughness=Held()), record={})).known
     assert [part["name"] for part in found["parts"]] == ["friction law", "tips", "slices"]
 
 

@@ -11,7 +11,7 @@ from fingerpad.cli import main
 from fingerpad.model.options import check
 from fingerpad.scene import Load, Scene, SceneError, from_data
 from fingerpad.scene import scene as scenes
-from fingerpad.scene.keys import DIALECT, schema
+from fingerpad.scene.keys import DIALECT, every, schema
 from fingerpad.scene.reading import model_of
 from variational.contact.augmented import AugmentedLagrangian
 from variational.contact.nitsche import Nitsche
@@ -59,15 +59,6 @@ def test_file_and_overrides(write):
     scene = scenes.load(path, {"voltage": 50, "mesh.contact": 8e-6, "roughness.beta": 0.75})
     assert (scene.f_ext, scene.voltage, scene.roughness.beta) == (30.0, 50.0, 0.75)
     assert (scene.mesh.contact, scene.mesh.receptor) == (8e-6, 30e-6)
-
-
-def test_no_force_where_the_skin_is_held(write):
-    """Attraction or a prescribed height keeps the bone in place without a force."""
-    path = write(
-        '[[history]]\nname = "on"\nf_ext = 5\nvoltage = 80\n[[history]]\nname = "unload"\nf_ext = 0\n'
-        '[[history]]\nname = "retract"\nbone_height = 1e-4\n[[history]]\nname = "off"\nvoltage = 0\n'
-    )
-    assert scenes.load(path).loads()[1] == Load(name="unload", f_ext=0.0)
 
 
 @pytest.mark.parametrize("path", sorted(SCENES.glob("*.toml")), ids=lambda path: path.stem)
@@ -130,15 +121,7 @@ def test_scene_of_a_run_s_folder_is_a_scene(tmp_path):
         Scene.load(tmp_path / "other.json")
 
 
-def test_friendly_names(write):
-    """Spaces and letters of any alphabet."""
-    names = ["charge while sliding", "Größe – 200 V", "压", "a.b", "3"]
-    path = write("\n".join(f'[[history]]\nname = "{name}"\nf_ext = 5' for name in names))
-    assert [load.name for load in scenes.load(path).loads()] == names
-
-
 # -- the JSON Schema -------------------------------------------------------------------------------------------------
-FILE = Path(__file__).parents[1] / "docs" / "scene.schema.json"
 CHECK = jsonschema.Draft202012Validator(schema(Scene))
 WRONG = [
     {"f_exts": 50.0},
@@ -158,10 +141,13 @@ RIGHT = [
 ]
 
 
-def test_file_is_the_generated_one(capsys):
-    """If not: fingerpad params --schema > docs/scene.schema.json."""
+def test_command_prints_schema_and_page(capsys):
+    """The page has every key."""
     assert main(["params", "--schema"]) == 0
-    assert FILE.read_text(encoding="utf-8") == capsys.readouterr().out
+    assert json.loads(capsys.readouterr().out) == schema(Scene)
+    assert main(["params", "--markdown"]) == 0
+    page = capsys.readouterr().out
+    assert [key.name for key in every(Scene) if f"`{key.name.rpartition('.')[2]}`" not in page] == []
 
 
 def test_schema_is_of_its_dialect():

@@ -52,13 +52,6 @@ def test_each_point_is_the_run_under_its_force(found):
         found.array("contact_length")
 
 
-def test_charged_state_at_no_voltage_is_the_uncharged_one(found):
-    """So that tables over the voltage have no hole there."""
-    areas = found.array("contact_area", "charged")
-    np.testing.assert_array_equal(areas[0], found.array("contact_area", "uncharged")[0])
-    assert np.isfinite(areas).all()
-
-
 def test_table_text_and_dataset_are_of_the_whole_finger(found):
     rows = rows_of(found.folder, "table")
     assert not [key for key in rows[0] if re.match(r"(slip|normal|uncharged)_(?!finger_)", key)]
@@ -94,13 +87,6 @@ def test_frictionless_finger_has_its_areas(tmp_path):
     assert str(found).startswith("Whole finger, at charged normal contact")
     assert "µ_app" not in str(found).replace(LEAKAGE, "") and "ridge contact area (mm²)" in str(found)
     assert "the ridge contact area of the whole finger goes from" in write(tmp_path).read_text(encoding="utf-8")
-
-
-def test_smaller_forces_of_one_run(found):
-    """Read from traces with other points than those of a run to the force: within 1 %, which docs/results.md says."""
-    for k in range(2):
-        under = found[3 * k + 2].finger.under(0.1).values("full_slip")
-        assert under["f_t"] == pytest.approx(found.array("f_t")[k, 0], rel=1e-2)
 
 
 def test_force_that_no_trace_reaches_fails_alone(tmp_path):

@@ -6,15 +6,14 @@ A scene is a force on the finger, a voltage, a friction coefficient and a coatin
 sequence in these five keys. Its full slip is followed over growing forces of the section, up to that at the centre of
 the finger. So a scene has errors of the section at several forces, and one of the sum over slices. States are solved
 for from neighbours, without a path. Writes docs/loads.json, docs/loads.md and its picture, and the known errors into
-fingerpad/reduced/cylinder_errors.json; prints the contact lengths that fingerpad/reduced/uncharged.py has of them, and
-the number of shear of fingerpad/reduced/cylinders.py.
+fingerpad/reduced/cylinder_errors.json; prints the contact lengths that fingerpad/reduced/default_finger.py has of them,
+and the number of shear of fingerpad/reduced/cylinders.py.
 """
 
 import argparse
 import itertools
 import json
 import sys
-from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -26,11 +25,7 @@ from benchmarks import harness
 from benchmarks.loads import fresh
 from benchmarks.loads.compared import (
     BANDS,
-    LEAST,
-    MARGIN,
-    PART,
     PULLED,
-    WITHOUT,
     Band,
     Compared,
     Level,
@@ -43,11 +38,11 @@ from benchmarks.loads.compared import (
     sections,
 )
 from benchmarks.loads.meshes import errors, without
-from benchmarks.loads.scenes import COUNT, FIRST, LOWEST, MESHES, WORK, Data, scenes, section
+from benchmarks.loads.scenes import COUNT, MESHES, Data, scenes, section
 from benchmarks.loads.shear import Point, Spread, fitted, points
 from benchmarks.loads.shear import spread as errors_of
 from benchmarks.loads.states import pressed, solved
-from fingerpad.reduced import uncharged
+from fingerpad.reduced import default_finger
 from fingerpad.reduced.cylinder_errors import REGIONS, WHOLE, find
 from fingerpad.reduced.cylinders import SHEAR
 from fingerpad.results.files import replace
@@ -57,13 +52,6 @@ _SHORT = ("f_ext", "f_t", "mu_app", "f_electrostatic", "contact_length", "ridges
           "factorisations", "failure", "reached")  # fmt: skip
 REGIONS_FILE = harness.ROOT / "fingerpad" / "reduced" / "cylinder_errors.json"
 _MINUTES = 20.0
-_WHY = {
-    "too many factorisations": "needed more work",
-    "is not stable": "ended in full slip that is not stable",
-    "meshed to touch": "ended where a ridge touches that is meshed too coarsely",
-    "": "found no equilibrium on the way",
-}
-"""Parts of a failure, and what they say of a state."""
 _LAST = 150.0  # N/m, largest force of a full run in the tables of fingerpad/reduced
 
 
@@ -108,13 +96,13 @@ def far(numbers: Mapping[str, Any]) -> dict[str, dict[str, list[float]]]:
     They are the tables' last value of a full run, times the ratio of states on the coarser mesh.
     """
     found: dict[str, dict[str, list[float]]] = {}
-    k = uncharged.FORCES.index(_LAST)
-    for state, lengths in uncharged.LENGTHS.items():
+    k = default_finger.FORCES.index(_LAST)
+    for state, lengths in default_finger.LENGTHS.items():
         first, *others = numbers["far"][state]
         found[state] = {
             "lengths": [lengths[k] * each["contact_length"] / first["contact_length"] for each in others],
             "indentations": [
-                uncharged.INDENTATIONS[state][k] * each["bone_height"] / first["bone_height"] for each in others
+                default_finger.INDENTATIONS[state][k] * each["bone_height"] / first["bone_height"] for each in others
             ],
             "ridges": [each["ridges_in_contact"] for each in others],
         }
@@ -122,7 +110,7 @@ def far(numbers: Mapping[str, Any]) -> dict[str, dict[str, list[float]]]:
 
 
 def in_the_program(numbers: Mapping[str, Any]) -> str:
-    """Return what fingerpad.reduced.uncharged has of kept numbers."""
+    """Return what fingerpad.reduced.default_finger has of kept numbers."""
     lines = []
     for state, each in far(numbers).items():
         for key in ("lengths", "indentations"):
@@ -148,35 +136,19 @@ def draw(docs: Path) -> Path:
     every, both_have = both(compared), points(better)
     beyond = [each for each in every if not find(section(each.values, each.force), each.attraction / each.force)]
     states = [state for each in numbers["scenes"] for state in each["states"]]
-    parts = [
-        state["reached"] / each["values"]["voltage"]
-        for each in better
-        for state in each["states"]
-        if "reached" in state
-    ]
     harness.picture(docs / "loads.png", (9.5, 4.2), lambda figure: _paint(figure, every))
     names = {
-        "every": every, "beyond": beyond, "whole": whole, "states": states,
-        "mesh": [(sizes["contact"], each) for sizes, some in zip(MESHES, mesh, strict=True) for each in some],
+        "every": every, "beyond": beyond, "states": states,
         "regions": (rows := [*judged_levels(levels(compared, whole))]),
         "known_all": [each.error for each in rows if each.error is not None],
         "near": [each.error for each in rows if each.error is not None and each.pull == PULLED[0]],
         "shears": by_shear(both_have), "known_friction": Scene().friction, "kappa": fitted(both_have),
         "ridges": most_ridges_fewer(both_have),
-        "LEAST": LEAST, "MARGIN": MARGIN, "PART": PART, "MESHES": MESHES,
-        "WITHOUT": WITHOUT, "PULLED": PULLED, "LOWEST": LOWEST, "FIRST": FIRST, "WORK": WORK,
         "fresh": {key: fresh.beside(drawn["scenes"], key, mesh) for key in ("mu_app", "contact_length")},
-        "drawn": drawn,
         "known": [REGIONS[0].errors[key]["f_electrostatic"] for key in ("full_slip", WHOLE)],
-        "lost": [each for each in states if "failure" in each], "parts": parts,
+        "lost": [each for each in states if "failure" in each],
     }  # fmt: skip
     return harness.page(docs, "loads", "python3 -m benchmarks.loads", globals() | names, "models", "fresh")
-
-
-def lost_words(lost: Iterable[Data]) -> str:
-    """Return why states were not found, by :data:`_WHY`."""
-    counts = Counter(next(words for part, words in _WHY.items() if part in state["failure"]) for state in lost)
-    return ", ".join(f"{count} {words}" for words, count in counts.most_common())
 
 
 class Judged(NamedTuple):
@@ -228,7 +200,7 @@ def judged(band: Band, region: Mapping[str, Any] | None, words: str, pull: float
 def most_ridges_fewer(every: Iterable[Point]) -> int:
     """Return by how many ridges at most a sheared finger has fewer in contact than the tables of the closed form."""
     states = [each.state for each in every]
-    return max(int(uncharged.ridges(state["f_ext"], "full_slip")) - state["ridges_in_contact"] for state in states)
+    return max(int(default_finger.ridges(state["f_ext"], "full_slip")) - state["ridges_in_contact"] for state in states)
 
 
 class Sheared(NamedTuple):

@@ -16,7 +16,7 @@ from fingerpad.results.headline import notes, span
 
 COLOURS = ("blue", "vermilion", "green", "purple", "orange", "ink")
 DASHES = ("", "6 3", "2 3", "8 3 2 3", "10 4")
-_WIDTH, _LEFT, _RIGHT, _TOP, _FOOT, _GAP = 560.0, 48.0, 12.0, 22.0, 42.0, 30.0  # px
+_WIDTH, _LEFT, _RIGHT, _TOP, _FOOT, _GAP = 560.0, 48.0, 16.0, 22.0, 42.0, 30.0  # px
 _MARGIN = 0.05  # of the span of values
 _BAR = 0.35  # half of a bar's width, of the distance of two
 _TICK = 0.4  # half of the height of a spike

@@ -12,10 +12,10 @@ from fingerpad.report import page as html
 from fingerpad.report import trust
 from fingerpad.report.charts import Panel, Series, bars, chart
 from fingerpad.report.frames import conditions_of, frames
-from fingerpad.results.headline import BAND, KNOWN, band_in_words
+from fingerpad.results.headline import band_in_words
 from fingerpad.results.over_time import HARMONICS, NOTE, without_parts_of_jumps
 from fingerpad.results.printing import cells
-from fingerpad.results.quantities import PER_LENGTH, STEPS, in_table, plus_minus_of
+from fingerpad.results.quantities import BAND, KNOWN, PER_LENGTH, STEPS, in_table, plus_minus_of
 from fingerpad.results.result import Result
 from fingerpad.results.spikes import Spikes
 from fingerpad.results.states import WORDS, before_sliding, called

@@ -21,12 +21,12 @@ from fingerpad.runs.sweep_columns import (
     FORCE,
     LOAD,
     described,
+    description,
     head_of,
     in_time,
     loads,
     of_finger,
     printed,
-    said_of,
     shown,
     tables,
 )
@@ -151,7 +151,7 @@ def page(table: Table) -> str:
     code, lists = _again(table)
     return html.page(
         "sweep.html", f"fingerpad: sweep over {', '.join(table.axes)}", name=table.folder.resolve().name,
-        sentence=sentence, said=said, verdict=_verdict(table), state=state, of=said_of(columns), over_time=over_time,
+        sentence=sentence, said=said, verdict=_verdict(table), state=state, of=description(columns), over_time=over_time,
         charts=[charts[column] for column in columns if column in charts],
         heads=[*table.heads.values(), *(quantity.title for quantity in columns.values()), ""], points=_points(table),
         remarks=[*remarks(dict.fromkeys(table.forces())), *([] if table.whole else [PER_LENGTH])],

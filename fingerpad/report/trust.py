@@ -8,7 +8,8 @@ from fingerpad.accuracy.richardson import FEW_FACETS
 from fingerpad.reduced.cylinder_errors import in_words
 from fingerpad.reduced.registry import follows_path
 from fingerpad.report.page import BAD, CARE, GOOD
-from fingerpad.results.headline import KNOWN, why_not_known
+from fingerpad.results.headline import why_not_known
+from fingerpad.results.quantities import KNOWN
 from fingerpad.results.result import Result
 from fingerpad.results.states import called
 from variational.state import ContactState

@@ -9,25 +9,22 @@ them by more than :data:`CHANGE` of its range.
 import math
 from collections.abc import Iterable, Sequence
 from itertools import groupby
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from fingerpad.afferents import DEFAULT, Afferent, History, find
+from fingerpad.results.data import ResultData
 from fingerpad.results.over_time import without_parts_of_jumps
 from fingerpad.results.spikes import Densities, Span, Spikes, Unit
 from fingerpad.results.terminal import about
 from fingerpad.scene.messages import SceneError, show
 from variational.state import ContactState
 
-if TYPE_CHECKING:
-    from fingerpad.results.result import Result
-
 Array = NDArray[np.float64]
 CHANGE = 0.01
 """Part of the range of a stimulus that may change between two states, however far they are apart."""
-SITE_ERROR = 0.22
+_SITE_ERROR = 0.22
 """Largest known error of energy densities at three Merkel sites on the mesh of the default path, 20 µm in contact and
 at the sites (``again`` in docs/errors.json)."""
 _OVER_TIME = {
@@ -37,12 +34,12 @@ _OVER_TIME = {
     "pacinian_stress": "at Pacinian sites",
     "surface_strain": "strain of the surface",
 }
-SAMPLE = 1e-4  # s, between two samples of a stimulus
+_SAMPLE = 1e-4  # s, between two samples of a stimulus
 _SIDES = ("left", "right")
 _TIME_TOLERANCE = 1e-9  # of the length of a run: two times that are one
 
 
-def afferents(result: "Result", laws: str | Afferent | Iterable[str | Afferent] | None = None) -> Spikes:
+def afferents(result: ResultData, laws: str | Afferent | Iterable[str | Afferent] | None = None) -> Spikes:
     """Return the spikes of afferents over a run; see :meth:`fingerpad.results.result.Result.afferents`."""
     given: str | Afferent | Iterable[str | Afferent] = DEFAULT if laws is None else laws
     named = [given] if isinstance(given, str | Afferent) else list(given)
@@ -57,7 +54,7 @@ def afferents(result: "Result", laws: str | Afferent | Iterable[str | Afferent] 
     time, loads = np.array([state.time for state in states]), [state.load for state in states]
     at_states = _histories(states)
     scale, notes = result.scene.numerics.step_scale, [_mesh(result, states)]
-    fine: Array = np.arange(int(time[-1] / SAMPLE * (1 + 1e-9)) + 1, dtype=np.float64) * SAMPLE
+    fine: Array = np.arange(int(time[-1] / _SAMPLE * (1 + 1e-9)) + 1, dtype=np.float64) * _SAMPLE
     units: list[Unit] = []
     trains: list[Array] = []
     refusals: list[str] = []
@@ -70,7 +67,7 @@ def afferents(result: "Result", laws: str | Afferent | Iterable[str | Afferent] 
             if laws is not None:
                 raise SceneError(coarse)
             continue
-        trains += law.spikes(_between(time, loads, stimulus, fine), SAMPLE)
+        trains += law.spikes(_between(time, loads, stimulus, fine), _SAMPLE)
         units += _units(name, law, at_states[law.site], _ridges(states), len(units))
     if not units:
         raise SceneError(refusals[0])
@@ -81,7 +78,7 @@ def afferents(result: "Result", laws: str | Afferent | Iterable[str | Afferent] 
     return Spikes(tuple(units), tuple(trains), float(time[-1]), spans, tuple(notes), densities)
 
 
-def _states(result: "Result") -> list[ContactState]:
+def _states(result: ResultData) -> list[ContactState]:
     """Return the states of a run from time 0 on, of which two at a jump have two times.
 
     Raises:
@@ -149,8 +146,8 @@ def _between(time: Array, loads: Sequence[str], values: Array, fine: Array) -> A
 
     moved, near = time.copy(), _TIME_TOLERANCE * time[-1]
     jumps = np.flatnonzero(np.diff(moved) <= near) + 1
-    after = np.append(np.diff(moved), SAMPLE)[jumps]  # to the next state
-    moved[jumps] += np.minimum(SAMPLE, after) / 2
+    after = np.append(np.diff(moved), _SAMPLE)[jumps]  # to the next state
+    moved[jumps] += np.minimum(_SAMPLE, after) / 2
     found = np.repeat(values[:, -1:], len(fine), axis=1)
     for _, group in groupby(range(1, len(time)), key=lambda k: loads[k]):
         part = list(group)
@@ -181,7 +178,7 @@ def _spans(time: Array, loads: Sequence[str]) -> Iterable[Span]:
         yield Span(name, float(time[part[0] - 1]), float(time[part[-1]]))
 
 
-def _mesh(result: "Result", states: Sequence[ContactState]) -> str:
+def _mesh(result: ResultData, states: Sequence[ContactState]) -> str:
     """Return of which mesh the stimuli are, and what is known of its error."""
     sizes = result.record.get("path_mesh") or {}
     contact = f"{1e6 * states[-1].mesh_contact:.3g} µm in contact"
@@ -197,6 +194,6 @@ def _mesh(result: "Result", states: Sequence[ContactState]) -> str:
         )
     return (
         f"{begins} Their discretisation error is not estimated. On the path of the default scene, with 20 µm in both, "
-        f"energy densities at three Merkel sites are known to be off by up to {SITE_ERROR:.0%}, and stresses, whose "
+        f"energy densities at three Merkel sites are known to be off by up to {_SITE_ERROR:.0%}, and stresses, whose "
         "square they go with, by about half of that (docs/errors.json)."
     )

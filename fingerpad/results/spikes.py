@@ -10,15 +10,15 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from fingerpad import notebook
 from fingerpad.results import dataset, files
-from fingerpad.results.printing import side_by_side
 
 if TYPE_CHECKING:
     import xarray
     from matplotlib.figure import Figure
 
 Array = NDArray[np.float64]
-CAUTION = (
+_CAUTION = (
     "Thresholds are relative: the laws are of other skins, and their gains those of a flat pin. Compare runs and "
     "ridges; rates of a person do not follow from them."
 )
@@ -172,7 +172,7 @@ class Spikes:
     @property
     def remarks(self) -> tuple[str, ...]:
         """The caution, and the notes."""
-        return CAUTION, *self.notes
+        return _CAUTION, *self.notes
 
     def table(self) -> list[list[str]]:
         """Return a head and a row for each class: units, those that fired, spikes, rates, first spike, and by load."""
@@ -191,6 +191,6 @@ class Spikes:
     def __str__(self) -> str:
         """Return a table of the classes, with the number of spikes in each load, and remarks."""
         head = f"Spikes in {self.seconds:.4g} s; the last columns have their number in each load"
-        return "\n".join([head, *side_by_side(self.table()), *(f"  {remark}" for remark in self.remarks)])
+        return "\n".join([head, *notebook.side_by_side(self.table()), *(f"  {remark}" for remark in self.remarks)])
 
     __repr__ = __str__

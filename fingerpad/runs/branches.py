@@ -94,7 +94,7 @@ class Branches:
         self._reach = Reach(scene, self._made)
         with computed():
             light = max(LIGHT, traces.SMALLEST / self._reach.top)
-            self.section = traces.history(scene.replace(force=None), self._reach.top, light)
+            self.section = _sliding(scene.replace(force=None), self._reach.top, light)
         self.kept, self.found, self.counts, self.force_error = kept, dict[str, Traced](), Counts(), 0.0
         self._solved: Solved | None = None  # the last full slip
 
@@ -188,14 +188,17 @@ class Branches:
         found.anchors.append(self._recorder.states[name])
 
 
-def _forces(start: float, top: float, among: Sequence[float]) -> list[float]:
-    """Return forces (N/m) up to a largest one, with roots about as far apart as :data:`POINTS` of a whole trace have.
+def _sliding(scene: Scene, top: float, light: float) -> Scene:
+    """Return the scene of a finger that is pressed by the light part of a force (N/m), charged, slid and pressed on."""
+    far = scene.slide_length
+    loads: list[dict[str, float | str | bool]] = [{"name": "press", "f_ext": top * light}]
+    loads += [{"name": "charge", "voltage": scene.volts}] if scene.volts else []
+    loads += [{"name": "slide", "bone_x": far / 4, "until_full_slip": True}]
+    return scene.replace(history=[*loads, {"name": "raise", "f_ext": top, "bone_x": far}])
 
-    Args:
-        start: of the present state.
-        top: the largest.
-        among: to be among them, where they are above the present one.
-    """
+
+def _forces(start: float, top: float, among: Sequence[float]) -> list[float]:
+    """Return forces (N/m) up to a largest one, whose roots are about as far apart as those of :data:`POINTS`."""
     ends = [start, *(force for force in among if start < force < top), top]
     apart = (1 - LIGHT**0.5) * top**0.5 / (POINTS - 1)
     found = list[float]()

@@ -15,11 +15,10 @@ from numpy.typing import NDArray
 from fingerpad import notebook
 from fingerpad.results import dataset
 from fingerpad.results.files import replace
-from fingerpad.results.headline import KNOWN
-from fingerpad.results.quantities import CONDITIONS, FINGER, PER_LENGTH, RESULTS, Output, plus_minus_of
+from fingerpad.results.quantities import CONDITIONS, FINGER, KNOWN, PER_LENGTH, RESULTS, Output, plus_minus_of
 from fingerpad.results.states import STATES, WORDS
 from fingerpad.runs import post
-from fingerpad.runs.sweep_columns import described, head_of, of_finger, printed, row, said_of, shown, tables
+from fingerpad.runs.sweep_columns import described, description, head_of, of_finger, printed, row, shown, tables
 from fingerpad.scene.messages import alike
 from fingerpad.scene.reading import flat
 from fingerpad.scene.remarks import drive_in_short, other_under_a_drive
@@ -203,7 +202,7 @@ class Sweep:
             errors = {column: each.get(f"{column}_error") for column in columns}
             cells = [of.shown(values[column], errors[column]) for column, of in columns.items()]
             table.append([*first, *cells])
-        of = said_of(columns)
+        of = description(columns)
         scenes = [result.scene for result in self.results]
         found = [(f"{of[0].upper()}{of[1:]}, at {WORDS[state]}, under {drive_in_short(scenes)}", table)]
         found += [(f"Over time, in the load {name}", over_time) for name, over_time in tables(rows, axes)]
