@@ -87,7 +87,7 @@ def test_estimate_without_an_answer_is_refused(capsys):
         ("microscale demos/scenes/sine_while_sliding.toml", "name those wanted by --voltage"),
         ("estimate --plot mu.txt", "mu.txt cannot be a picture; its name must end with one of .png"),
         ("params zebra", "no key of a scene has zebra in its name"),
-        ("mesh --out finger.stl", "finger.stl cannot be a mesh; its name must end with .msh"),
+        ("check --mesh finger.stl", "finger.stl cannot be a mesh; its name must end with .msh"),
         ("sweep --over model=full,cylinders", "model is varied and is no key of a scene; a sweep has one model"),
         ("sweep --over out=1,2 --model cylinders", "out is varied and is no key of a scene"),
         ("estimate --f-ext 75 --set f_ext=50", "--set f_ext is given and --f-ext too; give one of"),
