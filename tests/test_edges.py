@@ -43,18 +43,6 @@ def test_ends_are_where_the_gap_is_zero():
     np.testing.assert_allclose(found, [-40.5e-6, 40.5e-6], atol=0.1e-6)
 
 
-def test_gap_of_a_facet_within_a_contact_is_none():
-    """On coarse facets skin may come up between two points. A wider gap parts two contacts."""
-
-    def two(s):
-        return (s**2 - 60e-6**2) * (s**2 - 8e-6**2) * -1e8
-
-    state = snapshot_of({0: lambda s: -two(s)})
-    wide = edges.ends(state, ALONG, 5e-6)
-    np.testing.assert_allclose(wide, [-60e-6, -8e-6, 8e-6, 60e-6], atol=0.3e-6)
-    np.testing.assert_allclose(edges.ends(state, ALONG, 20e-6), [-60e-6, 60e-6], atol=0.1e-6)
-
-
 def test_facets_are_small_outwards_of_ends_on_coarse_facets():
     """On both sides alike, by the mirror image; an end that is known is one place. Roundoff of the ends moves none."""
     size = MeshSize(contact=16e-6)

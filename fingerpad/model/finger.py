@@ -3,14 +3,13 @@
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import partial
-from typing import TYPE_CHECKING
 
 import numpy as np
 from mpi4py import MPI
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
-from fingerpad.model.options import refuse_mesh, refuse_sizes
+from fingerpad.model.options import FingerModel, refuse_mesh, refuse_sizes
 from fingerpad.model.state import contact_state, force_error, refuse_unbalanced
 from geometry import fingertip, mesh, meshfile, tags
 from geometry.profiles import Profiles
@@ -24,9 +23,6 @@ from variational.resultants import RidgeLoads
 from variational.solvers.continuation import Attempt, Continuation
 from variational.solvers.target import Target
 from variational.state import ContactState
-
-if TYPE_CHECKING:
-    from fingerpad.model.options import FingerModel
 
 Array = NDArray[np.float64]
 _MAX_DISTANCE = 1e-9  # m, within which two nodes are one
@@ -55,9 +51,7 @@ class Finger:
         contact_size: size of the facets that can touch (m).
     """
 
-    def __init__(
-        self, model: "FingerModel", comm: MPI.Comm, on_accept: Callable[[Target, float, Attempt], bool]
-    ) -> None:
+    def __init__(self, model: FingerModel, comm: MPI.Comm, on_accept: Callable[[Target, float, Attempt], bool]) -> None:
         """Mesh the finger and set the solver up; collective.
 
         Args:
@@ -152,7 +146,7 @@ def both_sides(half: Array) -> Array:
 
 
 def assembled(
-    model: "FingerModel", comm: MPI.Comm, on_accept: Callable[[Target, float, Attempt], bool], half: bool
+    model: FingerModel, comm: MPI.Comm, on_accept: Callable[[Target, float, Attempt], bool], half: bool
 ) -> tuple[mesh.TaggedMesh, Body]:
     """Return a finger's mesh, and its solver in the unloaded state; collective.
 
@@ -184,7 +178,7 @@ def assembled(
     return tagged, body
 
 
-def meshed(model: "FingerModel", comm: MPI.Comm, half: bool | None = None) -> mesh.TaggedMesh:
+def meshed(model: FingerModel, comm: MPI.Comm, half: bool | None = None) -> mesh.TaggedMesh:
     """Return a finger's mesh; collective.
 
     Args:
@@ -215,7 +209,7 @@ class HalfFinger:
     """
 
     def __init__(
-        self, model: "FingerModel", finger: Finger, comm: MPI.Comm, on_accept: Callable[[Target, float, Attempt], bool]
+        self, model: FingerModel, finger: Finger, comm: MPI.Comm, on_accept: Callable[[Target, float, Attempt], bool]
     ) -> None:
         """Mesh the half and set its solver up; collective.
 

@@ -24,9 +24,11 @@ from collections.abc import Mapping
 from copy import copy
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import Any
 
+from fingerpad.model import drive_loads
 from fingerpad.results.terminal import about
+from fingerpad.scene import Numerics, Scene
 from fingerpad.scene.messages import SceneError, qualify
 from fingerpad.scene.viscosity import viscous_layers
 from geometry import sizing
@@ -34,10 +36,6 @@ from geometry.parameters import Fingertip, MeshSize
 from geometry.profiles import GeometryError
 from variational.contact.formulation import Formulation
 from variational.materials.material import Material
-
-if TYPE_CHECKING:
-    from fingerpad.model.drive_loads import GapFactor
-    from fingerpad.scene import Load, Numerics, Scene
 
 COARSER = 2.0
 """Sizes of the elements on which a path is followed over those with which its named states are solved again."""
@@ -48,7 +46,7 @@ PER_UNKNOWN = 6.3e3
 of a run: 0.35 GB with 27 000 unknowns, 0.56 GB with 73 000, 1.2 GB with 186 000, 5.7 GB with 873 000: the last."""
 _RIDGES, _FORCE, _FRICTION = 10, 75.0, 0.25  # on either side, at a force (N/m) and a friction coefficient
 _WIDENS, _ROLLS = 0.27, 0.3  # powers of the force and of a larger friction coefficient
-_LEAST = 2  # ridges on either side
+_FEWEST = 2  # ridges on either side
 _PRESSURE = 30e3  # Pa, mean contact pressure of ridges, at which a friction law other than Coulomb's is evaluated
 
 
@@ -97,7 +95,7 @@ _HALF = Omission(
 )
 
 
-def plan(scene: "Scene") -> ModelOptions:
+def plan(scene: Scene) -> ModelOptions:
     """Return what a scene needs; a pure function of it."""
     voltage = any(load.voltage for load in scene.loads())
     friction, receptors = scene.friction_law() is not None, scene.output.receptors
@@ -149,15 +147,13 @@ class FingerModel:
         asked: largest relative errors allowed, by quantity; empty where no accuracy is asked for.
     """
 
-    def __init__(self, scene: "Scene", options: ModelOptions) -> None:
+    def __init__(self, scene: Scene, options: ModelOptions) -> None:
         """Read a scene.
 
         Args:
             scene: a checked scene with a ``mesh.touching_half_arc``, see :func:`fingerpad.model.options.by_rule`.
             options: the parts of the model, see :func:`plan`.
         """
-        from fingerpad.model import drive_loads
-
         self.options = options
         self.geometry: Fingertip = scene.geometry
         self.mesh: MeshSize = scene.mesh
@@ -191,30 +187,12 @@ class FingerModel:
         """Return element sizes :data:`COARSER` as large, as far as ridges can have them."""
         return sizing.coarser(self.geometry, mesh, COARSER)
 
-    def changed(
-        self,
-        *,
-        options: ModelOptions | None = None,
-        mesh: MeshSize | None = None,
-        final: MeshSize | None = None,
-        edges: tuple[float, ...] | None = None,
-        contact: Formulation | None = None,
-        loads: tuple["Load", ...] | None = None,
-        numerics: "Numerics | None" = None,
-        share: "GapFactor | None" = None,
-    ) -> "FingerModel":
-        """Return a copy with some values changed, as the attributes are described; those left out stay."""
+    def changed(self, **changes: Any) -> "FingerModel":
+        """Return a copy with some attributes changed; those that are left out or None stay."""
         found = copy(self)
-        found.options = self.options if options is None else options
-        found.mesh = self.mesh if mesh is None else mesh
-        found.final = self.final if final is None else final
+        vars(found).update({name: value for name, value in changes.items() if value is not None})
         if found.final is not None:  # the same ridges can touch
             found.final = found.final.model_copy(update={"touching_half_arc": found.mesh.touching_half_arc})
-        found.edges = self.edges if edges is None else edges
-        found.contact = self.contact if contact is None else contact
-        found.loads = self.loads if loads is None else loads
-        found.numerics = self.numerics if numerics is None else numerics
-        found.share = self.share if share is None else share
         return found
 
     def with_ridges(self, last: int) -> "FingerModel":
@@ -234,7 +212,7 @@ class FingerModel:
         return (*self.options.omitted, Omission(f"contact of the ridges beyond ±{last}", reason))
 
 
-def check(scene: "Scene") -> None:
+def check(scene: Scene) -> None:
     """Refuse a scene whose finger cannot be built or meshed.
 
     Raises:
@@ -251,7 +229,7 @@ def check(scene: "Scene") -> None:
         raise SceneError(qualify(message, "geometry.", Fingertip.model_fields)) from None
 
 
-def by_rule(scene: "Scene") -> "Scene":
+def by_rule(scene: Scene) -> Scene:
     """Return the scene with a ``mesh.touching_half_arc``, by the rule of thumb where it gives none."""
     if scene.mesh.touching_half_arc is not None:
         return scene
@@ -262,7 +240,7 @@ def by_rule(scene: "Scene") -> "Scene":
     radius = finger.width**2 / (2 * finger.height)
     lowered = math.sqrt(2 * radius * max(depth, 0.0)) / finger.ridge_wavelength
     friction = 0.0 if law is None else law.coefficient(_PRESSURE)
-    last = math.ceil(max(ridges, lowered, _LEAST) * max(friction / _FRICTION, 1.0) ** _ROLLS)
+    last = math.ceil(max(ridges, lowered, _FEWEST) * max(friction / _FRICTION, 1.0) ** _ROLLS)
     half_arc = min(last, max(finger.ridge_count // 2, 1)) * finger.ridge_wavelength
     return scene.model_copy(update={"mesh": scene.mesh.model_copy(update={"touching_half_arc": half_arc})})
 
@@ -305,7 +283,7 @@ def refuse_mesh(points: int, triangles: int, model: FingerModel) -> None:
             model.mesh)  # fmt: skip
 
 
-def refuse_sizes(finger: Fingertip, size: MeshSize, numerics: "Numerics", needed: ModelOptions) -> None:
+def refuse_sizes(finger: Fingertip, size: MeshSize, numerics: Numerics, needed: ModelOptions) -> None:
     """Refuse element sizes whose mesh would need more memory than is allowed, by a lower bound, before it is made.
 
     Args:
@@ -322,7 +300,7 @@ def refuse_sizes(finger: Fingertip, size: MeshSize, numerics: "Numerics", needed
             size)  # fmt: skip
 
 
-def _refuse(has: str, triangles: int, number: int, numerics: "Numerics", finger: Fingertip, size: MeshSize) -> None:
+def _refuse(has: str, triangles: int, number: int, numerics: Numerics, finger: Fingertip, size: MeshSize) -> None:
     allowed = f"numerics.memory allows {numerics.memory / 1e9:g} GB"
     if numerics.memory <= PROGRAM:
         raise GeometryError(f"{allowed}, and the program takes {PROGRAM / 1e9:g} GB without a mesh; raise it")

@@ -187,7 +187,8 @@ def _verdicts(named: Sequence[ContactState | None], known: Mapping[str, Output])
     ways = np.array(["" if state is None else state.reached for state in named], object)
     found["state_reached"] = ("state",), ways, _about("how the state was reached, by its path or from another state")
     for kind, words in CHANGES.items():
-        own = {key: None for state in named if state is not None for key in getattr(state, kind).own}
+        every = (getattr(state, kind).own for state in named if state is not None)
+        own = {key: None for each in every for key in each if key in known}  # outputs come after their errors
         for key in (*CHANGED, *own):
             changes = [None if state is None else getattr(getattr(state, kind), key, None) for state in named]
             found[f"state_{key}_{kind}"] = ("state",), _column(changes), known[key].about(f"{words} of the ")

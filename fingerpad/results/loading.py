@@ -137,8 +137,9 @@ def _finger(data: "xarray.Dataset", outputs: Sequence[Output], shape: "Slices") 
         columns = {key: each for key, each in columns.items() if len(each)}
         if columns:
             ridges = columns.pop("ridges", None)
+            depth = columns.pop("depth")
             own = tuple(each for each in outputs if each.name in columns)
-            traces[name] = Trace(columns.pop("depth"), columns, None if ridges is None else ridges.astype(int), own)
+            traces[name] = Trace(depth, columns, None if ridges is None else ridges.astype(int), own)
     return WholeFinger(totals, kept["source"], kept["carried"], traces, shape)
 
 

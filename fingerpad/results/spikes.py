@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 Array = NDArray[np.float64]
-CAUTION = (
+_CAUTION = (
     "Thresholds are relative: the laws are of other skins, and their gains those of a flat pin. Compare runs and "
     "ridges; rates of a person do not follow from them."
 )
@@ -172,7 +172,7 @@ class Spikes:
     @property
     def remarks(self) -> tuple[str, ...]:
         """The caution, and the notes."""
-        return CAUTION, *self.notes
+        return _CAUTION, *self.notes
 
     def table(self) -> list[list[str]]:
         """Return a head and a row for each class: units, those that fired, spikes, rates, first spike, and by load."""

@@ -31,7 +31,7 @@ LEAKAGE = (
     "5 % high at 10 kHz (200 V rms, 75 N/m: docs/drive.md). A constant voltage leaks away."
 )
 """Note on every result with a constant voltage; its numbers are ``left_out`` of docs/drive.json."""
-UNDER_A_DRIVE = (
+_UNDER_A_DRIVE = (
     "The finger's tissue and leak have no effect without a drive, and under a drive a moist finger can need more "
     "of it than a dry one: compare fingers under one drive, as "
     'voltage = {waveform = "sine", rms = 150, frequency = 100}.'
@@ -122,7 +122,7 @@ def other_under_a_drive(scenes: Iterable["Scene"]) -> list[str]:
     """Return a sentence where a constant voltage is put on a finger whose circuit would lose it; none elsewhere."""
     constant = (scene for scene in scenes if scene.drive is None and scene.volts)
     loses = any(not scene.electric.circuit(scene.geometry.sc_thickness).lossless for scene in constant)
-    return [UNDER_A_DRIVE] if loses else []
+    return [_UNDER_A_DRIVE] if loses else []
 
 
 def _drive_in_words(name: str, wave: Waveform, scene: "Scene") -> str:
