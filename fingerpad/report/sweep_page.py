@@ -151,8 +151,8 @@ def page(table: Table) -> str:
     code, lists = _again(table)
     return html.page(
         "sweep.html", f"fingerpad: sweep over {', '.join(table.axes)}", name=table.folder.resolve().name,
-        sentence=sentence, said=said, verdict=_verdict(table), state=state, of=description(columns), over_time=over_time,
-        charts=[charts[column] for column in columns if column in charts],
+        sentence=sentence, said=said, verdict=_verdict(table), state=state, of=description(columns),
+        over_time=over_time, charts=[charts[column] for column in columns if column in charts],
         heads=[*table.heads.values(), *(quantity.title for quantity in columns.values()), ""], points=_points(table),
         remarks=[*remarks(dict.fromkeys(table.forces())), *([] if table.whole else [PER_LENGTH])],
         notes=[*table.notes, *table.cautions], failed=failed, parameters=html.parameters(table.parameters, table.axes),
