@@ -74,7 +74,6 @@ docs:
 
 pages:
 	$(run) python3 -m benchmarks.pages
-	$(run) python3 -m fingerpad calculator --out docs/calculator.html
 
 notebook:
 	$(run) python3 -m benchmarks.notebook $(or $(DEMO),first_run)

@@ -23,8 +23,7 @@ from numpy.typing import NDArray
 
 from benchmarks import newtons
 from benchmarks.harness import DOCS, keep, kept, made, picture
-from fingerpad.results import style
-from fingerpad.results.arrays import finger_of
+from fingerpad.results import fields, style
 from fingerpad.results.finger_picture import LAYER_COLOURS
 from fingerpad.results.result import Result
 from fingerpad.scene.parameters import Slices
@@ -42,16 +41,16 @@ _FINE = 0.02  # mm, between the points of a drawn outline
 def main(folder: str, newtons_folder: str) -> None:
     """Keep the numbers of two default runs with those of docs/models.json, and draw."""
     summary = json.loads((Path(newtons_folder) / "summary.json").read_text(encoding="utf-8"))
-    a = finger_of(Path(folder) / "finger_full_slip.npz")
-    xy, outlines = _MM * (a["x"] + a["u"]), []
+    result = Result.load(folder)
+    view = fields.views_of(Path(folder), result.steps, result.named)[1]["full_slip"]
+    body: Any = view.snapshot
+    xy, outlines = _MM * (body.x + body.u), []
     for tag in tags.LAYERS.values():
-        for loop in loops(a["lines"], a["beside"], a["tag"], tag):
+        for loop in loops(body.lines, body.beside, body.tag, tag):
             points = xy[loop[:, :2]].reshape(-1, 2)  # the begin and the middle of each line
             outlines.append({"layer": int(tag), "points": _rows(_thinned(points))})
-    with np.load(Path(folder) / "surface.npz") as a:
-        ridge = {
-            name: a[f"full_slip_{name}"][a["full_slip_ridge"] == RIDGE] for name in ("x", "y", "p", "p_el", "d_eq")
-        }
+    skin: Any = view.skin
+    ridge = {name: skin[name][skin["ridge"] == RIDGE] for name in ("x", "y", "p", "p_el", "d_eq")}
     scenes, force = kept("models").numbers["scenes"], round(summary["finger"]["f_ext"], 4)
     friction = {f"{each:g}": _forces(scenes, each) for each in (FORCES[0], force, FORCES[1])}
     along = {name: _rows([float(f"{v:.6g}") for v in values]) for name, values in ridge.items()}

@@ -9,8 +9,7 @@ from PIL import Image
 
 from fingerpad.cli import main
 from fingerpad.reduced.registry import find
-from fingerpad.results import animation, motion
-from fingerpad.results.arrays import skin_of
+from fingerpad.results import animation, fields, motion
 from fingerpad.results.result import Result
 from fingerpad.runs.context import RunContext
 from fingerpad.runs.solve import solved
@@ -31,14 +30,14 @@ def folder(tmp_path_factory) -> Path:
 @pytest.fixture
 def copy(folder, tmp_path) -> Path:
     """A copy of the run's folder, to be spoilt."""
-    return Path(shutil.copytree(folder, tmp_path / "copy", ignore=shutil.ignore_patterns("*.vtu", "*.png")))
+    return Path(shutil.copytree(folder, tmp_path / "copy", ignore=shutil.ignore_patterns("*.png")))
 
 
 @pytest.mark.parametrize("ending", animation.ENDINGS)
 def test_animation_has_a_frame_for_each_state(folder, tmp_path, capsys, ending):
     """And some between states, each load at least as many as it is said to have; the last frame stands longest."""
     file = tmp_path / f"run{ending}"
-    assert main(["animate", str(folder), "--out", str(file)]) == 0 and str(file) in capsys.readouterr().out
+    assert main(["report", str(folder), "--animate", "--out", str(file)]) == 0 and str(file) in capsys.readouterr().out
     with Image.open(file) as shown:
         assert shown.size == (810, 540) and shown.n_frames > len(Result.load(folder).steps)
         first = shown.convert("RGB").tobytes()
@@ -52,7 +51,7 @@ def test_motion_ends_in_the_last_state(folder):
     kept, state = motion.read(folder), Result.load(folder).steps[-1]
     assert kept.step[-1] == state.step and len(kept.step) == len(Result.load(folder).steps)
     xy, skin = kept.between(len(kept.step) - 1, 0.0)
-    last = skin_of(folder / "surface_slide.npz", "end")
+    last = dict(zip(fields.ALONG, fields.read(folder)["loads/slide"]["skin"], strict=True))
     assert skin == pytest.approx(np.stack([last[name] for name in motion.ROWS]), rel=1e-6, abs=1e-9, nan_ok=True)
     assert xy.min(axis=0)[1] == pytest.approx(0.0, abs=1e-6), "the skin is not on the screen"
 
@@ -68,11 +67,12 @@ def test_long_run_keeps_some_of_its_states():
 
 
 @pytest.mark.parametrize(
-    ("name", "words"), [("a.mp4", "must end with one of .webp, .gif"), ("a.webp", "has no motion.npz")]
+    ("name", "words"),
+    [("a.mp4", "must end with one of .webp, .gif"), ("a.webp", "has no motion of a run in fields")],
 )
 def test_animation_that_cannot_be_made_is_refused(copy, capsys, name, words):
-    (copy / motion.FILE).unlink()
-    assert main(["animate", str(copy), "--out", str(copy / name)]) == 2
+    (copy / fields.FILE).unlink()
+    assert main(["report", str(copy), "--animate", "--out", str(copy / name)]) == 2
     printed, said = capsys.readouterr()
     assert words in said and said.count("\n") == 1 and printed == ""
 
@@ -89,7 +89,7 @@ def test_animation_that_is_stopped_leaves_what_was_there(copy, capsys, monkeypat
     frames = animation._frames
     monkeypatch.setattr(animation, "_frames", lambda states: frames(states)[:2])
     monkeypatch.setattr(where, stop)
-    assert main(["animate", str(copy)]) == 130
+    assert main(["report", str(copy), "--animate"]) == 130
     said = capsys.readouterr().err
     assert said.startswith("fingerpad: stopped by Ctrl-C") and said.count("\n") == 1
     assert file.read_bytes() == b"earlier" and set(copy.iterdir()) == there

@@ -8,7 +8,7 @@ import pytest
 import fingerpad as fp
 from fingerpad.cli import main
 from fingerpad.cli import roughness as microscale
-from fingerpad.scene.dotted import with_values
+from fingerpad.scene import with_values
 from tests.test_microscale_closures import CLOSURES
 from variational.roughness.spectrum import SelfAffine
 

@@ -18,7 +18,7 @@ from fingerpad.scene.reading import override
 from tests.commands import COARSE, refused
 
 OUTPUTS = (
-    ("calculator", "--out", "a page; its name must end with .html"),
+    ("report", "--out", "a page; its name must end with .html"),
     ("mesh", "--out", "a mesh; its name must end with .msh"),
     ("mesh", "--plot", "a picture; its name must end with one of .png"),
     ("estimate", "--csv", "a table; its name must end with .csv"),
@@ -28,7 +28,7 @@ OUTPUTS = (
     ("compare-data", "--out", "a picture; its name must end with one of .png"),
     ("topography", "--plot", "a picture; its name must end with one of .png"),
 )
-GIVEN = {"compare-data": ["none.csv", "--run", "none"], "topography": ["none.csv"]}
+GIVEN = {"report": ["--calculator"], "compare-data": ["none.csv", "--run", "none"], "topography": ["none.csv"]}
 
 
 @pytest.mark.parametrize(("command", "option", "words"), OUTPUTS)
@@ -40,13 +40,13 @@ def test_scene_is_not_replaced(capsys, write, command, option, words):
     assert scene.read_text() == "voltage = 100"
 
 
-@pytest.mark.parametrize(("command", "option"), [("calculator", "--out"), ("estimate", "--csv"), ("mesh", "--out")])
+@pytest.mark.parametrize(("command", "option"), [("report", "--out"), ("estimate", "--csv"), ("mesh", "--out")])
 def test_file_of_the_same_kind_by_somebody_else_is_not_replaced(capsys, tmp_path, command, option):
     """A page, a table and a mesh of another program; gmsh writes format 4.1 by default."""
-    mine = tmp_path / f"mine.{dict(calculator='html', estimate='csv', mesh='msh')[command]}"
+    mine = tmp_path / f"mine.{dict(report='html', estimate='csv', mesh='msh')[command]}"
     text = "$MeshFormat\n4.1 0 8\n" if command == "mesh" else "<!DOCTYPE html>\n<title>Mine</title>\n"
     mine.write_text(text)
-    assert f"{mine.name} is there and is not a" in refused(capsys, command, option, str(mine))
+    assert f"{mine.name} is there and is not a" in refused(capsys, command, *GIVEN.get(command, []), option, str(mine))
     assert mine.read_text() == text
 
 
@@ -58,7 +58,7 @@ def test_own_file_is_replaced(capsys, tmp_path):
         assert main(["estimate", "--voltage", voltage, "--csv", str(table)]) == 0
         assert re.search(rf"^0\.5376\d*,{voltage}.0,", table.read_text(), re.MULTILINE)
     page.write_text((files("fingerpad.calculator") / "page.html").read_text(encoding="utf-8").partition("{{")[0])
-    assert main(["calculator", "--out", str(page)]) == 0 and "</html>" in page.read_text(encoding="utf-8")
+    assert main(["report", "--calculator", "--out", str(page)]) == 0 and "</html>" in page.read_text(encoding="utf-8")
 
 
 def read(*argv: str) -> None:

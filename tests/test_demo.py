@@ -87,8 +87,7 @@ def test_leaves_what_it_promises(coarse, summary):
     names = {path.name for path in coarse.iterdir()}
     assert {"steps.csv", "ridges.csv", "receptors.csv", "coupling.csv", "summary.json", "run.log"} <= names
     assert {"finger_press.png", "finger_charge.png", "finger_slide.png", "surface.png", "history.png"} <= names
-    assert {"fields.pvd", "fields_press.vtu", "fields_slide.vtu", "surface.npz"} <= names
-    assert {"finger_press.npz", "finger_charge.npz", "finger_slide.npz"} <= names
+    assert "fields.npz" in names
     assert len(rows_of(coarse)) == summary["steps"]
     assert summary["parameters"]["mesh"]["contact"] == 10e-6
 

@@ -117,7 +117,7 @@ def test_run_without_time_has_no_stimuli(tmp_path):
 def test_command(run, tmp_path, capsys):
     """A table on the screen, one of all spikes, a dataset and a picture."""
     shutil.copytree(run.folder, tmp_path / "run")
-    assert main(["feel", str(tmp_path / "run"), "--class", "SA1", "--class", "RA1 strain"]) == 0
+    assert main(["report", str(tmp_path / "run"), "--feel", "--class", "SA1", "--class", "RA1 strain"]) == 0
     printed = capsys.readouterr().out
     assert "SA1" in printed and "RA1 strain" in printed and "Thresholds are relative" in printed
     spikes = run.afferents(["SA1", "RA1 strain"])

@@ -9,6 +9,7 @@ import fingerpad as fp
 from fingerpad.cli import main
 from fingerpad.reduced.similarity import similar
 from fingerpad.scene import load
+from fingerpad.scene.changes import with_presets
 from fingerpad.scene.fingers import FINGERS
 from tests.commands import refused
 from tests.measures import rows_of
@@ -111,11 +112,8 @@ def test_sweep_has_fingers_side_by_side(tmp_path, capsys):
 
 def test_mesh_of_a_file_keeps_its_shape():
     """The name gives no lengths beside a mesh but the thickness that the attraction reads."""
-    from fingerpad.scene.changes import with_finger
-
-    data, taken = with_finger({"finger": "child", "geometry": {"file": "finger.msh"}}, {})
+    data = with_presets({"finger": "child", "geometry": {"file": "finger.msh"}})
     assert data["geometry"] == {"file": "finger.msh", "sc_thickness": FINGERS["child"].values["geometry.sc_thickness"]}
-    assert [key for key in taken if key.startswith("geometry.")] == ["geometry.sc_thickness"]
 
 
 @pytest.mark.parametrize("bad", ["children", "Child", "", 3, None, ["dry"], {"dry": 1}, True])
@@ -165,11 +163,3 @@ def test_every_value_has_a_source_or_is_an_assumption():
     for finger in FINGERS.values():
         for trait in finger.traits:
             assert trait.values and re.search(r"doi 10\.\d{4}|\b(19|20)\d\d\b|Assumption|docs/drive", trait.source)
-
-
-def test_defaults_are_those_of_the_scene():
-    """A name gives keys that have a default here, and these are the default finger's."""
-    from fingerpad.scene.fingers import DEFAULTS
-
-    assert {key: value(fp.Scene(), key) for key in DEFAULTS} == dict(DEFAULTS)
-    assert {key for finger in FINGERS.values() for key in finger.values} == DEFAULTS.keys()

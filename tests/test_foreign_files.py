@@ -21,14 +21,14 @@ from fingerpad.reduced import cylinders
 from fingerpad.reduced.registry import find
 from fingerpad.report.page import again, picture
 from fingerpad.report.write import write
-from fingerpad.results import style
-from fingerpad.results.arrays import finger_of
+from fingerpad.results import fields, style
 from fingerpad.results.checkpoint import Checkpoint
 from fingerpad.results.files import Table, lock_file, read_object, replace
 from fingerpad.results.folder import Folder, FolderError, Serial, full_scene
 from fingerpad.runs.context import RunContext
 from fingerpad.runs.solve import solved
 from fingerpad.scene import Scene, SceneError
+from variational.state import ContactState
 
 DEEP = pytest.param("[" * 100_000 + "]" * 100_000, id="deep")
 NO_SCENES = ("5", "[]", DEEP)
@@ -144,52 +144,42 @@ def test_picture_beyond_all_bounds_is_left_out(tmp_path):
     assert picture(tmp_path / "none.png", "None") == ""
 
 
+STATE = ContactState(f_ext=1.0, voltage=0.0, f_t=0.0, mu_app=0.0, f_contact=1.0, f_electrostatic=0.0, load="a",
+                     ridges_in_contact=1, contact_length=1e-3)  # fmt: skip
 FINGER = {
     "x": np.zeros((3, 2)),
-    "u": np.zeros((3, 2)),
     "triangles": np.array([[0, 1, 2]]),
-    "sed": np.zeros(1),
     "tag": np.zeros(1, dtype=np.int32),
+    "lines": np.array([[0, 2, 1]]),
+    "beside": np.array([[0, -1]]),
 }
-LINES = {"lines": np.array([[0, 2, 1]]), "beside": np.array([[0, -1]])}
+END = {
+    "bone_x": 0.0, "mesh": 0, "u": np.zeros((3, 2)), "sed": np.zeros(1), "stress": np.zeros((1, 4)),
+    "strain": np.zeros((1, 3)),
+}  # fmt: skip
 
 
 @pytest.mark.parametrize(
-    "changes",
+    ("group", "changes"),
     [
-        {"triangles": np.array([[0, 1, 3]])},
-        {"sed": np.zeros(2)},
-        {"u": np.zeros(3)},
-        {"x": np.array(["a"] * 3)},
-        {"stress": np.zeros((1, 3))},
+        ("meshes/0", {"triangles": np.array([[0, 1, 3]])}),
+        ("meshes/0", {"x": np.array(["a"] * 3)}),
+        ("meshes/0", {"lines": np.array([[0, 3, 1]])}),
+        ("meshes/0", {"beside": np.array([[0, 1]])}),
+        ("meshes/0", {"beside": np.array([[0.0, -1.0]])}),
+        ("loads/a", {"sed": np.zeros(2)}),
+        ("loads/a", {"u": np.zeros(3)}),
+        ("loads/a", {"stress": np.zeros((1, 3))}),
+        ("loads/a", {"skin": np.zeros((3, 5))}),
+        ("loads/a", {"mesh": 7}),
     ],
 )
-def test_arrays_of_no_finger_are_none(tmp_path, changes):
-    np.savez(tmp_path / "whole.npz", **FINGER)
-    np.savez(tmp_path / "other.npz", **(FINGER | changes))
-    assert finger_of(tmp_path / "whole.npz").keys() == FINGER.keys() | LINES.keys()
-    assert finger_of(tmp_path / "other.npz") == {}
-
-
-@pytest.mark.parametrize(
-    "changes", [{"lines": np.array([[0, 3, 1]])}, {"beside": np.array([[0, 1]])}, {"beside": np.array([[0.0, -1.0]])}]
-)
-def test_lines_of_no_finger_are_none(tmp_path, changes):
-    np.savez(tmp_path / "whole.npz", **FINGER, **LINES)
-    np.savez(tmp_path / "other.npz", **FINGER, **(LINES | changes))
-    assert finger_of(tmp_path / "whole.npz").keys() == FINGER.keys() | LINES.keys()
-    assert finger_of(tmp_path / "other.npz") == {}
-
-
-def test_lines_of_an_earlier_version_are_straight(tmp_path):
-    """Its files have vertices and triangles alone."""
-    square = {"x": np.array([[0, 0], [1, 0], [1, 1], [0, 1.0]]), "triangles": np.array([[0, 1, 2], [0, 2, 3]])}
-    more = {"u": 0.1 * square["x"], "sed": np.ones(2), "tag": np.array([3, 4])}
-    np.savez(tmp_path / "old.npz", **square, **more)
-    found = finger_of(tmp_path / "old.npz")
-    begin, middle, end = found["x"][found["lines"]].swapaxes(0, 1)
-    assert middle == pytest.approx((begin + end) / 2) and len(found["x"]) == len(found["u"]) == 4 + 5
-    assert sorted(map(tuple, found["beside"].tolist())) == [(0, -1), (0, -1), (0, 1), (1, -1), (1, -1)]
+def test_arrays_of_no_finger_are_none(tmp_path, group, changes):
+    groups = {"meshes/0": FINGER, "loads/a": END}
+    fields.write(tmp_path, groups)
+    assert fields.views_of(tmp_path, [STATE], {})[0]["a"].snapshot.beside.tolist() == [[0, -1]]
+    fields.write(tmp_path, groups | {group: groups[group] | changes})
+    assert fields.views_of(tmp_path, [STATE], {}) == ({}, {})
 
 
 # -- symbolic links --------------------------------------------------------------------------------------------------
@@ -224,7 +214,7 @@ def test_lock_keeps_what_it_opens(out, victim):
     assert (out / "mine").read_text() == "mine"
 
 
-@pytest.mark.parametrize("name", ["steps.csv", "run.log", "finger_press.png", "scene.json", "checkpoint", "fields.pvd"])
+@pytest.mark.parametrize("name", ["steps.csv", "run.log", "finger_press.png", "scene.json", "checkpoint", "fields.npz"])
 @pytest.mark.parametrize("target", ["victim", "none", "."])
 def test_link_under_the_name_of_a_result_is_refused(out, victim, name, target):
     (out / name).symlink_to(victim / target)

@@ -7,8 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from fingerpad.results import motion
-from fingerpad.results.arrays import arrays_of
+from fingerpad.results import fields
 from tests.commands import python
 from tests.measures import rows_of
 
@@ -120,7 +119,7 @@ def killed_and_resumed(undisturbed, out, kind, number):
     words = ["--resume", str(out)] if resumed else [str(file), "--out", str(out)]
     assert process("", 0, "run", "--quiet", *words) == 0
     assert tables(out) == whole
-    moved, expected = (arrays_of(place / motion.FILE) for place in (out, file.parent / "run"))
+    moved, expected = (fields.read(place)["motion"] for place in (out, file.parent / "run"))
     assert moved.keys() == expected.keys() and len(moved["step"]) == len(whole["steps"])
     for name, values in expected.items():
         np.testing.assert_array_equal(moved[name], values, err_msg=name)

@@ -5,8 +5,7 @@ import pytest
 
 from benchmarks import harness, models, newtons
 from fingerpad.reduced import cylinder_errors, cylinders, uncharged
-from fingerpad.scene import Scene, from_data
-from fingerpad.scene.dotted import with_values
+from fingerpad.scene import Scene, from_data, with_values
 from tests.commands import kept
 from variational.contact.friction import Derjaguin
 

@@ -1,6 +1,5 @@
 """Pictures of synthetic states: files that hold a picture, and axes that say what they show in which unit."""
 
-import re
 import shutil
 from dataclasses import replace
 from types import SimpleNamespace
@@ -319,25 +318,25 @@ def test_picture_is_that_of_the_run(ran, kind):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("kind", "missing"), [("surface", "surface.npz"), ("finger", "finger_*.npz")])
-def test_picture_whose_arrays_are_gone_is_refused(ran, tmp_path, kind, missing):
-    bare = shutil.copytree(ran.folder, tmp_path / "bare", ignore=shutil.ignore_patterns("*.npz", "*.vtu"))
+@pytest.mark.parametrize("kind", ["surface", "finger"])
+def test_picture_whose_arrays_are_gone_is_refused(ran, tmp_path, kind):
+    bare = shutil.copytree(ran.folder, tmp_path / "bare", ignore=shutil.ignore_patterns("*.npz"))
     read = fp.Result.load(bare)
     assert read.plot("history").axes
-    with pytest.raises(ValueError, match=re.escape(f"its folder has no {missing}")):
+    with pytest.raises(ValueError, match="its folder has no fields.npz"):
         read.plot(kind)
 
 
 @pytest.mark.slow
 def test_folder_is_kept_and_a_damaged_file_is_none(ran, tmp_path, monkeypatch):
     """Where the program goes to another folder; and where a file was cut short."""
-    shutil.copytree(ran.folder, tmp_path / "a", ignore=shutil.ignore_patterns("*.vtu"))
+    shutil.copytree(ran.folder, tmp_path / "a")
     (tmp_path / "b").mkdir()
     monkeypatch.chdir(tmp_path)
     read = fp.Result.load("a")
     monkeypatch.chdir(tmp_path / "b")
     assert read.plot("surface").axes
-    whole = (tmp_path / "a" / "surface.npz").read_bytes()
-    (tmp_path / "a" / "surface.npz").write_bytes(whole[: len(whole) // 2])
-    with pytest.raises(ValueError, match=r"its folder has no surface\.npz"):
+    whole = (tmp_path / "a" / "fields.npz").read_bytes()
+    (tmp_path / "a" / "fields.npz").write_bytes(whole[: len(whole) // 2])
+    with pytest.raises(ValueError, match=r"its folder has no fields\.npz"):
         read.plot("surface")

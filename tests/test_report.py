@@ -15,7 +15,7 @@ from fingerpad.cli import main
 from fingerpad.reduced.registry import find
 from fingerpad.report import run_page, trust
 from fingerpad.report.write import NAME, write
-from fingerpad.results.arrays import skin_of
+from fingerpad.results import fields
 from fingerpad.results.quantities import cell
 from fingerpad.results.result import Result
 from fingerpad.runs.context import RunContext
@@ -92,7 +92,7 @@ def page(folder) -> str:
 @pytest.fixture
 def copy(folder, tmp_path) -> Path:
     """A copy of the run's folder, to be spoilt."""
-    return Path(shutil.copytree(folder, tmp_path / "copy", ignore=shutil.ignore_patterns("*.vtu", "*.png")))
+    return Path(shutil.copytree(folder, tmp_path / "copy", ignore=shutil.ignore_patterns("*.png")))
 
 
 # -- a run -------------------------------------------------------------------------------------------------
@@ -159,7 +159,7 @@ def test_field_lines_are_as_dense_as_the_field_is_strong(folder, tmp_path):
     assert (foot[:, 1] == 0).all() and (top[:, 1] > 0).all() and (top[:, 0] == foot[:, 0]).all()
     flux = np.diff(foot[:, 0]) * (strength[1:] + strength[:-1]) / 2
     assert np.median(np.abs(flux / np.median(flux) - 1)) < 0.02
-    p_el = skin_of(folder / "surface.npz", "full_slip")["p_el"]
+    p_el = fields.read(folder)["states/full_slip"]["skin"][fields.ALONG.index("p_el")]
     assert strength.max() <= 1e-6 * math.sqrt(2 * np.nanmax(p_el) / VACUUM_PERMITTIVITY) * (1 + 1e-6)
 
 

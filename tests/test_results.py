@@ -3,7 +3,6 @@
 import json
 from pathlib import Path
 from types import SimpleNamespace
-from xml.etree import ElementTree
 
 import numpy as np
 import pytest
@@ -14,7 +13,7 @@ from fingerpad.accuracy.states import StateRecorder
 from fingerpad.model import report
 from fingerpad.model.checks import FullSlip
 from fingerpad.model.state import force_error
-from fingerpad.results import drawing
+from fingerpad.results import drawing, fields
 from fingerpad.results.states import RESULTS, named
 from fingerpad.scene import from_data
 from tests.measures import rows_of
@@ -214,9 +213,7 @@ def test_rejected_state_leaves_the_one_before(tmp_path, monkeypatch):
     assert "step 3 (charge): a force of 0.001 N/m is left at a node" in summary["failure"]
     assert [row["step"] for row in rows_of(tmp_path)] == ["1", "2"]
     assert (summary["charged_step"], summary["charged_voltage"]) == (2, 0.0)
-    fields = list(ElementTree.parse(tmp_path / "fields.pvd").iter("DataSet"))
-    assert [(row.attrib["timestep"], row.attrib["file"]) for row in fields] == [("2", "fields_press.vtu")]
-    assert not (tmp_path / "fields_charge.vtu").exists()
+    assert [name for name in fields.read(tmp_path) if name.startswith("loads/")] == ["loads/press"]
     assert not (tmp_path / "finger_charge.png").exists()
 
 
@@ -267,8 +264,7 @@ def test_headline_states_are_shown_on_the_final_mesh(refined):
     )
     assert {float(row["mesh_contact"]) for row in ridges} == {final}
     assert {row["of"] for row in rows_of(folder, "receptors_final")} == {"charged", "full_slip"}
-    with np.load(folder / "surface.npz") as arrays:
-        x, p = arrays["full_slip_x"], arrays["full_slip_p"]
+    x, _, p, *_ = fields.read(folder)["states/full_slip"]["skin"]
     known = np.isfinite(x[1:] + x[:-1])
     force = float((np.diff(x) * (p[1:] + p[:-1]) / 2)[known].sum())
     assert force == pytest.approx(summary["full_slip_f_contact"], rel=0.1), "the trapezoidal rule on few facets"
@@ -282,6 +278,6 @@ def test_profile_is_sorted_along_each_ridge():
     x = np.array([[3e-3, 2e-3], [1e-3, 0.0]])
     skin = Skin(np.array([1, 0]), x, *np.ones((4, 2, 2)))
     state = SimpleNamespace(ridges=SimpleNamespace(number=np.array([0, 1]), d_eq=np.array([1e-6, 2e-6])))
-    found = drawing.sorted_along(skin, state)
+    found = fields.sorted_along(skin, state)
     assert found["x"][[0, 1, 3, 4]] == pytest.approx([0.0, 1e-3, 2e-3, 3e-3]) and np.isnan(found["x"][[2, 5]]).all()
     assert found["d_eq"][[0, 3]] == pytest.approx([1e-6, 2e-6])

@@ -21,8 +21,7 @@ import fingerpad as fp
 from benchmarks import harness
 from benchmarks.feel import rules, scenes
 from benchmarks.harness import keep, kept, made, page, picture
-from fingerpad.results import style
-from fingerpad.results.arrays import finger_of
+from fingerpad.results import fields, style
 from fingerpad.results.over_time import without_parts_of_jumps
 from fingerpad.results.spikes import Spikes
 from fingerpad.scene import Scene
@@ -118,7 +117,8 @@ def shear(result: fp.Result) -> dict[str, Any]:
     has it.
     """
     assert result.folder is not None
-    before, after = (finger_of(result.folder / f"finger_{load}.npz") for load in ("hold", "slide"))
+    loads, _ = fields.views_of(result.folder, result.steps, result.named)
+    before, after = (vars(loads[name].snapshot) for name in ("hold", "slide"))
     profiles, finger = Profiles(result.scene.geometry), result.scene.geometry
     x, cells = after["x"], after["triangles"]
     change = (after["u"] - before["u"])[cells]

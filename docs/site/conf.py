@@ -14,6 +14,7 @@ from percent import Percent
 from pydantic import BaseModel
 
 import fingerpad.startup  # noqa: F401
+from fingerpad.calculator import page as calculator
 
 project, author = "fingerpad", "The fingerpad developers"
 version = re.search(r'^version = "(.*)"', (ROOT / "pyproject.toml").read_text(), re.MULTILINE)[1]
@@ -53,7 +54,10 @@ html_theme = "furo"
 html_title = f"fingerpad {version}"
 html_static_path = ["_static"]
 html_css_files = ["site.css"]
-html_extra_path = ["_extra", "../calculator.html"]
+CALCULATOR = ROOT / "build" / "calculator.html"  # the page of the closed form, made at every build
+CALCULATOR.parent.mkdir(exist_ok=True)
+CALCULATOR.write_text(calculator.page(), encoding="utf-8")
+html_extra_path = ["_extra", "../../build/calculator.html"]
 html_math_renderer = "mathml"
 html_search_scorer = str(HERE / "scorer.js")
 html_copy_source = False
@@ -63,7 +67,6 @@ html_show_sphinx = False
 ELSEWHERE = {
     "](../demos/scenes)": "](site/scenes.md)",
     "](../README.md)": "](README.md)",
-    "](calculator.html)": "](site/calculator.md)",
 }
 PLACE = re.compile(r"`((?:geometry|variational|fingerpad)[a-z_.]*):(\w+)`")
 

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from fingerpad.model.finger import both_sides
-from fingerpad.results.drawing import View
+from fingerpad.results.fields import View
 from fingerpad.results.states import before_sliding
 from geometry.parameters import MeshSize
 from variational.output import Receptors

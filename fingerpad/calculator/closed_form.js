@@ -10,20 +10,15 @@ const closedForm = (function () {
   class NoEquilibriumError extends Error {}
 
   // -- roughness: bam.py ---------------------------------------------------------------------------------
-  class Closure {
+  class BearingArea {
+    constructor(h_0, roughness) {
+      Object.assign(this, roughness, { h_0, gaps: [] });
+      this.full_pressure = ((this.beta * 4) / 3) * this.young * ((2 * Math.PI) / this.wavelength) * this.h_rms;
+    }
     /** Return d_eq at a pressure of PRESSURES, each computed once. */
     gap(k) {
-      this.gaps = this.gaps || [];
       if (this.gaps[k] === undefined) this.gaps[k] = this.d_eq(PRESSURES[k]);
       return this.gaps[k];
-    }
-  }
-
-  class BearingArea extends Closure {
-    constructor(h_0, roughness) {
-      super();
-      Object.assign(this, roughness, { h_0 });
-      this.full_pressure = ((this.beta * 4) / 3) * this.young * ((2 * Math.PI) / this.wavelength) * this.h_rms;
     }
     separation(p_c) { // Eq. 9, inverse of its first term
       return -this.gamma * this.h_rms * Math.log(p_c / this.full_pressure);
@@ -240,16 +235,14 @@ const closedForm = (function () {
     };
   }
 
-  /** Return a ridge in a state.
-   * tips: radius of its tip over the default's, whose root Hertz's length grows with; limit: of friction at a pressure. */
-  function ridge_of(p, footprint, state, closure, tips = 1, limit = (p_c) => p.friction * p_c) {
-    const n = footprint.ridges[state], length = Math.sqrt(tips) * footprint.length[state], f = p.f_ext / n;
-    const radius = tips * data.tip_radius, h_0 = closure.h_0;
+  /** Return a ridge in a state. */
+  function ridge_of(p, footprint, state, closure) {
+    const n = footprint.ridges[state], length = footprint.length[state], f = p.f_ext / n, radius = data.tip_radius, { h_0 } = closure;
     if (footprint.charged)
       return new Cylinder(radius, data.skin_modulus, h_0, closure).over_length(length / n, f, p.voltage);
-    const stiffening = state === "full_slip" ? (p_c) => data.shear * Math.max(limit(p_c) - data.friction * p_c, 0) : undefined;
+    const stiffening = state === "full_slip" ? (p_c) => data.shear * Math.max(p.friction - data.friction, 0) * p_c : undefined;
     return new Cylinder(radius, hertz_modulus(radius, f, length / n), h_0, closure, stiffening).under_load(f, p.voltage);
   }
 
-  return { NoEquilibriumError, Closure, solve, given, refuse, interpolate, fitted, closure_of, ridge_of };
+  return { NoEquilibriumError, solve, given, refuse, interpolate, fitted, closure_of, ridge_of };
 })();

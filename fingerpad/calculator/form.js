@@ -39,8 +39,8 @@ const form = (function () {
       if (field.key === "force") group(field.group).append(...choice("load", { whole: "force on the whole finger, in newtons", metre: "force per metre of finger, at its centre" }, set));
       group(field.group).append(field_box(field, set));
     }
-    for (const key of ["target", ...Object.keys(state.FREE)]) find(key).oninput = () => set(key, find(key).value, true);
-    for (const key of ["quantity", "x", "y", "waveform", "circuit"]) find(key).onchange = () => set(key, find(key).value, false);
+    find("target").oninput = () => set("target", find("target").value, true);
+    for (const key of ["quantity", "x", "y"]) find(key).onchange = () => set(key, find(key).value, false);
   }
 
   function choice(name, words, set) {
@@ -58,9 +58,8 @@ const form = (function () {
       data.presets.forEach((each, k) => each.group === group && select.append(create("option", { value: String(k) }, each.name)));
       select.onchange = () => {
         if (select.value === "") return;
-        const { values, choices, source } = data.presets[Number(select.value)];
+        const { values, source } = data.presets[Number(select.value)];
         for (const [key, value] of Object.entries(values)) texts[key] = String(value);
-        Object.assign(texts, choices);
         said.textContent = source;
         select.value = "";
         changed(false);
@@ -98,8 +97,8 @@ const form = (function () {
     }
     for (const name of ["finger", "load"]) find(`${name}_${texts[name]}`).checked = true;
     find("load_whole").disabled = texts.finger === "given"; // one contact is no finger
-    for (const key of ["target", "quantity", "x", "y", "waveform", "circuit", ...Object.keys(state.FREE)]) put(find(key), texts[key]);
-    for (const key of ["target", ...Object.keys(state.FREE)]) tell(key, said[key]);
+    for (const key of ["target", "quantity", "x", "y"]) put(find(key), texts[key]);
+    tell("target", said.target);
     find("map_refused").textContent = said.x || "";
   }
 

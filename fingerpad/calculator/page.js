@@ -67,14 +67,6 @@
       ...rows.map((row) => create("tr", {}, ...line(row))));
   }
 
-  /** Draw how far the answer is known; return it in words for the line that stays. */
-  function show_known(found, { values, given }) {
-    const band = given ? null : knownBand.of(values, found), error = error_of(values, given, found), relative = error ? error.mu_app : null;
-    bars.draw(find("known"), band, relative, values.newtons ? "whole finger" : "middle section");
-    find("caption_known").textContent = band ? bars.words(band, relative) : "";
-    return band ? `, likely range ${bars.span(band)}${band.high === Infinity ? ", open" : ""}` : "";
-  }
-
   const span = ({ key, low, high }) => {
     const field = state.by_key[key], unit = field && field.unit ? ` ${field.unit}` : "", name = field ? key.split(".").pop() : key;
     const ends = [low, high].map((v) => show(field ? v * field.per : v));
@@ -213,15 +205,13 @@
     const other = kept && state.read(kept), beside = other && !other.refused ? { ...other, found: answer({ ...other.values, newtons: other.values.newtons }, other.given) } : null;
     const { values, given } = asked, found = answer(values, given), none = typeof found === "string";
     find("refusal").textContent = none ? `No answer at this point: ${found}.` : "";
-    let known = "";
-    if (none) for (const id of ["point", "notes", "known", "caption_known"]) (find(id).tBodies ? find(id).tBodies[0] : find(id)).replaceChildren();
+    if (none) for (const box of [find("point").tBodies[0], find("notes")]) box.replaceChildren();
     else {
       show_point(found, asked, beside);
       remarks(found, asked);
-      known = show_known(found, asked);
     }
     const sure = !none && error_of(values, given, found) ? "" : ", error not known", of = values.newtons ? "Whole finger: " : "Section: ";
-    find("always").textContent = none ? "No answer at this point." : `${of}µ_app ${find("value_mu_app").textContent}${known}${sure}`;
+    find("always").textContent = none ? "No answer at this point." : `${of}µ_app ${find("value_mu_app").textContent}${sure}`;
     find("command").textContent = commands.of(values, given, texts);
     draw_curves(asked, none ? null : found, beside);
     clearTimeout(waiting_rest);
@@ -239,7 +229,6 @@
   /** Draw what takes longer than a frame. */
   function rest(asked) {
     draw_map(asked);
-    drivePage.update(asked.values, asked.given, texts, (here) => answer(here, asked.given));
     drawn = true;
   }
 
@@ -257,7 +246,6 @@
     document.documentElement.className = "js";
     form.options("quantity", { mu_app: "friction coefficient µ_app", f_t: "friction force" });
     for (const id of ["x", "y"]) form.options(id, Object.fromEntries(fields.filter(({ whole }) => !whole).map(({ key, words }) => [key, words])));
-    drivePage.options();
     form.make(texts, (soon) => (soon ? later() : update()));
     find("fields").onsubmit = (event) => event.preventDefault();
     const tell = (text) => { find("done").textContent = text; };

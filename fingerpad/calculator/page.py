@@ -7,21 +7,17 @@ its words, its unit and the ends of its slider, within its bounds.
 import html
 import json
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from dataclasses import asdict, dataclass, replace
 from importlib.resources import files
 from typing import Any
 
-import numpy as np
 from numpy.polynomial.legendre import leggauss
 
 from fingerpad.calculator import presets
 from fingerpad.installed import version
-from fingerpad.model.cautions import BALANCED
 from fingerpad.reduced import cylinder_errors, cylinders, uncharged
-from fingerpad.reduced.closure_band import CHANGE, SHEAR_STRESS, TIPS, closures, powers, with_band
 from fingerpad.reduced.model import STATES
-from fingerpad.results.closures import KNOWN, known_in_words
 from fingerpad.results.quantities import PER_LENGTH, Output
 from fingerpad.results.result import Result
 from fingerpad.results.states import WORDS
@@ -29,20 +25,15 @@ from fingerpad.scene import Scene
 from fingerpad.scene.keys import by_name
 from fingerpad.scene.materials import BEARING_AREA, LARGEST_GAP
 from fingerpad.scene.remarks import LEAKAGE, skin_modulus
-from fingerpad.slices import errors, traces
+from fingerpad.slices import traces
 from geometry.units import Range
-from variational.attraction.circuit import LEAKS
-from variational.attraction.dielectric import TISSUES, VACUUM_PERMITTIVITY
-from variational.roughness.tabulated import TabulatedClosure
+from variational.attraction.dielectric import VACUUM_PERMITTIVITY
 
 SCRIPTS = (
-    "numerics.js", "closed_form.js", "whole.js", "errors.js", "known_band.js", "drive.js", "state.js", "commands.js",
-    "plot.js", "bars.js", "heat.js", "files.js", "form.js", "drive_page.js", "page.js",
+    "numerics.js", "closed_form.js", "whole.js", "errors.js", "state.js", "commands.js",
+    "plot.js", "heat.js", "files.js", "form.js", "page.js",
 )  # fmt: skip
 """In order; those before ``plot.js`` need no page."""
-_RATIOS = np.geomspace(0.01, 100.0, 17)
-"""Insulator thickness h_0 over h_rms, of the tables of air gaps."""
-_NODES = 28  # pressures of a table
 _TABLE = (0.1, 0.3, 0.5, 1.0, 2.0), (0.0, 50.0, 100.0, 150.0, 200.0)  # N, V
 
 
@@ -138,49 +129,9 @@ def data() -> dict[str, Any]:
         "slices": {"radius": scene.slices.radius, "length": scene.slices.length, "nodes": nodes, "weights": weights},
         "traces": traces.CONSTANTS,
         "words": {state: WORDS[state] for state in STATES},
-        "circuits": circuits(),
         "presets": [*presets.data({field.key: field.per for field in shown})],
-        "band": band(),
         "known": {"regions": cylinder_errors.data(field.key for field in shown)},
     }
-
-
-def band() -> dict[str, Any]:
-    """Return what the band of friction over assumptions is made of: changes, known errors, other models of roughness.
-
-    Of a model: its pressures over E* q_0 h_rms; the logarithm of its air gap over h_rms, by pressure and by h_0 over
-    h_rms (:data:`_RATIOS`); and that of its area in contact where the field acts there. One table serves every
-    roughness, insulator and voltage.
-    """
-    own, laws = BEARING_AREA, []
-    unit = replace(own, h_0=own.h_rms).full_pressure / own.beta
-    for words, law in closures(replace(own, h_0=own.h_rms)).items():
-        if isinstance(law, TabulatedClosure):
-            law = replace(law, p_floor=1e-9 * unit)
-            nodes = np.geomspace(*law.pressures, _NODES)
-            gaps = [np.log(replace(law, h_0=x * law.h_rms)(nodes).d_eq / law.h_rms) for x in _RATIOS]
-            by_pressure = [_short(each) for each in np.transpose(gaps)]
-            areas = _short(np.log(law.statistics(nodes).area)) if law.field_in_contact else None
-            laws.append({"words": words, "pressures": _short(nodes / unit), "gaps": by_pressure, "areas": areas})
-    slices = [[force, list(ends)] for force, ends in errors.ONCE["f_t"]]
-    changes = {"change": CHANGE, "tips": TIPS, "share": BALANCED, "powers": {**powers()}, "p_reg": SHEAR_STRESS.p_reg}
-    return changes | {"ratios": _short(_RATIOS), "laws": laws, "slices": slices}
-
-
-def _short(values: Iterable[float]) -> list[float]:
-    return [float(f"{value:.6g}") for value in values]
-
-
-def circuits() -> dict[str, Any]:
-    """Return the choices of losses by name: words, tissue and leak (ohm m²); without a tissue there are none."""
-    found: dict[str, Any] = {"lossless": {"words": "No losses (Eq. 3), at every frequency."}}
-    for name, leak in LEAKS.items():
-        tissue = "moist" if name == "moist" else "dry"
-        words = (
-            f"{tissue.capitalize()} skin, R_gap {leak.value:g} ohm m². It is likely from {leak.low:g} to {leak.high:g}."
-        )
-        found[name] = {"words": words, "tissue": asdict(TISSUES[tissue]), "leak": leak.value}
-    return found
 
 
 def page() -> str:
@@ -188,7 +139,6 @@ def page() -> str:
     values = {
         "finding": _finding(),
         "regions": _regions(),
-        "known": _band(),
         "leakage": html.escape(LEAKAGE),
         "table": _table(),
         "defaults": _defaults(),
@@ -243,12 +193,6 @@ def _regions() -> str:
     top = "".join(f'<th scope="col">{each}</th>' if each else "<td></td>" for each in head)
     body = "\n".join(rows)
     return f'<table id="regions">{caption}\n<thead><tr>{top}</tr></thead>\n<tbody>\n{body}\n</tbody></table>'
-
-
-def _band() -> str:
-    """Return the likely range of µ_app, by all assumptions, at the values of the first sentence."""
-    words = known_in_words(with_band(_whole(_FORCE, _VOLTAGE)).record.get(KNOWN, {}))
-    return html.escape(f"µ_app of the default finger at {_FORCE:g} N and {_VOLTAGE:g} V. {words}" if words else "")
 
 
 def _table() -> str:

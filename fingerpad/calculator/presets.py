@@ -5,7 +5,7 @@ one that the closed form answers for, and is left out.
 """
 
 from collections.abc import Collection, Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Any
 
 from fingerpad.scene import Scene
@@ -23,8 +23,6 @@ class Preset:
     values: Mapping[str, float]
     """By dotted key, in SI units."""
     source: str
-    choices: Mapping[str, str] = field(default_factory=dict)
-    """Of the page, by their names there."""
 
 
 _THICK = "Assumption: a common thickness; relative permittivity of handbooks."
@@ -38,8 +36,7 @@ SCREENS = (
 """Coatings of screens."""
 
 
-_CIRCUIT = ("electric.tissue", "electric.leak")
-"""Keys that the page has as one choice, by the name of the leak."""
+_CIRCUIT = ("electric.tissue", "electric.leak")  # act at an alternating voltage only
 
 
 def presets(keys: Collection[str]) -> tuple[Preset, ...]:
@@ -59,10 +56,9 @@ def _finger(name: str, finger: NamedFinger, keys: Collection[str]) -> Preset | N
         return None
     default = flat(Scene().parameters())
     same = {key: default[key] for each in FINGERS.values() for key in each.values if key in keys}
-    choices = {"circuit": finger.values.get("electric.leak", "lossless")}
     source = ". ".join(dict.fromkeys(trait.source for trait in finger.traits)) or "The finger of the paper"
     words = f"{finger.words}. {source}. {finger.remark}".rstrip()
-    return Preset("Finger", name, same | values, words, choices)
+    return Preset("Finger", name, same | values, words)
 
 
 def data(scales: Mapping[str, float]) -> Iterator[dict[str, Any]]:
@@ -73,5 +69,5 @@ def data(scales: Mapping[str, float]) -> Iterator[dict[str, Any]]:
     """
     for each in presets(scales):
         values = {key: float(f"{value * scales[key]:.12g}") for key, value in each.values.items()}
-        yield {"group": each.group, "name": each.name, "values": values, "choices": dict(each.choices),
-               "source": f"{each.name[0].upper()}{each.name[1:]}: {each.source}"}  # fmt: skip
+        source = f"{each.name[0].upper()}{each.name[1:]}: {each.source}"
+        yield {"group": each.group, "name": each.name, "values": values, "source": source}

@@ -11,19 +11,13 @@ const state = (function () {
     quantity: ["mu_app", "f_t"],
     x: ["electric.d_i", ...fields.map(({ key }) => key)],
     y: ["voltage", ...fields.map(({ key }) => key)],
-    waveform: ["sine", "square", "triangle"],
-    circuit: Object.keys(data.circuits),
-  };
-  const FREE = { // further numbers: words, ends and unit
-    frequency: { key: "frequency", low: 1e-3, high: 1e6, unit: "Hz", value: 100, per: 1 },
-    offset: { key: "offset", low: -500, high: 500, unit: "V", value: 0, per: 1 },
   };
   const clip = (text) => (text.length > 24 ? text.slice(0, 23) + "…" : text);
 
   /** Return the texts and choices at the start. */
   function start() {
     const found = { target: "" };
-    for (const { key, value } of [...fields, ...Object.values(FREE)]) found[key] = String(value);
+    for (const { key, value } of fields) found[key] = String(value);
     for (const [name, [first]] of Object.entries(CHOICES)) found[name] = first;
     return found;
   }
@@ -65,11 +59,6 @@ const state = (function () {
       const text = unread(texts, field.key) ? "" : refused(field, texts[field.key]);
       if (text) said[field.key] = text;
       values[field.key] = in_si(field, unread(texts, field.key) ? field.value : Number(texts[field.key]));
-    }
-    for (const [name, field] of Object.entries(FREE)) {
-      const text = refused(field, texts[name]);
-      if (text) said[name] = text;
-      values[name] = Number(texts[name]);
     }
     const goal = target(texts.target, texts.quantity);
     if (typeof goal === "string") said.target = goal;
@@ -116,11 +105,10 @@ const state = (function () {
 
   function wrong(key, text) {
     if (Object.hasOwn(by_key, key)) return refused(by_key[key], text);
-    if (Object.hasOwn(FREE, key)) return refused(FREE[key], text);
     if (Object.hasOwn(CHOICES, key)) return CHOICES[key].includes(text) ? "" : `${key} is ${clip(text) || "empty"}, which is no choice`;
     if (key === "target") return typeof target(text, "mu_app") === "string" ? target(text, "mu_app") : "";
     return `${clip(key)} is no field of this page`;
   }
 
-  return { start, refused, in_si, target, unread, read, to_fragment, from_fragment, CHOICES, FREE, by_key };
+  return { start, refused, in_si, target, unread, read, to_fragment, from_fragment, CHOICES, by_key };
 })();

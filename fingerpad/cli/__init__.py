@@ -19,21 +19,18 @@ COMMANDS = {
     "estimate": "friction over force and voltage by a closed form, in seconds, without finite elements",
     "run": "contact and friction of a finger that is pressed, charged and slid: tables, pictures, fields",
     "sweep": "a scene over values of its keys: a table; a stopped sweep continues, and no run is repeated",
-    "report": "a folder of a run or of a sweep as one HTML file that needs no network, to read and to pass on",
-    "animate": "a run as a moving picture: finger, pressure and attraction of its ridges, forces",
-    "feel": "spikes of mechanoreceptive afferents over a run in time: table, raster, NetCDF",
+    "report": "a run or a sweep as one HTML file; a run's animation or spikes; the closed form as a page with sliders",
     "compare": "models of a scene side by side: their results and their cost",
     "compare-data": "tables of measurements beside a run or a sweep: misfit as a ratio, picture",
     "check": "what a run contains, omits and costs, and a picture of its mesh; solves nothing",
     "mesh": "the mesh of the unloaded finger as a file for gmsh, in m, with names of its parts",
-    "calculator": "the closed form as one HTML page with sliders, for a browser without Python or network",
     "solve": "the voltage, coating or other key at which friction has a given value, by the closed form, at once",
     "drive": "friction over the period of an alternating voltage, its spectrum, and whether it is felt, in a second",
     "microscale": "air gap, attraction and real area of contact of a ridge over its pressure",
     "topography": "roughness of a scene from a measured height map",
     "params": "every key of a scene: unit, default, range and meaning",
 }
-_BESIDE = {"compare-data": "compare", "calculator": "report", "microscale": "roughness", "topography": "roughness"}
+_BESIDE = {"compare-data": "compare", "microscale": "roughness", "topography": "roughness"}
 """Modules of the commands that have none of their own name."""
 _COLLECTIVE = ("run", "compare", "solve")  # use all ranks; the others are answered by rank 0
 

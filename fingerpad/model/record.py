@@ -14,7 +14,8 @@ from numpy.typing import NDArray
 
 from fingerpad.model.stimuli import SiteStimuli
 from fingerpad.results import motion, states
-from fingerpad.results.drawing import Drawing, View, sorted_along
+from fingerpad.results.drawing import Drawing
+from fingerpad.results.fields import View, sorted_along
 from fingerpad.scene import Load
 from variational.output import Lines, Receptors
 from variational.snapshot import Snapshot

@@ -3,10 +3,9 @@
 import json
 import logging
 import time
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from mpi4py import MPI
@@ -15,7 +14,7 @@ from fingerpad.model.options import Omission
 from fingerpad.model.record import PathRecord, Viewer
 from fingerpad.results import motion, states
 from fingerpad.results.answer import Cost
-from fingerpad.results.drawing import View
+from fingerpad.results.fields import View
 from fingerpad.results.quantities import Output, valued
 from fingerpad.results.terminal import Console
 from fingerpad.results.writing import Writer, ridge_rows, site_rows
@@ -201,12 +200,10 @@ class Report:
         for state in self.record.states:
             self._show(state, done)
 
-    def motion(self) -> Callable[[Path], None] | None:
-        """Return what writes ``motion.npz`` into a folder, on rank 0; collective."""
+    def motion(self) -> dict[str, Any]:
+        """Return the motion of the finger as a group of ``fields.npz``, on rank 0, nothing elsewhere; collective."""
         body = self._viewer.body(fields=False)
-        if body is None or not self.record.moved:
-            return None
-        return lambda folder: motion.write(folder, body, self.record.moved)
+        return {} if body is None or not self.record.moved else {"motion": motion.group(body, self.record.moved)}
 
     def _log_checks(self) -> None:
         for step, check in list(self._simulation.checks.items())[self._logged :]:
@@ -218,7 +215,7 @@ class Report:
         """Write the tables of states on the mesh that the run ended with, by name."""
         if views:
             words = "; ".join(f"{states.WORDS[name]}: contact size {v.size:g} m" for name, v in views.items())
-            path = "steps.csv, history.png and fields.pvd are of the mesh of the path; %s"
+            path = "steps.csv and history.png are of the mesh of the path; %s"
             self._writer.log.info(path, words)
         for state, view in views.items():
             self._tables("_final", {"of": state}, view.state, view.size)

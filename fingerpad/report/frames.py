@@ -14,10 +14,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fingerpad.report import page as html
-from fingerpad.results.arrays import finger_of, skin_of
+from fingerpad.results.fields import ALONG, View, views_of
 from fingerpad.results.raster import along, cells_at, pieces
 from fingerpad.results.result import Result
-from fingerpad.results.states import WORDS, called, partial_slip
+from fingerpad.results.states import called, shown
 from fingerpad.scene.messages import counted
 from variational.state import ContactState
 
@@ -33,32 +33,27 @@ _BELOW, _ABOVE, _BESIDE = -0.15, 1.25, 0.6  # mm of the view around the contact
 
 class _Frame(NamedTuple):
     label: str
-    state: ContactState | None
-    finger: str
-    """Stem of the file of its finger; empty without one."""
-    skin: str
-    """Stem of the file of its skin."""
-    prefix: str
-    """Of the skin's arrays there."""
+    state: ContactState
+    view: View | None
+    """Its skin and its finger; None where a folder has neither."""
 
 
 def frames(result: Result) -> dict[str, Any]:
     """Return the states that a folder has arrays of, ready for JSON; empty without any."""
-    folder = result.folder
-    if folder is None:
+    if result.folder is None or not result.steps:
         return {}
-    found = [(frame, _skin(folder, frame)) for frame in _listed(result)]
+    found = [(frame, _skin(frame)) for frame in _listed(result, result.folder)]
     view = _view([skin for _, skin in found if skin])
     if view is None:
         return {}
-    images = _chosen([frame.finger for frame, _ in found if (folder / f"{frame.finger}.npz").is_file()])
-    shown = []
+    images = _chosen([frame.label for frame, _ in found if frame.view is not None and frame.view.snapshot is not None])
+    drawn = []
     for frame, skin in found:
-        finger = _finger(folder / f"{frame.finger}.npz", view) if frame.finger in images else None
+        finger = _finger(frame.view.snapshot, view) if frame.view is not None and frame.label in images else None
         if skin or finger:
             about = html.typeset(f"{frame.label}. {_about(frame.state)}")
-            shown.append({"label": frame.label, "about": about, "skin": skin, "finger": finger})
-    return {"view": view, "frames": shown} if shown else {}
+            drawn.append({"label": frame.label, "about": about, "skin": skin, "finger": finger})
+    return {"view": view, "frames": drawn} if drawn else {}
 
 
 def slider(shown: dict[str, Any]) -> str:
@@ -112,27 +107,18 @@ def _extremes(skin: list[dict[str, Any]]) -> tuple[str, str]:
     return ("–" if peak is None else f"{peak:.1f}", f"{min(gaps):.2f} to {max(gaps):.2f}" if gaps else "–")
 
 
-def _listed(result: Result) -> Iterator[_Frame]:
-    partial = partial_slip(result.steps) if result.charged is not None and result.steps else None
-    ends = [
-        _Frame(f"end of {load.name}", load.end, f"finger_{_file(load.name)}", f"surface_{_file(load.name)}", "end")
-        for load in result.loads
-    ]
-    for frame in ends:
-        if partial is not None and frame.state is not None and frame.state.step > partial.step:
-            yield _Frame("partial slip", partial, "", "surface", "partial")
+def _listed(result: Result, folder: Path) -> Iterator[_Frame]:
+    loads, states = views_of(folder, result.steps, result.named)
+    partial = shown(result.steps).get("partial") if result.charged is not None else None
+    for load in result.loads:
+        if partial is not None and load.end.step > partial.step:
+            yield _Frame("partial slip", partial, states.get("partial"))
             partial = None
-        yield frame
+        yield _Frame(f"end of {load.name}", load.end, loads.get(load.name))
     for name in ("charged", "full_slip"):
-        stem = f"finger_{_file(WORDS[name])}"
-        state = result.named.get(name)
-        if state is not None and result.folder is not None and (result.folder / f"{stem}.npz").is_file():
-            words = f"{called(name, state.voltage)}, final mesh"
-            yield _Frame(words, state, stem, "surface", name)
-
-
-def _file(words: str) -> str:
-    return words.replace(" ", "_")
+        state, view = result.named.get(name), states.get(name)
+        if state is not None and view is not None and view.snapshot is not None:
+            yield _Frame(f"{called(name, state.voltage)}, final mesh", state, view)
 
 
 def conditions_of(state: ContactState) -> str:
@@ -140,9 +126,7 @@ def conditions_of(state: ContactState) -> str:
     return f"{state.f_ext:.4g} N/m, {state.voltage:.4g} V, bone at {_MM * state.bone_x + 0.0:.4g} mm"
 
 
-def _about(state: ContactState | None) -> str:
-    if state is None:
-        return ""
+def _about(state: ContactState) -> str:
     slides = abs(state.f_t) > 1e-9 * abs(state.f_ext) and not math.isnan(state.mu_app)
     slip = f", µ_app = {state.mu_app:.3f} of the middle section" if slides else ""
     count = state.ridges_in_contact
@@ -150,13 +134,13 @@ def _about(state: ContactState | None) -> str:
     return f"{conditions_of(state)}{slip}, {length}"
 
 
-def _skin(folder: Path, frame: _Frame) -> list[dict[str, Any]]:
+def _skin(frame: _Frame) -> list[dict[str, Any]]:
     """Return the ridges of a state, each with its places (mm, height in µm), stresses (kPa) and gap (µm)."""
-    skin = skin_of(folder / f"{frame.skin}.npz", frame.prefix)
-    if not skin:
+    if frame.view is None or frame.view.skin is None:
         return []
-    x, y, p, t, p_el, d_eq, ridge = skin.values()
-    ridges = None if frame.state is None else frame.state.ridges
+    along: Any = frame.view.skin
+    x, y, p, t, p_el, d_eq, ridge = (along[name] for name in ALONG)
+    ridges = frame.state.ridges
     at = {} if ridges is None else {int(j): k for k, j in enumerate(ridges.number)}
     found = []
     for number in np.unique(ridge[np.isfinite(ridge)]):
@@ -199,23 +183,22 @@ def _chosen(stems: list[str]) -> set[str]:
     return {stems[int(k)] for k in places}
 
 
-def _finger(file: Path, view: list[float]) -> dict[str, Any] | None:
-    """Return the energy density on a grid and the lines between layers; None where the file cannot be read."""
-    kept = finger_of(file)
-    if not kept:
+def _finger(body: Any, view: list[float]) -> dict[str, Any] | None:
+    """Return the energy density of a snapshot on a grid and the lines between layers; None without one."""
+    if body is None:
         return None
-    xy = np.asarray(_MM * (kept["x"] + kept["u"]), dtype=float)
+    xy = np.asarray(_MM * (body.x + body.u), dtype=float)
     left, right, bottom, top = view
     x = np.linspace(left, right, _COLUMNS, dtype=np.float64)
     pixel = float(x[1] - x[0])
     y = np.arange(0.5 * pixel, top, pixel, dtype=np.float64)  # the screen is at 0
-    corners, cells = pieces(xy, kept["triangles"], kept["lines"], kept["beside"], _STRAIGHT * pixel)
-    level = np.round(100 * np.log10(np.maximum(_KPA * kept["sed"], 1e-9)))
+    corners, cells = pieces(xy, body.triangles, body.lines, body.beside, _STRAIGHT * pixel)
+    level = np.round(100 * np.log10(np.maximum(_KPA * body.sed, 1e-9)))
     image = np.append(level[cells], _EMPTY)[cells_at(corners, x, y)].astype("<i2")
-    points = xy[kept["lines"]]
+    points = xy[body.lines]
     low, high = np.array([left, bottom]), np.array([right, top])
     inside = ((points.max(axis=1) > low) & (points.min(axis=1) < high)).all(axis=1)
-    segments = np.round(_PLACES * along(xy, kept["lines"][inside], _NEAR)).astype(int)
+    segments = np.round(_PLACES * along(xy, body.lines[inside], _NEAR)).astype(int)
     known = image[image != _EMPTY]
     return {
         "image": base64.b64encode(image.tobytes()).decode(),

@@ -12,7 +12,7 @@ from fingerpad.report import trust
 from fingerpad.report.felt import felt
 from fingerpad.report.frames import conditions_of, frames, section, slider
 from fingerpad.report.trust import head
-from fingerpad.results.arrays import arrays_of
+from fingerpad.results import fields
 from fingerpad.results.closures import RECORD, in_words
 from fingerpad.results.over_time import HARMONICS, NOTE
 from fingerpad.results.quantities import PER_LENGTH, STEPS, plus_minus_of
@@ -246,8 +246,8 @@ def _pictures(result: Result, face: str) -> str:
     left = len(list(folder.glob("finger_*.png"))) - len(fingers[:_MAX_FINGERS])
     more = f"{left} more pictures of the finger are in the folder." if left else ""
     drawn = [part for part in (html.picture(file, words) for file, words in files) if part != face]
-    damaged = [file.name for file in sorted(folder.glob("*.npz")) if not arrays_of(file)]
-    drawn += [html.paragraph(f"{name} is left out: it has no arrays of a run.", "note") for name in damaged]
+    if (folder / fields.FILE).exists() and not fields.read(folder):
+        drawn.append(html.paragraph(f"{fields.FILE} is left out: it has no arrays of a run.", "note"))
     return html.section("pictures", "Pictures", *drawn, html.paragraph(more, "note") if more else "")
 
 

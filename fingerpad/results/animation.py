@@ -1,7 +1,7 @@
 """An animation of a run: the finger on the screen, its ridges with pressure and attraction, and the forces.
 
-Every state of ``motion.npz`` is a frame. Frames between two states are linear in displacements and stresses, which is
-no solution of the model; over a jump there are none.
+Every state of the motion in ``fields.npz`` is a frame. Frames between two states are linear in displacements and
+stresses, which is no solution of the model; over a jump there are none.
 """
 
 import math
@@ -78,11 +78,11 @@ def animate(result: "Answer", path: Path, on_frame: Callable[[int, int], None] =
     if path.suffix not in ENDINGS:
         raise SceneError(f"{clip(str(path), 80)} must end with {' or '.join(ENDINGS)}, the formats of animations")
     if result.folder is None:
-        raise SceneError("a run without a folder has no motion.npz to animate; give fingerpad.run an out")
+        raise SceneError("a run without a folder has no motion to animate; give fingerpad.run an out")
     found = motion.read(result.folder)
     by_step = {state.step: state for state in result.steps}
     if missing := [int(step) for step in found.step if step not in by_step]:
-        raise SceneError(f"step {missing[0]} of {motion.FILE} is not in the run; make the run again")
+        raise SceneError(f"step {missing[0]} of the motion is not in the run; make the run again")
     states = [by_step[int(step)] for step in found.step]
     places = _MM * np.where(found.skin[:, 1] > 0, found.skin[:, 0], np.nan)
     half = 1.0 + (float(np.nanmax(np.abs(places))) if np.isfinite(places).any() else 4.0)

@@ -219,8 +219,5 @@ def _drawing(result: Answer, folder: Path) -> "Drawing":
     from fingerpad.results.drawing import read  # Matplotlib
     from fingerpad.scene.remarks import coefficient
 
-    meshes = (result.record.get("path_mesh"), result.record.get("accuracy", {}).get("mesh"))
-    another = all(meshes) and meshes[0] != meshes[1]  # named states are on another mesh than the path's
-    path, final = (mesh["contact"] if mesh and another else None for mesh in meshes)
     mu_0 = None if "laws" in result.record.get("parameters", {}) else coefficient(result.scene)
-    return read(folder, result.steps, result.named, mu_0, path, final)
+    return read(folder, result.steps, result.named, mu_0)

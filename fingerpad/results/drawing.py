@@ -1,57 +1,29 @@
 """The pictures of a run from its states and views, each under a title that names the state it shows; on rank 0.
 
-A run draws from what it has in memory, and leaves it as arrays in its folder; a result that was read draws from these.
+A run draws from what it has in memory, and leaves that in ``fields.npz``; a result that was read draws from there.
 """
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
-from types import SimpleNamespace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from fingerpad.results import curves, field_picture, fields, finger_picture, style
-from fingerpad.results.arrays import ALONG, finger_of, put, skin_of
 from fingerpad.results.curves import SurfaceProfile
+from fingerpad.results.fields import Along, Groups, View, sorted_along
 from fingerpad.results.over_time import without_parts_of_jumps
-from fingerpad.results.states import WORDS, before_sliding, by_load, called, named, partial_slip
-from variational.state import ContactState, Skin
+from fingerpad.results.states import WORDS, before_sliding, called, shown
+from variational.state import ContactState
 
 if TYPE_CHECKING:
     from variational.snapshot import Snapshot
 
 Array = NDArray[np.float64]
-Along = Skin | Mapping[str, Array]
-"""The skin of a state, or the arrays of its :class:`SurfaceProfile` by name, as a file has them."""
-
-
-@dataclass(frozen=True)
-class View:
-    """All that is shown of a state."""
-
-    state: ContactState
-    size: float | None
-    """Contact size (m) of its mesh, where the title has it."""
-    skin: Along | None
-    """None on ranks other than 0, as the next."""
-    snapshot: "Snapshot | None"
-    merkel: Array | None
-    """Current places (m) of the Merkel sites, shape (sites, 2), None where they are not wanted."""
-
-    def at(self, bone_x: float) -> "View":
-        """Return the same with the bone elsewhere (m): in steady full slip the whole finger moves with it."""
-        by, found = np.array([bone_x - self.state.bone_x, 0.0]), dict[str, Any](vars(self))
-        found["state"] = replace(self.state, bone_x=bone_x)
-        for part, array in (("skin", "x"), ("snapshot", "u")):
-            if (each := found[part]) is not None:
-                kept = dict(each if isinstance(each, Mapping) else vars(each))
-                kept[array] = kept[array] + (by[0] if array == "x" else by)
-                found[part] = kept if isinstance(each, Mapping) else type(each)(**kept)
-        return View(**found | {"merkel": None if self.merkel is None else self.merkel + by})
 
 
 @dataclass(frozen=True)
@@ -73,7 +45,7 @@ class Drawing:
     """Named states with their estimated errors, by their names in :mod:`fingerpad.results.states`."""
 
     def write(self, folder: Path, each_load: bool = True) -> None:
-        """Write every picture and its arrays into a folder.
+        """Write every picture into a folder.
 
         Args:
             folder: where to.
@@ -81,17 +53,16 @@ class Drawing:
         """
         finger, skin = None, None  # each drawn on again by the next of its kind
         for load, end in self.ends.items() if each_load else ():
-            finger = self._put_finger(folder / f"finger_{_file(load)}", f"After {load}", end, finger)
+            finger = self._finger_to(folder / f"finger_{_file(load)}", f"After {load}", end, finger)
             if end.state.step in self.skins and end.state.ridges_in_contact > 0:
                 along = self._along(self.skins[end.state.step], f"After {load}", end.state)
-                skin = self._put_skin(folder / f"surface_{_file(load)}", {"end": along}, skin)
+                skin = self._skin_to(folder / f"surface_{_file(load)}", {"end": along}, skin)
         for name, view in self.finer.items():
             if view.snapshot is not None:
                 file = folder / f"finger_{_file(WORDS[name])}"
-                finger = self._put_finger(file, _title(name, view.state), view, finger)
-        self._put_fields(folder, each_load)
+                finger = self._finger_to(file, _title(name, view.state), view, finger)
         if self._shown():
-            self._put_skin(folder / "surface", self._named_skin())
+            self._skin_to(folder / "surface", self._named_skin())
         if self._charged() is not None:
             self.figure("field", folder / "field.png")
         if self._sliding():
@@ -161,10 +132,8 @@ class Drawing:
         conditions = style.conditions([skin.state for skin in skins.values()], self.mu_0)
         return curves.surface(path, list(skins.values()), conditions, on=on)
 
-    def _put_skin(self, path: Path, skins: Mapping[str, SurfaceProfile], on: Figure | None = None) -> Figure:
-        """Write the picture of the skin in some states and its arrays; ``path`` has no suffix."""
-        arrays = {f"{name}_{array}": getattr(skin, array) for name, skin in skins.items() for array in ALONG}
-        put(path.with_name(f"{path.name}.npz"), arrays)
+    def _skin_to(self, path: Path, skins: Mapping[str, SurfaceProfile], on: Figure | None = None) -> Figure:
+        """Write the picture of the skin in some states; ``path`` has no suffix."""
         return self._skin(path.with_name(f"{path.name}.png"), skins, on)
 
     def _along(self, skin: Along, title: str, state: ContactState, view: View | None = None) -> SurfaceProfile:
@@ -175,24 +144,20 @@ class Drawing:
         for name, (title, state, view) in self._shown().items():
             skin = self.skins.get(state.step) if view is None else view.skin
             if skin is None:
-                raise ValueError("the result has no skin to draw: its folder has no surface.npz that can be read")
+                raise ValueError("the result has no skin to draw: its folder has no fields.npz that can be read")
             found[name] = self._along(skin, title, state, view)
         return found
 
     def _shown(self) -> dict[str, tuple[str, ContactState, View | None]]:
         """Return the states along whose skin is drawn: title, state, and its view on the final mesh if there is one."""
-        found, partial = named(self.states), partial_slip(self.states)
-        shown = {"charged": (_title("charged", found["charged"]), found["charged"])} if "charged" in found else {}
-        if partial is not None:
-            shown["partial"] = ("Partial slip", partial)
-        if "full_slip" in found:
-            shown["full_slip"] = _title("full_slip", found["full_slip"]), found["full_slip"]
-        elif self._sliding():
-            shown["full_slip"] = "Last state", self.states[-1]
+        words = {"partial": "Partial slip"}
+        states = shown(self.states)
+        for name, state in states.items():
+            words.setdefault(name, _title(name, state) if name in self.named else "Last state")
         final = {name: view for name, view in self.finer.items() if view.skin is not None}
         return {
-            name: (title, final[name].state if name in final else state, final.get(name))
-            for name, (title, state) in shown.items()
+            name: (words[name], final[name].state if name in final else state, final.get(name))
+            for name, state in states.items()
         }
 
     def steps_along(self) -> list[int]:
@@ -207,8 +172,24 @@ class Drawing:
         if self.starting_size is None:  # named states are those of the path
             ends = {name: (self._end_of(name, state), state.bone_x) for name, state in self.named.items()}
             views |= {name: end.at(bone_x) for name, (end, bone_x) in ends.items() if end is not None}
-        found = {name: fields.of_snapshot(view.snapshot) for name, view in views.items() if view.snapshot is not None}
-        return {name: each for name, each in found.items() if each is not None}
+        return {name: fields.of_snapshot(view.snapshot) for name, view in views.items() if view.snapshot is not None}
+
+    def groups(self, each_load: bool = True) -> Groups:
+        """Return the groups of ``fields.npz``.
+
+        Args:
+            each_load: also of the end of each load.
+        """
+        loads = {name: replace(end, skin=self._skin_of(end)) for name, end in self.ends.items()} if each_load else {}
+        states = {
+            name: view or View(state, None, self.skins[state.step], None, None)
+            for name, (_, state, view) in self._shown().items()
+        }
+        return fields.groups_of(loads, {**self.finer, **states})
+
+    def _skin_of(self, end: View) -> Along | None:
+        """Return the skin at the end of a load; None in the air."""
+        return self.skins.get(end.state.step) if end.state.ridges_in_contact > 0 else None
 
     def _end_of(self, name: str, state: ContactState) -> View | None:
         """Return the end of a load in a named state; in full slip, which further sliding leaves as it is, its last."""
@@ -216,16 +197,6 @@ class Drawing:
         if name == "full_slip":
             same += [end for end in self.ends.values() if end.state.slip_began == state.slip_began > 0]
         return same[-1] if same else None
-
-    def _put_fields(self, folder: Path, each_load: bool) -> None:
-        """Write the fields of each load's end, a collection of them, and the fields of named states on other meshes."""
-        files = {name: f"fields_{_file(name)}.vtu" for name in (*(self.ends if each_load else ()), *self.finer)}
-        found = {name: each for name, each in self.fields().items() if name in files}
-        for name, each in found.items():
-            fields.write(folder / files[name], each)
-        loads = [(end.state.step, load, files[load]) for load, end in self.ends.items() if load in found]
-        if loads:
-            fields.write_series(folder / "fields.pvd", loads)
 
     # -- history -------------------------------------------------------------------------------------
     def _sliding(self) -> Sequence[ContactState]:
@@ -247,17 +218,14 @@ class Drawing:
             return self._finger(path, _title(final, view.state), view)
         if not self.ends:
             raise ValueError(
-                "the result has no finger to draw: no load was reached, or its folder has no finger_*.npz that can be "
+                "the result has no finger to draw: no load was reached, or its folder has no fields.npz that can be "
                 "read"
             )
         load = list(self.ends)[-1]
         return self._finger(path, f"After {load}", self.ends[load])
 
-    def _put_finger(self, path: Path, title: str, view: View, on: Figure | None) -> Figure:
-        """Write the picture of a finger and its arrays; ``path`` has no suffix."""
-        sites: dict[str, Any] = {} if view.merkel is None else {"merkel": view.merkel}
-        arrays = {"bone_x": np.array(view.state.bone_x), **sites, **vars(view.snapshot)}
-        put(path.with_name(f"{path.name}.npz"), arrays)
+    def _finger_to(self, path: Path, title: str, view: View, on: Figure | None) -> Figure:
+        """Write the picture of a finger; ``path`` has no suffix."""
         return self._finger(path.with_name(f"{path.name}.png"), title, view, on)
 
     def _finger(self, path: Path | None, title: str, view: View, on: Figure | None = None) -> Figure:
@@ -290,61 +258,22 @@ def _places(along: Mapping[str, Array]) -> dict[int, float]:
     return {k: float(along["x"][point]) for k, point in lowest.items()}
 
 
-def sorted_along(skin: Along, state: ContactState) -> dict[str, Any]:
-    """Return the skin of a state as a :class:`SurfaceProfile` has it: sorted along each ridge, a NaN between ridges."""
-    if not isinstance(skin, Skin):
-        return dict(skin)
-    assert state.ridges is not None
-    columns: list[list[Any]] = [[] for _ in ALONG]
-    for number in np.unique(skin.ridge):
-        mine = skin.ridge == number
-        order = np.argsort(skin.x[mine], axis=None)
-        gap = state.ridges.d_eq[state.ridges.number == number]
-        parts = [values[mine].ravel()[order] for values in (skin.x, skin.y, skin.p_n, skin.t_t, skin.p_el)]
-        parts += [np.full(len(order), value) for value in (gap.item(), number)]
-        for column, part in zip(columns, parts, strict=True):
-            column += [part, [np.nan]]
-    return dict(zip(ALONG, map(np.concatenate, columns), strict=True))
-
-
 # -- from a folder ------------------------------------------------------------------------------------
 def read(
-    folder: Path,
-    states: Sequence[ContactState],
-    named: Mapping[str, ContactState],
-    mu_0: float | None,
-    starting_size: float | None,
-    final_size: float | None,
+    folder: Path, states: Sequence[ContactState], named: Mapping[str, ContactState], mu_0: float | None
 ) -> Drawing:
     """Return what the pictures of a result that was read are drawn from.
 
     Args:
-        folder: with the arrays of :meth:`Drawing.write`.
+        folder: with ``fields.npz``.
         states: accepted states.
         named: named states.
         mu_0: friction coefficient; None where the law of friction is not Coulomb's.
-        starting_size: contact size (m) of the mesh of the path, where named states are on another one.
-        final_size: contact size (m) of the final mesh, where there is one.
     """
-    skins = dict[int, Any]()
-    ends, finer = dict[str, View](), dict[str, View]()
-    for load, mine in by_load(states):
-        if finger := finger_of(folder / f"finger_{_file(load)}.npz"):
-            ends[load] = _view(mine[-1], None, None, finger)
-        if along := skin_of(folder / f"surface_{_file(load)}.npz", "end"):
-            skins[mine[-1].step] = along
-    drawing = Drawing(mu_0, states, skins, ends, finer, starting_size, named)
-    for name, (_, state, _) in drawing._shown().items():
-        skin = skin_of(folder / "surface.npz", name)
-        finger = finger_of(folder / f"finger_{_file(WORDS.get(name, ''))}.npz")
-        if skin and finger and final_size is not None and name in named:
-            there = replace(named[name], bone_x=float(finger.get("bone_x", state.bone_x)))
-            finer[name] = _view(there, final_size, skin, finger)
-        elif skin:
-            skins[state.step] = skin
-    return drawing
-
-
-def _view(state: ContactState, size: float | None, skin: Along | None, finger: dict[str, Any]) -> View:
-    snapshot: Any = SimpleNamespace(**finger)
-    return View(state, size, skin, snapshot, finger.get("merkel"))
+    loads, found = fields.views_of(folder, states, named)
+    finer = {name: view for name, view in found.items() if view.snapshot is not None}
+    ends = {name: view for name, view in loads.items() if view.snapshot is not None}
+    views = (*loads.values(), *(view for name, view in found.items() if name not in finer))
+    skins = {view.state.step: view.skin for view in views if view.skin is not None}
+    size = states[-1].mesh_contact if finer else None
+    return Drawing(mu_0, states, skins, ends, finer, size, named)

@@ -1,21 +1,26 @@
-"""Fields inside the finger in one state: as arrays, for PyVista, and as files of VTK.
+"""Fields inside the finger in one state: as arrays, for PyVista, and as a group of ``fields.npz`` in a folder.
 
-A state is an XML file of VTK's unstructured grids (``.vtu``, zlib-compressed), and the ends of loads are a collection
-of these (``.pvd``). Both formats are described in VTK's manual, https://docs.vtk.org/en/latest/vtk_file_formats/.
+The file is NumPy's: ``numpy.load("fields.npz")["loads/press/stress"]``. Its groups are ``meshes/0``, …; ``loads/NAME``,
+the end of each load; ``states/NAME``, the skin of states of the path, and fields too of named states on another mesh;
+and ``motion``, see :mod:`fingerpad.results.motion`.
 """
 
+import zipfile
 import zlib
-from base64 import b64encode
-from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from io import BytesIO
 from pathlib import Path
+from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any
-from xml.sax.saxutils import quoteattr
 
 import numpy as np
 from numpy.typing import NDArray
 
 from fingerpad.results import files
+from fingerpad.results.states import by_load, shown
+from variational.files import read as read_bytes
+from variational.state import ContactState, Skin
 
 if TYPE_CHECKING:
     from pyvista import MultiBlock, UnstructuredGrid
@@ -23,11 +28,41 @@ if TYPE_CHECKING:
     from variational.snapshot import Snapshot
 
 Array = NDArray[np.float64]
-UNITS = {"displacement": "m", "stress": "Pa", "strain": "", "sed": "J/m^3", "layer": ""}
-"""Units of the arrays in files; each array has its own beside it, by VTK's key ``UNITS_LABEL``."""
+Along = Skin | Mapping[str, Array]
+"""The skin of a state, or its arrays by the names of :data:`ALONG`, as a file has them."""
+Groups = Mapping[str, Mapping[str, Any]]
+FILE = "fields.npz"
+ALONG = ("x", "y", "p", "t", "p_el", "d_eq", "ridge")
+"""Arrays of the skin along a state, see :class:`fingerpad.results.curves.SurfaceProfile`."""
 _LEVEL = 1  # of compression: the next ones take longer and save little
 _TRIANGLE = 5  # VTK's number of this cell
-_TYPES = {"f8": "Float64", "f4": "Float32", "i8": "Int64", "i4": "Int32", "u1": "UInt8"}
+_MESH = ("x", "triangles", "tag", "lines", "beside")  # of a snapshot, that states on one mesh share
+_STATE = ("u", "sed", "stress", "strain")
+
+
+@dataclass(frozen=True)
+class View:
+    """All that is shown of a state."""
+
+    state: ContactState
+    size: float | None
+    """Contact size (m) of its mesh, where the title has it."""
+    skin: Along | None
+    """None on ranks other than 0, as the next."""
+    snapshot: "Snapshot | None"
+    merkel: Array | None
+    """Current places (m) of the Merkel sites, shape (sites, 2), None where they are not wanted."""
+
+    def at(self, bone_x: float) -> "View":
+        """Return the same with the bone elsewhere (m): in steady full slip the whole finger moves with it."""
+        by, found = np.array([bone_x - self.state.bone_x, 0.0]), dict[str, Any](vars(self))
+        found["state"] = replace(self.state, bone_x=bone_x)
+        for part, array in (("skin", "x"), ("snapshot", "u")):
+            if (each := found[part]) is not None:
+                kept = dict(each if isinstance(each, Mapping) else vars(each))
+                kept[array] = kept[array] + (by[0] if array == "x" else by)
+                found[part] = kept if isinstance(each, Mapping) else type(each)(**kept)
+        return View(**found | {"merkel": None if self.merkel is None else self.merkel + by})
 
 
 @dataclass(frozen=True, eq=False)
@@ -112,77 +147,16 @@ def _pyvista() -> Any:
     return pyvista
 
 
-def of_snapshot(shown: "Snapshot | Any") -> Fields | None:
-    """Return the fields of what a picture shows; None where it has no stress, as in files of earlier versions."""
-    stress, strain = (getattr(shown, name, np.empty((0, 0))) for name in ("stress", "strain"))
-    if len(stress) != len(shown.triangles) or len(strain) != len(shown.triangles):
-        return None
+def of_snapshot(shown: "Snapshot") -> Fields:
+    """Return the fields of what a picture shows."""
     count = int(shown.triangles.max(initial=-1)) + 1  # what follows are the middles of lines
-    zero = np.zeros(len(stress))
-    (xx, yy, zz, xy), (e_xx, e_yy, e_xy) = stress.T, strain.T
+    zero = np.zeros(len(shown.stress))
+    (xx, yy, zz, xy), (e_xx, e_yy, e_xy) = shown.stress.T, shown.strain.T
     return Fields(
         shown.x[:count], shown.u[:count], shown.triangles, shown.tag, shown.sed,
         _tensor([[xx, xy, zero], [xy, yy, zero], [zero, zero, zz]]),
         _tensor([[e_xx, e_xy, zero], [e_xy, e_yy, zero], [zero, zero, zero]]),
     )  # fmt: skip
-
-
-def write(path: Path, fields: Fields) -> None:
-    """Write fields into a file ``.vtu``, which is there as a whole or not at all; values of cells have 32 bits."""
-    points, cells = len(fields.points), len(fields.triangles)
-    topology: dict[str, NDArray[Any]] = {
-        "connectivity": fields.triangles.astype(np.int64).ravel(),
-        "offsets": 3 * np.arange(1, cells + 1, dtype=np.int64),
-        "types": np.full(cells, _TRIANGLE, dtype=np.uint8),
-    }
-    on_cells = fields.on_cells().items()
-    parts: dict[str, dict[str, NDArray[Any]]] = {
-        "Points": {"points": _in_space(fields.points)},
-        "Cells": topology,
-        "PointData": fields.on_points(),
-        "CellData": {name: each.astype(np.float32) if each.dtype == np.float64 else each for name, each in on_cells},
-    }
-    body = "\n".join(f"<{name}>\n{_arrays(arrays)}</{name}>" for name, arrays in parts.items())
-    piece = f'<Piece NumberOfPoints="{points}" NumberOfCells="{cells}">\n{body}\n</Piece>'
-    files.replace(path, _file("UnstructuredGrid", f"<UnstructuredGrid>\n{piece}\n</UnstructuredGrid>"))
-
-
-def write_series(path: Path, states: Iterable[tuple[int, str, str]]) -> None:
-    """Write a collection ``.pvd`` of states.
-
-    Args:
-        path: where to.
-        states: number of the step, as the time, its name, and the name of the file beside the collection.
-    """
-    rows = "\n".join(
-        f'<DataSet timestep="{step}" part="0" name={quoteattr(name)} file={quoteattr(file)}/>'
-        for step, name, file in states
-    )
-    files.replace(path, _file("Collection", f"<Collection>\n{rows}\n</Collection>"))
-
-
-def _file(kind: str, body: str) -> bytes:
-    head = f'<VTKFile type="{kind}" version="1.0" byte_order="LittleEndian" header_type="UInt64"'
-    return f'{head} compressor="vtkZLibDataCompressor">\n{body}\n</VTKFile>\n'.encode()
-
-
-def _arrays(arrays: Mapping[str, NDArray[Any]]) -> str:
-    """Return arrays as VTK has them: numbers of blocks and their sizes, then the compressed block, both in base 64."""
-    text = ""
-    for name, values in arrays.items():
-        kind = values.dtype.str[1:]
-        raw = np.ascontiguousarray(values, dtype=f"<{kind}").tobytes()
-        block = zlib.compress(raw, _LEVEL)
-        sizes = np.array([1, len(raw), 0, len(block)], dtype="<u8").tobytes()
-        components = 1 if values.ndim == 1 else values.shape[1]
-        text += f'<DataArray type="{_TYPES[kind]}" Name="{name}" NumberOfComponents="{components}" format="binary">'
-        text += f"{b64encode(sizes).decode()}{b64encode(block).decode()}{_unit(name)}</DataArray>\n"
-    return text
-
-
-def _unit(name: str) -> str:
-    unit = UNITS.get(name)
-    return f'<InformationKey name="UNITS_LABEL" location="vtkDataArray">{unit}</InformationKey>' if unit else ""
 
 
 def _in_space(plane: Array) -> Array:
@@ -193,3 +167,125 @@ def _in_space(plane: Array) -> Array:
 def _tensor(rows: Sequence[Sequence[Array]]) -> Array:
     """Return tensors by cell, shape (cells, 3, 3), of their components, each of shape (cells,)."""
     return np.moveaxis(np.array([list(row) for row in rows]), 2, 0)
+
+
+# -- the file ----------------------------------------------------------------------------------------------
+def write(folder: Path, groups: Groups) -> None:
+    """Write arrays by group and name, a file that is there as a whole or not at all; whole numbers have 32 bits."""
+    data = BytesIO()
+    with zipfile.ZipFile(data, "w", zipfile.ZIP_DEFLATED, compresslevel=_LEVEL) as file:
+        for group, arrays in groups.items():
+            for name, values in arrays.items():
+                known = np.asarray(values)
+                with file.open(f"{group}/{name}.npy", "w", force_zip64=True) as part:
+                    np.lib.format.write_array(part, known.astype(np.int32) if known.dtype == np.int64 else known)
+    files.replace(folder / FILE, data.getvalue())
+
+
+def read(folder: Path) -> dict[str, dict[str, NDArray[Any]]]:
+    """Return the arrays of the file in a folder by group and name; none without a whole file."""
+    found = dict[str, dict[str, NDArray[Any]]]()
+    try:
+        with np.load(BytesIO(read_bytes(folder / FILE)), allow_pickle=False) as file:
+            for path in file:
+                group, _, name = path.rpartition("/")
+                found.setdefault(group, {})[name] = file[path]
+    except (OSError, ValueError, EOFError, TypeError, RuntimeError, MemoryError, zipfile.BadZipFile, zlib.error):
+        return {}
+    return found
+
+
+def groups_of(loads: Mapping[str, View], states: Mapping[str, View]) -> Groups:
+    """Return the groups of a file: of the ends of loads, and of states by name, each with what its view has."""
+    meshes, found = list[Any](), dict[str, dict[str, Any]]()
+    views = {f"loads/{name}": view for name, view in loads.items()}
+    for group, view in (views | {f"states/{name}": view for name, view in states.items()}).items():
+        arrays: dict[str, Any] = {"bone_x": view.state.bone_x}
+        arrays |= {} if view.merkel is None else {"merkel": view.merkel}
+        arrays |= {} if view.skin is None else {"skin": np.stack([*sorted_along(view.skin, view.state).values()])}
+        if (shown := view.snapshot) is not None:
+            known = (k for k, mesh in enumerate(meshes) if all(np.array_equal(*each) for each in _pairs(mesh, shown)))
+            if (number := next(known, len(meshes))) == len(meshes):
+                meshes.append(shown)
+            arrays |= {"mesh": number} | {name: getattr(shown, name) for name in _STATE}
+        found[group] = arrays
+    return {f"meshes/{k}": {name: getattr(mesh, name) for name in _MESH} for k, mesh in enumerate(meshes)} | found
+
+
+def _pairs(one: Any, other: Any) -> list[tuple[NDArray[Any], NDArray[Any]]]:
+    return [(getattr(one, name), getattr(other, name)) for name in _MESH]
+
+
+def views_of(
+    folder: Path, steps: Sequence[ContactState], named: Mapping[str, ContactState]
+) -> tuple[dict[str, View], dict[str, View]]:
+    """Return the views in the file of a folder, of the ends of loads and of states by name; none that are not whole.
+
+    Args:
+        folder: of a run.
+        steps: its accepted states.
+        named: its named states.
+    """
+    groups, ends = read(folder), {load: mine[-1] for load, mine in by_load(steps)}
+    loads = {load: _view(groups, f"loads/{load}", end) for load, end in ends.items()}
+    of_path = {**named, **shown(steps)}
+    states = {name: _view(groups, f"states/{name}", state) for name, state in of_path.items()}
+    for name, view in states.items():
+        if view is not None and view.snapshot is not None and name in named:  # on another mesh than the path's
+            there = replace(named[name], bone_x=view.state.bone_x)
+            states[name] = replace(view, state=there, size=there.mesh_contact)
+    return tuple({name: view for name, view in each.items() if view} for each in (loads, states))  # type: ignore[return-value]
+
+
+def _view(groups: Groups, group: str, state: ContactState) -> View | None:
+    """Return the view of a group; None without one, or where its arrays are not whole."""
+    arrays = groups.get(group, {})
+    try:
+        skin, number = arrays.get("skin"), arrays.get("mesh")
+        snapshot: Any = None
+        if number is not None:
+            mesh = groups[f"meshes/{int(number)}"]
+            snapshot = SimpleNamespace(**{k: mesh[k] for k in _MESH}, **{k: arrays[k] for k in _STATE})
+            if not _whole(snapshot):
+                return None
+        if skin is not None and (skin.ndim != 2 or len(skin) != len(ALONG) or skin.dtype.kind != "f"):
+            return None
+        there = replace(state, bone_x=float(arrays["bone_x"]))
+    except (KeyError, TypeError, ValueError):
+        return None
+    along = None if skin is None else dict(zip(ALONG, skin, strict=True))
+    return View(there, None, along, snapshot, arrays.get("merkel"))
+
+
+def _whole(shown: Any) -> bool:
+    """Return whether the arrays of a snapshot fit together, whoever wrote them."""
+    points, cells = len(shown.x), len(shown.triangles)
+    shapes = {"x": (points, 2), "u": (points, 2), "triangles": (cells, 3), "tag": (cells,), "sed": (cells,)}
+    shapes |= {"stress": (cells, 4), "strain": (cells, 3), "lines": (len(shown.lines), 3)}
+    shapes |= {"beside": (len(shown.lines), 2)}
+    if any(getattr(shown, name).shape != shape for name, shape in shapes.items()):
+        return False
+    if not all(getattr(shown, name).dtype.kind == "f" for name in ("x", *_STATE)):
+        return False
+    for name, least, most in (("triangles", 0, points), ("lines", 0, points), ("beside", -1, cells)):
+        values = getattr(shown, name)
+        if values.dtype.kind != "i" or np.any((values < least) | (values >= most)):
+            return False
+    return bool(np.isfinite(shown.x).all() and np.isfinite(shown.u).all() and np.isfinite(shown.sed).all())
+
+
+def sorted_along(skin: Along, state: ContactState) -> dict[str, Any]:
+    """Return the skin of a state by the names of :data:`ALONG`: sorted along each ridge, a NaN between ridges."""
+    if not isinstance(skin, Skin):
+        return dict(skin)
+    assert state.ridges is not None
+    columns: list[list[Any]] = [[] for _ in ALONG]
+    for number in np.unique(skin.ridge):
+        mine = skin.ridge == number
+        order = np.argsort(skin.x[mine], axis=None)
+        gap = state.ridges.d_eq[state.ridges.number == number]
+        parts = [values[mine].ravel()[order] for values in (skin.x, skin.y, skin.p_n, skin.t_t, skin.p_el)]
+        parts += [np.full(len(order), value) for value in (gap.item(), number)]
+        for column, part in zip(columns, parts, strict=True):
+            column += [part, [np.nan]]
+    return dict(zip(ALONG, map(np.concatenate, columns), strict=True))

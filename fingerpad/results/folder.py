@@ -39,11 +39,9 @@ LEFT = (
         "result.nc",
         "result.nc*.part",
     ),
-    *("displacement.bp", "stress.bp", "sed.bp", "fields.csv"),  # of earlier versions
-    *("finger_*.npz", "finger_*.png", "surface*.npz", "surface*.png"),
-    *("fields_*.vtu", "fields.pvd"),
+    *("fields.npz", "fields.npz*.part", "finger_*.png", "surface*.png"),
     *("history.png", "time.png", "field.png", "footprint.png", "solid.png", "report.html", "report.html*.part"),
-    *("spikes.csv", "spikes.nc", "raster.png", "motion.npz", "animation.webp"),
+    *("spikes.csv", "spikes.nc", "raster.png", "animation.webp"),
 )
 _LOCK = ".lock"
 T = TypeVar("T")

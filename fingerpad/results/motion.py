@@ -1,4 +1,4 @@
-"""The motion of a finger from step to step in ``motion.npz``: its lines, and its skin with pressure and attraction.
+"""The motion of a finger from step to step in ``fields.npz``: its lines, and its skin with pressure and attraction.
 
 A state takes some 50 kB. Long runs keep every second, fourth, ... of their states, so that memory, checkpoints and the
 file stay small.
@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from fingerpad.results.arrays import arrays_of, put
+from fingerpad.results import fields
 from fingerpad.scene.messages import SceneError, clip
 
 if TYPE_CHECKING:
@@ -22,7 +22,6 @@ Array = NDArray[np.float64]
 Numbers = NDArray[np.int64]
 Moved = Mapping[str, NDArray[np.float32]]
 """A state: ``u``, displacement of the points on lines (m), shape (points, 2); ``skin``, shape (rows, skin points)."""
-FILE = "motion.npz"
 ROWS = ("x", "p", "t", "p_el")
 """Rows of the skin: place (m), contact pressure, shear traction and attraction (Pa)."""
 _MOST = 160  # states that are kept
@@ -46,11 +45,10 @@ def thin(states: MutableMapping[int, Moved]) -> None:
             del states[step]
 
 
-def write(folder: Path, snapshot: "Snapshot", states: Mapping[int, Moved]) -> None:
-    """Write ``motion.npz``.
+def group(snapshot: "Snapshot", states: Mapping[int, Moved]) -> dict[str, NDArray[Any]]:
+    """Return the group ``motion`` of ``fields.npz``.
 
     Args:
-        folder: where to.
         snapshot: the body in any state.
         states: by step.
     """
@@ -58,7 +56,7 @@ def write(folder: Path, snapshot: "Snapshot", states: Mapping[int, Moved]) -> No
     layers = np.where(snapshot.beside >= 0, snapshot.tag[snapshot.beside], 0)
     arrays = {name: np.stack([state[name] for state in states.values()]) for name in ("u", "skin")}
     about = {"x": snapshot.x[points], "lines": lines.reshape(-1, 3), "layers": layers}
-    put(folder / FILE, {"step": np.array(list(states)), **about, **arrays})
+    return {"step": np.array(list(states)), **about, **arrays}
 
 
 @dataclass(frozen=True)
@@ -96,7 +94,7 @@ def read(folder: Path) -> Motion:
     Raises:
         SceneError: the folder has none; one sentence.
     """
-    found: dict[str, Any] = arrays_of(folder / FILE)
+    found: dict[str, Any] = fields.read(folder).get("motion", {})
     try:
         motion = Motion(**{name: found[name] for name in Motion.__dataclass_fields__})
         states, points = len(motion.step), len(motion.x)
@@ -109,7 +107,7 @@ def read(folder: Path) -> Motion:
     if not whole:
         where = clip(str(folder), 80)
         raise SceneError(
-            f"{where} has no {FILE} of a run, which is written at the end of a full run with output.each_load = true; "
-            "make the run again"
+            f"{where} has no motion of a run in {fields.FILE}, which is written at the end of a full run with "
+            "output.each_load = true; make the run again"
         )
     return motion

@@ -102,7 +102,7 @@ class Result(Answer):
         """Write the run as a moving picture, WebP or GIF by the end of the file's name; return the file.
 
         Raises:
-            SceneError: the run has no ``motion.npz``, or the name another ending.
+            SceneError: the run has no motion in its folder, or the name another ending.
         """
         from fingerpad.results.animation import animate  # Matplotlib
 

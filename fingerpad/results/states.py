@@ -150,6 +150,18 @@ def nearest_to_half(rows: Sequence[ContactState], last: float = math.inf) -> Con
     return min(some, key=lambda row: abs(row.slipping - 0.5)) if some else None
 
 
+def shown(rows: Sequence[ContactState]) -> dict[str, ContactState]:
+    """Return the states along whose skin is drawn, by name: charged normal contact, ``partial`` slip and full slip.
+
+    In place of a full slip that was not held it is the last state of sliding.
+    """
+    found, partial = named(rows), partial_slip(rows)
+    slides = 0 < len(before_sliding(rows)) < len(rows)
+    last = found.get("full_slip", rows[-1] if slides else None)
+    each = {"charged": found.get("charged"), "partial": partial, "full_slip": last}
+    return {name: state for name, state in each.items() if state is not None}
+
+
 def by_load(rows: Sequence[ContactState]) -> Iterator[tuple[str, list[ContactState]]]:
     """Yield each load's name and its states; the states of the first touch belong to the load that follows."""
     for _, group in groupby(rows, key=lambda row: row.load_number):

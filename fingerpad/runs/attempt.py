@@ -15,6 +15,7 @@ from fingerpad.model.options import FingerModel
 from fingerpad.model.report import Clock, Report
 from fingerpad.model.simulation import RestartRequired, Simulation
 from fingerpad.model.state import broken, force_error
+from fingerpad.results import fields
 from fingerpad.results.checkpoint import Checkpoint, CheckpointError, Growing
 from fingerpad.results.interrupt import Interrupt, Interrupted
 from fingerpad.results.provenance import provenance, refuse_unread
@@ -235,7 +236,7 @@ class Attempt:
             drawing=record.drawing(mu_0, final, self._model.mesh.contact if final else None, named),
             outputs=tuple(self._outputs),
         )
-        motion = self.report.motion() if self._writer.folder is not None and scene.output.each_load else None
+        motion = self.report.motion() if self._writer.folder is not None and scene.output.each_load else {}
 
         def with_estimate(result: Result) -> Result:
             found = result.named if estimate is None else with_errors(estimate, result.named, self._outputs)
@@ -254,9 +255,8 @@ class Attempt:
             with self._clock.phase("output"):
                 self.report.final(final)
                 if result.folder is not None and result.drawing is not None:
+                    fields.write(result.folder, {**result.drawing.groups(scene.output.each_load), **motion})
                     result.drawing.write(result.folder, scene.output.each_load)
-                if result.folder is not None and motion is not None:
-                    motion(result.folder)
             return result
 
         def with_cost(result: Result) -> Result:  # collective, and never fails on one rank alone

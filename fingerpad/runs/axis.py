@@ -5,8 +5,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from fingerpad.richardson import plus_minus
-from fingerpad.scene import Scene
-from fingerpad.scene.dotted import value_of, with_values
+from fingerpad.scene import Scene, value_of, with_values
 from fingerpad.scene.keys import by_name
 from fingerpad.scene.messages import SceneError, clip, show
 

@@ -7,7 +7,7 @@ from typing import Any
 import fingerpad.startup  # noqa: F401
 from fingerpad.accuracy.states import State
 from fingerpad.results.checkpoint import Checkpoint, CheckpointError
-from fingerpad.results.drawing import View
+from fingerpad.results.fields import View
 from fingerpad.results.provenance import provenance
 from fingerpad.results.quantities import Output
 from fingerpad.scene import Scene

@@ -23,8 +23,7 @@ from fingerpad.runs.context import RunContext
 from fingerpad.runs.roots import Roots
 from fingerpad.runs.solve import checked, solved, stopped
 from fingerpad.runs.target import CONTRAST, Target, read
-from fingerpad.scene import Scene
-from fingerpad.scene.dotted import with_values
+from fingerpad.scene import Scene, with_values
 from fingerpad.scene.messages import SceneError
 from fingerpad.scene.remarks import drive_in_short, other_under_a_drive
 from fingerpad.slices import errors

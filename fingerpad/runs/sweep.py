@@ -24,8 +24,7 @@ from fingerpad.runs.context import RunContext
 from fingerpad.runs.post import applied, of_kept
 from fingerpad.runs.solve import checked, solved
 from fingerpad.runs.sweep_results import FILE, Sweep
-from fingerpad.scene import Scene
-from fingerpad.scene.dotted import value_of, with_values
+from fingerpad.scene import Scene, value_of, with_values
 from fingerpad.scene.messages import SceneError, clip, show
 from fingerpad.scene.reading import DEFAULT_MODEL, plain
 from fingerpad.scene.remarks import leakage

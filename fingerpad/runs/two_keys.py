@@ -16,8 +16,7 @@ from fingerpad.reduced.cylinders import Cylinders
 from fingerpad.runs.axis import Axis, axis, refuse_many
 from fingerpad.runs.closed_form import ClosedForm
 from fingerpad.runs.target import Target, read
-from fingerpad.scene import Scene
-from fingerpad.scene.dotted import value_of, with_values
+from fingerpad.scene import Scene, value_of, with_values
 from fingerpad.scene.messages import SceneError, clip
 
 COUNT = 11

@@ -197,14 +197,4 @@ FINGERS = MappingProxyType(
     }
 )
 """Fingers by name."""
-DEFAULTS: Mapping[str, Any] = MappingProxyType(
-    {
-        **{f"geometry.{name}": getattr(Fingertip(), name) for name in (*_OF_RIDGES, *_OF_SIZE)},
-        **{f"materials.{layer}.shear_modulus": value for layer, value in SOFT.items()},
-        **{f"slices.{name}": _PAD for name in ("radius", "length")},
-        **{f"geometry.{name}": getattr(Fingertip(), name) for name in ("ridge_wavelength", "ridge_count")},
-        **{"friction": 0.25, "roughness.young": 1e6, "electric.tissue": "lossless", "electric.leak": "none"},
-    }
-)
-"""The default finger's value of every key that a name gives."""
 assert tuple(FINGERS) == FingerName.__args__  # type: ignore[attr-defined]

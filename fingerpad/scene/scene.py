@@ -10,10 +10,10 @@ from dataclasses import is_dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
-from pydantic import BeforeValidator, Field, ValidationError, model_validator
+from pydantic import BeforeValidator, Field, PrivateAttr, ValidationError, model_validator
 
 from fingerpad import notebook
-from fingerpad.scene.changes import DEFAULT_HISTORY, changed, forget, with_coarse_start, with_finger, without_finger
+from fingerpad.scene.changes import DEFAULT_HISTORY, changed, preset_keys, with_presets, without
 from fingerpad.scene.electric import Electric
 from fingerpad.scene.fingers import ADULT, FingerName
 from fingerpad.scene.keys import every
@@ -22,10 +22,8 @@ from fingerpad.scene.law_keys import Kept, kept
 from fingerpad.scene.loads import Load, Voltage, drives, refuse_contradictions, repeated
 from fingerpad.scene.materials import (
     BEARING_AREA,
-    CLOSURES,
     FRICTION,
     LAYERS,
-    MATERIALS,
     ROUGHNESS,
     Materials,
     refuse_thickness,
@@ -52,9 +50,6 @@ from variational.roughness.closure import Closure
 
 if TYPE_CHECKING:
     from variational.materials.material import Material
-
-
-_LAWS: dict[str, type] = {**MATERIALS.laws, **CLOSURES.laws}
 
 
 class Scene(Table):
@@ -98,6 +93,7 @@ class Scene(Table):
     numerics: Numerics = Numerics()
     accuracy: Accuracy | None = None
     """Largest relative errors allowed. The element sizes in ``mesh`` are then those of the first mesh."""
+    _preset: list[str] = PrivateAttr(default_factory=list)  # keys for which finger and accuracy may stand
 
     def __init__(self, /, **data: Any) -> None:
         """Check a scene given as nested tables.
@@ -107,12 +103,15 @@ class Scene(Table):
         """
         given = plain(data)
         refuse_beside_mesh(given)
-        full, named = with_finger(given, _LAWS)
         try:
-            self.__pydantic_validator__.validate_python(with_coarse_start(full), self_instance=self)
+            self.__pydantic_validator__.validate_python(with_presets(given), self_instance=self)
         except ValidationError as error:
             raise SceneError(first_error(error, Scene, (key.name for key in every(Scene)))) from None
-        forget(self, given, named)
+        self._preset = preset_keys(given, Scene)
+
+    def __eq__(self, other: object) -> bool:
+        """Return whether another scene has the same values, whichever of them were given."""
+        return isinstance(other, Scene) and self.__dict__ == other.__dict__
 
     output: Output = Output()
     slices: Slices = Slices()
@@ -164,7 +163,7 @@ class Scene(Table):
         Raises:
             SceneError: the first key at fault, or one in whose place the scene has a law.
         """
-        return Scene(**changed(plain(self), None if self.accuracy is None else self.accuracy.tolerances(), changes))
+        return Scene(**changed(without(plain(self), self._preset), changes))
 
     def __replace__(self, **changes: Any) -> "Scene":
         """Return :meth:`replace` of changes, as ``copy.replace`` does from Python 3.13 on."""
@@ -292,7 +291,6 @@ def changed_keys(parameters: Mapping[str, Any]) -> dict[str, tuple[Any, Any]]:
 
 
 def _known(key: str, law: Any) -> Any:
-    """Return the law of a key; refuse one whose code is not known."""
     return law.refuse(key) if isinstance(law, Kept) else law
 
 
@@ -320,7 +318,7 @@ def overridden(data: Mapping[str, Any], changes: Mapping[str, Any]) -> dict[str,
     Raises:
         SceneError: a table, or an entry of a list, that is not there.
     """
-    found = without_finger(data, laws=False) if "finger" in changes else dict(data)
+    found = without(data, preset_keys(data, Scene)) if "finger" in changes else dict(data)
     put_all(found, changes)
     return found
 
