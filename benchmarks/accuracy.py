@@ -1,17 +1,14 @@
-"""Error estimate and requested accuracy against known errors.
+"""Estimated errors of runs with a requested accuracy against known errors.
 
 environment/run python3 -m benchmarks.accuracy [--jobs 2] [--draw]     after benchmarks.errors; an hour of one core
 
-Whole runs: scenes with an ``[accuracy]``, ten of them drawn at random, against their limits on finer meshes
-(benchmarks/limits.py), with the same penalty. Beside them the estimate for one mesh parameter at a time, from
-docs/errors.json, and for Hertz's contact: the cylinder of benchmarks/verification/normal_contact.py at half-widths that
-end anywhere in a facet. Writes docs/accuracy.json and docs/accuracy.md. fingerpad/richardson.py takes its factors of
+Scenes with an ``[accuracy]``, ten of them drawn at random, against their limits on finer meshes (benchmarks/limits.py),
+with the same penalty. Writes docs/accuracy.json and docs/accuracy.md. fingerpad/richardson.py takes its factors of
 safety from them; tests/test_calibration.py checks the coverage.
 """
 
-import itertools
 import sys
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from operator import attrgetter
 from pathlib import Path
@@ -22,13 +19,11 @@ import numpy as np
 from benchmarks import harness, limits
 from benchmarks.errors import DEFAULT, LEVELS, STATES, parted
 from benchmarks.limits import Limit
-from benchmarks.verification.normal_contact import E_STAR, HALF_WIDTH, RADIUS, SPAN, press
 from fingerpad.model.options import by_rule, check
-from fingerpad.richardson import MORE, ONCE, MeshParameter
+from fingerpad.richardson import MORE, ONCE
 from fingerpad.runs.batch import Summary
 from fingerpad.scene import Scene, SceneError, load, start
 from fingerpad.scene.parameters import Accuracy
-from geometry.bodies import pad
 
 _LIMIT = 7200.0  # s of processor time for one scene
 _SHORT = {
@@ -40,7 +35,7 @@ _SHORT = {
 }
 _TEN = ({"mu_app": 0.01, "contact_length": 0.03}, {"sed": 0.05})  # requested of each scene drawn
 _DEFAULT = ({"mu_app": 0.01}, _TEN[0], {"contact_length": 0.01}, _TEN[1])  # of the default scene
-_PARAMETERS = {"contact": "contact size (µm)", "growth": "growth", "receptor": "sites (µm)"}
+_SIZES = ("contact", "growth", "receptor")
 _LEVELS = 3  # meshes of the limits of the scenes drawn; a fourth would take twice as long as all else on the page
 SEED, COUNT = 2023, 10
 _RANGES = {"f_ext": (10.0, 120.0), "voltage": (0.0, 200.0), "friction": (0.15, 0.5)}  # N/m, V
@@ -49,8 +44,6 @@ _QUARTER = (
     *("materials.subcutis.shear_modulus", "materials.stratum_corneum.shear_modulus"),
     *("roughness.h_rms", "roughness.young", "electric.eps_sc"),
 )
-
-
 WANTED = 0.9  # of the cases of each kind
 KINDS = {
     "friction": ("µ_app", "f_T"),
@@ -58,9 +51,7 @@ KINDS = {
     "highest pressure": ("highest pressure",),
     "energy density": ("SED",),
 }
-WHOLE, HERTZ = "whole run", "Hertz"  # sources; the others are studies of benchmarks/errors.py
-HALF_WIDTHS = tuple(part * HALF_WIDTH for part in (0.817, 0.893, 0.961, 1.049, 1.137))
-FACETS = (5, 10, 20, 40)  # to HALF_WIDTH
+WHOLE = "whole run"
 
 
 # -- cases ---------------------------------------------------------------------------------------------------
@@ -68,7 +59,7 @@ FACETS = (5, 10, 20, 40)  # to HALF_WIDTH
 class Case:
     """An estimate whose error is known; numbers in per cent of the limit."""
 
-    source: str  # WHOLE, HERTZ or the mesh parameter that was varied alone
+    source: str  # WHOLE
     scene: str
     quantity: str
     once: bool  # every size was halved or doubled once
@@ -107,7 +98,7 @@ class Case:
 
 def kept(docs: Path = harness.DOCS) -> list[Case]:
     """Return the cases of docs/accuracy.json."""
-    return [Case(**case) for case in harness.kept("accuracy", docs).numbers["cases"]]
+    return [Case(**each) for each in harness.kept("accuracy", docs).numbers["cases"] if each["source"] == WHOLE]
 
 
 def coverage(cases: Iterable[Case], kind: str | None = None, once: bool | None = None) -> tuple[int, int, int]:
@@ -183,40 +174,8 @@ def row(summary: Summary, base: float) -> dict[str, Any]:
     a, lost = summary["accuracy"], summary.get("restarts", [])
     work = a["unknowns_times_factorisations"] + sum(s["unknowns"] * s["factorisations"] for s in lost)
     unknowns = max(s["unknowns"] for s in a["solves"])
-    chosen = {name: a["mesh"][name] for name in _PARAMETERS}
+    chosen = {name: a["mesh"][name] for name in _SIZES}
     return chosen | {"solves": len(a["solves"]), "unknowns": unknowns, "cost": work / base}
-
-
-def of_parameter(name: str, rows: Sequence[Mapping[str, Any]]) -> Iterator[Case]:
-    """Yield the cases of a study of docs/errors.json, without the finest run, whose change makes the limit."""
-    for quantity in rows[0]["quantities"]:
-        if quantity in ("full_slip_mu_app", "unknowns", "factorisations") or "ridges" in quantity:
-            continue  # counts, and the quotient of f_T and a given force
-        found = [r["quantities"][quantity] for r in rows]
-        parts = [r["lengths"].get(quantity, r["quantities"][quantity]) for r in rows]
-        end = limits.limit(found) if name == "contact" else Limit(found[-1], 0.0, None)
-        parameter, of = MeshParameter(), 100 / abs(end.value)
-        for k, (coarse, fine) in enumerate(itertools.pairwise(parts[:-1]), start=1):
-            parameter.record({quantity: coarse}, {quantity: fine})
-            at = rows[k]["value"] * (1e6 if name != "growth" else 1)
-            estimate, error = (of * value for value in (parameter.share(quantity), abs(found[k] - end.value)))
-            yield Case(name, f"{_PARAMETERS[name]}: {at:g}", _title(quantity), k == 1, estimate, error, of * end.bar)
-
-
-def hertz() -> Iterator[Case]:
-    """Yield the cases of Hertz's contact on meshes of halved size; a minute of computation."""
-    name, bar = "contact_length", 100 * (HALF_WIDTH / SPAN) ** 2  # %: the body is a block, not a half-space
-    for a in HALF_WIDTHS:
-        found, parameter = [], MeshParameter()
-        for facets in FACETS:
-            size, force = HALF_WIDTH / facets, np.pi * E_STAR * a**2 / (4 * RADIUS)
-            run = press(pad(size, int(np.ceil(1.4 * facets)), RADIUS, SPAN), "penalty", size, force)
-            found.append(float(run.observer.ridge_loads(run.surface_state).length[0]))
-        for k, (coarse, fine) in enumerate(itertools.pairwise(found), start=1):
-            parameter.record({name: coarse}, {name: fine})
-            scene = f"half-width {1e3 * a:.3f} mm, {a / HALF_WIDTH * FACETS[k]:.1f} facets"
-            estimate, error = (100 / (2 * a) * value for value in (parameter.share(name), abs(fine - 2 * a)))
-            yield Case(HERTZ, scene, "contact length", k == 1, estimate, error, bar)
 
 
 def compute(args: Any) -> None:
@@ -234,9 +193,7 @@ def compute(args: Any) -> None:
         else:
             cases += judged(name, summary, limits.limits(ends[plain]))
             runs[name] = row(summary, base)
-    for name in _PARAMETERS:
-        cases += of_parameter(name, errors["studies"][name])
-    numbers = {"cases": [asdict(case) for case in [*cases, *hertz()]], "runs": runs}
+    numbers = {"cases": [asdict(case) for case in cases], "runs": runs}
     harness.keep("accuracy", numbers, harness.made(summaries.values()), args.docs)
 
 
@@ -255,15 +212,15 @@ def _verdicts(runs: Mapping[str, Mapping[str, Any]], cases: Sequence[Case]) -> l
 def draw(docs: Path) -> Path:
     """Draw the page from the kept numbers."""
     cases, factors = kept(docs), {True: f"once: factor {ONCE:g}", False: f"more often: factor {MORE:g}"}
-    densities = [case for case in cases if case.source in _PARAMETERS and case.kind == "energy density"]
     names: dict[str, Any] = dict(zip(("n", "bare", "safe"), coverage(cases), strict=True)) | {
         "cases": cases,
-        "densities": densities,
-        "density": coverage(cases, "energy density"),
-        "alone": coverage(densities),
-        "whole": coverage([case for case in cases if case.source == WHOLE]),
         "verdicts": _verdicts(harness.kept("accuracy", docs).numbers["runs"], cases),
-        "coverages": [(k, words, *coverage(cases, k, once)) for k in KINDS for once, words in factors.items()],
+        "coverages": [
+            (k, words, *found)
+            for k in KINDS
+            for once, words in factors.items()
+            if (found := coverage(cases, k, once))[0]
+        ],
     }
     return harness.page(docs, "accuracy", "python3 -m benchmarks.accuracy", globals() | names, "errors")
 

@@ -3,10 +3,9 @@
 environment/run python3 -m benchmarks.chart [--jobs 2] [--draw]     after benchmarks.errors; twenty minutes of one core
 
 A point is a run of the default scene (press, charge, slide to full slip) with a setting of its own. Its error is the
-distance from the limit of benchmarks/errors.py; its cost is factorisations times unknowns, or processor time, of the
-path up to the state of the quantity and of all states solved again on the final mesh. Beside them is the default of
-November 2026, straight facets of 5 µm and one mesh, whose values are kept in docs/chart.json. Writes docs/chart.json,
-docs/chart.md and docs/chart.png.
+distance from the limit of benchmarks/errors.py; its cost is factorisations times unknowns of the path
+up to the state of the quantity and of all states solved again on the final mesh. Writes docs/chart.json, docs/chart.md
+and docs/chart.png.
 """
 
 import sys
@@ -54,21 +53,20 @@ def scenes() -> dict[tuple[str, str], Scene]:
 # -- points --------------------------------------------------------------------------------------------------
 @dataclass(frozen=True)
 class Point:
-    """An answer in the chart: its costs up to a state, by state, and relative distances from the limit, by quantity."""
+    """An answer in the chart: the work up to a state, by state, and relative distances from the limit, by quantity."""
 
     label: str
     family: str
     work: Mapping[str, float]
-    seconds: Mapping[str, float]  # processor time, set-up included; empty where it was not kept
     errors: Mapping[str, float]
 
     def error(self, quantity: str) -> float:
         """Return the error of a quantity, or the largest of all for :data:`ALL`."""
         return max(self.errors.values()) if quantity == ALL else self.errors[quantity]
 
-    def cost(self, quantity: str, measure: str = "work") -> float:
-        """Return the cost up to the state of a quantity."""
-        return float(getattr(self, measure)[parted(quantity)[0]])
+    def cost(self, quantity: str) -> float:
+        """Return the work up to the state of a quantity."""
+        return self.work[parted(quantity)[0]]
 
 
 def runs(out: Path, reference: Reference) -> Iterator[Point]:
@@ -76,30 +74,20 @@ def runs(out: Path, reference: Reference) -> Iterator[Point]:
     for (family, label), scene in scenes().items():
         if run := finished(scene, out):
             path = np.cumsum(run.steps["factorisations"]) * run.summary["unknowns_path"]
-            work, seconds = (
-                {state: float(each[run.row(state)]) + more for state in STATES}
-                for each, more in zip((path, run.steps["processor_seconds"]), _again(run.summary), strict=True)
-            )
+            solves = run.summary.get("accuracy", {}).get("solves", [])[1:]  # on the final mesh
+            more = sum(each["unknowns"] * each["factorisations"] for each in solves)
             found = errors.values(run)
             off = {name: abs(found[name] / reference[name].value - 1) for name in QUANTITIES}
-            yield Point(label, family, work, seconds, off)
-
-
-def _again(summary: Mapping[str, Any]) -> tuple[float, float]:
-    """Return work and processor time (s) of the states of a run that are solved again on its final mesh."""
-    solves = summary.get("accuracy", {}).get("solves", [])[1:]
-    work = sum(each["unknowns"] * each["factorisations"] for each in solves)
-    return float(work), float(sum(each["processor_seconds"] for each in solves))
+            yield Point(label, family, {state: float(path[run.row(state)]) + more for state in STATES}, off)
 
 
 def compute(args: Any) -> None:
-    """Run what is missing and keep the numbers, with those of the earlier default as they are."""
+    """Run what is missing and keep the numbers."""
     wanted = {label: scene for (_, label), scene in scenes().items()}
     summaries, reference = harness.run(wanted, args, _LIMIT), errors.known(args.docs)
     ends = {name: vars(reference[name]) for name in QUANTITIES}
     points = [asdict(point) for point in runs(args.out, reference)]
     numbers = {"reference": ends, "points": points, "lost": failed(summaries)}
-    numbers["before"] = harness.kept("chart", args.docs).numbers["before"]
     harness.keep("chart", numbers, harness.made(summaries.values()), args.docs)
 
 
@@ -110,15 +98,15 @@ def failed(summaries: Mapping[str, Mapping[str, Any]]) -> list[str]:
 
 
 # -- comparison ----------------------------------------------------------------------------------------------
-def judged(points: Sequence[Point], quantity: str, measure: str = "work") -> list[Point]:
+def judged(points: Sequence[Point], quantity: str) -> list[Point]:
     """Return the runs with the default's contact model, since another may hide the mesh's error, cheap ones first."""
-    some = [p for p in points if p.family != OTHER_MODEL and getattr(p, measure)]
-    return sorted(some, key=lambda p: (p.cost(quantity, measure), p.error(quantity)))
+    some = [p for p in points if p.family != OTHER_MODEL]
+    return sorted(some, key=lambda p: (p.cost(quantity), p.error(quantity)))
 
 
-def front(points: Sequence[Point], quantity: str, measure: str = "work") -> list[Point]:
+def front(points: Sequence[Point], quantity: str) -> list[Point]:
     """Return Pareto's front from cheap to expensive: no other judged run is both cheaper and more accurate."""
-    some = judged(points, quantity, measure)
+    some = judged(points, quantity)
     return [p for k, p in enumerate(some) if all(p.error(quantity) < q.error(quantity) for q in some[:k])]
 
 
@@ -126,11 +114,11 @@ def _default(points: Sequence[Point]) -> Point:
     return next(p for p in points if p.label == DEFAULT)
 
 
-def cheapest(points: Sequence[Point], quantity: str, target: float, measure: str = "work") -> str:
+def cheapest(points: Sequence[Point], quantity: str, target: float) -> str:
     """Return the cheapest judged run within an error, with its cost over the default's."""
-    own, some = _default(points).cost(quantity, measure), judged(points, quantity, measure)
+    own, some = _default(points).cost(quantity), judged(points, quantity)
     good = (p for p in some if p.error(quantity) <= target)
-    return next((f"{p.label}: {p.cost(quantity, measure) / own:.2g}" for p in good), "none")
+    return next((f"{p.label}: {p.cost(quantity) / own:.2g}" for p in good), "none")
 
 
 # -- page ----------------------------------------------------------------------------------------------------
@@ -147,65 +135,44 @@ def _words(quantity: str) -> str:
     return "largest error of all quantities" if quantity == ALL else f"{KINDS[kind]}, {STATES[state]}"
 
 
-def _panel(ax: Axes, points: Sequence[Point], before: Point | None, quantity: str, bar: float) -> None:
+def _panel(ax: Axes, points: Sequence[Point], quantity: str, bar: float) -> None:
     def at(some: Sequence[Point]) -> tuple[list[float], list[float]]:
         return [p.cost(quantity) / own for p in some], [max(p.error(quantity), 1.2 * lowest) for p in some]
 
     own = _default(points).cost(quantity)
-    shown = [p.error(quantity) for p in (*judged(points, quantity), *([before] if before else []))]
+    shown = [p.error(quantity) for p in judged(points, quantity)]
     lowest = max(0.5 * min(shown), bar / 5)
     ax.axhspan(1e-9, bar, color="0.9", lw=0)
     ax.step(*at(front(points, quantity)), "k-", where="post", lw=0.9, label="front")
     for words, (families, colour, marker) in _MARKS.items():
         some = [p for p in points if p.family in families and p.label != DEFAULT]
         ax.plot(*at(some), marker, color=colour, ms=6, label=words)
-    if before is not None:
-        ax.plot(*at([before]), "*", color=style.SKY, mec="black", mew=0.5, ms=14, label=before.label)
     ax.plot(*at([_default(points)]), "*", color=style.VERMILION, mec="black", mew=0.5, ms=14, label="default")
     ax.set(yscale="log", title=_words(quantity), ylim=(lowest, 2 * max(shown)))
     harness.ticks(ax, (0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0))
     ax.set_xlim(0.04, 9)
 
 
-def _paint(figure: Figure, points: Sequence[Point], before: Point | None, reference: Reference) -> None:
+def _paint(figure: Figure, points: Sequence[Point], reference: Reference) -> None:
     """Draw error over work for friction, a contact length, an energy density and the largest of all errors."""
     axes = figure.subplots(2, 2)
     for ax, quantity in zip(axes.flat, _PANELS, strict=True):
-        _panel(ax, points, before, quantity, reference[quantity].relative)
+        _panel(ax, points, quantity, reference[quantity].relative)
     for k in range(2):
         axes[1, k].set_xlabel("work / work of the default scene")
         axes[k, 0].set_ylabel("relative error")
     figure.legend(*axes[0, 0].get_legend_handles_labels(), loc="outside lower center", ncols=4)
 
 
-def fronts(points: Sequence[Point]) -> list[tuple[str, list[int | str]]]:
-    """Return the runs on any front, from cheap to expensive, and their places there; empty where they are not."""
-    places = [{p.label: k for k, p in enumerate(front(points, name), start=1)} for name in (*QUANTITIES, ALL)]
-    labels = [p.label for p in sorted(points, key=lambda p: p.cost(ALL))]
-    return [
-        (label, [each.get(label, "") for each in places]) for label in labels if any(label in each for each in places)
-    ]
-
-
-def earlier(numbers: Mapping[str, Any], reference: Reference) -> Point | None:
-    """Return the earlier default by its kept values; None where the other numbers are still of the same program."""
-    old = numbers["before"]
-    if old["work"] == next(p["work"] for p in numbers["points"] if p["label"] == DEFAULT):
-        return None
-    off = {name: abs(old["values"][name] / reference[name].value - 1) for name in QUANTITIES}
-    return Point(old["label"], "contact size", old["work"], old["seconds"], off)
-
-
 def draw(docs: Path) -> Path:
     """Draw page and picture from the kept numbers."""
     numbers = harness.kept("chart", docs).numbers
-    points = [Point(**each) for each in numbers["points"]]
+    points = [Point(each.label, each.family, each.work, each.errors) for each in numbers["points"]]
     reference = {name: Limit(**each) for name, each in numbers["reference"].items()}
     reference[ALL] = Limit(1.0, max(end.relative for end in reference.values()), None)
-    before = earlier(numbers, reference)
-    harness.picture(docs / "chart.png", (9, 7), lambda figure: _paint(figure, points, before, reference))
-    names = {"points": points, "reference": reference, "default": _default(points), "fronts": fronts(points)}
-    names |= {"words": _words, "linear": next((p for p in points if p.label == "P1"), None), "before": before}
+    harness.picture(docs / "chart.png", (9, 7), lambda figure: _paint(figure, points, reference))
+    names = {"points": points, "reference": reference, "default": _default(points)}
+    names |= {"words": _words, "linear": next((p for p in points if p.label == "P1"), None)}
     names["targets"] = targets.rows(docs)
     return harness.page(docs, "chart", "make chart", globals() | names, "errors")
 

@@ -1,8 +1,8 @@
-"""Discretisation error of the default scene: its limit under refinement, and the effect of each size and the penalty.
+"""Discretisation error of the default scene: its limit under refinement, and the effect of the penalty.
 
 environment/run python3 -m benchmarks.errors [--jobs 2] [--draw]     twenty minutes of one core
 
-The default scene to full slip with one setting changed at a time, and its states solved again on meshes with all sizes
+The default scene to full slip by penalty, and its states solved again on meshes with all sizes
 halved (benchmarks/limits.py). Writes docs/errors.json, from which docs/errors.md, docs/errors.png and the errors on
 other pages are drawn.
 """
@@ -18,7 +18,7 @@ from matplotlib.figure import Figure
 from benchmarks import harness, limits
 from benchmarks.limits import Limit
 from benchmarks.runs import SITES as AT_SITES
-from benchmarks.runs import Array, Run, finished
+from benchmarks.runs import Run, finished
 from fingerpad.model.options import by_rule
 from fingerpad.results import style
 from fingerpad.results.states import WORDS
@@ -28,7 +28,7 @@ from fingerpad.scene import Scene, from_data, load
 _LIMIT = 10800.0  # s of processor time for one run
 LEVELS = 4  # meshes of the limit
 DEFAULT = by_rule(Scene())
-AT = 10e-6  # m, contact size of the studies that change another setting
+_COARSER = {"mesh.contact": 10e-6, "mesh.receptor": AT_SITES}  # m, of the study of the penalty
 STATES = WORDS
 SITES = (-5, 0, 5)  # ridges whose Merkel sites are shown: a trailing, the central and a leading one
 QUANTITIES: Mapping[str, tuple[str, float]] = {  # name: words, and the value of its unit in SI
@@ -49,12 +49,7 @@ LENGTHS = [f"{state}_contact_length" for state in STATES]
 FORCE = "charged_f_contact"  # that is judged
 _COST = ("unknowns", "factorisations")
 _DOME = 6  # degree of the polynomial through the pressures of a ridge
-STUDIES = {  # settings, from coarse to fine
-    "contact": (20e-6, 10e-6, 5e-6, 2.5e-6),
-    "growth": (0.5, 0.25, 0.125),
-    "receptor": (40e-6, 20e-6, 10e-6, 5e-6, 2.5e-6),
-    "penalty": (0.5e12, 1.5e12, 5e12),
-}
+PENALTIES = (0.5e12, 1.5e12, 5e12)  # Pa/m
 
 
 def parted(name: str) -> tuple[str, str]:
@@ -64,10 +59,9 @@ def parted(name: str) -> tuple[str, str]:
 
 
 # -- numbers -------------------------------------------------------------------------------------------------
-def study(name: str) -> dict[float, Scene]:
-    """Return the scenes of a study by the value of its setting, from coarse to fine."""
-    key, at = "contact.eps_n" if name == "penalty" else f"mesh.{name}", {"mesh.contact": AT, "mesh.receptor": AT_SITES}
-    return {value: by_rule(load(None, at | {key: value})) for value in STUDIES[name]}
+def penalties() -> dict[float, Scene]:
+    """Return the scenes by the stiffness of the screen (Pa/m)."""
+    return {eps_n: by_rule(load(None, _COARSER | {"contact.eps_n": eps_n})) for eps_n in PENALTIES}
 
 
 def values(run: Run) -> dict[str, float]:
@@ -78,14 +72,6 @@ def values(run: Run) -> dict[str, float]:
         sed = dict(zip(rows["ridge"], rows["merkel_sed"], strict=True))
         found |= {f"{state}_sed_{j}": float(sed[j]) for j in SITES}
     return found
-
-
-def lengths(run: Run, state: str) -> Array:
-    """Return the length in contact (m) of every ridge, shape (ridges,)."""
-    of_all = np.zeros(run.scene.geometry.ridge_count)
-    rows = run.final(state, "ridges")
-    of_all[rows["ridge"].astype(int) + len(of_all) // 2] = rows["contact_length"]
-    return of_all
 
 
 def saw(run: Run) -> float:
@@ -117,7 +103,7 @@ def reference(again: Mapping[str, Any], whole: Mapping[str, float]) -> dict[str,
 
 def compute(args: Any) -> None:
     """Run what is missing and keep the numbers."""
-    scenes = {f"{name} {value:g}": scene for name in STUDIES for value, scene in study(name).items()}
+    scenes = {f"penalty {value:g}": scene for value, scene in penalties().items()}
     summaries = harness.run({"default": DEFAULT} | scenes, args, _LIMIT)
     again = limits.solve_all({"default": DEFAULT}, LEVELS, args)["default"]
     pressed = limits.solve_all({"pressed": PRESSED}, LEVELS - 1, args)["pressed"]
@@ -126,15 +112,14 @@ def compute(args: Any) -> None:
         raise SystemExit(f"the default scene has no limit: {failed[0]}")
     if default is None:
         raise SystemExit("the default scene has no errors: its run did not reach full slip")
-    studies: dict[str, list[dict[str, Any]]] = {name: [] for name in STUDIES}
-    for name, rows in studies.items():
-        for value, scene in study(name).items():
-            if run := finished(scene, args.out):
-                of_ridges = {f"{state}_contact_length": list(lengths(run, state)) for state in STATES}
-                rows.append({"value": value, "quantities": values(run), "lengths": of_ridges})
+    rows = [
+        {"value": value, "quantities": values(run)}
+        for value, scene in penalties().items()
+        if (run := finished(scene, args.out))
+    ]
     whole = values(default)
     ends = {name: vars(end) for name, end in reference(again, whole).items()}
-    numbers = {"default": whole, "again": again, "studies": studies, "reference": ends, "saw": saw(default)}
+    numbers = {"default": whole, "again": again, "studies": {"penalty": rows}, "reference": ends, "saw": saw(default)}
     numbers |= {"pressed": pressed, "unknowns_path": default.summary["unknowns_path"]}
     numbers["contact"] = DEFAULT.mesh.contact
     harness.keep("errors", numbers, harness.made(summaries.values()), args.docs)
@@ -181,7 +166,7 @@ def _paint(figure: Figure, numbers: Mapping[str, Any], ends: Mapping[str, Limit]
             look: dict[str, Any] = {"color": colour, "capsize": 2, "marker": style.MARKERS[k], "ms": 5}
             ax.errorbar(sizes, error, bars, label=STATES[state], **look)
             default = abs(numbers["default"][name] / end.value - 1)
-            size = 1e6 * numbers.get("contact", 5e-6)  # that of older numbers
+            size = 1e6 * numbers["contact"]
             ax.plot([size * beside], [default], "*", color=colour, ms=13, mec="black", mew=0.5)
         ax.set(title=title, xlabel="contact size (µm)", yscale="log", ylim=(1e-5, 0.3))
         harness.ticks(ax, [1.25, 2.5, 5, 10])
@@ -192,10 +177,11 @@ def _paint(figure: Figure, numbers: Mapping[str, Any], ends: Mapping[str, Limit]
 def draw(docs: Path) -> Path:
     """Draw page and picture from the kept numbers."""
     numbers, ends = harness.kept("errors", docs).numbers, known(docs)
-    whole, studies = numbers["default"], numbers["studies"]
+    whole = numbers["default"]
 
     def study(name: str, quantity: str) -> list[float]:
-        return [row["quantities"][quantity] / QUANTITIES[quantity][1] for row in studies[name]]
+        rows = numbers["studies"][name]
+        return [row["quantities"][quantity] / QUANTITIES[quantity][1] for row in rows]
 
     def rigid(quantity: str) -> float:
         _, middle, stiff = study("penalty", quantity)
@@ -206,9 +192,9 @@ def draw(docs: Path) -> Path:
 
     harness.picture(docs / "errors.png", (9, 3.6), lambda figure: _paint(figure, numbers, ends))
     names = {"whole": whole, "ends": ends, "again": numbers["again"], "penalty": stiffer(docs), "end": _end}
-    names |= {"study": study, "rigid": rigid, "worst": worst, "limit": limits.limit, "saw": numbers.get("saw")}
+    names |= {"study": study, "rigid": rigid, "worst": worst, "saw": numbers["saw"]}
     names["shown"] = {name: words for name, words in QUANTITIES.items() if name in whole}
-    names["force"] = indented(numbers["pressed"]) if "pressed" in numbers else None
+    names["force"] = indented(numbers["pressed"])
     return harness.page(docs, "errors", "make chart", globals() | names)
 
 

@@ -62,7 +62,7 @@ def _closed(name: str) -> dict[str, Any]:
         drive = scene.replace(voltage={"waveform": "sine", "rms": VOLTAGE, "frequency": FREQUENCY})
         found |= {"closed": _friction(scene), "driven": _friction(drive)}
         for key, over, each in (("needs", "voltage", scene), ("needs_driven", "voltage.rms", drive)):
-            (found[key],) = fp.solve(each, f"contrast={CONTRAST} %", over, between=[1.0, _UP_TO]).values
+            (found[key],) = fp.solve(each, over, mu_app=1 + CONTRAST / 100, relative=True, between=[1.0, _UP_TO]).values
     return found
 
 

@@ -56,7 +56,7 @@ SAME = "same.json"  # pairs of commits that compute the same numbers
 _PACKAGES = ("geometry", "variational", "fingerpad")
 _WITHOUT_NUMBERS = (  # these start, read, refuse, order runs, write and print
     *(f"fingerpad/{wing}/" for wing in ("cli", "io", "results", "report", "calculator", "runs")),  # io: now results
-    *("fingerpad/startup.py", "fingerpad/installed.py", "geometry/meshfile.py", "fingerpad/model/cost.py"),
+    *("fingerpad/startup.py", "fingerpad/launcher.py", "geometry/meshfile.py", "fingerpad/model/cost.py"),
     *("fingerpad/model/expected.py", "fingerpad/scene/contradictions.py", "fingerpad/scene/messages.py"),
     "fingerpad/model/report.py",
 )

@@ -159,10 +159,10 @@ def _ridge() -> Any:
     from geometry.bodies import ridge
     from geometry.mesh import load
     from variational.body import Body
+    from variational.contact.interface import Interface
     from variational.contact.penalty import Penalty
     from variational.materials.ogden import Ogden
     from variational.materials.viscoelastic import Viscoelastic
-    from variational.problem import Interface
     from variational.roughness.bam import BearingArea
     from variational.solvers.continuation import Target
 

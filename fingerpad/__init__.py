@@ -29,7 +29,7 @@ __all__ = list(dict.fromkeys([*_HOMES, *_PACKAGES]))
 
 def __getattr__(name: str) -> Any:
     """Import what is asked for."""
-    from fingerpad.installed import needed_by, version
+    from fingerpad.launcher import needed_by, version
 
     if name == "__version__":
         return version()

@@ -3,12 +3,12 @@
 import os
 import sys
 
-from fingerpad.ctrl_c import ends_at_once
+from fingerpad.launcher import end_at_ctrl_c
 
 
 def main() -> int:
     """Run the command in the process's arguments; return the exit code."""
-    ends_at_once()
+    end_at_ctrl_c()
     os.environ["MPLBACKEND"] = "agg"  # of all pictures, whatever a user or a notebook has
     _open_streams()
     from fingerpad.cli import main as command

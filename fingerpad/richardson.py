@@ -47,9 +47,8 @@ Parts = Mapping[str, ArrayLike]  # a number, or the parts of a sum, shape (ridge
 ONCE, MORE = 2.0, 1.5
 """Factors of safety on the share of a parameter that was halved once, and of one that was halved more often.
 
-With them the estimated error covers the known one in at least 90 % of the known cases of friction and of contact
-lengths, and in the default scene in all. Of energy densities it does not: 44 of 57, since one size changed alone does
-not show their scatter; in whole runs with an accuracy, where all sizes are changed in turn, it covers them too.
+With them the estimated error covers the known one in at least 90 % of the known cases of each kind, of runs with an
+accuracy, where all sizes are changed in turn. One size changed alone does not show the scatter of energy densities.
 ``docs/accuracy.json`` has the cases, ``benchmarks/accuracy.py`` counts them for ``docs/accuracy.md``, and
 ``tests/test_calibration.py`` holds the factors to it.
 """

@@ -19,7 +19,7 @@ import os
 import sys
 from collections.abc import Sequence
 
-from fingerpad.installed import need_compiler
+from fingerpad.launcher import need_compiler
 
 __all__ = ["MPI", "start"]
 

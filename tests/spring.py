@@ -13,9 +13,9 @@ from geometry import tags
 from geometry.bodies import block
 from geometry.mesh import load
 from variational.body import Body
+from variational.contact.interface import Interface
 from variational.contact.penalty import Penalty
 from variational.materials.saint_venant import SaintVenant
-from variational.problem import Interface
 from variational.solvers.equations import Control
 from variational.solvers.newton import Solver
 

@@ -15,11 +15,11 @@ from tests.small_finger import NINE
 from variational.body import Body
 from variational.contact.aging import Occlusion, Speed
 from variational.contact.augmented import AugmentedLagrangian
+from variational.contact.interface import Interface
 from variational.contact.nitsche import Nitsche
 from variational.contact.penalty import Penalty
 from variational.energy import EnergyBook
 from variational.materials.ogden import Ogden
-from variational.problem import Interface
 from variational.solvers.continuation import Target
 
 pytestmark = pytest.mark.mpi

@@ -96,7 +96,7 @@ def test_arrays_have_documented_shapes(ran):
 def test_model_without_its_libraries_is_refused_in_a_sentence(monkeypatch):
     monkeypatch.setitem(sys.modules, "fingerpad.runs.full", None)
     monkeypatch.delattr(runs, "full", raising=False)
-    monkeypatch.setattr("fingerpad.installed.OPTIONAL", ("fingerpad",))
+    monkeypatch.setattr("fingerpad.launcher.OPTIONAL", ("fingerpad",))
     with pytest.raises(ImportError, match="the model 'full' needs fingerpad, which is not installed;"):
         fp.run(from_data(SMALL))
 

@@ -11,11 +11,11 @@ from fingerpad.model.body import Body
 from geometry import tags
 from geometry.mesh import load
 from variational import body as parts
+from variational.contact.interface import Interface
 from variational.contact.nitsche import Nitsche
 from variational.contact.penalty import Penalty
 from variational.materials.ogden import Ogden
 from variational.materials.saint_venant import SaintVenant
-from variational.problem import Interface
 from variational.roughness.bam import BearingArea
 from variational.solvers import continuation
 from variational.solvers.continuation import StepFailed, Target

@@ -1,9 +1,9 @@
-"""The printed error against known errors: of runs as they are from two meshes, with an accuracy size by size."""
+"""The printed error against known errors: of runs from two meshes, and with an accuracy from all sizes in turn."""
 
 import pytest
 
 from benchmarks import harness, two_meshes
-from benchmarks.accuracy import KINDS, WANTED, WHOLE, Case, coverage, kept
+from benchmarks.accuracy import KINDS, WANTED, Case, coverage, kept
 from benchmarks.harness import ROOT
 from fingerpad.richardson import SITES, TWO
 
@@ -57,46 +57,19 @@ def test_energy_density_counts_once():
     assert two_meshes.coverage(known) == (3, 0)  # two meshes that agree estimate no error
 
 
-# -- an accuracy, and one size at a time ---------------------------------------------------------------------
+# -- runs with an accuracy -----------------------------------------------------------------------------------
 @pytest.fixture(scope="module")
 def cases():
     return kept()
 
 
-@pytest.mark.parametrize("kind", ["friction", "contact length"])
-def test_known_errors_are_covered(cases, kind):
-    """In at least nine of ten cases, and by the factors: without them it is fewer."""
-    n, bare, safe = coverage(cases, kind)
-    assert n >= 20
-    assert safe >= WANTED * n
-    assert bare < WANTED * n
-
-
-def test_one_size_alone_does_not_show_the_error_of_energy_densities(cases):
-    """Coarse sites scatter more than they change; so no run estimates these errors from one size alone.
-
-    A run as it is compares two meshes that differ in all sizes, one with an accuracy adds the changes by all of them.
-    Both cover them: see the tests above and below.
-    """
-    n, _, safe = coverage([case for case in cases if case.source != WHOLE], "energy density")
-    assert n >= 20
-    assert safe < WANTED * n
-
-
-def test_what_is_not_covered_is_stated_where_the_factors_are(cases):
-    """The docstring of the factors has the kept number of energy densities, and so has the page."""
-    n, _, safe = coverage(cases, "energy density")
-    for file in ("fingerpad/richardson.py", "docs/accuracy.md"):
-        assert f"{safe} of {n}" in " ".join((ROOT / file).read_text(encoding="utf-8").split())
-
-
 @pytest.mark.parametrize("kind", KINDS)
 def test_known_errors_of_whole_runs_are_covered(cases, kind):
     """What a user gets: runs of scenes, all their sizes at once."""
-    n, _, safe = coverage(mine := [case for case in cases if case.source == WHOLE], kind)
+    n, _, safe = coverage(cases, kind)
     assert safe >= WANTED * n
     # Of most energy densities the limit is less certain than the run is wrong: those that are not clear count too.
-    every = [case.covered(case.factor) for case in mine if case.kind == kind]
+    every = [case.covered(case.factor) for case in cases if case.kind == kind]
     assert len(every) >= 20 and sum(every) >= WANTED * len(every)
     # Of friction 16 errors of 25 are clear: the others are smaller than what the limit itself is uncertain by.
     assert n >= {"energy density": 0, "friction": 15}.get(kind, 20)

@@ -5,7 +5,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from fingerpad.results.checkpoint import Checkpoint, CheckpointError, Growing
+from fingerpad.results.folder import CheckpointError
+from fingerpad.runs.checkpoint import Checkpoint
 
 HEAD = {"source": "a"}
 
@@ -21,9 +22,8 @@ def items(first: int, count: int) -> list[np.ndarray]:
 def read(folder: Path) -> tuple[int, list[int]]:
     """The number that was kept, and the items by their first values."""
     from_there = checkpoint(folder)
-    from_there.check()
-    found = from_there.read(())
-    return found["number"], [int(each[0]) for each in found["states"].items]
+    found = from_there.read()
+    return found["number"], [int(each[0]) for each in found["items"]]
 
 
 def test_items_are_written_once(tmp_path):
@@ -31,7 +31,7 @@ def test_items_are_written_once(tmp_path):
     kept, grown = checkpoint(tmp_path), list[np.ndarray]()
     for number in range(1, 6):
         grown += items(2 * len(grown), 2)
-        kept.write({"number": number, "states": Growing(grown)})
+        kept.write({"number": number}, grown)
     sizes = [file.stat().st_size for file in sorted((tmp_path / "checkpoint").glob("*.more.npz"))]
     assert len(sizes) == 5
     assert max(sizes) < 2.2 * 8000
@@ -43,14 +43,13 @@ def test_goes_on_from_the_one_before(tmp_path):
     """The last one is gone; what follows is written over what it had."""
     kept, grown = checkpoint(tmp_path), items(0, 2)
     for number in (1, 2, 3):
-        kept.write({"number": number, "states": Growing(grown)})
+        kept.write({"number": number}, grown)
         grown = [*grown, *items(10 * number, 1)]
     (tmp_path / "checkpoint" / "0003.npz").unlink()
     again = checkpoint(tmp_path)
-    again.check()
-    found = again.read(())
-    assert [int(each[0]) for each in found["states"].items] == [0, 1, 10]
-    again.write({"number": 3, "states": Growing([*found["states"].items, *items(70, 1)])})
+    found = again.read()
+    assert [int(each[0]) for each in found["items"]] == [0, 1, 10]
+    again.write({"number": 3}, [*found["items"], *items(70, 1)])
     assert read(tmp_path) == (3, [0, 1, 10, 70])
 
 
@@ -58,22 +57,22 @@ def test_goes_on_from_the_one_before(tmp_path):
 def test_another_list_begins_anew(tmp_path, count):
     """As that of a path that is followed again on another mesh, shorter or longer than the one before."""
     kept = checkpoint(tmp_path)
-    kept.write({"number": 1, "states": Growing(items(0, 2))})
-    kept.write({"number": 2, "states": Growing(items(50, count))})
+    kept.write({"number": 1}, items(0, 2))
+    kept.write({"number": 2}, items(50, count))
     assert read(tmp_path) == (2, list(range(50, 50 + count)))
 
 
 def test_damaged_items(tmp_path):
-    """Of the last checkpoint: it is not whole. Of an earlier one: nothing can go on from there."""
+    """Of the last checkpoint, and of an earlier one."""
     kept, grown = checkpoint(tmp_path), items(0, 2)
-    kept.write({"number": 1, "states": Growing(grown)})
-    kept.write({"number": 2, "states": Growing([*grown, *items(5, 1)])})
+    kept.write({"number": 1}, grown)
+    kept.write({"number": 2}, [*grown, *items(5, 1)])
     more = tmp_path / "checkpoint" / "0002.more.npz"
     whole = more.read_bytes()
     more.write_bytes(whole[:100])
-    with pytest.raises(CheckpointError, match=r"0002\.npz is not whole; delete it"):
+    with pytest.raises(CheckpointError, match=r"0002\.more\.npz cannot be read .*; delete the last checkpoint"):
         read(tmp_path)
     more.write_bytes(whole)
     (tmp_path / "checkpoint" / "0001.more.npz").unlink()
-    with pytest.raises(CheckpointError, match=r"0001\.more\.npz holds no state of a run .* run again without --resume"):
+    with pytest.raises(CheckpointError, match=r"0001\.more\.npz cannot be read .* run again without --resume"):
         read(tmp_path)

@@ -1,13 +1,12 @@
 """Commands that print tables: closed form, microscale, keys, studies and models side by side."""
 
-import re
 import shlex
 
+import numpy as np
 import pytest
 
 import fingerpad as fp
 from fingerpad.cli import estimate, main, ranges, roughness, sweep
-from fingerpad.reduced import cylinders
 from fingerpad.runs.sweep import sweep as run_sweep
 from fingerpad.scene import Scene, from_data, keys, load
 from tests.commands import ROOT, refused
@@ -17,65 +16,64 @@ from variational.roughness.bam import BearingArea
 
 # -- estimate ----------------------------------------------------------------------------------------------
 def test_estimate_is_the_closed_form(tmp_path, capsys):
+    """A sweep of the model "cylinders", of which nothing is kept but the table."""
     file = tmp_path / "mu.csv"
-    assert main(["estimate", "--f-ext", "50,75", "--voltage", "0:100:2", "--csv", str(file)]) == 0
+    for _ in range(2):  # its own file is replaced
+        assert main(["estimate", "--f-ext", "50,75", "--voltage", "0:100:2", "--csv", str(file)]) == 0
     out = capsys.readouterr().out
     assert "\n±: error by closed form, points of the traces; what the finger and the model assume is not in it" in out
     rows = rows_of(tmp_path, "mu")
-    loads = [(float(r["f_ext_of_section"]), float(r["voltage"])) for r in rows]
-    assert loads == [(50, 0), (50, 100), (75, 0), (75, 100)]
-    one = cylinders.solve(from_data({"f_ext": 75.0, "voltage": 100.0})).full_slip
-    assert float(rows[-1]["mu_app_of_section"]) == one.mu_app
-    assert float(rows[0]["mu_app_of_section"]) == pytest.approx(0.25, rel=1e-12)
+    assert [(float(r["f_ext"]), float(r["voltage"])) for r in rows] == [(50, 0), (50, 100), (75, 0), (75, 100)]
+    one = fp.run(from_data({"f_ext": 75.0, "voltage": 100.0}), model="cylinders")
+    assert float(rows[-1]["full_slip_mu_app"]) == one.full_slip.mu_app
+    assert float(rows[-1]["full_slip_finger_mu_app"]) == one.finger.states["full_slip"].mu_app
+    assert float(rows[0]["full_slip_mu_app"]) == pytest.approx(0.25, rel=1e-12)
+    assert [each.name for each in tmp_path.iterdir()] == ["mu.csv"]
 
 
-def test_estimate_has_the_whole_finger_first(tmp_path, capsys):
-    """With newtons and without: the same finger, that of a run whose centre bears 75 N/m. Four digits are printed."""
-    assert main(["estimate", "--voltage", "0,200", "--csv", str(tmp_path / "one.csv")]) == 0
-    assert capsys.readouterr().out.startswith("Friction of the whole finger at full slip")
-    _, charged = rows_of(tmp_path, "one")
-    assert main(["estimate", "--force", charged["force"], "--voltage", "200", "--csv", str(tmp_path / "two.csv")]) == 0
-    (again,) = rows_of(tmp_path, "two")
-    assert float(charged["mu_app"]) == pytest.approx(float(again["mu_app"]), rel=1e-9)
-    assert float(charged["mu_app"]) > float(charged["mu_app_of_section"])
-    finger = fp.run(Scene(force=float(charged["force"])), model="cylinders").finger
-    assert float(again["mu_app"]) == pytest.approx(finger.states["full_slip"].mu_app, rel=1e-12)
-    assert fp.run(Scene(), model="cylinders").finger.f_ext == pytest.approx(float(charged["force"]), rel=1e-4)
-
-
-def test_errors_are_drawn_and_forces_have_their_unit(tmp_path, monkeypatch):
-    """A band about each curve, as high as the ± of the table, and N in the legend."""
+def drawn(monkeypatch, over, **more):
+    """Return the sweep and the first panel of its picture."""
     figures = []
     monkeypatch.setattr("fingerpad.results.style.save", lambda figure, file: figures.append(figure))
-    rows, _ = estimate.grid(Scene(), [0.3, 0.5], [0.0, 100.0, 200.0], "force")
-    estimate.draw("force", tmp_path / "mu.png", rows)
-    (ax,) = figures[0].axes
+    found = run_sweep(Scene(force=None if "force" in over else 0.5), None, model="cylinders", **over)
+    estimate.draw(found, ROOT / "mu.png", **more)
+    figures[0].canvas.draw()
+    return found, figures[0].axes[0]
+
+
+def test_picture_has_a_curve_with_its_error_for_each_force(monkeypatch):
+    """A band about each curve, as high as the ± of the table."""
+    found, ax = drawn(monkeypatch, {"force": [0.3, 0.5], "voltage": [0.0, 100.0, 200.0]})
     bands = [each.get_paths()[0].vertices for each in ax.collections]
     assert len(bands) == 2
-    for band, force in zip(bands, (0.3, 0.5), strict=True):
-        (row,) = (each for each in rows if each["force"] == force and each["voltage"] == 200.0)
+    for band, row in zip(bands, found.rows()[2::3], strict=True):
         heights = band[band[:, 0] == 200.0, 1]
-        assert heights.max() - heights.min() == pytest.approx(2 * row["mu_app_error"], rel=1e-9)
-    legend, (canvas, label) = ax.get_legend(), (figures[0].canvas, ax.yaxis.label)
-    canvas.draw()
-    assert label.get_window_extent().height < figures[0].bbox.height
-    assert [text.get_text() for text in legend.get_texts()] == ["0.3 N", "0.5 N"]
-    assert "band: ± error" in legend.get_title().get_text()
+        assert heights.max() - heights.min() == pytest.approx(2 * row["full_slip_finger_mu_app_error"], rel=1e-9)
+    legend = ax.get_legend()
+    assert (legend.get_title().get_text(), [text.get_text() for text in legend.get_texts()]) == (
+        "force (N)", ["0.3", "0.5"]
+    )  # fmt: skip
 
 
-def test_estimate_without_a_whole_finger_has_the_section(capsys):
-    """Under 4 kN/m at its centre the contact is longer than the finger."""
-    assert main(["estimate", "--f-ext", "4000"]) == 0
-    text = capsys.readouterr().out
-    assert text.startswith("Friction of the section at full slip")
-    assert "At 4000 N/m there is no whole finger: the finger ends at" in text
+def test_picture_of_two_keys_is_a_map(monkeypatch):
+    """Hatched where the error is not known, and with a line through the voltage that a search finds."""
+    over = {"voltage": np.linspace(0.0, 200.0, 9).tolist(), "electric.d_i": np.geomspace(2e-6, 2e-5, 7).tolist()}
+    found, ax = drawn(monkeypatch, over, target=0.4)
+    mesh, hatched, line = ax.collections
+    assert mesh.get_array().max() == found.array("mu_app").max() and hatched.hatches == ["/"]
+    (root,) = fp.solve(Scene(force=0.5, electric={"d_i": 2e-6}), mu_app=0.4).values
+    (path,) = (p for p in line.get_paths() if len(p.vertices))
+    across = (
+        min(path.vertices.tolist()) if ax.get_xlabel().startswith("electric") else min(path.vertices[:, ::-1].tolist())
+    )
+    assert across == pytest.approx([2e-6, root], rel=0.01)
 
 
-def test_estimate_says_where_its_error_is_not_known(capsys):
-    assert main(["estimate", "--f-ext", "75,5000", "--set", "roughness.gamma=0.6"]) == 0
-    text = capsys.readouterr().out
-    assert re.search(r"At 1 of 2 points the error is not known; it is known for f_ext [\d.]+ to \d+ N/m\.\n", text)
-    assert "Here the error is not known; it is known for roughness.gamma 0.5." in text
+def test_estimate_without_an_answer_is_refused(capsys):
+    """5 kV are beyond any contact; where some points have an answer, the others have the reason in the table."""
+    assert "no contact pressure" in refused(capsys, "estimate", "--voltage", "5000")
+    assert main(["estimate", "--voltage", "100,5000"]) == 0
+    assert "no contact pressure" in capsys.readouterr().out
 
 
 @pytest.mark.parametrize(
@@ -92,10 +90,15 @@ def test_estimate_says_where_its_error_is_not_known(capsys):
         ("mesh --out finger.stl", "finger.stl cannot be a mesh; its name must end with .msh"),
         ("sweep --over model=full,cylinders", "model is varied and is no key of a scene; a sweep has one model"),
         ("sweep --over out=1,2 --model cylinders", "out is varied and is no key of a scene"),
-        ("compare --ridges 3", "one of --contact-length and --ridges is given without the other"),
-        ("compare --run none --model cylinders", "none is not a folder of a finished run"),
-        ("compare --contact-length 1.58 --ridges 16", "--contact-length is 1580 mm, longer than 16 ridges, 7.73 mm"),
         ("estimate --f-ext 75 --set f_ext=50", "--set f_ext is given and --f-ext too; give one of"),
+        ("estimate --over force --f-ext 75", "--force is given and --f-ext too"),
+        ("estimate --over voltage --over voltage=1,2", "--over voltage is given, and its values are given already"),
+        ("estimate --over voltage=", "--over is voltage=; write it as --over voltage or"),
+        ("estimate --over geometry.ridge_count", "it must be a key of one number that may have a fraction"),
+        ("estimate --over zebra=1,2", "zebra is not a key of a scene"),
+        ("estimate --over voltage --over friction --over force --plot a.png", "a picture is over one key or two"),
+        ("estimate --over voltage=0:200:101 --over friction=0.1:1:100", "the sweep has 10100 points; at most 10000"),
+        ("estimate --voltage 0:1e400:3", "--voltage is 0:1e400:3; each value must be a finite number"),
         ("estimate --voltage -200:200:3", "has an equals sign before it; write --voltage=-200:200:3"),
         ("run --force '-0.5 N'", "has an equals sign before it; write --force='-0.5 N'"),
     ],
@@ -215,15 +218,6 @@ def test_compare_says_why_a_model_has_no_values(capsys):
     assert main(["compare", str(ROOT / "demos" / "scenes" / "small_finger.toml"), "--model", "cylinders"]) == 1
     out = capsys.readouterr().out
     assert "cylinders: no values, since geometry is not that of the default finger" in out
-
-
-def test_compare_takes_a_length_with_a_unit(capsys):
-    printed = []
-    for length in ("1.58 mm", "1.58e-3"):
-        assert main(["compare", "--model", "cylinders", "--contact-length", length, "--ridges", "16"]) == 0
-        printed.append([line for line in capsys.readouterr().out.splitlines() if "seconds" not in line])
-    assert any("contact length" in line and "1.5800" in line for line in printed[0])
-    assert [line for line in printed[0] if "time" not in line] == [line for line in printed[1] if "time" not in line]
 
 
 def test_sweep_over_keys_that_need_each_other_and_whole_numbers(tmp_path):

@@ -15,9 +15,9 @@ from geometry.mesh import load
 from tests.test_element import confined_stress as confined
 from variational.body import Body
 from variational.contact import formulation
+from variational.contact.interface import Interface
 from variational.contact.penalty import Penalty
 from variational.materials.ogden import Ogden
-from variational.problem import Interface
 from variational.resultants import Observer
 from variational.roughness.bam import BearingArea
 from variational.solvers.equations import Control, Equations

@@ -22,9 +22,9 @@ from geometry.mesh import load
 from tests.runs import followed
 from tests.small_finger import NINE, small
 from variational.body import Body
+from variational.contact.interface import Interface
 from variational.contact.penalty import Penalty
 from variational.materials.ogden import Ogden
-from variational.problem import Interface
 from variational.roughness.bam import BearingArea
 from variational.roughness.closure import AirGap, Closure
 from variational.solvers.continuation import Target

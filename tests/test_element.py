@@ -15,12 +15,13 @@ from geometry import tags
 from geometry.bodies import block, ridge
 from geometry.mesh import load
 from variational import kinematics
+from variational.contact.interface import Interface
 from variational.contact.penalty import Penalty
 from variational.element import ELEMENTS, LayerwisePressure
 from variational.materials.ogden import Ogden
 from variational.materials.saint_venant import SaintVenant
 from variational.output import Cellwise
-from variational.problem import Interface, Problem
+from variational.problem import Problem
 from variational.resultants import Observer
 from variational.solvers.equations import Control, Equations
 from variational.solvers.newton import Solver

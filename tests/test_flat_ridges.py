@@ -15,7 +15,7 @@ from geometry.parameters import Fingertip, MeshSize
 from geometry.profiles import Profiles
 from variational.attraction.dielectric import VACUUM_PERMITTIVITY
 from variational.body import Body
-from variational.problem import Interface
+from variational.contact.interface import Interface
 from variational.solvers.continuation import Target
 
 FLAT = scenes.load(Path(__file__).parent.parent / "demos/scenes/flat_ridges.toml")

@@ -22,9 +22,9 @@ from fingerpad.reduced.registry import find
 from fingerpad.report.page import again, picture
 from fingerpad.report.write import write
 from fingerpad.results import fields, style
-from fingerpad.results.checkpoint import Checkpoint
 from fingerpad.results.files import Table, lock_file, read_object, replace
 from fingerpad.results.folder import Folder, FolderError, Serial, full_scene
+from fingerpad.runs.checkpoint import Checkpoint
 from fingerpad.runs.context import RunContext
 from fingerpad.runs.solve import solved
 from fingerpad.scene import Scene, SceneError

@@ -17,10 +17,10 @@ from variational.contact import formulation
 from variational.contact.augmented import AugmentedLagrangian
 from variational.contact.formulation import Formulation
 from variational.contact.friction import CONE_ROUNDOFF, Coulomb, Derjaguin, Friction, law_of
+from variational.contact.interface import Interface
 from variational.contact.nitsche import Nitsche
 from variational.contact.penalty import Penalty
 from variational.materials.ogden import Ogden
-from variational.problem import Interface
 from variational.solvers.continuation import Target
 
 EPS_T = 1e11

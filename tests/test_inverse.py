@@ -1,4 +1,4 @@
-"""Questions the other way round: the key at which a target is reached, and refusals of what cannot be."""
+"""The key at which a quantity has a target, and refusals of impossible targets."""
 
 import math
 import re
@@ -11,7 +11,6 @@ import pytest
 import fingerpad as fp
 from fingerpad.cli import main
 from fingerpad.runs.roots import Roots
-from fingerpad.runs.target import read
 from fingerpad.scene.messages import SceneError
 from tests.commands import refused
 
@@ -30,7 +29,7 @@ def test_jump_is_no_root():
 
 def test_coefficient_of_coulombs_law_is_searched_by_its_own_name():
     """A scene keeps the law as this number, so that friction.mu_f and friction are one key with two names."""
-    one, other = (fp.solve(target="mu_app=0.5", over=key, between=(0.1, 0.4)) for key in ("friction.mu_f", "friction"))
+    one, other = (fp.solve(over=key, mu_app=0.5, between=(0.1, 0.4)) for key in ("friction.mu_f", "friction"))
     assert one.values == other.values and 0.15 < one.values[0] < 0.3
 
 
@@ -49,43 +48,43 @@ def test_range_ends_where_answers_end():
 
 # -- on the closed form ----------------------------------------------------------------------------------------------
 @pytest.mark.parametrize(
-    ("target", "over", "value"),
+    ("target", "over", "wanted"),
     [
-        ("mu_app=2x", "f_ext", lambda state: (state.mu_app, 0.5)),
-        ("f_T=30 N/m", "voltage", lambda state: (state.f_t, 30.0)),
-        ("f_T=30 N/m", "f_ext", lambda state: (state.f_t, 30.0)),
-        ("L_R=1.4 mm", "electric.d_i", lambda state: (state.contact_length, 1.4e-3)),
-        ("f_el=50 N/m", "roughness.h_rms", lambda state: (state.f_electrostatic, 50.0)),
+        ({"mu_app": 2.0, "relative": True}, "f_ext", 0.5),
+        ({"f_t": "30 N/m"}, "voltage", 30.0),
+        ({"f_t": 30.0}, "f_ext", 30.0),
+        ({"contact_length": "1.4 mm"}, "electric.d_i", 1.4e-3),
+        ({"f_electrostatic": "50 N/m"}, "roughness.h_rms", 50.0),
     ],
 )
-def test_section_has_the_target_at_the_key(target, over, value):
+def test_section_has_the_target_at_the_key(target, over, wanted):
     """The model, run at the key that was found. Tolerance: of the key, 1e-6 of its range."""
-    (root,) = fp.solve(target=target, over=over).roots
-    found, wanted = value(fp.run(root.scene, model="cylinders").full_slip)
-    assert found == pytest.approx(wanted, rel=2e-5) and root.value == pytest.approx(wanted, rel=2e-5)
+    (root,) = fp.solve(over=over, **target).roots
+    found = getattr(fp.run(root.scene, model="cylinders").full_slip, next(iter(target)))
+    assert found == pytest.approx(wanted, rel=2e-5) and root.number.value == pytest.approx(wanted, rel=2e-5)
 
 
 @pytest.mark.parametrize(
-    ("target", "over", "force", "value"),
+    ("target", "over", "force", "wanted"),
     [
-        ("F_T=0.3 N", "voltage", 0.5, 0.3),
-        ("F_T=0.3 N", "force", None, 0.3),
-        ("mu_app=2x", "voltage", None, 0.5),
-        ("contrast=10 %", "electric.d_i", None, 0.275),
-        ("µ_app=0.4", "roughness.h_rms", None, 0.4),
+        ({"f_t": "300 mN"}, "voltage", 0.5, 0.3),
+        ({"f_t": 0.3}, "force", None, 0.3),
+        ({"mu_app": 2, "relative": True}, "voltage", None, 0.5),
+        ({"mu_app": 1.1, "relative": True}, "electric.d_i", None, 0.275),
+        ({"mu_app": 0.4}, "roughness.h_rms", None, 0.4),
     ],
 )
-def test_whole_finger_has_the_target_at_the_key(target, over, force, value):
+def test_whole_finger_has_the_target_at_the_key(target, over, force, wanted):
     """The number is that of a run. Tolerance of the root: the search's."""
-    (root,) = fp.solve(fp.Scene(force=force) if force else None, target, over).roots
+    (root,) = fp.solve(fp.Scene(force=force) if force else None, over, **target).roots
     totals = fp.run(root.scene, model="cylinders").finger.values("full_slip")
-    assert totals["f_t" if target.startswith("F") else "mu_app"] == root.value
-    assert root.value == pytest.approx(value, rel=2e-5)
+    assert totals[next(iter(target))] == root.number.value
+    assert root.number.value == pytest.approx(wanted, rel=2e-5)
 
 
 def test_newtons_without_a_force_have_f_ext_at_the_centre():
     """At full slip the section at the centre bears the scene's f_ext. Tolerance as above."""
-    found = fp.solve(target="F_T=0.3 N")
+    found = fp.solve(f_t="0.3 N")
     assert "No force is given" in found.notes[0]
     slid = fp.run(found.scene, model="cylinders").full_slip
     assert slid.f_ext == pytest.approx(75.0, rel=3e-3)
@@ -94,116 +93,107 @@ def test_newtons_without_a_force_have_f_ext_at_the_centre():
 def test_friction_is_of_the_whole_finger():
     """As in the headline of a result, with or without a force; over f_ext it is that of the middle section."""
     finger, without, section = (
-        fp.solve(scene, "mu_app=2x", over)
+        fp.solve(scene, over, mu_app=0.5)
         for scene, over in ((fp.Scene(force=0.5), "voltage"), (None, "voltage"), (None, "f_ext"))
     )
     assert "µ_app of the whole finger at full slip" in str(finger) and "No force is given" not in str(finger)
     assert "No force is given. It is 0.5" in str(without)
-    assert without.values == pytest.approx(fp.solve(without.scene, "mu_app=2x").values, rel=1e-12)
+    assert without.values == pytest.approx(fp.solve(without.scene, mu_app=0.5).values, rel=1e-12)
     assert "µ_app of the middle section at full slip" in str(section) and "vary force for it" in str(section)
 
 
 def test_drive_is_varied_by_its_amplitude():
-    """A lossless sine attracts as its effective value does."""
+    """A lossless sine attracts as its effective value does; a constant voltage in its place would have no losses."""
     sine = fp.Scene(voltage={"waveform": "sine", "amplitude": 100.0, "frequency": 1e3})
-    (amplitude,) = fp.solve(sine, "mu_app=2x", "voltage.amplitude").values
-    (voltage,) = fp.solve(target="mu_app=2x").values
+    (amplitude,) = fp.solve(sine, "voltage.amplitude", mu_app=0.5).values
+    (voltage,) = fp.solve(mu_app=0.5).values
     assert amplitude / 2**0.5 == pytest.approx(voltage, rel=1e-4)
-
-
-def test_drive_is_not_replaced_by_constant_voltages():
-    """A voltage that is varied in place of a drive would be one without its losses."""
-    sine = fp.Scene(voltage={"waveform": "sine", "amplitude": 100.0, "frequency": 1e3})
     with pytest.raises(SceneError, match="voltage is a drive and over is voltage; give one of its keys"):
-        fp.solve(sine, "mu_app=2x")
+        fp.solve(sine, mu_app=0.5)
 
 
 def test_margin_is_printed_with_the_digits_of_its_value():
-    """Two digits of the error, as beside every other number."""
-    solution = fp.solve(target="mu_app=2x")
+    """Two digits of the error, as in all tables."""
+    solution = fp.solve(mu_app=0.5)
     ((value, error),) = re.findall(r"voltage = ([\d.]+) ± ([\d.]+) V, ±", str(solution))
     assert error == f"{solution.roots[0].margin:.2g}" and value == f"{solution.values[0]:.1f}"
 
 
-def test_all_values_are_named():
+def test_all_values_are_found():
     """The sign of a voltage changes no force."""
-    low, high = fp.solve(target="mu_app=2x", between=("-0.3 kV", 300)).values
+    low, high = fp.solve(mu_app=0.5, between=("-0.3 kV", 300)).values
     assert low == pytest.approx(-high, rel=1e-5) and high > 100
 
 
 @pytest.mark.parametrize(
-    ("target", "value", "over"), [("mu_app={}x", 2.0, "voltage"), ("f_T={} N/m", 30.0, "f_ext")], ids=["even", "ratios"]
+    ("name", "value", "over", "relative"), [("mu_app", 2.0, "voltage", True), ("f_t", 30.0, "f_ext", False)]
 )
-def test_margin_is_the_error_of_the_model_over_the_slope(target, value, over):
+def test_margin_is_the_error_of_the_model_over_the_slope(name, value, over, relative):
     """Two targets that differ by the error have keys that differ by the margin. Tolerance: the curvature."""
-    (root,) = fp.solve(target=target.format(value), over=over).roots
-    error = root.number.error / root.number.value
-    ends = [fp.solve(target=target.format(value * (1 + sign * error)), over=over).values[0] for sign in (-1, 1)]
-    assert (ends[1] - ends[0]) / 2 == pytest.approx(root.margin, rel=1e-2)
+
+    def root(factor):
+        return fp.solve(over=over, relative=relative, **{name: value * factor}).roots[0]
+
+    found = root(1.0)
+    error = found.number.error / found.number.value
+    assert (root(1 + error).key - root(1 - error).key) / 2 == pytest.approx(found.margin, rel=1e-2)
 
 
 def test_margin_is_not_known_elsewhere():
-    (other,) = fp.solve(target="contrast=10 %", over="electric.d_i").roots
+    (other,) = fp.solve(over="electric.d_i", mu_app=1.1, relative=True).roots
     assert math.isnan(other.margin), "no full run has such a thick coating"
 
 
-def test_answers_that_end_are_told():
-    found = fp.solve(target="mu_app=5x", between=(0, 5000))
+def test_end_of_answers_is_a_note():
+    found = fp.solve(mu_app=5, relative=True, between=(0, 5000))
     assert len(found.values) == 1 and any("there is no answer" in note for note in found.notes)
 
 
 # -- the command -----------------------------------------------------------------------------------------------------
 def test_command_prints_the_key(capsys):
-    words = ["--target=contrast=10 %", "--over=electric.d_i", "--from=1 um", "--to=0.1 mm"]
+    words = ["--target=mu_app=1.1", "--relative", "--over=electric.d_i", "--from=1 um", "--to=0.1 mm"]
     assert main(["solve", *words]) == 0
-    (d_i,) = fp.solve(target="contrast=10 %", over="electric.d_i", between=(1e-6, 1e-4)).values
-    said = capsys.readouterr().out
-    assert f"electric.d_i = {1e6 * d_i:.4g} µm" in said and "relative rise of µ_app by the voltage" in said
+    (d_i,) = fp.solve(over="electric.d_i", mu_app=1.1, relative=True, between=(1e-6, 1e-4)).values
+    assert f"electric.d_i = {1e6 * d_i:.4g} µm" in capsys.readouterr().out
 
 
 @pytest.mark.parametrize(
     ("words", "said"),
     [
         ([], "no --target is given"),
-        (["--target=mu_app=2x", "--target=f_t=3 N/m"], "--target is given 2 times; give one quantity and its value"),
-        (["--target=mu_app"], "target is 'mu_app'; write it as"),
-        (["--target=mu=2"], "mu is not a quantity of a target; it must be one of contrast, mu_app,"),
-        (["--target=mu_app=x"], "target mu_app is 'x'; it must have a number"),
-        (["--target=mu_app=1e400"], "target mu_app is '1e400'; it must be a finite number"),
-        (["--target=F_T=1e307 kN"], "target F_T is '1e307 kN'; it must be a finite number"),
-        (["--target=mu_app=2x", "--from=1", "--to=1e400"], "voltage is inf; it must be a finite number"),
-        (["--target=mu_app=2 V"], "target mu_app is '2 V'; it must be a number, or a multiple such as \"2x\""),
-        (["--target=µ_app=200%"], 'such as "2x"; for a rise by the voltage it is contrast=200 %'),
-        (["--target=contrast=2x"], "target contrast is '2x'; it must be a number or in %"),
-        (["--target=F_T=0.3 V"], "target F_T is '0.3 V'; its unit is not a unit of force"),
-        (["--target=F_T=0.3 N", "--over=f_ext"], "F_T is a quantity of the whole finger and over is f_ext; give force"),
-        (["--target=L_R=1 mm", "--set=force=0.5"], "L_R is a quantity of the section and force is given; give f_ext"),
-        (["--target=mu_app=2x", "--set=friction=0"], "µ_app is 0 without voltage, of which there is no multiple"),
-        (["--target=mu_app=2x", "--over=electric.di"], "electric.di is not a key of electric; did you mean"),
-        (["--target=mu_app=2x", "--over=contact.formulation"], "over is contact.formulation; it must be a key of one"),
-        (["--target=mu_app=2x", "--over=slices.count"], "over is slices.count; it must be a key of one number"),
-        (["--target=mu_app=2x", "--over=voltage=0:9"], "over is 'voltage=0:9'; it must be the name of one key"),
-        (["--target=mu_app=2x", "--over=voltage.rms"], "voltage.rms has no value in the scene to vary around"),
-        (["--target=mu_app=2x", "--over=mesh.contact"], "mu_app does not depend on mesh.contact here"),
-        (["--target=mu_app=2x", "--from=9"], "one of --from and --to is given without the other"),
-        (["--target=mu_app=2x", "--from=9", "--to=8"], "the range of voltage is 9 to 8; the last value"),
-        (["--target=mu_app=2x", "--from=1 m", "--to=2 m"], "voltage is '1 m'; its unit is not a unit of voltage"),
+        (["--target=mu_app=2", "--target=f_t=3 N/m"], "--target is given 2 times; give one quantity and its value"),
+        (["--target=mu_app"], "target is 'mu_app'; give a quantity and its value"),
+        (["--target=mu=2"], "mu is not a quantity of a target; it must be one of mu_app,"),
+        (["--target=mu_app=2x"], "target mu_app is '2x'; it must be a finite number"),
+        (["--target=mu_app=1e400"], "target mu_app is inf; it must be a finite number"),
+        (["--target=f_t=1e307 kN"], "target f_t is '1e307 kN'; it must be a finite number"),
+        (["--target=mu_app=2", "--from=1", "--to=1e400"], "voltage is inf; it must be a finite number"),
+        (["--target=f_t=0.3 V"], "target f_t is '0.3 V'; its unit is not a unit of force"),
+        (["--target=f_t=0.3 N", "--over=f_ext"], "F_T is of the whole finger and over is f_ext; give force"),
+        (["--target=contact_length=1 mm", "--set=force=0.5"], "L_R is of the section and force is given; give f_ext"),
+        (["--target=mu_app=2", "--relative", "--set=friction=0"], "µ_app is 0 without voltage"),
+        (["--target=mu_app=2", "--over=electric.di"], "electric.di is not a key of electric; did you mean"),
+        (["--target=mu_app=2", "--over=contact.formulation"], "over is contact.formulation; it must be a key of one"),
+        (["--target=mu_app=2", "--over=slices.count"], "over is slices.count; it must be a key of one number"),
+        (["--target=mu_app=2", "--over=voltage=0:9"], "over is 'voltage=0:9'; it must be the name of one key"),
+        (["--target=mu_app=2", "--over=voltage.rms"], "voltage.rms has no value in the scene to vary around"),
+        (["--target=mu_app=2", "--over=mesh.contact"], "mu_app does not depend on mesh.contact here"),
+        (["--target=mu_app=2", "--from=9"], "one of --from and --to is given without the other"),
+        (["--target=mu_app=2", "--from=9", "--to=8"], "the range of voltage is 9 to 8; the last value"),
         (["--target=mu_app=0.1"], "at voltage 0 to 400 V mu_app is 0.25 to"),
-        (["--target=mu_app=9x"], "times its value without voltage; 9 times is not reached"),
-        (["--target=mu_app=9999x", "--to=5000", "--from=0"], "9999 times is not reached; at 3008 V there is no"),
-        (["--target=contrast=900 %"], "%; 900 % is not reached"),
-        (["--target=mu_app=2x", "--set=geometry.ridge_count=9"], "geometry is not that of the default finger"),
+        (["--target=mu_app=9", "--relative"], "times its value without voltage; 9 times is not reached"),
+        (["--target=mu_app=9999", "--relative", "--to=5000", "--from=0"], "is not reached; at 3008 V there is no"),
+        (["--target=mu_app=2", "--set=geometry.ridge_count=9"], "geometry is not that of the default finger"),
     ],
 )
-def test_bad_question_is_refused_in_one_sentence(words, said, capsys):
+def test_impossible_target_is_refused_in_one_sentence(words, said, capsys):
     assert said in refused(capsys, "solve", *words)
 
 
-@pytest.mark.parametrize("text", ["f_t=0.3 N", "F_T=300 mN"])
-def test_unit_chooses_between_finger_and_section(text):
-    found = read(text, False)
-    assert found.whole and found.value == pytest.approx(0.3)
-    assert not read("f_t=30 N/m", True).whole
+@pytest.mark.parametrize("target", [{}, {"mu_app": 0.4, "f_t": 0.1}, {"mu_app": True}, {"mu_app": math.nan}])
+def test_one_finite_number_is_a_target(target):
+    with pytest.raises(SceneError, match="give one quantity|it must be a finite number"):
+        fp.solve(**target)
 
 
 def test_full_model_is_beside_the_closed_form(monkeypatch):
@@ -217,12 +207,12 @@ def test_full_model_is_beside_the_closed_form(monkeypatch):
         return found
 
     monkeypatch.setattr("fingerpad.runs.inverse.solved", instead)
-    found = fp.solve(target="f_t=30 N/m", model="full")
+    found = fp.solve(f_t="30 N/m", model="full")
     assert found.roots[0].full is not None
     assert "full model: f_T 30.00 ± 0.40 N/m (± by closed form), " in str(found) and "±: error by closed form" in str(
         found
     )
-    finger = str(fp.solve(target="F_T=0.3 N", model="full"))
+    finger = str(fp.solve(f_t="0.3 N", model="full"))
     assert re.search(
         r"full model: F_T 0\.3000 ± 0\.\d+ N \(± by closed form, points of the traces\), \+?0\.0 % from", finger
     )
@@ -238,9 +228,9 @@ def test_confirmation_ends_with_a_run_that_is_stopped(stops, code, count, monkey
         return replace(fp.run(scene, model="cylinders"), failure="stopped", interrupted=stops)
 
     monkeypatch.setattr("fingerpad.runs.inverse.solved", instead)
-    words = ["--target=mu_app=2x", "--from=-300", "--to=300", "--model=full"]
+    words = ["--target=mu_app=0.5", "--from=-300", "--to=300", "--model=full"]
     assert main(["solve", *words]) == code and len(shown) == count
     said = capsys.readouterr().out
     assert [f"run {k} of 2 of the full model" in said for k in (1, 2)] == [True, count == 2]
     with pytest.raises(KeyboardInterrupt) if stops else nullcontext():
-        fp.solve(target="mu_app=2x", model="full")
+        fp.solve(mu_app=0.5, model="full")

@@ -18,7 +18,7 @@ from dolfinx import fem, mesh
 from mpi4py import MPI
 
 from fingerpad.cli import main
-from fingerpad.installed import COMPILER
+from fingerpad.launcher import COMPILER
 from tests.one_form import integral
 from tests.small_finger import SMALL
 from variational import jit

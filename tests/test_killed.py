@@ -28,7 +28,8 @@ WRAPPER = """
 import os, sys
 kind, number = sys.argv.pop(1), int(sys.argv.pop(1))
 from variational.solvers.coupling import Coupling
-from fingerpad.results import checkpoint, files
+from fingerpad.results import files
+from fingerpad.runs import checkpoint
 def kill_at(owner, name, do=lambda *args: None):
     plain, count = getattr(owner, name), [0]
     def call(*args, **more):

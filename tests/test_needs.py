@@ -18,10 +18,10 @@ from tests.runs import run
 from variational.attraction.electroadhesion import ELECTROSTATIC
 from variational.body import Body
 from variational.contact.augmented import AugmentedLagrangian
+from variational.contact.interface import Interface
 from variational.contact.nitsche import Nitsche
 from variational.contact.penalty import Penalty
 from variational.materials.ogden import Ogden
-from variational.problem import Interface
 from variational.resultants import RidgeLoads
 from variational.roughness.bam import BearingArea
 from variational.solvers.continuation import Target

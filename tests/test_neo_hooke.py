@@ -11,13 +11,14 @@ from scipy.optimize import brentq
 from benchmarks.verification.constitutive import Points
 from geometry import tags
 from tests.test_problem import D_EQ, H_0, check_jacobian, direction, disturb, make
+from variational.contact.interface import Interface
 from variational.contact.nitsche import Nitsche
 from variational.contact.penalty import Penalty
 from variational.materials.material import Material, _unloaded
 from variational.materials.neo_hooke import NeoHooke
 from variational.materials.ogden import Ogden
 from variational.materials.saint_venant import SaintVenant
-from variational.problem import Interface, Problem
+from variational.problem import Problem
 from variational.surface import Surface
 
 G, NU = 2.5e3, 0.45

@@ -7,7 +7,6 @@ from dataclasses import replace
 import pytest
 
 import fingerpad as fp
-from fingerpad.cli import estimate
 from fingerpad.reduced import cylinder_errors
 from fingerpad.reduced.cylinders import Cylinders, indentation, over_forces
 from fingerpad.results import dataset
@@ -48,12 +47,9 @@ def answers(scene, result, folder, key: str) -> dict[str, str]:
     found["table.csv"] = shown(*(float(row[name]) for name in names))
     values = arrays(folder / "sweep" / "sweep.nc")
     found["sweep.nc"] = shown(*(values[name][0, 2] for name in (f"finger_{key}", f"finger_{key}_error")))
-    name = "f_ext" if scene.force is None else "force"
-    (row,), _ = estimate.grid(scene, [getattr(scene, name)], [scene.voltage], name)
-    found["estimate"] = shown(row[key], row[f"{key}_error"])
     if key in ("mu_app", "f_t"):
-        target = f"{key}={result.finger.values(SLIP)[key]!r}" + " N" * (key == "f_t")
-        solution = fp.solve(scene, target, "voltage", between=[0.9 * scene.voltage, 1.1 * scene.voltage])
+        target = {key: result.finger.values(SLIP)[key]}
+        solution = fp.solve(scene, between=[0.9 * scene.voltage, 1.1 * scene.voltage], **target)
         found["solve"] = shown(*solution.roots[0].number[:2])
         assert found["solve"] in str(solution)
     for words, text in {"printed": str(result), "sweep": str(swept)}.items():

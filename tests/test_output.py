@@ -8,12 +8,13 @@ from dolfinx import fem
 from mpi4py import MPI
 
 from variational import compat, kinematics
+from variational.contact.interface import Interface
 from variational.contact.penalty import Penalty
 from variational.materials import ogden, saint_venant
 from variational.materials.ogden import Ogden
 from variational.materials.saint_venant import SaintVenant
 from variational.output import Cellwise, Lines, Receptors, sed_per_cell
-from variational.problem import Interface, Problem
+from variational.problem import Problem
 from variational.surface import Surface
 
 pytestmark = pytest.mark.mpi

@@ -13,7 +13,7 @@ from pathlib import Path
 
 import pytest
 
-from fingerpad.installed import COMPILER, need_compiler
+from fingerpad.launcher import COMPILER, need_compiler
 from tests.commands import python
 
 ROOT = Path(__file__).parent.parent

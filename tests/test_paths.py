@@ -13,10 +13,10 @@ from geometry.bodies import block, ridge
 from geometry.mesh import load
 from tests.test_contact import MU_F, make
 from variational.body import Body
+from variational.contact.interface import Interface
 from variational.contact.penalty import Penalty
 from variational.energy import Balance, EnergyBook
 from variational.materials.saint_venant import SaintVenant
-from variational.problem import Interface
 from variational.resultants import Observer, RidgeLoads
 from variational.roughness.bam import BearingArea
 from variational.solvers.continuation import Attempt, Continuation, Target

@@ -9,11 +9,12 @@ from dolfinx.fem.petsc import assemble_matrix
 
 from geometry import tags
 from variational.contact.augmented import AugmentedLagrangian
+from variational.contact.interface import Interface
 from variational.contact.nitsche import Nitsche
 from variational.contact.penalty import Penalty
 from variational.materials.ogden import Ogden
 from variational.materials.saint_venant import SaintVenant
-from variational.problem import Interface, Problem
+from variational.problem import Problem
 from variational.surface import Surface
 
 SKIN, FAT, NAIL = Ogden(86.76e3, -14.53, 0.48), Ogden(25e3, 5.0, 0.48), SaintVenant(170e6, 0.3)

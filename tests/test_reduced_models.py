@@ -90,7 +90,7 @@ def test_model_without_a_bone_has_no_newtons(monkeypatch):
     with pytest.raises(SceneError, match=words):
         fp.run(Scene(friction=0.3, force=0.5), model="floating")
     with pytest.raises(SceneError, match=words):
-        fp.solve(Scene(force=0.5), "mu_app=0.3", "friction", between=(0.1, 0.5), model="floating")
+        fp.solve(Scene(force=0.5), "friction", mu_app=0.3, between=(0.1, 0.5), model="floating")
     assert fp.run(Scene(friction=0.3), model="floating").full_slip.mu_app == pytest.approx(0.3)
 
 

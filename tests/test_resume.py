@@ -11,8 +11,9 @@ from mpi4py import MPI
 
 import fingerpad as fp
 from fingerpad.model.simulation import Simulation
-from fingerpad.results.checkpoint import Checkpoint, CheckpointError
+from fingerpad.results.folder import CheckpointError
 from fingerpad.runs.batch import key, sweep
+from fingerpad.runs.checkpoint import Checkpoint
 from fingerpad.scene import SceneError
 from tests.runs import tables_alone
 from tests.test_history import Own
@@ -162,7 +163,7 @@ def test_run_that_stops_before_its_first_checkpoint(tmp_path, monkeypatch, folde
     kept = "; every accepted step is in the folder of results, and the same command starts again" if folder else ""
     assert ended.value.result.failure == "stopped by SIGTERM after step 1" + kept
     if folder:
-        refused("has no checkpoint to go on from: its run has not come to one", tmp_path)
+        refused("has no checkpoint to go on from", tmp_path)
 
 
 def refused(match: str, folder: Path, **more) -> None:
@@ -172,19 +173,19 @@ def refused(match: str, folder: Path, **more) -> None:
 
 def test_refusals(cut_short, tmp_path_factory, capsys):
     """Of nothing to go on from, another scene, a damaged or foreign checkpoint; each in one sentence."""
-    refused("has no checkpoint to go on from: its run has not come to one", tmp_path_factory.mktemp("empty"))
+    refused("has no checkpoint to go on from", tmp_path_factory.mktemp("empty"))
     refused("holds the results of another scene", cut_short, friction=0.3)
     head, part = cut_short / "checkpoint" / "head.json", sorted((cut_short / "checkpoint").glob("*.npz"))[-1]
     whole, text = part.read_bytes(), head.read_text(encoding="utf-8")
     for damaged in (whole[: len(whole) // 2], b"", whole[:200] + bytes([whole[200] ^ 1]) + whole[201:]):
         part.write_bytes(damaged)
-        refused(f"{part.name} is not whole; delete it", cut_short)
+        refused(f"{part.name} cannot be read", cut_short)
     part.unlink()
     other = tmp_path_factory.mktemp("other")
     shutil.copytree(cut_short / "checkpoint", other / "checkpoint")
     refused("is of another scene", other, friction=0.3)
     for old, new, match in (
-        ('"format": 3', '"format": 0', "another format"),
+        ('"format": 4', '"format": 0', "another format"),
         ('"source": "', '"source": "x', "source"),
     ):
         head.write_text(text.replace(old, new), encoding="utf-8")
@@ -193,7 +194,7 @@ def test_refusals(cut_short, tmp_path_factory, capsys):
     refused("head.json cannot be read", cut_short)
     head.write_text(text, encoding="utf-8")
     fp.run(scene(), out=cut_short, resume=True)  # from the part before the one that was deleted
-    refused("its run has reached its end", cut_short)
+    refused("has no checkpoint to go on from", cut_short)
 
 
 def test_numbers_do_not_depend_on_the_folder(tmp_path, monkeypatch):
@@ -231,10 +232,10 @@ def test_full_disk_under_the_checkpoint(tmp_path, monkeypatch, last, words):
     """What is there stays whole, and the run goes on from it when there is room, or starts again without one."""
     write = Checkpoint.write
 
-    def full(self, state):
+    def full(self, *given):
         if self.number == last:
             raise OSError(28, "No space left on device")
-        write(self, state)
+        write(self, *given)
 
     monkeypatch.setattr(Checkpoint, "write", full)
     with pytest.raises(OSError, match=f"{words} when there is room"):

@@ -11,7 +11,7 @@ import pytest
 
 import fingerpad as fp
 from fingerpad import cli
-from fingerpad.results.checkpoint import Checkpoint
+from fingerpad.runs.checkpoint import Checkpoint
 from fingerpad.scene import from_data
 from tests.pages import alike, blocks, printed
 from tests.runs import no_pictures
@@ -48,7 +48,7 @@ SMALLER = {
     "voltage=0:200:5": "voltage=0:60:2",
     "voltage=0:200:21": "voltage=0:60:2",
     "0:200:41": "0:200:3",
-    "compare scene.toml": "compare scene.toml --set mesh.contact=2e-5 --contact-length 60e-6 --ridges 3",
+    "compare scene.toml": "compare scene.toml --set mesh.contact=2e-5 --model full",
 }
 
 

@@ -14,7 +14,7 @@ from pathlib import Path
 
 import pytest
 
-from fingerpad.installed import source
+from fingerpad.launcher import source
 from fingerpad.results.files import replace
 from fingerpad.results.result import Result
 from fingerpad.runs import batch as module

@@ -21,10 +21,10 @@ from geometry.mesh import TaggedMesh
 from tests.measures import rows_of
 from tests.runs import run
 from variational.body import Body
+from variational.contact.interface import Interface
 from variational.contact.penalty import Penalty
 from variational.energy import EnergyBook
 from variational.materials.ogden import Ogden
-from variational.problem import Interface
 from variational.resultants import RidgeLoads
 from variational.roughness.bam import BearingArea
 from variational.snapshot import Snapshot

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from benchmarks import chart, errors, targets
+from benchmarks import errors, targets
 from benchmarks.errors import FORCE
 from benchmarks.harness import DOCS, Made, keep
 from benchmarks.limits import Limit
@@ -88,21 +88,3 @@ def test_named_states_are_read_from_the_final_mesh(tmp_path, state, final, expec
     assert run.final(state, "ridges")["p_c"].tolist() == expected
     with pytest.raises(FileNotFoundError, match="has no ridges of uncharged"):
         run.final("uncharged", "ridges")
-
-
-def test_earlier_default_is_judged_by_the_present_limit():
-    """Its values are kept, and its errors are those from the limit of the day; none beside numbers of its own day."""
-    reference = {name: Limit(2.0, 0.0, None) for name in chart.QUANTITIES}
-    work = {"full_slip": 5.0}
-    old = {"label": "earlier", "values": dict.fromkeys(chart.QUANTITIES, 2.02), "work": work, "seconds": work}
-    points = [{"label": chart.DEFAULT, "work": {"full_slip": 4.0}}]
-    found = chart.earlier({"before": old, "points": points}, reference)
-    assert found.error(chart.ALL) == pytest.approx(0.01)
-    assert chart.earlier({"before": old, "points": [points[0] | {"work": work}]}, reference) is None
-
-
-def test_work_of_states_solved_again():
-    """Of all solves after the path's."""
-    solves = [{"unknowns": 100 * k, "factorisations": k, "processor_seconds": 1.0 * k} for k in (9, 1, 2)]
-    assert chart._again({"accuracy": {"solves": solves}}) == (100 + 400, 3.0)
-    assert chart._again({}) == (0.0, 0.0)

@@ -12,6 +12,7 @@ from geometry.mesh import load
 from tests.test_element import confined_stress
 from variational import kinematics
 from variational.body import Body
+from variational.contact.interface import Interface
 from variational.contact.penalty import Penalty
 from variational.materials.neo_hooke import NeoHooke
 from variational.materials.ogden import Ogden
@@ -19,7 +20,7 @@ from variational.materials.qlv import QLV
 from variational.materials.saint_venant import SaintVenant
 from variational.materials.viscoelastic import Viscoelastic
 from variational.output import Receptors
-from variational.problem import Interface, Problem
+from variational.problem import Problem
 from variational.solvers.continuation import Target
 
 pytestmark = pytest.mark.mpi

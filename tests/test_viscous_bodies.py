@@ -18,12 +18,12 @@ from geometry.mesh import load
 from tests.runs import followed
 from tests.small_finger import NINE
 from variational.body import Body
+from variational.contact.interface import Interface
 from variational.contact.penalty import Penalty
 from variational.energy import Balance, EnergyBook
 from variational.materials.ogden import Ogden
 from variational.materials.qlv import QLV
 from variational.materials.viscoelastic import Viscoelastic
-from variational.problem import Interface
 from variational.roughness.bam import BearingArea
 from variational.solvers.continuation import Target
 from variational.solvers.iteration import EXACT

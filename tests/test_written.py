@@ -136,7 +136,7 @@ def test_changed_law_is_not_resumed(place, capsys):
     with tables_alone():
         fp.run(scene, out=place / "run")
     words = ["run", "--resume", str(place / "run")]
-    assert main(words) == 2 and "has reached its end" in capsys.readouterr().err
+    assert main(words) == 2 and "has no checkpoint to go on from" in capsys.readouterr().err
     edited(place)
     assert main(words) == 2 and "friction.law is 'mylaws:Mine', whose file was changed since" in capsys.readouterr().err
     with pytest.raises(SceneError, match="friction is a Local, which a run that goes on cannot have"):

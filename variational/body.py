@@ -12,8 +12,9 @@ from dolfinx import fem
 from numpy.typing import NDArray
 
 from variational.contact.formulation import SurfaceState
+from variational.contact.interface import Interface
 from variational.materials.material import Material
-from variational.problem import Interface, Problem
+from variational.problem import Problem
 from variational.resultants import Observer
 from variational.roughness.closure import Closure
 from variational.solvers.continuation import Attempt, Continuation, Target

@@ -20,7 +20,7 @@ never solves.
 """
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cache
 from typing import Any
 
@@ -30,49 +30,14 @@ import ufl
 from dolfinx import fem
 
 from variational import jit, kinematics
-from variational.attraction import electroadhesion
 from variational.contact.formulation import STICKS, Contact, Formulation, Skin
-from variational.contact.friction import Friction, law_of
-from variational.element import ELEMENTS, Centroid, LayerwisePressure, grouped
+from variational.contact.friction import Friction
+from variational.contact.interface import Interface
+from variational.element import ELEMENTS, Centroid, Element, LayerwisePressure, grouped
 from variational.history import History, SkinField
 from variational.materials.material import Material
 from variational.relaxation import Spent, relaxations
 from variational.surface import Surface
-
-
-@dataclass(frozen=True)
-class Interface:
-    """Laws of the contact with the screen."""
-
-    formulation: Formulation
-    """How contact and friction enter the weak form."""
-    friction: Friction | None
-    """Law of friction; given as a number it is the friction coefficient of Coulomb's law. None or zero leaves friction
-    out of the forms."""
-    h_0: float
-    """Effective insulator thickness (m)."""
-    attraction: electroadhesion.Attraction | None = electroadhesion.ELECTROSTATIC
-    """What draws the skin to the screen; None leaves it out of the forms."""
-    share: Callable[[np.ndarray], np.ndarray] | None = None
-    """Voltage that attracts across air gaps (m), over :attr:`Problem.voltage`; None where it is the same for all."""
-
-    def __init__(
-        self,
-        formulation: Formulation,
-        friction: Friction | float | None,
-        h_0: float,
-        attraction: electroadhesion.Attraction | None = electroadhesion.ELECTROSTATIC,
-        share: Callable[[np.ndarray], np.ndarray] | None = None,
-    ) -> None:
-        """Take the laws as they are described above.
-
-        Raises:
-            ValueError: friction is no law; in one sentence.
-        """
-        law = law_of(friction)
-        laws = {"formulation": formulation, "friction": law, "h_0": h_0, "attraction": attraction, "share": share}
-        for name, value in laws.items():
-            object.__setattr__(self, name, value)
 
 
 class Problem:
@@ -141,68 +106,98 @@ class Problem:
         self.bone = fem.Constant(mesh, np.zeros(2))
         self.u = self.w + self.bone
         self.d_eq = fem.Function(cellwise)
+        self.share = None if interface.share is None else fem.Function(cellwise)
         self.multiplier = fem.Function(surface.history_space)
         self.anchor = fem.Function(surface.history_space) if interface.friction is not None else None
-
-        def constant(value: float) -> fem.Constant:
-            return fem.Constant(mesh, np.float64(value))
-
-        self.voltage, self.eta, self.guess = constant(0.0), constant(0.0), constant(STICKS)
-        self.ease, self.dt, self.lapse = constant(1.0), constant(0.0), constant(0.0)
-        self._friction = friction = None if interface.friction is None else interface.friction.with_constants(constant)
-        self._h_0 = h_0 = constant(interface.h_0)
-        self.share = None if interface.share is None else fem.Function(cellwise)
-        voltage = self.voltage if self.share is None else self.voltage * self.share
+        self.voltage, self.eta, self.guess = (self._constant(value) for value in (0.0, 0.0, STICKS))
+        self.ease, self.dt, self.lapse = (self._constant(value) for value in (1.0, 0.0, 0.0))
+        self._friction = None if interface.friction is None else interface.friction.with_constants(self._constant)
+        self._h_0 = self._constant(interface.h_0)
         self._springs: list[fem.Constant] = []
 
-        def of_springs(value: float) -> fem.Constant:
-            self._springs.append(constant(value))
-            return self._springs[-1]
+        self._dx = ufl.Measure(
+            "dx", mesh, subdomain_data=cell_tags, metadata={"quadrature_degree": kind.quadrature_degree}
+        )
+        self._add_layers(solids, cellwise, kind)
+        energy = self._strain_energy(self.laws, kind)
+        H = ufl.grad(self.w)
+        self.densities = {
+            tags: law.density(kinematics.deformation_gradient(H), self.pressures[tags])
+            for tags, law in self.laws.items()
+        }
+        self._add_contact(solids, cellwise)
+        at_rest = {tags: law.at_rest for tags, law in self.laws.items()}
+        stored = self._strain_energy(at_rest, kind) if self.relaxations else energy
+        if interface.attraction:
+            potential = interface.attraction.potential(self.y, self.d_eq, self._shared_voltage, self._h_0)
+            pulled = -potential * self.area[1] * surface.measure
+            energy, stored = energy + pulled, stored + pulled
+        self._compile(energy, stored)
+        self._add_history()
 
-        w, v = self.w, ufl.TestFunction(self.V)
-        H = ufl.grad(w)
-        F = kinematics.deformation_gradient(H)
-        dx = ufl.Measure("dx", mesh, subdomain_data=cell_tags, metadata={"quadrature_degree": kind.quadrature_degree})
-        centroid = Centroid(mesh) if kind.reduced else None
-        self.laws = grouped(solids, cellwise, cell_tags)
-        self.relaxations = relaxations(self.laws, w, self.lapse, cell_tags, kind.quadrature_degree)
-        remembers = interface.friction is not None and interface.friction.memory is not None
-        aging: list[Any] = [*solids.values(), *([interface.friction] if interface.friction else [])]
+    def _constant(self, value: float) -> fem.Constant:
+        return fem.Constant(self.mesh, np.float64(value))
+
+    @property
+    def _shared_voltage(self):
+        """Voltage (V) across each ridge, UFL."""
+        return self.voltage if self.share is None else self.voltage * self.share
+
+    def _add_layers(self, solids: Mapping[int, Material], cellwise: fem.FunctionSpace, kind: Element) -> None:
+        """Group the layers by law, with their numbers as fields, viscous ones with their history."""
+        friction = self.interface.friction
+        self.laws = grouped(solids, cellwise, self.cell_tags)
+        self.relaxations = relaxations(self.laws, self.w, self.lapse, self.cell_tags, kind.quadrature_degree)
+        aging: list[Any] = [*solids.values(), *([friction] if friction else [])]
         self.shortest_time = min((t for law in aging for t in law.times), default=np.inf)
-        self.in_time = bool(self.relaxations) or remembers
+        self._remembers = friction is not None and friction.memory is not None
+        self.in_time = bool(self.relaxations) or self._remembers
         self.laws |= {tags: each.law for tags, each in self.relaxations.items()}
         self.pressure = self._pressure(solids) if kind.mixed else None
+        H = ufl.grad(self.w)
         self.pressures = {tags: law.pressure(H) for tags, law in self.laws.items()}
 
-        def strained(laws: Mapping[tuple[int, ...], Material]):
-            energy = 0
-            for tags, law in laws.items():
-                energy += law.distortion(H) * dx(tags)
-                bulk = law.volumetric
-                if bulk is None:
-                    continue
-                if self.pressure:
-                    p = self.pressures[tags] = self.pressure.p
-                    energy += (p * kinematics.dilation(H) - p**2 / (2 * bulk)) * dx(tags)
-                else:
-                    rule = {"quadrature_degree": kind.volumetric_degree}
-                    energy += law.pressure(H) ** 2 / (2 * bulk) * dx(tags, metadata=rule)
-                if centroid:
-                    self.pressures[tags] = law.pressure(centroid.value(H))
-            return energy
+    def _strain_energy(self, laws: Mapping[tuple[int, ...], Material], kind: Element):
+        """Return the strain energy (J/m) of laws by group of layers, UFL; sets the pressures that an element has."""
+        H, energy = ufl.grad(self.w), 0
+        centroid = Centroid(self.mesh) if kind.reduced else None
+        for tags, law in laws.items():
+            energy += law.distortion(H) * self._dx(tags)
+            bulk = law.volumetric
+            if bulk is None:
+                continue
+            if self.pressure:
+                p = self.pressures[tags] = self.pressure.p
+                energy += (p * kinematics.dilation(H) - p**2 / (2 * bulk)) * self._dx(tags)
+            else:
+                rule = {"quadrature_degree": kind.volumetric_degree}
+                energy += law.pressure(H) ** 2 / (2 * bulk) * self._dx(tags, metadata=rule)
+            if centroid:
+                self.pressures[tags] = law.pressure(centroid.value(H))
+        return energy
 
-        energy = strained(self.laws)
-        self.densities = {tags: law.density(F, self.pressures[tags]) for tags, law in self.laws.items()}
-
+    def _add_contact(self, solids: Mapping[int, Material], cellwise: fem.FunctionSpace) -> None:
+        """Describe the skin and its contact by the formulation of the interface, UFL."""
+        mesh, surface, interface = self.mesh, self.surface, self.interface
+        F = kinematics.deformation_gradient(ufl.grad(self.w))
         self.x, self.y = ufl.SpatialCoordinate(mesh)[0] + self.u[0], kinematics.current_height(mesh, self.u)
-        memory, before = (fem.Function(surface.history_space) if remembers else None for _ in range(2))
+        self._memory, self._x_before = (
+            fem.Function(surface.history_space) if self._remembers else None for _ in range(2)
+        )
         attraction = interface.attraction
-        self.p_el = attraction.pressure(self.y, self.d_eq, voltage, h_0) if attraction else ufl.zero()
+        self.p_el = (
+            attraction.pressure(self.y, self.d_eq, self._shared_voltage, self._h_0) if attraction else ufl.zero()
+        )
         normal = ufl.FacetNormal(mesh)
         self.area = kinematics.cofactor(F) * normal  # current per reference area, a vector
-        skin = Skin(
+
+        def of_springs(value: float) -> fem.Constant:
+            self._springs.append(self._constant(value))
+            return self._springs[-1]
+
+        self._skin = Skin(
             self.u,
-            w,
+            self.w,
             self.y,
             self.anchor,
             self.multiplier,
@@ -210,21 +205,25 @@ class Problem:
             self.p_el * self.area,
             lambda: self._skin_stiffness(solids, cellwise),
             of_springs,
-            memory,
-            None if before is None else self.x - before,
+            self._memory,
+            None if self._x_before is None else self.x - self._x_before,
             self.lapse,
         )
-        formulation = interface.formulation
-        self._skin = skin
-        self.contact = Contact(skin, formulation.springs(skin), friction, self.guess, self.ease)
-        self.opening = formulation.opening(skin, self.contact)
-        dS = surface.measure
-        stored = strained({tags: law.at_rest for tags, law in self.laws.items()}) if self.relaxations else energy
-        if attraction:
-            pulled = -attraction.potential(self.y, self.d_eq, voltage, h_0) * self.area[1] * dS
-            energy, stored = energy + pulled, stored + pulled
-        residual = ufl.derivative(energy, w, v) + formulation.virtual_work(skin, self.contact, v) * dS
-        du = ufl.TrialFunction(self.V)
+        springs = interface.formulation.springs(self._skin)
+        self.contact = Contact(self._skin, springs, self._friction, self.guess, self.ease)
+        self.opening = interface.formulation.opening(self._skin, self.contact)
+
+    def _compile(self, energy, stored) -> None:
+        """Derive and compile residual, Jacobian and energies.
+
+        Args:
+            energy: of strain and attraction (J/m), UFL; its derivative is the residual without the contact.
+            stored: the same without what branches of viscous layers store.
+        """
+        w, v, du = self.w, ufl.TestFunction(self.V), ufl.TrialFunction(self.V)
+        dS = self.surface.measure
+        work = self.interface.formulation.virtual_work(self._skin, self.contact, v)
+        residual = ufl.derivative(energy, w, v) + work * dS
         skin_mass = ufl.dot(du, v) * dS
         jacobian = ufl.derivative(residual, w, du) + self.eta * skin_mass
         self.skin_mass = fem.form(skin_mass, jit_options=jit.OPTIONS)
@@ -238,20 +237,24 @@ class Problem:
             pairs = ((residual, unknown, dp), (defect, w, du), (defect, unknown, dp))
             self.pressure_residual = fem.form(defect, jit_options=jit.OPTIONS)
             self.pressure_jacobian = fem.form([ufl.derivative(*pair) for pair in pairs], jit_options=jit.OPTIONS)
+
+    def _add_history(self) -> None:
+        """List the fields that an accepted step leaves to the next one."""
+        surface = self.surface
         self.history = History(surface)
-        unloaded = surface.evaluate(surface.compile([ufl.SpatialCoordinate(mesh)[0]]))[0]
+        unloaded = surface.evaluate(surface.compile([ufl.SpatialCoordinate(self.mesh)[0]]))[0]
         self.history.add(SkinField("anchor", self.contact.new_anchor, self.anchor, follows=self.u[0]))
         self.history.add(SkinField("pressure", self.contact.p_n, self.multiplier))
-        self.history.add(SkinField("x", self.x, before, follows=self.x), unloaded)
-        if memory is not None:
-            start = np.full_like(unloaded, interface.friction.memory)  # type: ignore[union-attr]
-            self.history.add(SkinField("memory", self.contact.memory, memory), start)
+        self.history.add(SkinField("x", self.x, self._x_before, follows=self.x), unloaded)
+        if self._memory is not None:
+            start = np.full_like(unloaded, self.interface.friction.memory)  # type: ignore[union-attr]
+            self.history.add(SkinField("memory", self.contact.memory, self._memory), start)
             self.history.impose(self.history.accepted)
         for relaxation in self.relaxations.values():
             for field in relaxation.fields.values():
                 self.history.add(field)
             self.history.on_impose.append(relaxation.prepare)
-        self.spent = Spent(self.relaxations, dx) if self.relaxations else None
+        self.spent = Spent(self.relaxations, self._dx) if self.relaxations else None
 
     def elapse(self, seconds: float) -> None:
         """Set the time (s) since the history was accepted, and write what laws have of it; collective."""

@@ -16,9 +16,9 @@ from geometry.mesh import TaggedMesh, load
 from variational.body import Body
 from variational.compat import cell_geometry
 from variational.contact.formulation import SurfaceState
+from variational.contact.interface import Interface
 from variational.contact.penalty import Penalty
 from variational.materials.ogden import Ogden
-from variational.problem import Interface
 from variational.solvers.target import Control
 
 _MM = 1e-3  # m

@@ -1,78 +1,132 @@
-"""The stability map and random scenes: where the solver converges, at what cost and with what error.
+"""Where the solver converges, and at what cost: single runs of a layered strip, and random scenes of the whole finger.
 
-environment/run python3 -m benchmarks.stability [--part map | random] [--jobs 2] [--hours 6] [--draw]
-environment/run python3 -m benchmarks.stability --row "ε_n × 10"      one row of a table, with its reference
+environment/run python3 -m benchmarks.stability [--part single | random] [--jobs 2] [--draw]
 
-Cases are run in processes of their own. Outcomes of the map are kept in results/stability/map after each run, random
-scenes (benchmarks/stability/scenes.py) in folders beside it; started again, only what is missing is run. After a
-change of the solver delete that folder. Writes docs/stability.json, and from it docs/stability.md and its picture.
+Each run has a process of its own and is kept in results/stability; after a change of the solver delete that folder.
+Writes docs/stability.json, and from it docs/stability.md.
 """
 
 import argparse
 import json
+import re
 import sys
-from collections import Counter
-from collections.abc import Callable, Iterable, Mapping, Sequence
+import tomllib
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-import matplotlib
-from matplotlib.axes import Axes
-from matplotlib.colors import LogNorm, to_hex, to_rgb
-from matplotlib.figure import Figure
-from matplotlib.patches import Patch, Rectangle
+import numpy as np
 
-from benchmarks.harness import keep, kept, made, page, parser, picture, solve, table
-from benchmarks.stability import plan, scenes
-from benchmarks.stability.plan import DEFAULT, Axis, Case, Named, Outcome, Panel
-from fingerpad.results.style import MAGNITUDE, ORANGE, SKY, VERMILION
+from benchmarks.harness import keep, kept, made, page, parser, run, solve, table
+from benchmarks.stability.solve import REFERENCE_SIZE, Case
+from fingerpad.runs.batch import Summary
+from fingerpad.scene import Scene, from_data
 
-# Of an outcome, what the page shows.
+COUNT, SEED = 20, 20  # random scenes
+FORMULATIONS = ("penalty", "nitsche", "augmented")
+LIMIT = 180.0  # s of processor time of a run
+MESH = {"contact": 30e-6, "interface": 150e-6, "growth": 0.8}
+SYMBOLS = {"converged": "● converged", "continuation": "▲ through continuation", "failed": "✕ failed"}
+_MODULI = {"subcutis": 25e3, "dermis": 2.55e3, "viable_epidermis": 61.75e3, "stratum_corneum": 86.76e3}  # Pa
 _SHOWN = "status reason load newton factorisations cutbacks inverted penetration f_t contact_length f_ext".split()
+_REFERENCED = ("neighbours", "locking", "edge")
+"""Groups of single runs that have errors beside a reference."""
+Row = Mapping[str, Any]
 
 
-def outcomes(cases: Iterable[Case], args: argparse.Namespace) -> dict[Case, Outcome]:
-    """Run the cases whose outcomes are not kept yet; return those there are within the hours given."""
-    named = {json.dumps(case.changed, ensure_ascii=False): case for case in cases}
-    data = {name: case.changed for name, case in named.items()}
-    found = solve("benchmarks.stability.solve", data, args.out / "map", args.jobs, args.limit, args.hours)
-    return {case: _outcome(found[name], args.limit) for name, case in named.items() if name in found}
+# -- single runs of a strip ----------------------------------------------------------------------------------
+def named() -> dict[str, dict[str, Case]]:
+    """Return the default and its neighbours, and the known failures by name, with the runs that reproduce them."""
+    groups = tomllib.loads((Path(__file__).parent / "named.toml").read_text(encoding="utf-8"))
+    return {
+        title: {words: replace(Case(), **group.get("all", {}), **more) for words, more in group["runs"].items()}
+        for title, group in groups.items()
+    }
 
 
-def _outcome(found: dict[str, Any], limit: float) -> Outcome:
-    if "failure" not in found:
-        return Outcome(**found)
-    seconds = 0.0 if found["failure"].startswith("CRASH") else limit
-    return Outcome("failed", found["failure"], found["message"], seconds=seconds)
+def single(args: argparse.Namespace) -> list[dict[str, Any]]:
+    """Run the strips that are missing; return the rows of all."""
+    groups = named()
+    every = [case for group in groups.values() for case in group.values()]
+    every += [case.reference for title in _REFERENCED for case in groups[title].values()]
+    cases = {json.dumps(case.changed, ensure_ascii=False): case for case in every}
+    data = {name: case.changed for name, case in cases.items()}
+    found = solve("benchmarks.stability.solve", data, args.out / "map", args.jobs, LIMIT)
+    of = {case: found[name] for name, case in cases.items()}
+    return [{"case": case.changed} | _row(case, of) for case in of]
 
 
-def numbers(found: Mapping[Case, Outcome]) -> dict[str, Any]:
-    """Return what the page shows of the cases that have been run, ready for JSON."""
-    rows = []
-    for case, outcome in found.items():
-        compared = {"f_t": case.slide, "contact_length": True, "f_ext": case.indentation}
-        errors = {f"error_{name}": _error(found, case, name) for name, told in compared.items() if told}
-        rows.append({"case": case.changed} | {name: getattr(outcome, name) for name in _SHOWN} | errors)
-    return {"solves": len(found), "seconds": sum(outcome.seconds for outcome in found.values()), "runs": rows}
+def _row(case: Case, of: Mapping[Case, dict[str, Any]]) -> dict[str, Any]:
+    """Return what the page shows of a case; relative errors, with their signs, where its reference was found, too."""
+    own, finest = of[case], of.get(case.reference)
+    if "failure" in own:
+        return {"status": "failed", "reason": own["failure"]}
+    row = {name: own[name] for name in _SHOWN}
+    if finest is None or "failed" in (own["status"], finest.get("status", "failed")):
+        return row
+    compared = {"f_t": case.slide, "contact_length": True, "f_ext": case.indentation}
+    names = [name for name, shown in compared.items() if shown and finest[name]]
+    return row | {f"error_{name}": (own[name] - finest[name]) / abs(finest[name]) for name in names}
 
 
-def _error(found: Mapping[Case, Outcome], case: Case, name: str) -> float | None:
-    """Return the relative error of a quantity, with its sign; None without a reference or where one of both failed."""
-    here, finest = found[case], found.get(case.reference)
-    if finest is None or "failed" in (here.status, finest.status):
-        return None
-    exact = getattr(finest, name)
-    return float((getattr(here, name) - exact) / abs(exact)) if exact else None
+# -- random scenes of the whole finger -----------------------------------------------------------------------
+def drawn(number: int) -> dict[str, Any]:
+    """Return the physical parameters of a scene; force and friction coefficient are evenly spread on a logarithm.
+
+    Args:
+        number: of the scene, from 0; even ones have the paper's printed exponent, odd ones that of Abaqus.
+    """
+
+    def digits(value: float) -> float:
+        return float(f"{value:.3g}")
+
+    chance = np.random.default_rng([SEED, number])
+    force, friction = (digits(a * (b / a) ** chance.random()) for a, b in ((2.0, 200.0), (0.05, 1.0)))
+    voltage = digits(300 * chance.random())
+    layers = {layer: {"shear_modulus": digits(g * chance.uniform(0.7, 1.3))} for layer, g in _MODULI.items()}
+    lengths = {"h_rms": 3.1e-6, "wavelength": 100e-6}
+    return {
+        "f_ext": force,
+        "voltage": voltage,
+        "friction": friction,
+        "materials": {**layers, "exponent": ("printed", "abaqus")[number % 2]},
+        "roughness": {name: digits(value * chance.uniform(0.6, 1.4)) for name, value in lengths.items()},
+    }
+
+
+def random(args: argparse.Namespace) -> dict[str, Any]:
+    """Run the scenes that are missing; return the rows of all, and by which version they were made."""
+    quick: dict[str, Any] = {"mesh": MESH, "output": {"receptors": False, "errors": False}}
+    keys = {f"scene {k}, {name}": (k, name) for name in FORMULATIONS for k in range(COUNT)}
+    asked: dict[str, Scene] = {
+        text: from_data(drawn(k) | quick | {"contact": {"formulation": name}}) for text, (k, name) in keys.items()
+    }
+    found = run(asked, args, LIMIT)
+    rows = [{"number": k, "formulation": name} | summed(found[text]) for text, (k, name) in keys.items()]
+    by = made(found.values())
+    return {"made": f"version {by.version} of {by.date} (source {by.source})", "runs": rows}
+
+
+def summed(summary: Summary) -> dict[str, Any]:
+    """Return what the page shows of a run; factorisations are those of restarts too."""
+    again = summary.get("restarts", [])
+    finer = [restart for restart in again if restart["contact"] < MESH["contact"]]
+    return {
+        "full_slip": bool(summary.get("full_slip")),
+        "contact": summary.get("path_mesh", MESH)["contact"],
+        "factorisations": summary.get("factorisations", 0) + sum(restart["factorisations"] for restart in again),
+        "failure": reason(finer[0]["reason"] if finer else summary.get("failure", "")),
+    }
+
+
+def reason(failure: str) -> str:
+    """Return load and name of a failure, ``slide: DIVERGED_MAX_IT``; empty where there is none."""
+    load, name = re.search(r"^step \d+ \((\w+),", failure), re.search(r"\b[A-Z]{3,}(_[A-Z]+)+\b", failure)
+    return ": ".join(found for found in (load[1] if load else "", name[0] if name else failure) if found)
 
 
 # -- page ----------------------------------------------------------------------------------------------------
-Row = Mapping[str, Any]
-Rows = Mapping[Case, Row]
-COLOURS = {"converged": SKY, "continuation": ORANGE, "failed": VERMILION}
-SYMBOLS = {"converged": "●", "continuation": "▲", "failed": "✕"}
-NAMES = {"converged": "converged", "continuation": "through continuation", "failed": "failed"}
-
-
 def percent(value: float | None) -> str | None:
     """Return a relative number as per cent; below a millionth it is zero."""
     if value is None:
@@ -80,37 +134,29 @@ def percent(value: float | None) -> str | None:
     return "0" if abs(value) < 1e-6 else f"{100 * value:.2g}" if abs(value) < 1 else f"{100 * value:.0f}"
 
 
-# -- tables --------------------------------------------------------------------------------------------------
-_COLUMNS = ["run", "outcome", "load", "iterations", "factorisations", "cut steps", "failed solves that met J ≤ 0"]
-_COLUMNS += ["penetration (nm)", "f_T (N/m)", "contact length (µm)"]
+_COLUMNS = ["run", "outcome", "load", "iterations", "factorisations", "cut steps", "failed solves that met J ≤ 0",
+            "penetration (nm)", "f_T (N/m)", "contact length (µm)"]  # fmt: skip
 _ERRORS = ["error in f_T (%)", "error in contact length (%)", "normal force (N/m)", "error in it (%)"]
 
 
-def _line(words: str, o: Row, referenced: bool) -> list[Any]:
-    reason = f": {o['reason']}" if o["status"] == "failed" else ""
-    inverted = ", ".join(f"{count} in {layer}" for layer, count in o["inverted"].items()) or "0"
-    line = [words, f"{SYMBOLS[o['status']]} {NAMES[o['status']]}{reason}", o["load"], o["newton"], o["factorisations"]]
-    line += [o["cutbacks"], inverted, f"{o['penetration'] * 1e9:.3g}", o["f_t"], f"{o['contact_length'] * 1e6:.2f}"]
-    errors = [percent(o.get(f"error_{name}")) for name in ("f_t", "contact_length", "f_ext")]
-    return [*line, *errors[:2], o.get("f_ext"), errors[2]] if referenced else line
+def _group(title: str, cases: Mapping[str, Case], rows: Mapping[Case, Row]) -> str:
+    """Return a group of runs as a table, one a row."""
+    lines = []
+    for words, o in ((words, rows[case]) for words, case in cases.items() if case in rows):
+        because = f": {o['reason']}" if o["status"] == "failed" else ""
+        inverted = ", ".join(f"{count} in {layer}" for layer, count in o.get("inverted", {}).items()) or "0"
+        counts = [o.get(name) for name in ("load", "newton", "factorisations", "cutbacks")]
+        sizes = [f"{o.get('penetration', 0) * 1e9:.3g}", o.get("f_t"), f"{o.get('contact_length', 0) * 1e6:.2f}"]
+        f_t, length, f_ext = (percent(o.get(f"error_{name}")) for name in ("f_t", "contact_length", "f_ext"))
+        lines.append([words, SYMBOLS[o["status"]] + because, *counts, inverted, *sizes])
+        lines[-1] += [f_t, length, o.get("f_ext"), f_ext] if title in _REFERENCED else []
+    return table(_COLUMNS + _ERRORS * (title in _REFERENCED), lines)
 
 
-def named_table(named: Named, rows: Rows) -> str:
-    """Return a group of runs, one a row."""
-    columns = _COLUMNS + (_ERRORS if named.referenced else [])
-    not_run = ["not run", *[None] * (len(columns) - 2)]
-    lines = [
-        _line(words, rows[case], named.referenced) if case in rows else [words, *not_run]
-        for words, case in named.cases.items()
-    ]
-    return table(columns, lines)
-
-
-def full_slips(runs: Iterable[Row], formulation: str) -> str:
-    """Return how many of the random scenes that were run a formulation leads to full slip, on whatever elements."""
+def _full_slips(runs: Iterable[Row], formulation: str) -> str:
+    """Return how many of the random scenes a formulation leads to full slip, on whatever elements."""
     ends = [row["full_slip"] for row in runs if row["formulation"] == formulation]
-    missing = scenes.COUNT - len(ends)
-    return f"{sum(ends)} of {len(ends)}" + (f" ({missing} not run)" if missing else "")
+    return f"{sum(ends)} of {len(ends)}"
 
 
 def dearer(runs: Iterable[Row], formulation: str) -> float:
@@ -120,140 +166,43 @@ def dearer(runs: Iterable[Row], formulation: str) -> float:
     return sum(work[formulation, k] for k in both) / max(sum(work["penalty", k] for k in both), 1)
 
 
-def _scene_cell(row: Row | None) -> str:
-    if row is None:
-        return "not run"
+def _scene_cell(row: Row) -> str:
     work = row["factorisations"] or "–"
     if not row["full_slip"]:
-        return f"{SYMBOLS['failed']} {row['failure']}, {work}"
-    if row["contact"] < scenes.MESH["contact"]:
-        return f"{SYMBOLS['continuation']} {1e6 * row['contact']:g} µm, {work}; {row['failure']}"
-    return f"{SYMBOLS['converged']} {work}"
-
-
-# -- picture -------------------------------------------------------------------------------------------------
-def _tick(axis: Axis, value: float) -> str:
-    return f"{value / axis.unit:.6g}".replace("e+", "e")
-
-
-def _cell(ax: Axes, place: tuple[int, int], colour: str, text: str, default: bool) -> None:
-    ax.add_patch(Rectangle(place, 1, 1, facecolor=colour, edgecolor="white", lw=1.5))
-    if default:
-        inner = (place[0] + 0.06, place[1] + 0.06)
-        ax.add_patch(Rectangle(inner, 0.88, 0.88, fill=False, ec="black", lw=1.8, zorder=3))
-    red, green, blue = to_rgb(colour)
-    ink = "black" if 0.3 * red + 0.59 * green + 0.11 * blue > 0.45 else "white"
-    ax.text(place[0] + 0.5, place[1] + 0.5, text, ha="center", va="center", color=ink, fontsize=8, linespacing=1.1)
-
-
-def _map(ax: Axes, panel: Panel, rows: Rows, title: str, cell: Callable[[Row], tuple[str, str]]) -> None:
-    for i, y in enumerate(panel.y.values):
-        for k, x in enumerate(panel.x.values):
-            case = panel.case(x, y)
-            colour, text = cell(rows[case]) if case in rows else ("#EEEEEE", "not run")
-            _cell(ax, (k, i), colour, text, case == panel.base and case.element == DEFAULT.element)
-    ax.set(title=title, xlim=(0, len(panel.x.values)), ylim=(0, len(panel.y.values)))
-    ax.set(xlabel=panel.x.label, ylabel=panel.y.label)
-    for axis, which in ((panel.x, ax.xaxis), (panel.y, ax.yaxis)):
-        which.set_ticks([k + 0.5 for k in range(len(axis.values))], [_tick(axis, v) for v in axis.values])
-        which.set_tick_params(length=0)
-    for spine in ax.spines.values():
-        spine.set_visible(False)
-
-
-def outcome_cell(o: Row) -> tuple[str, str]:
-    """Return colour and text of a cell: how a run ended, its iterations, and the load of one that failed."""
-    text = f"{SYMBOLS[o['status']]}\n{o['newton']}" + (f"\n{o['load']}" if o["status"] == "failed" else "")
-    return COLOURS[o["status"]], text
-
-
-def value_cell(name: str, low: float, high: float, scale: float) -> Callable[[Row], tuple[str, str]]:
-    """Return what gives colour and text of a cell: a number, its size on a logarithmic ramp."""
-    norm, colours = LogNorm(low, high, clip=True), matplotlib.colormaps[MAGNITUDE]
-
-    def cell(o: Row) -> tuple[str, str]:
-        if o["status"] == "failed" or o.get(name) is None:
-            return "#EEEEEE", SYMBOLS["failed"]
-        number = scale * o[name]
-        return to_hex(colours(norm(max(abs(number), low)))), f"{number:.0f}" if abs(number) >= 10 else f"{number:.2g}"
-
-    return cell
-
-
-def paint(figure: Figure, rows: Rows) -> None:
-    """Draw the eight maps that the choice of the default rests on."""
-    charts = plan.charts()
-    by_parameter, elements = charts[plan.BY_PARAMETER], {panel.title: panel for panel in charts[plan.BY_ELEMENT]}
-    depth = value_cell("penetration", 0.1, 1e4, 1e9)
-    error = value_cell("error_contact_length", 0.01, 100, 100)
-    maps = [
-        (charts["Voltage and force"][0], "A  penalty: outcome", outcome_cell),
-        (by_parameter[0], "B  penalty: outcome", outcome_cell),
-        (by_parameter[1], "C  augmented Lagrangian: outcome", outcome_cell),
-        (by_parameter[2], "D  Nitsche, θ = 0: outcome", outcome_cell),
-        (charts["Step size and voltage"][0], "E  penalty: outcome", outcome_cell),
-        (by_parameter[0], "F  penalty: penetration (nm)", depth),
-        (by_parameter[0], "G  penalty: error in contact length (%)", error),
-        (elements["P2"], "H  P2 elements: error in contact length (%)", error),
-    ]
-    for ax, (panel, title, cell) in zip(figure.subplots(2, 4).flat, maps, strict=True):
-        _map(ax, panel, rows, title, cell)
-    keys = [Patch(color=COLOURS[s], label=f"{SYMBOLS[s]} {NAMES[s]}, with Newton iterations") for s in COLOURS]
-    keys.append(Patch(fill=False, ec="black", lw=1.8, label="default"))
-    figure.legend(handles=keys, loc="outside lower center", ncols=4, frameon=False)
+        return f"✕ {row['failure']}, {work}"
+    return (
+        f"▲ {1e6 * row['contact']:g} µm, {work}; {row['failure']}" if row["contact"] < MESH["contact"] else f"● {work}"
+    )
 
 
 def draw(docs: Path) -> Path:
-    """Write docs/stability.md and docs/stability.png from docs/stability.json."""
-    numbers, charts = kept("stability", docs).numbers, plan.charts()
-    rows, random = {Case(**row["case"]): row for row in numbers["runs"]}, numbers["random"]["runs"]
-    picture(docs / "stability.png", (17, 9), lambda figure: paint(figure, rows))
-    counts = [
-        (title, panel.title, Counter(rows[case]["status"] if case in rows else "not run" for case in panel.cases()))
-        for title, panels in charts.items()
-        for panel in panels
-    ]
-    ends = {(row["number"], row["formulation"]): row for row in random}
+    """Write docs/stability.md from docs/stability.json."""
+    numbers, groups = kept("stability", docs).numbers, named()
+    rows, runs = {Case(**row["case"]): row for row in numbers["runs"]}, numbers["random"]["runs"]
+    ends = {(row["number"], row["formulation"]): row for row in runs}
     names = {
-        "counts": counts,
-        "ends": counts[0][2],
-        "named": {n: named_table(each, rows) for n, each in plan.named().items()},
-        "near": {words: rows[case] for words, case in plan.named()["neighbours"].cases.items() if case in rows},
-        "slips": {name: full_slips(random, name) for name in scenes.FORMULATIONS},
+        "named": {title: _group(title, cases, rows) for title, cases in groups.items()},
+        "near": {words: rows[case] for words, case in groups["neighbours"].items()},
+        "slips": {name: _full_slips(runs, name) for name in FORMULATIONS},
         "drawn": [
-            (k, scenes.drawn(k), [_scene_cell(ends.get((k, name))) for name in scenes.FORMULATIONS])
-            for k in range(scenes.COUNT)
+            (k, drawn(k), [_scene_cell(ends[k, name]) for name in FORMULATIONS]) for k in range(COUNT)
         ],
-    }
+        "DEFAULT": Case(), "REFERENCE_SIZE": REFERENCE_SIZE,
+    }  # fmt: skip
     return page(docs, "stability", "environment/run python3 -m benchmarks.stability", globals() | names)
 
 
 def main(given: Sequence[str] | None = None) -> int:
-    """Run what is missing, keep its numbers and draw the page; or make one row."""
-    names = [name for group in plan.named().values() for name in group.cases]
+    """Run what is missing, keep its numbers and draw the page."""
     asked = parser(__doc__, "stability")
-    asked.add_argument("--limit", type=float, default=120.0, help="seconds of processor time for one run")
-    asked.add_argument("--hours", type=float, default=6.0, help="after which no run of the map is started")
-    asked.add_argument("--part", choices=("map", "random"), help="run this part alone, and keep the other's numbers")
-    asked.add_argument("--row", choices=names, metavar="NAME", help=f"this row alone, printed: {', '.join(names)}")
+    asked.add_argument("--part", choices=("single", "random"), help="run this part alone, and keep the other's numbers")
     args = asked.parse_args(given)
-    if args.row:
-        group = next(group for group in plan.named().values() if args.row in group.cases)
-        case = group.cases[args.row]
-        runs = numbers(outcomes([case, case.reference] if group.referenced else [case], args))["runs"]
-        rows = {Case(**each["case"]): each for each in runs}
-        print(named_table(plan.Named({args.row: case}, group.referenced), rows))
-        return 0 if case in rows else 1
-    left = 0
-    if not args.draw and args.part != "random":
-        found = outcomes(cases := plan.cases(), args)
-        left = len(cases) - len(found)
-        keep("stability", kept("stability", args.docs).numbers | numbers(found), made(), args.docs)
-    if not args.draw and args.part != "map":
-        old = kept("stability", args.docs)
-        keep("stability", old.numbers | {"random": scenes.numbers(args)}, old.made, args.docs)
-    print(f"{draw(args.docs)}" + (f"; {left} runs are missing" if left else ""))
-    return 1 if left else 0
+    for part, found in (("single", lambda: {"runs": single(args)}), ("random", lambda: {"random": random(args)})):
+        if not args.draw and args.part in (None, part):
+            old = kept("stability", args.docs)
+            keep("stability", old.numbers | found(), made() if part == "single" else old.made, args.docs)
+    print(draw(args.docs))
+    return 0
 
 
 if __name__ == "__main__":

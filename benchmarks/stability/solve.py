@@ -1,4 +1,4 @@
-"""Run one case of the stability map in this process.
+"""Run one case of a layered strip in this process: pressed, charged and dragged to full slip.
 
 python3 -m benchmarks.stability.solve CASE LIMIT
 
@@ -11,10 +11,10 @@ glued to the bone would hold the epidermis up. They are free only where a ridge 
 
 import json
 import sys
-import time
 from collections import Counter
-from dataclasses import asdict
+from dataclasses import asdict, dataclass, field, replace
 from functools import partial
+from typing import Any
 
 import basix
 import numpy as np
@@ -23,16 +23,18 @@ from dolfinx import fem
 from mpi4py import MPI
 
 from benchmarks.stability import strip
-from benchmarks.stability.plan import FORMULATIONS, Case, Outcome
 from fingerpad.runs.processes import limit_processor_time
 from geometry import tags
 from geometry.mesh import load
 from geometry.parameters import Fingertip, MeshSize
 from variational import compat
 from variational.body import Body
+from variational.contact.augmented import AugmentedLagrangian
+from variational.contact.interface import Interface
+from variational.contact.nitsche import Nitsche
+from variational.contact.penalty import Penalty
 from variational.kinematics import deformation_gradient
 from variational.materials.ogden import Ogden
-from variational.problem import Interface
 from variational.roughness.bam import BearingArea
 from variational.solvers.continuation import Attempt, Continuation, StepFailed, Target
 from variational.solvers.coupling import Coupling
@@ -40,9 +42,68 @@ from variational.solvers.iteration import EXACT, StopRule
 from variational.solvers.newton import Solver
 from variational.solvers.outcome import NotConverged
 
+FORMULATIONS = {  # by their one numerical parameter
+    "penalty": lambda eps_n: Penalty(eps_n, 5e10),
+    "augmented": lambda eps_n: AugmentedLagrangian(eps_n, eps_n / 30, 5e-9),
+    **{f"Nitsche, θ = {theta}": partial(Nitsche, theta=theta) for theta in (0, 1, -1)},
+}
+REFERENCE_SIZE = 2.5e-6  # m, contact size of the run with which others are compared
 _H_0 = 0.514e-6  # m
 _SKIN = {tags.STRATUM_CORNEUM: 86.76e3, tags.VIABLE_EPIDERMIS: 61.75e3, tags.DERMIS: 2.55e3}  # Pa
 _ALPHA = -14.53
+
+
+@dataclass(frozen=True)
+class Case:
+    """A strip pressed, charged and dragged to full slip; SI units, forces per ridge and out-of-plane length."""
+
+    formulation: str = "penalty"
+    parameter: float = 1.5e12
+    element: str = "P2"
+    contact_size: float = 10e-6
+    force: float = 4.4  # the finger's 75 N/m over its 17 ridges in contact
+    indentation: float = 0.0  # if not zero, the bone is lowered by so much instead of being pressed by the force
+    voltage: float = 200.0
+    detour: float = 0.0  # if not zero, a voltage reached between the press and the final voltage
+    nu: float = 0.48  # Poisson's ratio of all layers
+    mu_f: float = 0.25
+    step_scale: float = 1.0  # factor on the largest steps of force, voltage and sliding
+    slide: float = 1e-3  # farthest the bone slides towards full slip; zero for no sliding
+    ridges: int = 1
+    height: float = 1.5e-3
+    sides: str = "carried"  # lateral faces: moved sideways with the bone and free up and down, or "free"
+    pseudo_transient: bool = True  # whether pseudo-transient continuation is allowed
+
+    @property
+    def changed(self) -> dict[str, Any]:
+        """Fields that are not the default's: the case as it is kept."""
+        return {name: value for name, value in asdict(self).items() if value != getattr(Case(), name)}
+
+    @property
+    def reference(self) -> "Case":
+        """The run on the finest mesh with the same physical parameters and default numerical ones."""
+        numerical = ("formulation", "parameter", "element", "step_scale", "pseudo_transient", "detour")
+        return replace(self, contact_size=REFERENCE_SIZE, **{name: getattr(Case(), name) for name in numerical})
+
+
+@dataclass
+class Outcome:
+    """What became of a case; lengths in m, forces per out-of-plane length in N/m, of the last accepted state."""
+
+    status: str = "converged"  # by Newton's method; "continuation", pseudo-transient, helped; or "failed"
+    reason: str = ""  # name of the failure, for example that of SNES
+    message: str = ""
+    load: str = ""  # in which the run ended
+    full_slip: bool = False
+    newton: int = 0
+    factorisations: int = 0
+    cutbacks: int = 0
+    # Failed solves in which steps led to J <= 0, by the layer with the least J in the end.
+    inverted: dict[str, int] = field(default_factory=dict)
+    penetration: float = 0.0
+    f_ext: float = 0.0
+    f_t: float = 0.0
+    contact_length: float = 0.0
 
 
 class NewtonAlone(Solver):
@@ -84,35 +145,32 @@ def make(case: Case) -> Body:
     return Body(
         mesh,
         {tag: Ogden(shear, _ALPHA, case.nu) for tag, shear in _SKIN.items()},
-        Interface(FORMULATIONS[case.formulation].law(case.parameter), case.mu_f, _H_0),
+        Interface(FORMULATIONS[case.formulation](case.parameter), case.mu_f, _H_0),
         element=case.element,
         force_scale=case.force * case.ridges,
         moving_sides=mesh.facets(tags.SIDES) if case.sides == "carried" else None,
     )
 
 
-def targets(case: Case) -> list[Target]:
+def _targets(case: Case) -> list[Target]:
     """Return the loads of a case, one after the other."""
     pressed = Target("press", bone_height=-case.indentation)
     loads = [pressed if case.indentation else Target("press", f_ext=case.force * case.ridges)]
     loads += [Target("charge", voltage=voltage) for voltage in (case.detour, case.voltage) if voltage]
-    if case.slide:
-        loads.append(Target("slide", bone_x=case.slide, until_full_slip=True))
-    return loads
+    return loads + ([Target("slide", bone_x=case.slide, until_full_slip=True)] if case.slide else [])
 
 
 def run(case: Case) -> Outcome:
     """Reach the loads of a case; a failure is an outcome like any other."""
-    start = time.process_time()
-    body, out = make(case), Outcome("converged")
+    body, out, jumps = make(case), Outcome(), list[bool]()
     coupling = Recorder(body, case.pseudo_transient)
     solver = coupling.solver
 
     def accepted(target: Target, part: float, attempt: Attempt) -> None:
         state = walk.surface_state
         loads = body.observer.ridge_loads(state)
-        out.steps, out.cutbacks = walk.steps, out.cutbacks + len(attempt.cutbacks)
-        out.jumps += attempt.pseudo_transient
+        out.cutbacks += len(attempt.cutbacks)
+        jumps.append(attempt.pseudo_transient)
         out.penetration = float(np.max(-state.y[state.p_n > 0], initial=0.0))
         out.f_ext = float(solver.reaction[1])
         # What the screen exerts on the skin: carried faces bear a part that the bone does not bear.
@@ -121,7 +179,7 @@ def run(case: Case) -> Outcome:
 
     walk = Continuation(coupling, accepted, step_scale=case.step_scale)
     try:
-        for target in targets(case):
+        for target in _targets(case):
             out.load = target.name
             walk.run(target)
     except StepFailed as failure:
@@ -129,10 +187,9 @@ def run(case: Case) -> Outcome:
         out.status, out.message = "failed", str(failure)
         out.reason = cause.reason if isinstance(cause, NotConverged) else str(failure)
     else:
-        out.status = "continuation" if out.jumps else "converged"
+        out.status = "continuation" if any(jumps) else "converged"
     out.newton, out.factorisations = solver.counts.newton, solver.counts.factorisations
     out.full_slip, out.inverted = walk.slip[1], dict(coupling.inverted)
-    out.seconds = time.process_time() - start
     return out
 
 

@@ -13,42 +13,11 @@ from numpy.typing import NDArray
 from geometry import tags
 from geometry.curved import curve_edges
 from geometry.parameters import Fingertip, MeshSize
-from geometry.profiles import GeometryError, Profiles
+from geometry.profiles import Profiles
 
 _MM = 1e3  # gmsh's tolerances suit models in mm
 _SAMPLES = 32  # spline points of half a period
-_MOST = 3  # ridges; more of them need the finger's curvature
 LAYERS = (tags.STRATUM_CORNEUM, tags.VIABLE_EPIDERMIS, tags.DERMIS)
-
-
-def check(finger: Fingertip, size: MeshSize, ridges: int, height: float) -> Profiles:
-    """Return the strip's curves if it can be meshed; arguments are those of :func:`build`.
-
-    Raises:
-        GeometryError: an even number of ridges or too many, layers that touch or cross, a top that is not above
-            the dermis's papillae, or elements too large for a ridge.
-    """
-    profiles = Profiles(finger)
-    if not (1 <= ridges <= min(_MOST, finger.ridge_count) and ridges % 2 == 1):
-        raise GeometryError(
-            f"ridges is {ridges}; it must be odd, so that one is at x = 0, and at most {min(_MOST, finger.ridge_count)}"
-        )
-    if size.contact > finger.ridge_wavelength / 4:
-        raise GeometryError(
-            f"contact size {size.contact:g} m is too large for a ridge of {finger.ridge_wavelength:g} m: "
-            f"at most a quarter of it, {finger.ridge_wavelength / 4:g} m"
-        )
-    x = np.linspace(0, finger.ridge_wavelength, 1025)
-    thinnest = float((profiles.ve_d(x) - profiles.sc_ve(x)).min())
-    if thinnest <= 0:
-        raise GeometryError(
-            f"SC-VE junction and VE-D junction cross by {-thinnest:.3g} m; ve_thickness is {finger.ve_thickness:g} m "
-            f"and must exceed {finger.ve_thickness - thinnest:.3g} m"
-        )
-    lowest = float(profiles.ve_d(x).max())
-    if not lowest < height < np.inf:
-        raise GeometryError(f"height is {height:g} m; it must exceed that of the VE-D junction, {lowest:.4g} m")
-    return profiles
 
 
 def build(finger: Fingertip, size: MeshSize, ridges: int = 1, height: float = 1.5e-3) -> float:
@@ -57,17 +26,13 @@ def build(finger: Fingertip, size: MeshSize, ridges: int = 1, height: float = 1.
     Args:
         finger: its layers and ridges; outline, bone and nail are left out.
         size: element sizes; every ridge can touch, over ``touching_fraction`` of its width.
-        ridges: how many, 1 or 3.
+        ridges: how many, 1 or 3: one is at x = 0.
         height: of the flat top above the screen (m).
 
     Returns:
         The length of gmsh's unit in m.
-
-    Raises:
-        GeometryError: see :func:`check`.
     """
-    p = check(finger, size, ridges, height)
-    geo = gmsh.model.geo
+    p, geo = Profiles(finger), gmsh.model.geo
     half = ridges * finger.ridge_wavelength / 2
     # Broken at tips, grooves and papillae: facets that cut them off would move material from layer to layer.
     stations = np.linspace(-half, half, 4 * ridges + 1)

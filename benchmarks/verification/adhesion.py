@@ -28,9 +28,9 @@ from benchmarks.verification.case import Case, Row
 from geometry.bodies import block, pad
 from variational.attraction.dielectric import VACUUM_PERMITTIVITY
 from variational.attraction.electroadhesion import Attraction
+from variational.contact.interface import Interface
 from variational.contact.penalty import Penalty
 from variational.materials.saint_venant import SaintVenant
-from variational.problem import Interface
 from variational.solvers.continuation import Target
 from variational.solvers.stability import StabilityCheck
 

@@ -19,10 +19,11 @@ from variational import jit
 from variational.body import Body
 from variational.contact.augmented import AugmentedLagrangian
 from variational.contact.formulation import Formulation
+from variational.contact.interface import Interface
 from variational.contact.nitsche import Nitsche
 from variational.contact.penalty import Penalty
 from variational.materials.material import Material
-from variational.problem import Interface, Problem
+from variational.problem import Problem
 from variational.roughness.closure import AirGap, Closure
 from variational.solvers.continuation import Continuation
 from variational.solvers.equations import Equations

@@ -19,10 +19,10 @@ from benchmarks.verification.case import IDENTITY, Case, Row
 from geometry.bodies import pad, ridge
 from variational.contact.augmented import AugmentedLagrangian
 from variational.contact.formulation import Formulation
+from variational.contact.interface import Interface
 from variational.contact.nitsche import Nitsche
 from variational.contact.penalty import Penalty
 from variational.materials.ogden import Ogden
-from variational.problem import Interface
 from variational.solvers.continuation import Continuation, Target
 
 _H_0 = 0.514e-6

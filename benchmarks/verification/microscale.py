@@ -20,9 +20,9 @@ from benchmarks.verification import bearing_area as exact
 from benchmarks.verification.bodies import over_screen
 from benchmarks.verification.case import IDENTITY, Case, Row, worst
 from geometry.bodies import block
+from variational.contact.interface import Interface
 from variational.contact.penalty import Penalty
 from variational.materials.saint_venant import SaintVenant
-from variational.problem import Interface
 from variational.roughness.bam import BearingArea
 from variational.solvers.continuation import Target
 

@@ -27,9 +27,9 @@ from benchmarks.verification.bodies import Array, formulations, over_screen
 from benchmarks.verification.case import Case, Row, order, order_row
 from geometry.bodies import block, foot, pad
 from variational.contact.augmented import AugmentedLagrangian
+from variational.contact.interface import Interface
 from variational.contact.penalty import Penalty
 from variational.materials.saint_venant import SaintVenant
-from variational.problem import Interface
 from variational.solvers.continuation import Continuation, Target
 
 YOUNG, NU, RADIUS, HALF_WIDTH = 1e6, 0.3, 1.0, 0.5e-3

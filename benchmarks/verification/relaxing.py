@@ -16,11 +16,11 @@ from benchmarks.verification import constitutive
 from benchmarks.verification.bodies import over_screen
 from benchmarks.verification.case import Case, Row
 from geometry.bodies import block, ridge
+from variational.contact.interface import Interface
 from variational.contact.nitsche import Nitsche
 from variational.materials.ogden import Ogden
 from variational.materials.qlv import QLV
 from variational.materials.viscoelastic import Viscoelastic
-from variational.problem import Interface
 from variational.solvers.continuation import Continuation, Target
 
 _SHEAR, _ALPHA, _NU = 86.76e3, -14.53, 0.48

@@ -15,7 +15,7 @@ from typing import Any
 from numpy.polynomial.legendre import leggauss
 
 from fingerpad.calculator import presets
-from fingerpad.installed import version
+from fingerpad.launcher import version
 from fingerpad.reduced import cylinder_errors, cylinders, uncharged
 from fingerpad.reduced.model import STATES
 from fingerpad.results.quantities import PER_LENGTH, Output

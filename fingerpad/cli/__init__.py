@@ -13,7 +13,7 @@ from collections.abc import Sequence
 from difflib import get_close_matches
 
 from fingerpad import launcher
-from fingerpad.installed import OPTIONAL, needed_by, version
+from fingerpad.launcher import OPTIONAL, needed_by, version
 
 COMMANDS = {
     "estimate": "friction over force and voltage by a closed form, in seconds, without finite elements",

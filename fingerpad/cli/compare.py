@@ -9,7 +9,7 @@ import numpy as np
 
 from fingerpad.cli import output
 from fingerpad.cli.arguments import Parser, echo, path, positive, quantity, scene_of
-from fingerpad.ctrl_c import raises
+from fingerpad.launcher import raising_at_ctrl_c
 from fingerpad.reduced import cylinders
 from fingerpad.reduced.cylinders import Cylinders
 from fingerpad.reduced.model import STATES, Model
@@ -95,7 +95,7 @@ def main(argv: Sequence[str]) -> int:
         except SceneError as error:
             return Result(scene, model.name, None, None, None, failure=str(error))
 
-    with raises():
+    with raising_at_ctrl_c():
         results = [answer_or_refusal(model) for name, model in models.items() if name in args.model]
     echo(table(results))
     return max(1 if result.failure else 0 for result in results)

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from fingerpad.afferents import DEFAULT, LAWS
 from fingerpad.cli.arguments import Kind, Parser, echo, path, refuse_file
-from fingerpad.ctrl_c import raises
+from fingerpad.launcher import raising_at_ctrl_c
 from fingerpad.report.write import write
 from fingerpad.results.files import replace
 from fingerpad.results.result import Result
@@ -76,7 +76,7 @@ def _animate(folder: Path, file: Path | None) -> Path:
     from fingerpad.results.animation import animate  # Matplotlib
 
     try:
-        with raises(), progress(quiet=not watched()) as bar:
+        with raising_at_ctrl_c(), progress(quiet=not watched()) as bar:
             task = bar.add_task("frames drawn", total=None)
             animate(result, file, lambda done, count: bar.update(task, completed=done, total=count))
     except KeyboardInterrupt:

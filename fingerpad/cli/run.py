@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from fingerpad.cli.arguments import Parser, echo, path, refuse_twice, scene_of
-from fingerpad.ctrl_c import raises
+from fingerpad.launcher import raising_at_ctrl_c
 from fingerpad.model import breakdown
 from fingerpad.reduced.registry import MODELS, find
 from fingerpad.report.write import NAME
@@ -69,7 +69,7 @@ def main(argv: Sequence[str]) -> int:
 
     for caution in breakdown.ahead(scene.resolved()) if shown else ():
         echo(f"Caution: {caution}.")
-    with raises():
+    with raising_at_ctrl_c():
         result = solved(scene, model, context)
     if args.quiet or not model.path or scene.force is not None:  # else the run has printed it
         echo(f"\n{in_words(result)}" if result.finger or scene.force is None else result.failure)

@@ -1,19 +1,20 @@
 """``fingerpad solve``: the value of a key at which friction, or another quantity at full slip, has a target."""
 
 from collections.abc import Sequence
+from typing import Any
 
 from fingerpad.cli.arguments import Parser, echo, scene_of
-from fingerpad.ctrl_c import raises
+from fingerpad.launcher import raising_at_ctrl_c
 from fingerpad.reduced.cylinders import Cylinders
 from fingerpad.reduced.registry import MODELS, find
 from fingerpad.runs.context import RunContext
 from fingerpad.runs.inverse import solve
-from fingerpad.scene.messages import SceneError, clip
+from fingerpad.scene.messages import SceneError, clip, show
 
 _EXAMPLES = """
-    fingerpad solve --target mu_app=2x --over voltage
-    fingerpad solve --target "F_T=0.3 N" --set force="0.5 N" --model full
-    fingerpad solve --target "contrast=10 %" --over electric.d_i --from "0.5 um" --to "5 um"
+    fingerpad solve --target mu_app=0.4 --over voltage
+    fingerpad solve --target "f_t=0.3 N" --set force="0.5 N" --model full
+    fingerpad solve --target mu_app=1.1 --relative --over electric.d_i --from "0.5 um" --to "5 um"
 """
 
 
@@ -21,8 +22,10 @@ def main(argv: Sequence[str]) -> int:
     """Find the values of a key; return the exit code."""
     parser = Parser("solve", _EXAMPLES)
     parser.add_scene()
-    words = "at full slip: mu_app=2x (twice the value without voltage), 'F_T=0.3 N', 'contrast=10 %%'"
+    words = "at full slip, as mu_app=0.4 or 'f_t=0.3 N'"
     parser.add_argument("--target", action="append", default=[], metavar="QUANTITY=VALUE", help=words)
+    words = "the target is a multiple of the value without voltage: mu_app=2 is twice the friction"
+    parser.add_argument("--relative", action="store_true", help=words)
     parser.add_argument("--over", default="voltage", metavar="KEY", help="key that is varied (default: %(default)s)")
     parser.add_argument("--from", dest="low", metavar="VALUE", help="first value of the key, also with a unit")
     parser.add_argument("--to", dest="high", metavar="VALUE", help="last value of the key, also with a unit")
@@ -31,13 +34,17 @@ def main(argv: Sequence[str]) -> int:
     args = parser.read(argv)
     if len(args.target) != 1:
         given = "no --target is given" if not args.target else f"--target is given {len(args.target)} times"
-        raise SceneError(f'{given}; give one quantity and its value, as --target "F_T=0.3 N"')
+        raise SceneError(f"{given}; give one quantity and its value, as --target mu_app=0.4")
+    name, equals, value = (part.strip() for part in args.target[0].partition("="))
+    if not (name and equals and value):
+        raise SceneError(f"target is {show(args.target[0])}; give a quantity and its value, as --target mu_app=0.4")
     if (args.low is None) != (args.high is None):
         raise SceneError(f"one of --from and --to is given without the other; give both, or none for {clip(args.over)}")
     model = find(args.model)
     scene = scene_of(args, meshed=model.meshes)
     between = None if args.low is None else [_number(args.low), _number(args.high)]
-    found = solve(scene, args.target[0], args.over, between=between, model=Cylinders.name if model.path else args.model)
+    way: dict[str, Any] = {"between": between, "model": Cylinders.name if model.path else args.model}
+    found = solve(scene, args.over, relative=args.relative, **way, **{name: _number(value)})
     echo(str(found))
     if not model.path:
         return 0
@@ -47,7 +54,7 @@ def main(argv: Sequence[str]) -> int:
     # PETSc has its options from here on.
     from fingerpad.runs.full import exit_code
 
-    with raises():
+    with raising_at_ctrl_c():
         found = found.confirmed(RunContext(lines=True))
     echo(f"\n{found}")
     return max(exit_code(root.full) for root in found.roots if root.full is not None)

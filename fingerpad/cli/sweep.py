@@ -9,7 +9,7 @@ from typing import Any
 
 from fingerpad.cli import ranges
 from fingerpad.cli.arguments import Parser, changes, echo, positive
-from fingerpad.ctrl_c import raises
+from fingerpad.launcher import raising_at_ctrl_c
 from fingerpad.reduced.registry import MODELS
 from fingerpad.results.files import check_folder
 from fingerpad.runs import batch  # noqa: F401  # before Ctrl-C raises
@@ -45,7 +45,7 @@ def main(argv: Sequence[str]) -> int:
     if own := next((key for key in axes if key in inspect.signature(sweep).parameters), None):
         raise SceneError(f"{own} is varied and is no key of a scene; a sweep has one {own} for all of its points")
     try:
-        with raises():
+        with raising_at_ctrl_c():
             found = sweep(
                 scene, args.out, jobs=args.jobs, model=args.model, quiet=args.quiet, states=args.states, **axes
             )

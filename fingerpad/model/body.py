@@ -37,12 +37,12 @@ from variational import body as setup
 from variational.attraction.electroadhesion import ELECTROSTATIC
 from variational.contact.formulation import Formulation
 from variational.contact.friction import Friction
+from variational.contact.interface import Interface
 from variational.contact.penalty import Penalty
 from variational.element import ELEMENTS
 from variational.energy import EnergyBook
 from variational.materials.material import Material
 from variational.output import Lines, Nodes
-from variational.problem import Interface
 from variational.roughness.closure import Closure, check
 from variational.solvers.continuation import Attempt, StepFailed, Target
 from variational.state import ContactState, Skin, StepRecord

@@ -17,8 +17,9 @@ from geometry.profiles import Profiles
 from variational.attraction.electroadhesion import ELECTROSTATIC
 from variational.body import Body
 from variational.contact.formulation import SurfaceState
+from variational.contact.interface import Interface
 from variational.energy import EnergyBook
-from variational.problem import Interface, Problem
+from variational.problem import Problem
 from variational.resultants import RidgeLoads
 from variational.solvers.continuation import Attempt, Continuation
 from variational.solvers.target import Target

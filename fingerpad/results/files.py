@@ -25,6 +25,7 @@ FORMAT = 2
 _MAX_BYTES = 200_000_000  # of a file that is read; a summary of a thousand loads has two millions
 _FILES = 160  # bytes that the longest name of a file in a folder of results takes of a path
 _PATH = 80  # characters of a path in a sentence
+_MAX_NAME, _MAX_PATH = 255, 4096  # bytes, of Linux's file systems
 _MAX_DEPTH = 50  # of what it holds, which has some ten
 
 
@@ -80,20 +81,13 @@ def refuse_other_format(kept: Mapping[str, Any], name: str) -> None:
         name: of its folder.
 
     Raises:
-        SceneError: it has another format, or none; with the version that wrote it.
+        SceneError: it has another format, or none.
     """
-    if not has_other_format(kept):
-        return
-    found, known = kept.get("format"), kept.get("provenance")
-    versions = known.get("versions") if isinstance(known, Mapping) else None
-    versions = versions if isinstance(versions, Mapping) else {"fingerpad": kept.get("version")}
-    parts = (versions.get("fingerpad") or "of an unknown version", versions.get("source"))
-    by = " ".join(clip(str(part), 16) for part in parts if part)
-    was = "before formats had numbers" if found is None else f"format {clip(str(found), 16)}"
-    raise SceneError(
-        f"{name} was written by fingerpad {by}, {was}; this fingerpad reads format {FORMAT}; run it again, or use that "
-        "version"
-    )
+    if has_other_format(kept):
+        raise SceneError(
+            f"{name} has the format {clip(str(kept.get('format')), 16)} of another version; this fingerpad reads "
+            f"format {FORMAT}; run it again"
+        )
 
 
 def _is_shallow(data: Any, depth: int) -> bool:
@@ -172,25 +166,18 @@ def check_folder(folder: Path, option: str = "--out") -> None:
     Raises:
         SceneError: why not.
     """
-    name, text = f"{option} {clip(str(folder), _PATH)}", str(folder)
+    name, absolute = f"{option} {clip(str(folder), _PATH)}", Path(os.path.abspath(folder))
     try:
-        text.encode("utf-8")
+        str(folder).encode("utf-8")
     except UnicodeEncodeError:
         raise SceneError(f"{name} is not UTF-8; give a folder whose name is") from None
-    if "\0" in text:
-        raise SceneError(f"{name} has a zero byte in it; give a folder whose name has none")
-    try:
-        absolute = Path(os.path.abspath(folder))
-        there = next(place for place in (absolute, *absolute.parents) if os.path.lexists(place))
-        longest, whole = (
-            os.pathconf(there if there.is_dir() else "/", kind) for kind in ("PC_NAME_MAX", "PC_PATH_MAX")
+    longest, length = max(len(os.fsencode(part)) for part in absolute.parts), len(os.fsencode(absolute)) + _FILES
+    if "\0" in str(folder) or longest > _MAX_NAME or length > _MAX_PATH:
+        raise SceneError(
+            f"{name} has a zero byte or is too long; a name can have {_MAX_NAME} bytes, and a path {_MAX_PATH} with "
+            f"{_FILES} for files"
         )
-    except OSError as error:
-        raise SceneError(f"{name} cannot be a folder: {error.strerror}") from None
-    if max(len(os.fsencode(part)) for part in absolute.parts) > longest:
-        raise SceneError(f"{name} is too long; a name can have {longest} bytes")
-    if len(os.fsencode(absolute)) + _FILES > whole:
-        raise SceneError(f"{name} is too long; a path can have {whole} bytes, of which files take {_FILES}")
+    there = next(place for place in (absolute, *absolute.parents) if os.path.lexists(place))
     if not there.is_dir():
         which = "it" if there == absolute else clip(str(there), _PATH)
         raise SceneError(f"{name} cannot be a folder, since {which} is a file; give another one")

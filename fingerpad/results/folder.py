@@ -4,7 +4,7 @@ The scene is kept in the folder (``scene.json``) and another one is refused ther
 beside a summary of another, and no run is overwritten because ``--out`` was forgotten. The same scene may be run
 again: what its earlier run left stays until the new one has reached its first step, and goes then as a whole.
 Results are not written beside and put in place at the end, since every accepted step is to be seen at once and has
-to outlive the run. A resumed run writes its files anew, from :mod:`fingerpad.results.checkpoint`.
+to outlive the run. A resumed run writes its files anew, from :mod:`fingerpad.runs.checkpoint`.
 """
 
 import contextlib
@@ -27,18 +27,8 @@ if TYPE_CHECKING:
 
 # All that a run leaves, for the next run of the same scene to delete; what else is in the folder is not touched.
 LEFT = (
-    *(
-        "steps.csv",
-        "ridges.csv",
-        "receptors.csv",
-        "*_final.csv",
-        "coupling.csv",
-        "summary.json",
-        "summary.json*.part",
-        "run.log",
-        "result.nc",
-        "result.nc*.part",
-    ),
+    *("steps.csv", "ridges.csv", "receptors.csv", "*_final.csv", "coupling.csv"),
+    *("summary.json", "summary.json*.part", "run.log", "result.nc", "result.nc*.part"),
     *("fields.npz", "fields.npz*.part", "finger_*.png", "surface*.png"),
     *("history.png", "time.png", "field.png", "footprint.png", "solid.png", "report.html", "report.html*.part"),
     *("spikes.csv", "spikes.nc", "raster.png", "animation.webp"),
@@ -69,22 +59,27 @@ def on_rank_0(comm: "MPI.Comm | Serial", work: Callable[[], T]) -> T:
     """Return on every rank what rank 0 finds; collective.
 
     Raises:
-        OSError: what rank 0 cannot write, on every rank: the others would wait for it.
+        OSError: what rank 0 cannot read or write, on every rank: the others would wait for it.
+        SceneError: its refusal, on every rank.
     """
-    found: T | OSError | None = None
+    found: T | OSError | SceneError | None = None
     if comm.rank == 0:
         try:
             found = work()
-        except OSError as error:
+        except (OSError, SceneError) as error:
             found = error
     found = comm.bcast(found)
-    if isinstance(found, OSError):
+    if isinstance(found, OSError | SceneError):
         raise found
     return found  # type: ignore[return-value]
 
 
 class FolderError(SceneError):
     """A folder that results cannot be written to; one sentence."""
+
+
+class CheckpointError(SceneError):
+    """A checkpoint from which a run cannot go on; one sentence."""
 
 
 class Folder:
@@ -176,9 +171,7 @@ class Folder:
     def _kept(self) -> dict[str, Any] | None:
         """Return the parameters of the scene whose results are in the folder; None if there are none."""
         with contextlib.suppress(FileNotFoundError, ValueError):
-            return _whole(read_object(self.folder / "scene.json"))
-        with contextlib.suppress(FileNotFoundError, ValueError):
-            return _whole(read_object(self.folder / "summary.json").get("parameters", {}))
+            return read_object(self.folder / "scene.json")
         for file in (self.folder / "scene.json", *self._left()):
             if file.exists():
                 raise FolderError(f"{ends(self.folder)} holds {file.name} of an unknown scene; choose another folder")
@@ -207,23 +200,12 @@ def full_scene(folder: Path) -> Scene:
     """
     foreign(folder)
     try:
-        kept = _whole(read_object(folder / "scene.json"))
+        kept = read_object(folder / "scene.json")
     except (OSError, ValueError):
         raise FolderError(f"{ends(folder)} has no scene.json of a run, and so no run to go on with") from None
     if "model" in kept:
         raise FolderError(f"{ends(folder)} has a run of the model {kept['model']!r}; only a full one can go on")
     return from_data(kept)
-
-
-def _whole(parameters: Any) -> dict[str, Any]:
-    """Return parameters of a scene that a file holds.
-
-    Raises:
-        ValueError: they are something else.
-    """
-    if not isinstance(parameters, dict):
-        raise ValueError("no parameters of a scene")
-    return parameters
 
 
 def identity(parameters: Mapping[str, Any]) -> dict[str, Any]:

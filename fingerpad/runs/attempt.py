@@ -16,7 +16,7 @@ from fingerpad.model.report import Clock, Report
 from fingerpad.model.simulation import RestartRequired, Simulation
 from fingerpad.model.state import broken, force_error
 from fingerpad.results import fields
-from fingerpad.results.checkpoint import Checkpoint, CheckpointError, Growing
+from fingerpad.results.folder import CheckpointError
 from fingerpad.results.interrupt import Interrupt, Interrupted
 from fingerpad.results.provenance import provenance, refuse_unread
 from fingerpad.results.quantities import Output, valued
@@ -24,6 +24,7 @@ from fingerpad.results.result import Result
 from fingerpad.results.terminal import Console, in_words
 from fingerpad.results.writing import Writer
 from fingerpad.runs import post
+from fingerpad.runs.checkpoint import Checkpoint
 from fingerpad.runs.context import RunContext
 from fingerpad.runs.restarts import Restarts, finer, hint
 from fingerpad.scene import Scene
@@ -115,7 +116,6 @@ class Attempt:
             state = {
                 "simulation": self.simulation.kept(),
                 "report": self.report.kept(),
-                "states": Growing(self.report.record.states),
                 "recorder": recorder,
                 "restarts": self._restarts.kept(),
                 "mesh": self._model.mesh.model_dump(),
@@ -124,17 +124,17 @@ class Attempt:
                 "seconds": self._clock.present(),
             }
             if self._comm.rank == 0:
-                self._checkpoint.write(state)
+                self._checkpoint.write(state, self.report.record.states)
         self._has_kept = True
 
     def resume(self, kept: dict[str, Any]) -> None:
-        """Go on from a checkpoint, as :func:`fingerpad.runs.checkpoints.read` gives it; collective.
+        """Go on from a checkpoint, as :func:`fingerpad.runs.checkpoint.read` gives it; collective.
 
         Raises:
             CheckpointError: it is of another mesh.
         """
         self._has_kept, self._done = True, kept["done"]
-        states = kept["states"].items
+        states = kept["items"]
         try:
             self.simulation.resume(kept["simulation"], [*states])
         except OtherBody as error:

@@ -16,7 +16,7 @@ from fingerpad.results.result import Result
 from fingerpad.results.terminal import Console
 from fingerpad.results.writing import Writer
 from fingerpad.runs.attempt import Attempt, Session
-from fingerpad.runs.checkpoints import checkpoint_of, read
+from fingerpad.runs.checkpoint import checkpoint_of, read
 from fingerpad.runs.context import RunContext
 from fingerpad.runs.post import in_words
 from fingerpad.runs.restarts import Restarts
@@ -86,7 +86,7 @@ def _run(scene: Scene, session: Session, kept: dict[str, Any] | None, context: R
         more = kept["both_halves"] and not model.options.both_halves
         options = model.options.with_both_halves() if more else model.options
         model = model.changed(mesh=MeshSize(**kept["mesh"]), options=options)
-        writer.log.info("goes on after step %d of an earlier run", len(kept["states"].items))
+        writer.log.info("goes on after step %d of an earlier run", len(kept["items"]))
         console.show(f"fingerpad: going on with a run of {kept['seconds'][0]:.0f} s; its steps are listed again")
     try:
         with session.interrupt:

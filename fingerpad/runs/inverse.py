@@ -1,10 +1,10 @@
-"""The value of a key at which a scene reaches a target at full slip, by the closed form.
+"""The values of a key at which a quantity at full slip has a target, by the closed form.
 
 The closed form is the model "cylinders" (:mod:`fingerpad.reduced.cylinders`), of one state alone. The key is varied
-over a range (:mod:`fingerpad.runs.axis`), and each place at which the quantity crosses the target is refined
-(:mod:`fingerpad.runs.roots`). The full model confirms each value by one run, where it is asked for.
+over a range, and each crossing of the target is refined (:mod:`fingerpad.runs.roots`). On demand the full model
+confirms each value by one run.
 
-Friction is that of the whole finger, as in the headline of a result; that of the middle section where ``f_ext`` is
+Quantities are those of the whole finger, as in the headline of a result; those of the middle section where ``f_ext`` is
 varied, or the target has a unit per metre. A scene without a force gets the one whose centre bears its ``f_ext``.
 """
 
@@ -15,20 +15,74 @@ from dataclasses import dataclass, replace
 from fingerpad.reduced.cylinders import Cylinders
 from fingerpad.reduced.registry import find
 from fingerpad.results.answer import Number
-from fingerpad.results.quantities import FINGER, plus_minus_of
+from fingerpad.results.quantities import EXTREMES, FINGER, QUANTITIES, Output, plus_minus_of
 from fingerpad.results.result import Result
-from fingerpad.runs.axis import Axis, axis
 from fingerpad.runs.closed_form import STATE, ClosedForm
 from fingerpad.runs.context import RunContext
-from fingerpad.runs.roots import Roots
+from fingerpad.runs.roots import EQUAL, Axis, Roots, axis
 from fingerpad.runs.solve import checked, solved, stopped
-from fingerpad.runs.target import CONTRAST, Target, read
 from fingerpad.scene import Scene, with_values
-from fingerpad.scene.messages import SceneError
+from fingerpad.scene.messages import SceneError, clip, show
 from fingerpad.scene.remarks import drive_in_short, other_under_a_drive
 from fingerpad.slices import errors
+from geometry.units import to_si
 
 
+# -- the target ----------------------------------------------------------------------------------------------
+@dataclass(frozen=True)
+class Target:
+    """A quantity at full slip and the value that it is to have."""
+
+    quantity: Output
+    whole: bool
+    """Whether it is of the whole finger, else of the section at its centre."""
+    value: float
+    """In SI, or relative to the value without voltage."""
+    relative: bool
+
+    def shown(self, *values: float) -> str:
+        """Return one or two values of the kind of :attr:`value` in the unit of tables."""
+        scale, unit = (
+            (1.0, "times its value without voltage") if self.relative else (self.quantity.scale, self.quantity.unit)
+        )
+        return f"{' to '.join(f'{value * scale:.4g}' for value in values)} {unit}".rstrip()
+
+    def number(self, number: Number) -> str:
+        """Return the quantity with its error and unit."""
+        return f"{self.quantity.shown(number.value, number.error)} {self.quantity.unit}".rstrip()
+
+
+def _target(name: str, given: float | str, relative: bool, whole: bool) -> Target:
+    """Return a target.
+
+    Args:
+        name: of the quantity.
+        given: its value in SI, or a text with a unit.
+        relative: whether the value is a multiple of that without voltage.
+        whole: whether a name of both is that of the whole finger; the unit of a text decides first.
+
+    Raises:
+        SceneError: no such quantity, no number, or a unit that does not fit.
+    """
+    tables = {True: {key: each for key, each in FINGER.items() if key != "f_ext"},
+              False: {key: QUANTITIES[key] for key in EXTREMES}}  # fmt: skip
+    found = [(table[name], of) for of in (whole, not whole) if name in (table := tables[of])]
+    if not found:
+        known = ", ".join(dict.fromkeys([*tables[False], *tables[True]]))
+        raise SceneError(f"{clip(name)} is not a quantity of a target; it must be one of {known}")
+    why = "it must be a finite number"
+    if isinstance(given, str) and not relative:
+        for quantity, of in found if found[0][0].unit else ():  # f_t may be N/m or N
+            try:
+                return Target(quantity, of, to_si(given, quantity.si), False)
+            except ValueError as error:
+                why = str(error) if why.endswith("number") else why
+    elif isinstance(given, int | float) and not isinstance(given, bool) and math.isfinite(given):
+        return Target(*found[0], float(given), relative)
+    raise SceneError(f"target {name} is {show(given)}; {why}")
+
+
+# -- the solution --------------------------------------------------------------------------------------------
 @dataclass(frozen=True)
 class Root:
     """A value of the key at which the closed form has the target."""
@@ -44,12 +98,7 @@ class Root:
     closed: Result
     """Of the closed form: the section and, where the scene has a force, the whole finger."""
     full: Result | None = None
-    """Of the full model, where it was asked for."""
-
-    @property
-    def value(self) -> float:
-        """The quantity (SI)."""
-        return self.number.value
+    """Of the full model, on demand."""
 
 
 @dataclass(frozen=True)
@@ -74,65 +123,66 @@ class Solution:
         Args:
             context: ranks and console.
         """
-        way, roots = find("full"), list(self.roots)
+        model, roots = find("full"), list(self.roots)
         for k, root in enumerate(roots):
             if context.lines and context.ranks.rank == 0:
                 words = f"{self.axis.key} = {self.axis.shown(root.key)}, run {k + 1} of {len(roots)} of the full model"
                 print(f"\n{words}", flush=True)
-            full = solved(root.scene, way, context)
+            full = solved(root.scene, model, context)
             roots[k] = replace(root, full=full)
             if full.interrupted:
                 break
         return replace(self, roots=tuple(roots))
 
     def __str__(self) -> str:
-        """Return each value of the key, what the quantity is there, and what is known of its error."""
-        quantity, axis = self.target.quantity, self.axis
-        of = " of the whole finger" if self.target.whole else " of the middle section"
+        """Return each value of the key and the quantity there, with their errors."""
+        quantity, axis, target = self.target.quantity, self.axis, self.target
+        of = " of the whole finger" if target.whole else " of the middle section"
         lines = [
-            f"{self.target} over {axis.key} from {axis.shown(axis.low, axis.high)}: {quantity.words}{of} at full slip, "
-            f"by the closed form, under {drive_in_short(each.scene for each in self.roots)}."
+            f"{quantity.name} = {target.shown(target.value)} over {axis.key} from {axis.shown(axis.low, axis.high)}: "
+            f"{quantity.words}{of} at full slip, by the closed form, under "
+            f"{drive_in_short(each.scene for each in self.roots)}."
         ]
-        if self.target.name == CONTRAST:
-            lines.append("contrast is the relative rise of µ_app by the voltage.")
         for root in self.roots:
-            known = root.margin == root.margin
-            value = axis.with_error(root.key, root.margin) if known else axis.shown(root.key)
-            line = f"  {axis.key} = {value}" + ", ± by the error of the closed form" * known
-            lines.append(f"{line}: {quantity.symbol} {_cell(self.target, root.number)}")
+            known = ", ± by the error of the closed form" * (root.margin == root.margin)
+            value = axis.shown(root.key, error=root.margin)
+            lines.append(f"  {axis.key} = {value}{known}: {quantity.symbol} {target.number(root.number)}")
             if root.full is not None:
-                lines.append(f"    {self._beside(root, root.full)}")
+                lines.append(f"    {self._comparison(root, root.full)}")
         return "\n".join([*lines, *other_under_a_drive(each.scene for each in self.roots), *self.notes])
 
-    def _beside(self, root: Root, full: Result) -> str:
-        """Return what the full model has at a root, beside the closed form."""
+    def _comparison(self, root: Root, full: Result) -> str:
+        """Return the full model's value at a root, and its difference from the closed form."""
         if self.target.whole and (full.finger is None or STATE not in full.finger.states) or full.full_slip is None:
             return f"full model: no full slip{f': {full.failure}' if full.failure else ''}"
         found, value = full.number(STATE, self.target.quantity.name, self.target.whole), root.number.value
         off = round(100 * (found.value / value - 1), 1) + 0.0 if value else math.nan  # no -0.0
         ratio = f", {off:+.1f} % from the closed form" if value else ""
         by = f" (± by {', '.join(found.parts)})" if found.error == found.error else ""
-        return f"full model: {self.target.quantity.symbol} {_cell(self.target, found)}{by}{ratio}"
+        return f"full model: {self.target.quantity.symbol} {self.target.number(found)}{by}{ratio}"
 
 
 def solve(
     scene: Scene | None = None,
-    target: str = "",
     over: str = "voltage",
     *,
+    relative: bool = False,
     between: Sequence[float | str] | None = None,
     model: str = Cylinders.name,
+    **target: float | str,
 ) -> Solution:
-    """Return the values of a key at which a scene reaches a target at full slip.
+    """Return the values of a key at which a quantity at full slip has a target.
+
+    ``fp.solve(mu_app=0.4)`` is the voltage for a friction coefficient of 0.4.
 
     Args:
         scene: the scene; by default press, charge and slide of the default finger.
-        target: a quantity and its value: ``"mu_app=2x"``, twice the value without voltage; ``"F_T=0.3 N"``;
-            ``"contrast=10 %"``, the relative rise of µ_app by the voltage.
-        over: the key that is varied, as of :func:`fingerpad.runs.sweep.sweep`.
+        over: the key that is varied, as in :func:`fingerpad.runs.sweep.sweep`.
+        relative: whether the target is a multiple of the value without voltage: 2 for twice the friction.
         between: first and last value of the key, in SI or as texts with a unit; by default that of
-            :data:`fingerpad.runs.axis.RANGES`, or a tenth to ten times the scene's value.
+            :data:`fingerpad.runs.roots.RANGES`, or a tenth to ten times the scene's value.
         model: ``"cylinders"``, or ``"full"`` to confirm each value by a run of the full model.
+        **target: one quantity and its value, in SI or as a text with a unit: ``mu_app=0.4``, ``f_t="0.3 N"``.
 
     Returns:
         All values of the key in the range.
@@ -142,22 +192,26 @@ def solve(
         KeyboardInterrupt, SystemExit: a run of the full model is stopped, as by :func:`fingerpad.runs.solve.run`.
     """
     scene, way = checked(scene).resolved(), find(model)
+    if len(target) != 1:
+        given = f"{' and '.join(target)} are targets" if target else "no target is given"
+        raise SceneError(f"{given}; give one quantity and its value, such as mu_app=0.4")
     form = ClosedForm(Cylinders() if way.path else way)
     form.model.check(scene)
     if over == "voltage" and scene.supply is not None:
         raise SceneError("voltage is a drive and over is voltage; give one of its keys, as voltage.rms")
     newtons = over == "force" or (scene.force is not None and over != "f_ext")
-    goal, notes = read(target, over != "f_ext"), list[str]()
+    ((name, value),), notes = target.items(), list[str]()
+    goal = _target(name, value, relative, over != "f_ext")
     if over == "f_ext" and goal.whole or newtons and not goal.whole:
         kind, other = ("whole finger", "force") if goal.whole else ("section", "f_ext")
         given = f"over is {over}" if over in ("f_ext", "force") else "force is given"
-        raise SceneError(f"{goal.name} is a quantity of the {kind} and {given}; give {other} in its place")
+        raise SceneError(f"{goal.quantity.symbol} is of the {kind} and {given}; give {other} in its place")
     if goal.whole and not newtons:
         force = form.newtons(scene)
         at = f"the section at the finger's centre then bears the scene's f_ext, {scene.f_ext:g} N/m, at full slip"
         notes.append(f"No force is given. It is {force:.4g} N: {at}.")
         scene = scene.replace(force=force)
-    elif over == "f_ext" and goal.quantity.name in FINGER:
+    elif over == "f_ext" and name in FINGER:
         notes.append("The whole finger has another value; vary force for it.")
     solution = _Problem(scene, goal, axis(scene, over, between), form).solution(notes)
     solution = solution.confirmed(RunContext()) if way.path else solution
@@ -167,12 +221,15 @@ def solve(
     return solution
 
 
+@dataclass
 class _Problem:
-    """A target, the key that is varied for it, and the values that were computed."""
+    """A target, the key that is varied for it, and the value without voltage."""
 
-    def __init__(self, scene: Scene, target: Target, axis: Axis, form: ClosedForm) -> None:
-        self._scene, self._target, self._axis, self._form = scene, target, axis, form
-        self._uncharged: float | None = None
+    scene: Scene
+    target: Target
+    axis: Axis
+    form: ClosedForm
+    base: float | None = None
 
     def solution(self, notes: Sequence[str]) -> Solution:
         """Return the solution, with its notes after others.
@@ -180,81 +237,60 @@ class _Problem:
         Raises:
             SceneError: the target is not reached, with what is.
         """
-        axis, target = self._axis, self._target
-        search = Roots(self._relative, axis.place(axis.low), axis.place(axis.high), target.value)
+        axis, target, name = self.axis, self.target, self.target.quantity.name
+        search = Roots(self._reached, axis.place(axis.low), axis.place(axis.high), target.value)
         places = search.find()
-        if search.constant:
-            least = target.shown(next(iter(search.values.values())))
-            raise SceneError(f"{target.name} does not depend on {axis.key} here: it is {least}")
-        jumps = [f"At {axis.shown(axis.value(x))} {target.name} jumps over the target." for x in search.jumps]
+        low, high = min(search.values.values()), max(search.values.values())
+        if high - low <= EQUAL * max(abs(low), abs(high)):
+            raise SceneError(f"{name} does not depend on {axis.key} here: it is {target.shown(low)}")
+        jumps = [f"{name} jumps over it at {axis.shown(axis.value(x))}" for x in search.jumps]
+        refused = self._refused(search)
         if not places:
-            raise SceneError(self._out_of_range(search))
+            ends = axis.shown(axis.value(min(search.values)), axis.value(max(search.values)))
+            wanted = target.shown(target.value).removesuffix("s its value without voltage") + "s" * target.relative
+            words = f"at {axis.key} {ends} {name} is {target.shown(low, high)}; {wanted} is not reached"
+            raise SceneError("; ".join([words, *[*jumps, *refused][:1]]))
         roots = tuple(self._root(search, place) for place in places)
         known = [note for root in roots for note in self._known(root)]
-        refused = [f"{text[0].upper()}{text[1:]}." for text in [self._refused(search)] if text]
+        more = [f"{text[0].upper()}{text[1:]}." for text in (*jumps, *refused)]
         cautions = (f"! {caution}" for root in roots for caution in root.closed.cautions)
-        return Solution(
-            target, axis, self._scene, roots, tuple(dict.fromkeys([*notes, *known, *jumps, *refused, *cautions]))
-        )
+        return Solution(target, axis, self.scene, roots, tuple(dict.fromkeys([*notes, *known, *more, *cautions])))
 
     def _at(self, place: float) -> Scene:
-        return with_values(self._scene, {self._axis.key: self._axis.value(place)})
+        return with_values(self.scene, {self.axis.key: self.axis.value(place)})
 
     def _value(self, scene: Scene) -> float:
-        return self._form.value(scene, self._target.quantity, self._target.whole)
+        return self.form.value(scene, self.target.quantity, self.target.whole)
 
-    def _relative(self, place: float) -> float:
+    def _reached(self, place: float) -> float:
         """Return what is compared with the target: the quantity, or its ratio to that without voltage."""
         scene = self._at(place)
         value = self._value(scene)
-        return value / self._base(scene) if self._target.relative else value
-
-    def _base(self, scene: Scene) -> float:
-        """Return the quantity without voltage, on which voltage and coating have no influence."""
-        electric = self._axis.key.startswith(("voltage", "electric."))
-        if self._uncharged is None or not electric:
-            self._uncharged = self._value(scene.replace(voltage=0.0))
-        if self._uncharged == 0:
-            name = self._target.quantity.symbol
-            raise SceneError(f"{name} is 0 without voltage, of which there is no multiple; give a value of {name}")
-        return self._uncharged
+        if not self.target.relative:
+            return value
+        if self.base is None or not self.axis.key.startswith(("voltage", "electric.")):
+            self.base = self._value(scene.replace(voltage=0.0))
+        if self.base == 0:
+            raise SceneError(f"{self.target.quantity.symbol} is 0 without voltage, of which there is no multiple")
+        return value / self.base
 
     def _root(self, search: Roots, place: float) -> Root:
-        scene = self._at(place)
-        closed = self._form.result(scene)
-        number = closed.number(STATE, self._target.quantity.name, self._target.whole)
+        scene, axis = self._at(place), self.axis
+        closed = self.form.result(scene)
+        number = closed.number(STATE, self.target.quantity.name, self.target.whole)
         margin = abs(number.error / (number.value or math.nan) * search.values[place] / search.slope(place))
-        margin *= self._axis.value(place) if self._axis.logarithmic else 1.0
-        margin = margin if margin < self._axis.high - self._axis.low else math.nan  # where the slope vanishes
-        return Root(self._axis.value(place), number, margin, scene, closed)
+        margin *= axis.value(place) if axis.logarithmic else 1.0
+        margin = margin if margin < axis.high - axis.low else math.nan  # where the slope vanishes
+        return Root(axis.value(place), number, margin, scene, closed)
 
     def _known(self, root: Root) -> list[str]:
-        """Return what is known of the error of a root; a caution of its result tells where nothing is."""
+        """Return the parts of the error of a root; none where it is not known, of which its result has a caution."""
         known = [plus_minus_of(root.number.parts)] if root.number.error == root.number.error else []
-        return known + (errors.remarks([root.scene.force or 0.0]) if self._target.whole else [])
+        return known + (errors.remarks([root.scene.force or 0.0]) if self.target.whole else [])
 
-    def _refused(self, search: Roots) -> str:
-        """Return where there is no answer, nearest to those that there are, and why; empty where there is one."""
+    def _refused(self, search: Roots) -> list[str]:
+        """Return where the closed form has no value, nearest to those that there are, and why; empty where it has."""
         if not search.refusals:
-            return ""
+            return []
         place = min(search.refusals, key=lambda x: min(abs(x - each) for each in search.values))
-        return f"at {self._axis.shown(self._axis.value(place))} there is no answer: {search.refusals[place]}"
-
-    def _out_of_range(self, search: Roots) -> str:
-        """Return what the range gives in place of the target, in one sentence."""
-        axis, target = self._axis, self._target
-        least, most = min(search.values.values()), max(search.values.values())
-        ends = (axis.value(min(search.values)), axis.value(max(search.values)))
-        found = f"{target.shown(least, unit=False)} to {target.shown(most)}"
-        times = " times" if target.relative and target.name != CONTRAST else ""
-        wanted = f"{target.shown(target.value, unit=not times)}{times}"
-        jump = f"{target.name} jumps over it at {axis.shown(axis.value(search.jumps[0]))}" if search.jumps else ""
-        more = [text for text in (jump, self._refused(search)) if text][:1]
-        words = f"at {axis.key} {axis.shown(*ends)} {target.name} is {found}; {wanted} is not reached"
-        return "; ".join([words, *more])
-
-
-def _cell(target: Target, number: Number) -> str:
-    """Return the quantity of a target with its error and unit."""
-    unit = target.quantity.unit
-    return target.quantity.shown(number.value, number.error) + (f" {unit}" if unit else "")
+        return [f"at {self.axis.shown(self.axis.value(place))} there is no answer: {search.refusals[place]}"]

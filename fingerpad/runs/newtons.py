@@ -22,15 +22,15 @@ from fingerpad.model.finger import Step
 from fingerpad.model.options import FingerModel, by_rule, plan
 from fingerpad.model.report import Clock
 from fingerpad.model.state import broken
-from fingerpad.results.checkpoint import Checkpoint, CheckpointError
+from fingerpad.results.folder import CheckpointError
 from fingerpad.results.interrupt import Interrupt, Interrupted, all_together
-from fingerpad.results.provenance import check_options, provenance
+from fingerpad.results.provenance import check_options, provenance, refuse_unread
 from fingerpad.results.quantities import PENALTY, Output
 from fingerpad.results.result import Result
 from fingerpad.results.states import WORDS
 from fingerpad.results.terminal import Console
 from fingerpad.runs.branches import Again, Branches, Followed
-from fingerpad.runs.checkpoints import checkpoint_of, read
+from fingerpad.runs.checkpoint import Checkpoint, checkpoint_of, read
 from fingerpad.runs.context import RunContext
 from fingerpad.runs.post import Entry, cautions_on, kept, of_outputs
 from fingerpad.scene import Scene, SceneError
@@ -142,6 +142,7 @@ class _Newtons:
 
     # -- on the way ------------------------------------------------------------------------------------
     def _on_step(self, step: Step, done: float) -> None:
+        refuse_unread()
         self._steps = step.state.step
         self._console.step(step.state, min(len(self.branches.found) / (1 + len(traces.states(self._scene))), 1.0))
         self._pause()

@@ -10,11 +10,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from fingerpad import launcher
-from fingerpad.installed import needed_by, source, version
+from fingerpad.launcher import needed_by, source, version
 from fingerpad.model import breakdown
 from fingerpad.reduced.registry import find
 from fingerpad.results.files import below, has_other_format, read_object
-from fingerpad.results.folder import Serial, identity, on_rank_0
+from fingerpad.results.folder import CheckpointError, Serial, identity, on_rank_0
 from fingerpad.results.quantities import Output
 from fingerpad.results.quantities import checked as checked_outputs
 from fingerpad.results.result import Result
@@ -222,8 +222,6 @@ def _whole(scene: Scene, model: "Model", context: RunContext) -> Result:
 
 def gone_on(scene: Scene, model: "Model", context: RunContext) -> Result:
     """Return the result of a scene that its folder may have, whole or in part; collective."""
-    from fingerpad.results.checkpoint import CheckpointError
-
     folder = context.folder
     if folder is None:
         return _solved(scene, model, context)

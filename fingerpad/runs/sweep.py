@@ -12,14 +12,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from fingerpad import launcher
-from fingerpad.installed import source, version
+from fingerpad.launcher import source, version
 from fingerpad.reduced.registry import MODELS, find
 from fingerpad.report.write import attempt
 from fingerpad.results.files import FORMAT, below, check_folder, replace_json
 from fingerpad.results.quantities import Output
 from fingerpad.results.quantities import checked as checked_outputs
 from fingerpad.results.result import Result
-from fingerpad.runs.axis import refuse_many
 from fingerpad.runs.context import RunContext
 from fingerpad.runs.post import applied, of_kept
 from fingerpad.runs.solve import checked, solved
@@ -37,12 +36,13 @@ FILES = ("table.csv", FILE, "report.html", "sweep.json")
 """What a sweep writes into its folder beside its points."""
 STATES = ("all", "full_slip")
 """Of the points of a sweep: the first is the default."""
+MAX_POINTS = 10_000
 _LIMIT = 4 * 3600.0  # s of processor time for one point
 
 
 def sweep(
     scene: Scene | None = None,
-    out: str | Path = "results/sweep",
+    out: str | Path | None = "results/sweep",
     *,
     jobs: int = 1,
     model: str = DEFAULT_MODEL,
@@ -59,7 +59,8 @@ def sweep(
 
     Args:
         scene: the scene; by default press, charge and slide of the default finger.
-        out: folder of the results, of ``table.csv`` and of ``report.html``.
+        out: folder of the results, of ``table.csv`` and of ``report.html``; None to write nothing, of a model without
+            finite elements alone.
         jobs: points that are run at a time.
         model: a name of :data:`fingerpad.reduced.registry.MODELS`, ``"full"`` or ``"cylinders"``.
         quiet: whether to print no line for each point, and show no progress bar.
@@ -85,7 +86,7 @@ def sweep(
         raise SceneError("a sweep runs its points in processes of its own; start it without mpirun, and use jobs")
     if not isinstance(jobs, Integral) or jobs < 1:
         raise SceneError(f"jobs is {show(jobs)}; it must be a whole number, at least 1")
-    if not isinstance(out, str | os.PathLike):
+    if not (isinstance(out, str | os.PathLike) or (out is None and not way.meshes)):
         raise SceneError(f"out is {show(out)}; it must be the path of a folder")
     checked_outputs(outputs)
     _refuse_axes(axes)
@@ -99,24 +100,39 @@ def sweep(
             refuse_others(each)
     for each in scenes if way.meshes else ():
         each.refuse_laws_of_program("the processes of a sweep")
-    folder = Path(out)
-    _claim(folder)
+    folder = None if out is None else Path(out)
+    if folder is not None:
+        _claim(folder)
     if way.meshes:
+        assert folder is not None
         kept = _in_processes(scenes, values, folder, jobs, way, quiet, states)
         found = [applied(each, of_kept(outputs)) for each in kept]
     else:
         found = [_here(each, way, outputs) for each in scenes]
-    done = Sweep(values, tuple(found), folder)
+    said = list(dict.fromkeys(note for each in found for note in leakage(each.scene)))
+    leaks = f"{'First point: ' * (len(said) > 1)}{said[0]}" if said else ""
+    done = Sweep(values, tuple(found), folder, (leaks,) if leaks else ())
+    if folder is None:
+        return done
+    asked: dict[str, Any] = {"format": FORMAT, "version": version(), "model": model, "parameters": scene.parameters()}
+    return _written(done, folder, asked, folder / (model if states == STATES[0] else states))
+
+
+def _written(done: Sweep, folder: Path, about: dict[str, Any], place: Path) -> Sweep:
+    """Write the files of a sweep; return it with notes on them.
+
+    Args:
+        done: the sweep, with its notes.
+        folder: of the files.
+        about: what ``sweep.json`` has beside outputs, cautions and notes.
+        place: folder of the points.
+    """
     for name in FILES[:-1]:  # else that of an earlier sweep may stay beside this one's
         (folder / name).unlink(missing_ok=True)
-    asked: dict[str, Any] = {"format": FORMAT, "version": version(), "model": model, "parameters": scene.parameters()}
-    asked |= {"outputs": [each.to_dict() for each in done.outputs]}
-    said = list(dict.fromkeys(note for each in done.results for note in leakage(each.scene)))
-    leaks = f"{'First point: ' * (len(said) > 1)}{said[0]}" if said else ""
-    replace_json(folder / FILES[-1], asked | {"cautions": done.cautions(), "notes": [leaks] if leaks else []})
+    about |= {"outputs": [each.to_dict() for each in done.outputs]}
+    replace_json(folder / FILES[-1], about | {"cautions": done.cautions(), "notes": list(done.notes)})
     done.to_csv(folder / FILES[0])
-    place = folder / (model if states == STATES[0] else states)
-    notes = tuple(filter(None, (leaks, _reached(done), done.save(), _older(done, place))))
+    notes = (*done.notes, *filter(None, (_reached(done), done.save(), _older(done, place))))
     attempt(folder)
     return replace(done, notes=notes)
 
@@ -169,7 +185,8 @@ def _refuse_axes(axes: Mapping[str, Sequence[Any]]) -> None:
             raise SceneError(
                 f"{key} of the sweep is {show(values)}; it must be a list of at least one value, none a list"
             )
-    refuse_many(math.prod(len(values) for values in axes.values()))
+    if (count := math.prod(len(values) for values in axes.values())) > MAX_POINTS:
+        raise SceneError(f"the sweep has {count} points; at most {MAX_POINTS} are allowed")
 
 
 def _values(scenes: Sequence[Scene], axes: Mapping[str, Sequence[Any]]) -> dict[str, tuple[Any, ...]]:
