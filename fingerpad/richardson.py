@@ -23,7 +23,7 @@ three. Where an accuracy is asked for, this error has to be within it, at the pr
 The orders are those known beforehand: p = 1, that of a contact's edge on a mesh whose nodes are not at the edge, for
 forces and lengths, so that the error left is as large as the last change; for energy densities at sites deep in the
 skin, which hardly depend on the edge, that of the strains, p = 2 with quadratic elements and p = 1 with linear ones. An
-order observed from three meshes is mostly noise, since an edge moves facet by facet (``docs/accuracy.md``). Two meshes
+order observed from three meshes is mostly noise, since an edge moves facet by facet (``docs/errors.md``). Two meshes
 that differ in all elements leave lengths alone to the edge, whose facets are short there, and have p = 2 for all else.
 
 For the same reason a change may come out small by accident. That of a sum over ridges counts as at least the root of
@@ -49,7 +49,7 @@ ONCE, MORE = 2.0, 1.5
 
 With them the estimated error covers the known one in at least 90 % of the known cases of each kind, of runs with an
 accuracy, where all sizes are changed in turn. One size changed alone does not show the scatter of energy densities.
-``docs/accuracy.json`` has the cases, ``benchmarks/accuracy.py`` counts them for ``docs/accuracy.md``, and
+``docs/accuracy.json`` has the cases, ``benchmarks/accuracy.py`` counts them for ``docs/errors.md``, and
 ``tests/test_calibration.py`` holds the factors to it.
 """
 TWO = 2.0
@@ -63,7 +63,7 @@ lengths, highest pressures and energy densities, of the last in 457 of 457, and 
 error, of which that is a half to three quarters, in at least 95 % of each kind. These factors, and the order of the
 highest pressure, were chosen on the same scenes.
 ``docs/two_meshes.json`` has the values on the three meshes, ``benchmarks/two_meshes.py`` counts the cases for
-``docs/two_meshes.md``, and ``tests/test_calibration.py`` holds the factors to it.
+``docs/errors.md``, and ``tests/test_calibration.py`` holds the factors to it.
 """
 RECEPTOR = 5e-6
 """Largest element (m) at a receptor site with which the error of an energy density there is estimated. The tips of the
@@ -261,7 +261,7 @@ def rigid(values: Mapping[str, float], stiffer: Mapping[str, float]) -> dict[str
     on ridges of a half-width a of some 50 um. Without attraction the length of a contact grows by some :math:`\ell
     \ln(a / \ell)`, whose order about there is :math:`1 - 1 / \ln(a / \ell) = 0.8`; of a light finger (5 N/m, 200 V,
     facets of 2.5 um) it is 0.7 from three stiffnesses, and p is :data:`ORDER`. The share is known to a factor of two:
-    what 5000 MPa/mm change in the default scene is beside what 500 and 1500 predict in ``docs/accuracy.md``. Of that
+    what 5000 MPa/mm change in the default scene is beside what 500 and 1500 predict in ``docs/errors.md``. Of that
     light finger's 482 um at full slip 7.1 um are predicted to go; ten times the stiffness takes off 6.6 um, and
     Nitsche's method tends to 6 um less than the penalty. For friction, which hardly depends on the penalty, only the
     order of magnitude is right. On facets far longer than :math:`\ell` a much stiffer screen holds the skin at single

@@ -86,14 +86,13 @@ class Row(NamedTuple):
 def judged(docs: Path) -> list[Row]:
     """Return the rows of the page from the kept numbers of a folder."""
     found, judged = kept("measured", docs).numbers["rows"], []
-    sources = {source["key"]: source for source in _read("sources")}
+    sources = {source["key"]: f"[{k}]({source['link']})" for k, source in enumerate(_read("sources"), start=1)}
     for text in _read("rows"):
-        source, (numbers, verdict) = sources[text["source"]], found[text["key"]].values()
+        numbers, verdict = found[text["key"]].values()
         verdict = BUILT if text["built"] and verdict == HIT else verdict
         because = f": {text['why']}" if verdict != HIT and text["why"] else ""
-        by = f"[{source['words']}]({source['link']}); people: {source['people']}; {source['read']}"
         ours = text["ours"].format(**numbers).replace("%", " %")
-        line = cells(text["measured"], by, ours, text["fitted"], f"**{verdict}**{because}")
+        line = cells(f"{text['measured']} {sources[text['source']]}", ours, text["fitted"].partition(" (")[0], f"**{verdict}**{because}")
         judged.append(Row(text["key"], text["kind"], numbers, verdict, line))
     return judged
 
@@ -106,7 +105,7 @@ def with_keys(docs: Path) -> list[Row]:
         numbers, verdict = found[text["key"]].values()
         verdict = BUILT if text["built"] and verdict == HIT else verdict
         ours = text["ours"].format(**numbers).replace("%", " %")
-        line = cells(first[text["key"]]["measured"], text["keys"], ours, text["fitted"], f"**{verdict}**")
+        line = cells(first[text["key"]]["measured"], text["keys"], ours, text["fitted"].partition(" (")[0], f"**{verdict}**")
         made_of.append(Row(text["key"], "other", numbers, verdict, line))
     return made_of
 
@@ -120,7 +119,7 @@ def draw(docs: Path) -> Path:
     """Write docs/measured.md and its picture from docs/measured.json."""
     picture(docs / "measured.png", (11, 4), lambda figure: _paint(figure, kept("measured", docs).numbers))
     every = judged(docs)
-    names: dict[str, Any] = {"judged": every, "others": with_keys(docs)}
+    names: dict[str, Any] = {"judged": every, "others": with_keys(docs), "sources": _read("sources")}
     names |= {"left_out": sum(row.verdict == rules.MISS for row in every if row.key in _LEFT_OUT)}
     names |= {"found": [row.verdict for row in every if row.kind != "simulated"]}
     return page(docs, "measured", "make measured", globals() | names)

@@ -211,7 +211,7 @@ def _mesh(mesh: dict[str, Any]) -> str:
 
 
 def draw(docs: Path) -> Path:
-    """Write docs/peers.md and its picture from docs/peers.json."""
+    """Write docs/verification.md and its picture from docs/peers.json."""
     found, summary = kept("peers", docs).numbers, dict[str, Array]()
     for row in (row for mesh in found["meshes"] for state in mesh["states"] for row in state["rows"]):
         if "differences" in row and "," not in row["program"]:

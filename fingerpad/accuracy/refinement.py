@@ -23,7 +23,7 @@ estimate is within what is allowed, or the run reports that it is not. A state i
 is noted; it appears as a large share.
 
 The result is the *estimated discretisation error*: the estimate with its factors of safety, which in whole runs
-covers the known errors of nine of ten numbers (``docs/two_meshes.md``; with an accuracy ``docs/accuracy.md``). It is of
+covers the known errors of nine of ten numbers (``docs/errors.md``; with an accuracy ``docs/errors.md``). It is of
 the mesh, over the screen as it is. The effect of a penalty is reported beside it (:mod:`fingerpad.richardson`).
 
 Not estimated: the effect on normal contact of a friction history that is the first mesh's.
