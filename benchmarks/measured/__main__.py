@@ -92,7 +92,7 @@ def judged(docs: Path) -> list[Row]:
         verdict = BUILT if text["built"] and verdict == HIT else verdict
         because = f": {text['why']}" if verdict != HIT and text["why"] else ""
         ours = text["ours"].format(**numbers).replace("%", " %")
-        line = cells(f"{text['measured']} {sources[text['source']]}", ours, text["fitted"].partition(" (")[0], f"**{verdict}**{because}")
+        line = cells(f"{text['measured']} {sources[text['source']]}", ours, _number(text["fitted"]), f"**{verdict}**{because}")
         judged.append(Row(text["key"], text["kind"], numbers, verdict, line))
     return judged
 
@@ -105,9 +105,14 @@ def with_keys(docs: Path) -> list[Row]:
         numbers, verdict = found[text["key"]].values()
         verdict = BUILT if text["built"] and verdict == HIT else verdict
         ours = text["ours"].format(**numbers).replace("%", " %")
-        line = cells(first[text["key"]]["measured"], text["keys"], ours, text["fitted"].partition(" (")[0], f"**{verdict}**")
+        line = cells(first[text["key"]]["measured"], text["keys"], ours, _number(text["fitted"]), f"**{verdict}**")
         made_of.append(Row(text["key"], "other", numbers, verdict, line))
     return made_of
+
+
+def _number(fitted: str) -> str:
+    """Return how many parameters are fitted, without which ones."""
+    return fitted.partition(" (")[0]
 
 
 def _read(name: str) -> list[dict[str, str]]:
