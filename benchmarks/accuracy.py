@@ -3,8 +3,8 @@
 environment/run python3 -m benchmarks.accuracy [--jobs 2] [--draw]     after benchmarks.errors; an hour of one core
 
 Scenes with an ``[accuracy]``, ten of them drawn at random, against their limits on finer meshes (benchmarks/limits.py),
-with the same penalty. Writes docs/accuracy.json and docs/errors.md. fingerpad/richardson.py takes its factors of
-safety from them; tests/test_calibration.py checks the coverage.
+with the same penalty. Writes docs/accuracy.json and docs/errors.md. fingerpad/accuracy/richardson.py takes its
+factors of safety from them; tests/test_calibration.py checks the coverage.
 """
 
 import sys
@@ -19,8 +19,8 @@ import numpy as np
 from benchmarks import harness, limits
 from benchmarks.errors import DEFAULT, LEVELS, STATES, parted
 from benchmarks.limits import Limit
+from fingerpad.accuracy.richardson import MORE, ONCE
 from fingerpad.model.options import by_rule, check
-from fingerpad.richardson import MORE, ONCE
 from fingerpad.runs.batch import Summary
 from fingerpad.scene import Scene, SceneError, load, start
 from fingerpad.scene.parameters import Accuracy

@@ -14,16 +14,14 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from scipy.interpolate import PchipInterpolator
 
 from benchmarks import harness
 from benchmarks.harness import keep, kept, made, page, picture
-from fingerpad.reduced import detection
 from fingerpad.results import style
 from fingerpad.runs.drive import FREQUENCIES as TABLED
 from fingerpad.runs.drive import drive, thresholds
 from fingerpad.scene import Scene
-from fingerpad.scene.supply import REFERENCE, remains
+from fingerpad.scene.drive import REFERENCE, remains
 from fingerpad.scene.waveform import MEASURES
 from variational.attraction.circuit import LEAKS
 
@@ -48,8 +46,6 @@ WAVES: dict[str, dict[str, Any]] = {
 }
 SHOWN = (10.0, 30.0, 100.0, 300.0, 1e3, 1e4, 1e5, 1e6)  # Hz
 OVER_TIME = 30.0  # Hz
-NEAR = (1.5e-6, 2.5e-6)
-"""Gaps (m) of ridges, beside the one at which the full model has the phase of a drive."""
 _KEPT = 256  # samples of a period
 
 
@@ -69,8 +65,6 @@ def compute(args: argparse.Namespace) -> None:
         "time": {kind: _over_time(kind, leaky) for kind in ("sine", "square")},
         "felt": _felt_at(leaky, [float(f) for f in np.geomspace(10, 480, 21)]),
         "felt_table": {name: _felt_at(CIRCUITS[name], TABLED) for name in ("sliding dry", "no leak")},
-        "beyond": _beyond(leaky),
-        "phase": [_phase(f, leaky) for f in SHOWN[:4]],
     }
     keep("drive", numbers, made(), args.docs)
 
@@ -82,8 +76,8 @@ def _scene(wave: Mapping[str, Any], electric: Mapping[str, Any]) -> Scene:
 def _share(frequency: float, electric: Mapping[str, Any]) -> float:
     """Return the square of the voltage across the reference gap, over that of the drive."""
     scene = _scene(SINE | {"frequency": frequency}, electric)
-    assert scene.supply is not None
-    return float(scene.supply.circuit.share(frequency, REFERENCE, *scene.supply.behind))
+    assert scene.drive is not None
+    return float(scene.drive.circuit.share(frequency, REFERENCE, *scene.drive.layers))
 
 
 def _friction(frequency: float, electric: Mapping[str, Any]) -> float:
@@ -101,8 +95,8 @@ def _left_out(frequency: float, electric: Mapping[str, Any]) -> float:
 def _wave(wave: Mapping[str, Any], electric: Mapping[str, Any]) -> dict[str, float]:
     """Return measures of a drive and its friction (V, Pa, N/m)."""
     scene = _scene(wave, electric)
-    assert scene.supply is not None
-    found, measures = drive(scene), scene.supply.measures()
+    assert scene.drive is not None
+    found, measures = drive(scene), scene.drive.measures()
     f = float(wave["frequency"])
     friction = {"mean": found.f_t.mean(), "low": found.f_t.min(), "high": found.f_t.max()}
     friction |= {"at_f": found.at(f), "at_2f": found.at(2 * f)}
@@ -116,33 +110,6 @@ def _waves(wave: Mapping[str, Any]) -> dict[str, dict[str, float]]:
 
 def _felt_at(electric: Mapping[str, Any], frequencies: Sequence[float]) -> list[dict[str, Any]]:
     return [vars(each) for each in thresholds(Scene(electric=dict(electric)), frequencies)]
-
-
-def _beyond(electric: Mapping[str, Any]) -> dict[str, list[float]]:
-    """Return relative thresholds of a sine at the extrapolated frequencies, by rules of how thresholds go on."""
-    f, a = np.log(detection.FREQUENCY), np.log(detection.DISPLACEMENT)
-    known = [each for each in _felt_at(electric, TABLED) if each["extrapolated"]]
-    at = np.log([2 * each["frequency"] for each in known])  # of the force
-    curve, three = PchipInterpolator(f, a), np.polynomial.Polynomial.fit(f[-3:], a[-3:], 2)
-    rules = {
-        "power of the last two thresholds (used)": np.log(detection.threshold(np.exp(at))),
-        "power of the last three": a[-1] + np.polyfit(f[-3:], a[-3:], 1)[0] * (at - f[-1]),
-        "monotone cubic curve, its slope at the end": a[-1] + curve.derivative()(f[-1]) * (at - f[-1]),
-        "logarithm straight over the frequency": a[-1] + (a[-1] - a[-2]) * (np.exp(at) - 350.0) / 50.0,
-        "parabola through the last three, in logarithms": three(at),
-        "constant": a[-1] + 0 * at,
-    }
-    sine = np.array([each["sine"] for each in known])
-    first = np.log(detection.threshold(np.exp(at)))
-    return {name: (sine * np.exp((values - first) / 2)).tolist() for name, values in rules.items()}
-
-
-def _phase(frequency: float, electric: Mapping[str, Any]) -> float:
-    """Return by how much (degrees) the phase across other gaps is off that across the reference gap, at most."""
-    supply = _scene(SINE | {"frequency": frequency}, electric).supply
-    assert supply is not None
-    gains = supply.circuit.gain(frequency, (*NEAR, REFERENCE), *supply.behind)
-    return float(np.abs(np.angle(gains[:-1] / gains[-1], deg=True)).max())
 
 
 def _remains(electric: Mapping[str, Any]) -> dict[str, float]:

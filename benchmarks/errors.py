@@ -19,10 +19,10 @@ from benchmarks import harness, limits
 from benchmarks.limits import Limit
 from benchmarks.runs import SITES as AT_SITES
 from benchmarks.runs import Run, finished
+from fingerpad.accuracy.richardson import ORDER, plus_minus
 from fingerpad.model.options import by_rule
 from fingerpad.results import style
 from fingerpad.results.states import WORDS
-from fingerpad.richardson import ORDER, plus_minus
 from fingerpad.scene import Scene, from_data, load
 
 _LIMIT = 10800.0  # s of processor time for one run

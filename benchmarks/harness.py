@@ -13,9 +13,11 @@ import argparse
 import json
 import math
 import subprocess
+import time
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from datetime import date
+from functools import partial
 from hashlib import sha256
 from pathlib import Path
 from typing import Any
@@ -29,7 +31,7 @@ from fingerpad.results import style
 from fingerpad.results.files import replace
 from fingerpad.runs import processes
 from fingerpad.runs.batch import Summary, sweep
-from fingerpad.runs.processes import End, Pool
+from fingerpad.runs.processes import End
 from fingerpad.scene import Scene
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -78,14 +80,20 @@ def solve(
     found = {name: json.loads(file.read_text(encoding="utf-8")) for name, file in files.items() if file.exists()}
 
     def done(name: str, end: End, left: int) -> None:
-        failure = {"failure": end.reason, "message": end.message}
-        found[name] = failure if end.reason else json.loads(end.stdout.splitlines()[-1])
         if end.reason != "STOPPED":
+            failure = {"failure": end.reason, "message": end.message}
+            found[name] = failure if end.reason else json.loads(end.stdout.splitlines()[-1])
             replace(files[name], json.dumps(found[name]) + "\n")
         print(f"{left:4d} left  {name}: {end.reason or 'done'} {end.message}", flush=True)
 
-    pool = Pool[str, End](lambda name: processes.run(module, [texts[name], str(limit)], limit), jobs, hours)
-    pool.run([name for name in cases if name not in found], done)
+    stop = time.monotonic() + 3600 * hours
+
+    def case(name: str) -> End:
+        if time.monotonic() > stop:
+            return End(0, "STOPPED", "no time is left", "")
+        return processes.run(module, [texts[name], str(limit)], limit)
+
+    processes.finish({name: partial(case, name) for name in cases if name not in found}, done, jobs)
     return found
 
 

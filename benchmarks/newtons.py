@@ -1,10 +1,9 @@
 """Newtons of a whole finger: sums of slices over force, voltage and shape, and what they rest on.
 
-environment/run python3 -m benchmarks.newtons [--draw]     one run of the full model, some minutes, then seconds
+environment/run python3 -m benchmarks.newtons [--draw]     seconds
 
 The traces are those of docs/models.json: the full and the cylinders' finger at eight forces and five voltages, with a
-contact size of 10 um. The run raises the force while the finger slides, for comparison with them.
-Writes docs/newtons.json, docs/newtons.md and its picture; docs/paper.md has the friction from here.
+contact size of 10 um. Writes docs/newtons.json, docs/newtons.md and its picture; docs/paper.md has its friction.
 """
 
 import argparse
@@ -18,19 +17,18 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from benchmarks import harness
-from benchmarks.models import SIZE, name
-from benchmarks.runs import FORCES, VOLTAGES, Run, trace
+from benchmarks.models import name
+from benchmarks.runs import FORCES, VOLTAGES
 from fingerpad.reduced import uncharged
 from fingerpad.results import style
 from fingerpad.scene import Scene
 from fingerpad.scene.parameters import Slices
-from fingerpad.slices import errors, estimate, traces
-from fingerpad.slices.total import Profile, Total, at_force, at_indentation, profile
+from fingerpad.slices import errors, estimate
+from fingerpad.slices.total import Profile, Total, at_force, profile
 from fingerpad.slices.trace import Trace
 from fingerpad.slices.trace import trace as trace_of
 from variational.state import RESULTS, ContactState
 
-_LIMIT = 3600.0  # s of processor time of the run
 RADII = (15e-3, 28e-3, 40e-3)  # m, R_z
 NEWTONS = (0.05, 0.1, 0.2, 0.3, 0.5, 0.75)  # N
 COMPARED = 0.5  # N
@@ -39,7 +37,6 @@ PAPER = 20e-3  # m of finger, by which the paper multiplies
 CENTRE = 75.0  # N/m, of the run and of the estimates in the table
 CENTRES = (25.0, 50.0, 75.0, 100.0, 120.0)  # N/m, of the runs whose estimates are judged
 ESTIMATED = ("f_t", "f_electrostatic", "contact_area", "gross_area", "indentation")
-COUNTS, FINE = (6, 12, 24, 48, 96), 1536  # slices
 HIGH = 200.0  # V
 COMPARISONS = {"ridged, 200 V": errors.ONCE, "smooth, earlier": errors.EARLIER, "smooth, below": errors.SMOOTH}
 COARSE = 0.3  # N: below it a few elements of a solid finger are in contact
@@ -142,46 +139,13 @@ def estimates(scenes: Found) -> list[dict[str, Any]]:
     return found
 
 
-def refined(scenes: Found) -> list[dict[str, float]]:
-    """Return the relative change of sums with fewer slices, at 0.7 mm and :data:`HIGH`."""
-    of = kept(scenes, "full", HIGH)
-    fine = at_indentation(finger(), of, 0.7e-3, FINE).totals
-    sums = {n: at_indentation(finger(), of, 0.7e-3, n).totals for n in COUNTS}
-    return [{"slices": n} | {key: value / fine[key] - 1 for key, value in each.items()} for n, each in sums.items()]
-
-
-def raising() -> Scene:
-    """Return the scene in which the force is raised while the finger slides."""
-    return traces.history(trace(CENTRE, HIGH, SIZE), "full_slip", CENTRE)
-
-
-def paths(scenes: Found, out: Path) -> list[dict[str, float]]:
-    """Return full slip with the force raised in sliding, beside a press to the force before sliding."""
-    steps = Run(raising(), out).steps
-    slips = np.flatnonzero((steps["all_slip"] > 0) & (steps["f_t"] > 0))
-    slips = slips[np.argsort(steps["f_ext"][slips], kind="stable")]
-    found = []
-    for state in states(scenes, "full", HIGH, "full_slip")[: FORCES.index(CENTRE) + 1]:
-        near = slips[np.abs(steps["f_ext"][slips] - state.f_ext).argmin()]
-        raised = {
-            key: float(np.interp(state.f_ext, steps["f_ext"][slips], steps[key][slips]))
-            for key in ("f_t", "contact_length")
-        }
-        counts = {"ridges": state.ridges_in_contact, "ridges_raised": float(steps["ridges_in_contact"][near])}
-        pressed = {"f_t": state.f_t, "contact_length": state.contact_length}
-        found.append({"f_ext": state.f_ext} | pressed | {f"{key}_raised": raised[key] for key in raised} | counts)
-    return found
-
-
 def compute(args: argparse.Namespace) -> None:
-    """Run what is missing and keep the numbers."""
-    made = harness.run({"raised in sliding": raising()}, args, _LIMIT)
+    """Keep the numbers."""
     scenes = harness.kept("models", args.docs).numbers["scenes"]
     numbers = {
         "friction": friction(scenes), "models": by_model(scenes), "estimates": estimates(scenes),
-        "refined": refined(scenes), "paths": paths(scenes, args.out),
     }  # fmt: skip
-    harness.keep("newtons", numbers, harness.made(made.values()), args.docs)
+    harness.keep("newtons", numbers, harness.made(), args.docs)
 
 
 # -- page ----------------------------------------------------------------------------------------------------
@@ -260,7 +224,6 @@ def draw(docs: Path) -> Path:
         "shares": [[errors[0] for _, errors in solids], *([errors[k] for errors in above] for k in (1, 2))],
         "slips": [each for each in numbers["estimates"] if each["state"] == "full_slip"],
         "presses": [each for each in numbers["estimates"] if each["state"] == "charged"],
-        "paths": [(p, p["f_t_raised"] / p["f_t"] - 1) for p in numbers["paths"]],
     }  # fmt: skip
     return harness.page(docs, "newtons", "python3 -m benchmarks.newtons", globals() | names, "models", "solid", "hero")
 

@@ -26,7 +26,6 @@ ON_RANKS, REPEATS = (1.0, 0.5), 3
 IDLE = 0.5  # load average above which a ratio of wall times is not measured
 OPERATIONS = ("tangent", "factorisation", "solution", "residual")
 LAYER = "layer at the screen"
-_LINK, _LATENCY = 10e9, 2e-6  # bytes/s and s, of a cluster's network
 Numbers = dict[str, Any]
 
 
@@ -112,27 +111,6 @@ def unit(run: Mapping[str, Any]) -> float:
     return float(sum(seconds[name] / (calls[name] - run["led"] / 2) for name in ("tangent", "factorisation")))
 
 
-def cluster(one: Mapping[str, Any], ranks: int) -> tuple[float, float, float]:
-    """Estimate what a rank sends in a factorisation and its residual (bytes), and the time this takes (s).
-
-    Nested dissection of a plane mesh halves the area and divides the order of a front by the root of two from level
-    to level. Half of a front is the contribution that is sent to the next one. A front of order m is shared by columns
-    in panels of 64, each of which is sent to the others. The halo is the perimeter of a square of P2 nodes.
-
-    Args:
-        one: the costs of single operations with the order of the largest front.
-        ranks: of MPI.
-    """
-    levels = int(np.log2(ranks))
-    fronts = [one["front"] * 2 ** (-level / 2) for level in range(levels)]
-    contribution = sum(8 * (m / 2) ** 2 for m in fronts) / 2
-    panels = sum(8 * (m / 2) ** 2 for m in fronts)
-    halo = 2 * 8 * 4 * np.sqrt(one["unknowns"] / 2 / ranks)
-    messages = sum(m / 64 * np.log2(max(ranks / 2**level, 2)) for level, m in enumerate(fronts))
-    sent = contribution + panels + halo
-    return sent, halo, sent / _LINK + messages * _LATENCY
-
-
 def _times(size: Mapping[str, Any]) -> list[float]:
     """Return the processor seconds of each operation, of one step of Newton's method and of the first factorisation."""
     each = [float(size["processor"][name]) for name in OPERATIONS]
@@ -151,7 +129,6 @@ def draw(docs: Path) -> Path:
         "powers": [exponent(unknowns, seconds) for seconds in zip(*map(_times, sizes), strict=True)],
         "memory": exponent(unknowns, [size["memory"] - size["before"] for size in sizes]),
         "saved": (own["tangent"] + own["factorisation"]) / (own["solution"] + own["residual"]),
-        "clusters": [(s, ranks, cluster(s, ranks)) for s in sizes if s["factor"] in ON_RANKS for ranks in (2, 8, 64)],
     }  # fmt: skip
     return harness.page(docs, "performance", "make performance", globals() | names)
 

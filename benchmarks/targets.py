@@ -14,7 +14,7 @@ from typing import Any
 
 from benchmarks import errors, harness, two_meshes
 from benchmarks.paper import states
-from benchmarks.peers import at_equal_error
+from benchmarks.peers import compared as peers
 
 Numbers = Callable[[str], Any]
 """Returns the kept numbers of a page by its name."""
@@ -77,7 +77,7 @@ def _covered(of: Numbers) -> float:
 
 def _beside_script(of: Numbers) -> float:
     """Return the least of how many times as fast one ridge is as by the plain script at equal error."""
-    return min(at_equal_error.words(of("peers")["equal"]["rows"])["reached"])
+    return min(peers.words(of("peers")["equal"]["rows"])["reached"])
 
 
 def _minutes(seconds: float, loads: int) -> float:

@@ -5,10 +5,10 @@ python3 -m benchmarks.two_meshes CASE LIMIT     JSON of a scene, prints JSON
 
 A run without an ``[accuracy]`` follows its path on elements twice as large as the scene's, and solves its named states
 again on the scene's sizes, the final mesh; the two meshes make its estimated error
-(:func:`fingerpad.richardson.of_two_meshes`). Here the states are solved once more with half of all sizes, which shows
-the error that they had: the *known error* is what that changes. The default scene and the ten of
-:func:`benchmarks.accuracy.drawn`. Writes docs/two_meshes.json and docs/errors.md. fingerpad/richardson.py takes its
-factors TWO and SITES from them; tests/test_calibration.py checks the coverage.
+(:func:`fingerpad.accuracy.richardson.of_two_meshes`). Here the states are solved once more with half of all sizes,
+which shows the error that they had: the *known error* is what that changes. The default scene and the ten of
+:func:`benchmarks.accuracy.drawn`. Writes docs/two_meshes.json and docs/errors.md. fingerpad/accuracy/richardson.py
+takes its factors TWO and SITES from them; tests/test_calibration.py checks the coverage.
 """
 
 import argparse
@@ -26,12 +26,12 @@ from benchmarks import harness
 from benchmarks.accuracy import drawn
 from benchmarks.errors import STATES, parted
 from fingerpad.accuracy.refinement import Refinement
+from fingerpad.accuracy.richardson import SITES, TWO, of_two_meshes, value
 from fingerpad.accuracy.solves import Solves, solve_again
 from fingerpad.accuracy.states import Solve, StateRecorder
 from fingerpad.model.finger import Step
 from fingerpad.model.options import FingerModel, by_rule, plan
 from fingerpad.model.simulation import RestartRequired, Simulation
-from fingerpad.richardson import SITES, TWO, of_two_meshes, value
 from fingerpad.runs.processes import limit_processor_time
 from fingerpad.scene import Scene, from_data
 
@@ -137,7 +137,7 @@ def _kind(name: str) -> str:
 
 
 def cases(numbers: Mapping[str, Any], safety: float = TWO, sites: float = SITES) -> list[Case]:
-    """Return the cases of docs/two_meshes.json; factors as in :func:`~fingerpad.richardson.of_two_meshes`."""
+    """Return the cases of docs/two_meshes.json; factors as in :func:`~fingerpad.accuracy.richardson.of_two_meshes`."""
     found = []
     for scene, solves in solved(numbers).items():
         coarse, final, finer = (solves[name] for name in MESHES)

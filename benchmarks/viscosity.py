@@ -6,11 +6,9 @@ Writes docs/viscosity.json, and from it docs/laws.md and its picture; some 25 mi
 """
 
 import argparse
-import json
-import subprocess
 import sys
-import tempfile
 import time
+import tomllib
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -18,22 +16,17 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 
-from benchmarks.harness import keep, kept, made, main, page, picture
+from benchmarks.harness import ROOT, keep, kept, made, main, page, picture
 from fingerpad.results import style
 from fingerpad.scene import Scene
 from fingerpad.scene.materials import LAYERS
 from fingerpad.scene.viscosity import PRESETS
-from fingerpad.scene.waveform import SAMPLES
 
 SOFT = [name for name in LAYERS if not name.startswith("nail")]
 TIMES = (4e-3, 70e-3, 1.4)  # s, of the force of a pressed fingerpad (Pawluk and Howe 1999)
 DEPTH, HOLD = -0.7e-3, 10.0  # m, s
 COARSE = {"contact": 60e-6, "receptor": 100e-6, "interface": 200e-6, "growth": 1.0}  # m, but for the growth
-SMALL_CONTACT = 20e-6  # m
 FACETS = 10e-6  # m, of the finger under a step of voltage
-STEP = 1e-3  # s, of the scene over time
-MEASURED = 20  # steps
-FORCE, VOLTAGE = 20.0, 150.0  # N/m, V
 HISTORIES, STEPS = 200, 8  # of each length, and targets in each
 LENGTHS = (1e-3, 0.2)  # s
 SPEEDS = (20e-3, 100e-3)  # m/s
@@ -50,8 +43,6 @@ def compute(args: argparse.Namespace) -> None:
     for name, part in {
         "held": _held,
         "energy": _energy,
-        "cost": _cost,
-        "second": _second,
         "steps": _voltage_steps,
         "coarser": _coarser,
     }.items():
@@ -175,64 +166,6 @@ def _ridge() -> Any:
     return found
 
 
-def _cost() -> dict[str, float]:
-    """Return processor seconds of a step, elastic and viscous in turn, and the number of factorisations.
-
-    The samples of the sine are one step apart, in both.
-    """
-    found: dict[str, dict[str, float]] = {}
-    history = _sine(MEASURED)
-    for name, preset in (("elastic", None), ("viscous", "fingerpad")):
-        mesh = {"contact": SMALL_CONTACT}
-        found[name] = _timed(Scene(mesh=mesh, output=NO_OUTPUT, materials=_layers(preset), history=history))
-    return {f"{name}_{key}": value for name, each in found.items() for key, value in each.items()}
-
-
-def _sine(steps: int) -> list[dict[str, Any]]:
-    """Return the loads of a press and of a slide under a sine of voltage, with a sample a step."""
-    wave = {"waveform": "sine", "amplitude": VOLTAGE, "frequency": 1 / (SAMPLES * STEP)}
-    slide = {"name": "slide", "bone_x_by": SPEEDS[0] * STEP * steps, "duration": STEP * steps, "voltage": wave}
-    return [{"name": "press", "f_ext": FORCE}, slide]
-
-
-def _second() -> dict[str, float]:
-    """Return what one second costs as a command with all of its files, stimuli of receptors among them."""
-    scene = Scene(
-        mesh={"contact": SMALL_CONTACT}, output={"errors": False}, materials=_layers("fingerpad"),
-        history=_sine(round(1 / STEP)),
-    )  # fmt: skip
-    with tempfile.TemporaryDirectory() as place:
-        file, out = Path(place) / "scene.json", Path(place) / "out"
-        file.write_text(json.dumps(scene.parameters()), encoding="utf-8")
-        command = [sys.executable, "-m", "fingerpad", "run", str(file), "--out", str(out), "--quiet"]
-        subprocess.run(command, check=True, stdout=subprocess.DEVNULL)
-        summary = json.loads((out / "summary.json").read_text(encoding="utf-8"))
-    return {name: summary[name] for name in ("steps", "processor_seconds", "unknowns")}
-
-
-def _timed(scene: Scene) -> dict[str, float]:
-    """Return processor seconds, factorisations and iterations a step of the last load, without its first step."""
-    from fingerpad.model.options import FingerModel, by_rule, plan
-    from fingerpad.model.simulation import Simulation
-    from fingerpad.startup import MPI
-
-    asked, marks = by_rule(scene), list[Any]()
-
-    def step(step: Any, done: float) -> None:
-        record = step.state.record
-        marks.append((step.state.load, time.process_time(), record.factorisations, record.newton_iterations))
-
-    path = Simulation(FingerModel(asked, plan(asked)), MPI.COMM_SELF, step)
-    path.run()
-    last = [mark for mark in marks if mark[0] == "slide"]
-    seconds, steps = last[-1][1] - last[0][1], len(last) - 1
-    factorisations, newton = (sum(mark[k] for mark in last[1:]) for k in (2, 3))
-    return {
-        "unknowns": path.finger.unknowns, "steps": steps, "seconds": seconds / steps,
-        "factorisations": factorisations / steps, "newton": newton / steps,
-    }  # fmt: skip
-
-
 def _voltage_steps() -> dict[str, Any]:
     """Return friction over time after a step of voltage in sliding, over its last one."""
     found = {}
@@ -250,10 +183,6 @@ def _coarser() -> dict[str, Any]:
 
 def _voltage_step(preset: str | None, speed: float, facets: float = FACETS) -> dict[str, Any]:
     """Return friction after the step, and the sliding way (m) to full slip, which short loads resolve."""
-    import tomllib
-
-    from benchmarks.harness import ROOT
-
     small = tomllib.loads((ROOT / "demos/scenes/small_finger.toml").read_text(encoding="utf-8"))
     history = [
         {"name": "press", "f_ext": 1.0},

@@ -1,9 +1,9 @@
 # %% [markdown]
 # # Accuracy, and a reduced model
 #
-# Two models compute the same scene. "full" has every ridge along the whole loading path. "cylinders" treats all ridges
-# as equal charged cylinders, in closed form. A scene with an accuracy starts on a coarse mesh and is refined until the
-# estimated error is within the accuracy.
+# A scene with an accuracy starts on a coarse mesh and is refined until the estimated error is within the accuracy. Two
+# models compute the same scene: "full" has every ridge along the whole loading path, and "cylinders" treats all ridges
+# as equal charged cylinders, in closed form.
 
 # %%
 import sys
@@ -12,28 +12,26 @@ from pathlib import Path
 from matplotlib.figure import Figure
 
 import fingerpad as fp
-from fingerpad.reduced.cylinders import given, solve
 from fingerpad.startup import MPI
 
 MU_0, ASKED = 0.25, 0.02
+EXACT = f"full, {100 * ASKED:g} % requested"
 SMALL = Path(__file__).parent / "scenes" / "small_finger.toml"
 
 
 # %% [markdown]
-# The closed form contains the contact length of the default finger. For another finger the length is an input, here
-# that of the full model.
+# The closed form contains the contact length of the default finger, and refuses another finger, such as the small one.
 
 
 # %%
 def ladder(scene: fp.Scene) -> dict[str, fp.Result]:
     """Return the results of the models, the cheapest first."""
-    exact = fp.run(scene.replace(accuracy={"mu_app": ASKED}))
-    known = exact.full_slip
-    return {
-        "cylinders": solve(scene, given(known.contact_length, known.ridges_in_contact)),
-        "full": fp.run(scene),
-        f"full, {100 * ASKED:g} % asked": exact,
-    }
+    found = {}
+    try:
+        found["cylinders"] = fp.run(scene, model="cylinders")
+    except fp.SceneError as error:
+        print(f"cylinders: {error}")
+    return found | {"full": fp.run(scene), EXACT: fp.run(scene.replace(accuracy={"mu_app": ASKED}))}
 
 
 # %%
@@ -47,23 +45,21 @@ def main(out: str = "results/demos/accuracy_and_reduced_models", size: str = "sm
             error = f"± {slip.error.mu_app:.4f}" if slip.error.known() else " " * 8
             print(f"{name:16s} µ_app {slip.mu_app:.4f} {error}, {seconds:6.2f} s")
         draw(Path(out), found)
-    plain, exact = found["full"].full_slip, found[f"full, {100 * ASKED:g} % asked"].full_slip
-    cylinders = found["cylinders"].full_slip
+    plain, exact = found["full"].full_slip, found[EXACT].full_slip
     # The accuracy is met, by the run's own estimate, and the plain run is within both errors of it.
     assert exact.error.mu_app <= ASKED * exact.mu_app
     assert abs(plain.mu_app - exact.mu_app) <= plain.error.mu_app + exact.error.mu_app
     # Both models keep the balance of forces and the friction law.
-    for state in (plain, exact, cylinders):
+    for state in (result.full_slip for result in found.values()):
         assert abs(state.f_t - MU_0 * (state.f_ext + state.f_electrostatic)) < 1e-6 * state.f_ext
-    # The cylinders are given the length.
-    assert abs(cylinders.mu_app - exact.mu_app) < 0.1 * exact.mu_app
+        assert abs(state.mu_app - exact.mu_app) < 0.15 * exact.mu_app
 
 
 def draw(out: Path, found: dict[str, fp.Result]) -> None:
     """Write friction and its error over the cost."""
     axes = (figure := Figure(figsize=(6.4, 4), layout="constrained")).subplots()
     colours = ("#009E73", "#0072B2", "#D55E00")
-    for (name, result), mark, colour in zip(found.items(), "^od", colours, strict=True):
+    for (name, result), mark, colour in zip(found.items(), "^od", colours, strict=False):
         slip, error = result.full_slip, result.full_slip.error.mu_app
         seconds = max(result.cost.processor_seconds, 1e-3)
         axes.errorbar(seconds, slip.mu_app, error, fmt=mark, ms=8, capsize=5, color=colour, label=name)

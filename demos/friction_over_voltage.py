@@ -17,16 +17,19 @@ import numpy as np
 from matplotlib.figure import Figure
 
 import fingerpad as fp
-from fingerpad.reduced.cylinders import given, solve
+from fingerpad.reduced.cylinders import tip_radius
 from fingerpad.startup import MPI
+from geometry import tags
+from variational.attraction.cylinder import Cylinder
 
 MU_0 = 0.25
 SMALL = Path(__file__).parent / "scenes" / "small_finger.toml"
 
 
 # %% [markdown]
-# For comparison: the full model with finite elements of every ridge, here of a small finger. The cylinders contain the
-# contact length of the default finger. For another finger the length is an input.
+# For comparison: the full model with finite elements of every ridge, here of a small finger. The model "cylinders"
+# contains the contact length of the default finger. For another finger one cylinder is computed over the length in
+# contact that the full model has.
 
 
 # %%
@@ -35,8 +38,10 @@ def beside(voltage: float, scene: fp.Scene) -> tuple[float, float]:
     scene = scene.replace(voltage=voltage)
     slip = fp.run(scene).full_slip
     assert abs(slip.f_t - MU_0 * slip.f_contact) < 1e-6 * slip.f_ext
-    cylinders = solve(scene, given(slip.contact_length, slip.ridges_in_contact))
-    return slip.mu_app, cylinders.full_slip.mu_app
+    n, modulus = slip.ridges_in_contact, scene.solids()[tags.STRATUM_CORNEUM].plane_modulus
+    cylinder = Cylinder(tip_radius(scene.geometry), modulus, scene.h_0, scene.closure())
+    ridge = cylinder.over_length(slip.contact_length / n, scene.f_ext / n, voltage)
+    return slip.mu_app, MU_0 * n * ridge.f_contact / scene.f_ext
 
 
 # %%

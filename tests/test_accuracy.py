@@ -11,12 +11,12 @@ from mpi4py import MPI
 from fingerpad.accuracy import solves
 from fingerpad.accuracy.estimate import with_errors
 from fingerpad.accuracy.refinement import Refinement
+from fingerpad.accuracy.richardson import MORE, ONCE, ORDER
 from fingerpad.accuracy.solves import Solves
 from fingerpad.accuracy.states import Solve, State
 from fingerpad.model.options import FingerModel, by_rule, plan
 from fingerpad.results.interrupt import Interrupted
 from fingerpad.results.quantities import Output
-from fingerpad.richardson import MORE, ONCE, ORDER
 from fingerpad.scene import from_data
 from tests.measures import contact_state
 from variational.contact.penalty import Penalty

@@ -69,20 +69,6 @@ def test_dry_out_of_contact():
     np.testing.assert_array_equal(memory(), 0.0)
 
 
-def test_renewed_contact():
-    """On a ridge that rolls on, points that touched for long have more friction than new ones: by point."""
-    made = over(GROWS, body=load(MPI.COMM_WORLD, ridge(30e-6)))
-    path = made.continuation
-    path.run(Target("press", f_ext=2.0))
-    path.run(Target("hold", f_ext=2.0, duration=0.5))
-    path.run(Target("deeper", f_ext=4.0))
-    state = path.surface_state
-    touching, memory = state.p_n > 0, path.problem.history.accepted["memory"]
-    values = np.concatenate(MPI.COMM_WORLD.allgather(memory[touching]))
-    assert values.min() == 0.0
-    assert values.max() == pytest.approx(1 - np.exp(-1), rel=1e-9)
-
-
 @pytest.mark.parametrize("speed", [1e-3, 10e-3])
 def test_speed(speed):
     """In steady sliding friction is that of the speed; a step without time keeps it. Tolerance: that of the solve."""

@@ -6,7 +6,6 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from fingerpad.model.finger import Finger
 from fingerpad.model.state import broken, refuse_strained, refuse_unbalanced
 from fingerpad.report import trust
 from tests.measures import contact_state
@@ -77,18 +76,6 @@ def test_limit_of_what_is_left(node, sideways, down, words):
     refused = pytest.raises(StepFailed, match=f"^here: .*{words}") if words else nullcontext()
     with refused:
         refuse_unbalanced("here", node * 1e-6, loads, np.array([25.0, 75.0]), 75.0, 1e-9, 0.0)
-
-
-def test_finger_tells_the_roundoff_of_its_solver():
-    solver = SimpleNamespace(imbalance=lambda: 1e-5, force_scale=75.0, floor=1e-7, reaction=None)
-    finger = SimpleNamespace(solver=solver, continuation=SimpleNamespace(steps=3), _tolerance=1e-9)
-    with pytest.raises(StepFailed, match=r"^step 3 \(press\): .* leaves 7.5e-06 N/m"):
-        Finger.check_balance(finger, None, "press")
-
-
-def test_friction_of_another_law_is_not_compared_with_coulomb_s():
-    slip = contact_state(**(SLIP | {"f_t": 30.0}))
-    assert broken(slip, 1e-4, None) == ""
 
 
 def record(stored: float) -> StepRecord:

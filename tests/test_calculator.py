@@ -27,10 +27,9 @@ SAME = 1e-9  # relative; both find the same roots to the last digits
 # What a person does: choices and values into fields, and the next field.
 SET = """
 function set(values) {
-  const given = "length" in values, newtons = "force" in values;
+  const newtons = "force" in values;
   const turn = (id, name) => document.getElementById(id).dispatchEvent(new Event(name));
   document.getElementById("defaults").click();
-  turn(given ? "finger_given" : "finger_default", "change");
   turn(newtons ? "load_whole" : "load_metre", "change");
   for (const [key, value] of Object.entries(values)) {
     document.getElementById(key).value = value;
@@ -49,7 +48,7 @@ def whole() -> str:
 def sets() -> list[dict[str, float]]:
     """Return values by field, in the units of the fields: each alone at its ends and beyond, corners, and others."""
     found: list[dict[str, float]] = [{}]
-    scene = [key for key in FIELDS if key not in ("length", "ridges", "force")]
+    scene = [key for key in FIELDS if key != "force"]
     for key in scene:
         found += [{key: end} for end in FIELDS[key].slider]
     corner = ("voltage", "f_ext", "electric.d_i", "roughness.h_rms")
@@ -58,8 +57,6 @@ def sets() -> list[dict[str, float]]:
     found += [{"voltage": 0.0}, {"friction": 0.0}, {"voltage": 400.0}, {"f_ext": 1000.0}, {"f_ext": 0.01}]
     found += [{"roughness.h_rms": 0.001}, {"roughness.p_floor": 1e8}, {"electric.d_i": 1e4}, {"roughness.gamma": 10.0}]
     found += [{"f_ext": 0.001}, {"f_ext": 0.001, "voltage": 0.0}, {"f_ext": 5000.0}, {"voltage": 5000.0}]
-    for length, ridges in ((1e-5, 1), (100.0, 1), (0.2, 1), (1.581, 16), (4.0, 25), (0.02, 20), (50.0, 3)):
-        found += [{"length": length, "ridges": ridges, "voltage": voltage} for voltage in (0.0, 120.0)]
     chance = random.Random(21)
     for _ in range(12):
         values = {key: chance.uniform(*FIELDS[key].slider) for key in scene}
@@ -76,13 +73,10 @@ def in_si(values: dict[str, float]) -> dict[str, float]:
 def by_python(values: dict[str, float]) -> dict[str, float] | str:
     """Return full slip by the Python program, or why there is none."""
     data: dict[str, Any] = {}
-    si = in_si(values)
-    for key in si:
-        if key not in ("length", "ridges"):
-            put(data, key, si[key])
+    for key, value in in_si(values).items():
+        put(data, key, value)
     try:
-        footprint = cylinders.given(si["length"], int(si["ridges"])) if "length" in si else None
-        found = cylinders.solve(Scene(**data), footprint)
+        found = cylinders.solve(Scene(**data))
     except SceneError as error:
         return str(error)
     assert found.full_slip is not None
@@ -123,10 +117,10 @@ def test_closed_form_is_that_of_python(tmp_path):
     """To 1e-9, in every field over its range: a fifth of what the page is given, with all fields."""
     some = sets()[::5]
     default = {key: field.value for key, field in FIELDS.items()}
-    given = [(in_si(default | values), "length" in values) for values in some]
-    program = f"""console.log(JSON.stringify({json.dumps(given)}.map(([p, given]) => {{
+    given = [in_si(default | values) for values in some]
+    program = f"""console.log(JSON.stringify({json.dumps(given)}.map((p) => {{
       try {{
-        return closedForm.refuse(p) || closedForm.solve(p, given ? closedForm.given(p.length, p.ridges) : null);
+        return closedForm.refuse(p) || closedForm.solve(p);
       }} catch (error) {{
         if (!(error instanceof closedForm.NoEquilibriumError)) throw error;
         return error.message;
@@ -182,7 +176,7 @@ def test_numbers_are_those_of_python(whole, tmp_path):
 
 
 # -- bounds --------------------------------------------------------------------------------------------
-@pytest.mark.parametrize("key", [key for key in FIELDS if key not in ("length", "ridges")])
+@pytest.mark.parametrize("key", list(FIELDS))
 def test_bounds_are_those_of_a_scene(key):
     """Python accepts both ends, and refuses what is beyond them."""
     field = FIELDS[key]
@@ -193,10 +187,10 @@ def test_bounds_are_those_of_a_scene(key):
 
 def test_values_beyond_bounds_are_refused_beside_their_field(whole, tmp_path):
     wrong = {"voltage": "-1", "f_ext": "6000", "friction": "", "electric.d_i": "20000", "roughness.young": "1e9",
-             "roughness.h_rms": "0", "length": "0", "ridges": "2.5"}  # fmt: skip
+             "roughness.h_rms": "0"}  # fmt: skip
     program = f"""{SET}
     return Object.entries({json.dumps(wrong)}).map(([key, value]) => {{
-      set(key === "length" || key === "ridges" ? {{ length: 1, ridges: 10, [key]: value }} : {{ [key]: value }});
+      set({{ [key]: value }});
       const field = document.getElementById(key);
       return [document.getElementById(field.getAttribute("aria-describedby")).textContent,
         field.getAttribute("aria-invalid"), document.getElementById("answers").className];
@@ -209,8 +203,6 @@ def test_values_beyond_bounds_are_refused_beside_their_field(whole, tmp_path):
         "d_i is 20000 µm; it must be from 0.001 to 10000 µm.",
         "young is 1000000000 MPa; it must be from 0.000001 to 1e+6 MPa.",
         "h_rms is 0 µm; it must be from 0.001 to 1000 µm.",
-        "length is 0 mm; it must be from 0.00001 to 100 mm.",
-        "ridges is 2.5; it must be a whole number.",
     ]
     assert all(invalid == "true" and "stale" in name for _, invalid, name in found)
 
@@ -240,7 +232,7 @@ def test_command_writes_the_page(tmp_path, capsys, whole):
 def test_errors_of_the_script_are_those_of_python(tmp_path):
     """Whole ones, with the points of the traces; and the keys for which none is known, at the ends of all ranges,
     beyond them, and for each field."""
-    some = [values for values in sets() if "length" not in values]
+    some = sets()
     for key, (low, high) in cylinder_errors.REGIONS[-1].ranges.items():
         per = FIELDS[key].per if key in FIELDS else 0.0
         some += [{key: end * per} for end in (low, high, low * 0.999, high * 1.001) if end * per]

@@ -51,7 +51,7 @@ def test_point_that_no_run_is_at_has_no_error(whole, tmp_path):
     of_default = [each for each in ranges if "friction" not in each or cylinder_errors.within(0.25, each["friction"])]
     end_of_known = max(each["voltage"][1] for each in of_default)
     beyond = [{"voltage": end_of_known + 1}, {"f_ext": 451}, {"f_ext": 0.9}]
-    other = [{"friction": 1.1}, {"electric.d_i": 20}, {"roughness.h_rms": 4}, {"length": 1.5, "ridges": 16}]
+    other = [{"friction": 1.1}, {"electric.d_i": 20}, {"roughness.h_rms": 4}]
     pages = shown(whole, tmp_path, *beyond, *other, {"voltage": 400})
     for found in pages:
         assert not any("±" in cell for cell in found["cells"].values())

@@ -5,7 +5,7 @@ import pytest
 from benchmarks import harness, two_meshes
 from benchmarks.accuracy import KINDS, WANTED, Case, coverage, kept
 from benchmarks.harness import ROOT
-from fingerpad.richardson import SITES, TWO
+from fingerpad.accuracy.richardson import SITES, TWO
 
 COVERED = 0.95  # of the known errors of each kind, by the two meshes of a run
 
@@ -41,7 +41,7 @@ def test_numbers_where_the_factors_are(numbers):
     """The docstring of the factors has the kept numbers of energy densities, with and without them."""
     n, covered = two_meshes.coverage(two_meshes.cases(numbers), "energy density")
     _, bare = two_meshes.coverage(two_meshes.cases(numbers, 1.0, 0.0), "energy density")
-    text = " ".join((ROOT / "fingerpad/richardson.py").read_text(encoding="utf-8").split())
+    text = " ".join((ROOT / "fingerpad/accuracy/richardson.py").read_text(encoding="utf-8").split())
     assert f"{covered} of {n}, and in {bare} without both" in text
 
 

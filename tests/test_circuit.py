@@ -9,7 +9,7 @@ from benchmarks.measured import drives
 from variational.attraction.circuit import LEAKS, GapCircuit, fit_leak
 from variational.attraction.dielectric import DRY, MOIST, VACUUM_PERMITTIVITY, TabledTissue, insulator_thickness
 from variational.attraction.network import Network
-from variational.roughness.statistics import breakdown_voltage
+from variational.roughness.gaps import breakdown_voltage
 
 LAYERS = {"gap": 1.6e-6, "d_i": 1e-6, "eps_i": 3.9, "d_sc": 425e-6}
 BEHIND = (1e-6, 3.9, 425e-6)

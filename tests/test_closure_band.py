@@ -94,7 +94,7 @@ def test_drive_has_the_voltage_of_each_air_gap(volts):
 def charged(result):
     """Return the ridges' pressure (Pa), and the voltage (V) of a drive across their air gap."""
     p_c, d_eq = (result.record[f"full_slip_{name}"] for name in ("p_c", "d_eq"))
-    return p_c, float(result.scene.supply.effective(d_eq))
+    return p_c, float(result.scene.drive.effective(d_eq))
 
 
 def test_verdict_is_of_what_was_examined():

@@ -26,7 +26,7 @@ def test_scene_and_back(law):
     [
         ({"shortest_wave": 1e-6}, "roughness.shortest_wave is 1e-06 m; .* so take 1.563e-06 to 1.25e-05 m"),
         ({"hurst": 0.5}, "roughness.hurst is 0.5; tables of the package are for 0.6 to 0.9, and Persson has no such"),
-        ({"p_floor": 1e6}, "roughness.p_floor is 1000000; it must be below the pressure of the table's end"),
+        ({"p_floor": 1e6}, "roughness.p_floor is 1000000; it must be below the end of the table of gaps"),
         ({"surface": "abc"}, "roughness.surface is 'abc', and .* has no table of that name"),
         ({"field_in_contact": 2}, "roughness.field_in_contact is 2; it must be true or false"),
         ({"gamma": 0.4}, "roughness.gamma"),

@@ -13,8 +13,7 @@ from fingerpad.model.checks import FingerExceeded, more
 from fingerpad.model.options import FingerModel, by_rule, plan
 from fingerpad.model.simulation import Simulation
 from fingerpad.runs import full as run_module
-from fingerpad.scene import Scene, from_data
-from geometry.profiles import GeometryError
+from fingerpad.scene import from_data
 from geometry.sizing import touching_ridges
 from tests.measures import rows_of
 from tests.runs import path_of, run
@@ -43,18 +42,6 @@ def restarted(tmp_path_factory):
     """A run whose finger can touch with three ridges at first."""
     folder = tmp_path_factory.mktemp("restarted")
     return folder, press(folder, 0.6e-3)
-
-
-def test_run_starts_again_with_more_ridges(restarted):
-    folder, summary = restarted
-    assert "failure" not in summary
-    (restart,) = summary["restarts"]
-    assert restart["load"] == "press" and restart["factorisations"] > 0
-    assert restart["reason"] in ("ridge 1, the last one that is meshed to touch, is in contact",
-                              "ridge -1, the last one that is meshed to touch, is in contact")  # fmt: skip
-    assert restart["touching_half_arc"] == pytest.approx(3 * WAVELENGTH, rel=1e-12)
-    log = (folder / "run.log").read_text(encoding="utf-8")
-    assert f"{restart['reason']}; all loads again with mesh.touching_half_arc 0.001449 m" in log
 
 
 def test_restarted_run_is_the_one_that_had_the_ridges(restarted, tmp_path):
@@ -99,10 +86,6 @@ def test_skin_that_comes_near_asks_for_a_restart():
     assert wider == (6, "skin beyond the ridges that are meshed to touch is at a height of 8e-06 m")
 
 
-def test_skin_that_stays_clear_asks_for_none():
-    assert check(brought_near(4 * WAVELENGTH, 12e-6)) is None
-
-
 @pytest.mark.parametrize(("clearance", "exceeded"), [(8e-6, False), (-1e-6, True)])
 def test_skin_beyond_all_ridges_may_come_near_but_not_touch(clearance, exceeded):
     """There are no more ridges to add: 15 can touch, and skin between their tips is the lowest here."""
@@ -127,15 +110,6 @@ def half(tmp_path_factory):
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(StabilityCheck, "check", unstable)
         return folder, press(folder, 1.3e-3)
-
-
-def test_half_that_is_not_stable_is_made_whole(half):
-    folder, summary = half
-    (restart,) = summary["restarts"]
-    assert restart["both_halves"] is True and restart["touching_half_arc"] == 1.3e-3
-    assert restart["reason"] == "the half of the finger is not stable, so that the whole may not be symmetric"
-    assert not [omission for omission in summary["omitted"] if "half" in omission["what"]]
-    assert "1.3e-3 m and both halves" in (folder / "run.log").read_text(encoding="utf-8").replace("0.0013", "1.3e-3")
 
 
 def test_finger_made_whole_is_the_one_that_was_whole(half, tmp_path, monkeypatch):
@@ -168,13 +142,6 @@ def test_ridges_are_enough_for_what_full_runs_touch(name):
     assert last_ridge(RUNS[name]["scene"]) > RUNS[name]["touched"]
 
 
-def test_ridges_are_not_many_more_than_full_runs_touch():
-    """At most two to spare over all forces and voltages, and five at a friction coefficient of 1."""
-    spare = {name: last_ridge(run["scene"]) - run["touched"] for name, run in RUNS.items()}
-    assert max(spare.pop("friction coefficient 1"), 0) <= 5
-    assert max(spare.values()) <= 3
-
-
 @pytest.mark.parametrize(
     ("data", "last"),
     [
@@ -195,16 +162,6 @@ def test_rule_of_thumb(data, last):
     assert last_ridge(data) == last
 
 
-def test_number_that_is_given_stands():
-    scene = from_data({"mesh": {"touching_half_arc": 1.3e-3}})
-    assert by_rule(scene) is scene
-
-
-def test_undecided_finger_is_refused():
-    with pytest.raises(GeometryError, match="touching_half_arc is not given"):
-        Simulation(FingerModel(Scene(), plan(Scene())), COMM)
-
-
 # -- what is left out ------------------------------------------------------------------------------------------
 @pytest.mark.parametrize(("half_arc", "words"), [(1.3e-3, ["contact of the ridges beyond ±3"]), (0.1, [])])
 def test_ridges_left_out_are_named(half_arc, words):
@@ -220,17 +177,6 @@ def lean(tmp_path_factory):
     """A lightly pressed finger whose ridges the rule chose."""
     folder = tmp_path_factory.mktemp("lean")
     return folder, run(from_data(LIGHT), folder, COMM)
-
-
-def test_run_reports_what_was_left_out(lean):
-    folder, summary = lean
-    assert summary["omitted"][-1] == {
-        "what": "contact of the ridges beyond ±3",
-        "reason": "they are not expected to touch, which each accepted step is checked for",
-    }
-    assert "contact of the ridges beyond ±3 left out" in (folder / "run.log").read_text(encoding="utf-8")
-    assert summary["charged_ridges_in_contact"] == 3
-    assert summary["parameters"]["mesh"]["touching_half_arc"] is None
 
 
 @pytest.mark.long

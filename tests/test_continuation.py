@@ -5,11 +5,10 @@ import itertools
 import pytest
 from mpi4py import MPI
 
-from fingerpad.scene import from_data
 from geometry.bodies import block
 from geometry.mesh import load
-from tests.runs import followed, path_of
-from tests.small_finger import NINE, small
+from tests.runs import followed
+from tests.small_finger import small
 from tests.test_contact import HEIGHT, MU_F, WIDTH, over
 from variational.solvers import continuation
 from variational.solvers.continuation import StepFailed, Target
@@ -79,16 +78,6 @@ def test_finger_that_was_lifted_comes_down_at_once(voltage):
         assert down[-1].contact_length == pytest.approx(first.contact_length, rel=1e-3)
 
 
-@pytest.mark.slow
-def test_energy_of_a_lifted_finger_is_checked(monkeypatch):
-    """Its last state is not among the accepted ones."""
-    monkeypatch.setattr("fingerpad.model.state._AT_REST", -1.0)
-    path = path_of(small().replace(history=[{"name": "press", "f_ext": 1.0}, {"name": "lift", "bone_height": 1e-4}]))
-    with pytest.raises(StepFailed, match=r"\(lift\): nothing loads the body, and it stores"):
-        path.run()
-    assert path.states[-1].ridges_in_contact > 0
-
-
 def test_skin_from_above_is_pressed_in_before_force_takes_over():
     """By the depth of the first touch, not by roundoff, which is all that a flat block just on the screen bears."""
     run = over(load(MPI.COMM_WORLD, block(WIDTH, HEIGHT, 0.25e-3)), MU_F, 1e11, 1e10, held=False).continuation
@@ -117,48 +106,8 @@ def test_steps_grow_again_after_a_cut(sliding, each):
     assert sizes[2 : 3 + same] == pytest.approx([30] * same + [60])
 
 
-def test_jump_is_not_approached_for_ever(sliding):
-    """Of a jump at 240 um each step of 60, 30, 15 and 7.5 um is cut once; the next is let jump."""
-    reached = sliding(0.2399e-3, 0.2405e-3, each=100, but_pseudo_transient=True)
-    assert reached[-1][0] == pytest.approx(0.6e-3)
-    cut = [(x / 1e-6, len(attempt.cutbacks)) for x, attempt in reached if attempt.cutbacks]
-    assert cut == [(pytest.approx(x), 1) for x in (210, 225, 232.5, 236.25)]
-    assert 240 == pytest.approx(next(x for x, _ in reached if x > 0.237e-3) / 1e-6)
-
-
-def test_one_jump_after_the_other_is_let_jump(sliding):
-    """From 235 um on nothing but jumps gets on: a step that is cut twice jumps, and no later one is cut."""
-    reached = sliding(0.235e-3, 0.5e-3, but_pseudo_transient=True, jumps=True)
-    assert reached[-1][0] == pytest.approx(0.6e-3)
-    assert [len(attempt.cutbacks) for _, attempt in reached if attempt.cutbacks] == [1, 2]
-
-
 def test_no_load_is_given_up_before_a_jump_was_tried(sliding, monkeypatch):
     """The smallest step is as large as the first that is cut, but the third attempt is still made, and jumps."""
     monkeypatch.setattr(continuation, "_SMALLEST", 0.9)
     reached = sliding(0.235e-3, 0.245e-3, but_pseudo_transient=True)
     assert reached[-1][0] == pytest.approx(0.6e-3)
-
-
-def test_other_failures_are_not_stepped_over(sliding):
-    """Newton's method failing is no sign of an equilibrium further on: the step is halved, and at last given up."""
-    assert not any(attempt.stepped_over_fold for _, attempt in sliding(0.235e-3, 0.260e-3, cycling=False))
-    with pytest.raises(StepFailed, match="bone x 0.00023.* m: TEST"):
-        sliding(0.235e-3, 0.350e-3, cycling=False)
-
-
-def test_target_that_is_reached_already():
-    """A load that changes nothing, such as a charge to 0 V, is one step."""
-    run = over(load(MPI.COMM_WORLD, block(WIDTH, HEIGHT, 0.25e-3)), held=False).continuation
-    run.run(Target("press", f_ext=1.0))
-    for target in (Target("charge", voltage=0.0), Target("stay", f_ext=1.0), Target("stand", bone_x=0.0)):
-        before = run.steps
-        run.run(target)
-        assert run.steps == before + 1
-
-
-def test_steps_follow_the_scene_s_scale():
-    scene = from_data(NINE | {"numerics": {"step_scale": 0.5}})
-    assert scene.parameters()["numerics"]["step_scale"] == 0.5
-    simulation = path_of(scene)
-    assert simulation.finger.continuation.step_scale == 0.5

@@ -15,12 +15,12 @@ from scipy.optimize import brentq
 
 from fingerpad.runs import full
 from fingerpad.runs.context import RunContext
-from fingerpad.scene import Scene, from_data
+from fingerpad.scene import Scene
 from geometry import tags
 from geometry.bodies import ridge
 from geometry.mesh import load
 from tests.runs import followed
-from tests.small_finger import NINE, small
+from tests.small_finger import small
 from variational.body import Body
 from variational.contact.interface import Interface
 from variational.contact.penalty import Penalty
@@ -31,7 +31,6 @@ from variational.solvers.continuation import Target
 from variational.solvers.coupling import Coupling
 from variational.solvers.iteration import EXACT
 from variational.solvers.outcome import NotConverged, Timings
-from variational.solvers.secant import Secants
 
 H_0, EPS_0, FOLD_VOLTAGE = 0.514e-6, 8.854e-12, 200.0
 CENTRE = 2e-6  # m
@@ -102,14 +101,6 @@ def test_linear_ridge_takes_few_iterations(gain):
     assert not stub.coupling.history.jumped
 
 
-def test_ridges_of_different_gains():
-    """Each ridge has a secant of its own: together they take an iteration or two more than the slowest alone."""
-    stub = line([-3.0, 0.2, 0.99])
-    stub.coupling.solve()
-    assert len(stub.coupling.history.changes) <= 7
-    np.testing.assert_allclose(stub.coupling.d_eq, CENTRE, rtol=1e-6)
-
-
 @pytest.mark.parametrize("gain", [1.01, 1.5, 4.0])
 @pytest.mark.parametrize("side", [0.9, 1.1])
 def test_state_past_the_fold_is_left(gain, side):
@@ -121,20 +112,6 @@ def test_state_past_the_fold_is_left(gain, side):
     assert failure.value.cycling
     assert stub.coupling.history.jumped == {0}
     assert np.sign(stub.coupling.d_eq[0] - CENTRE) == np.sign(side - 1)
-
-
-def test_ridges_that_feel_each_other():
-    """A pressure that follows the neighbours' air gaps by a hundredth disturbs the secants, but not for long.
-
-    Tolerance: the loop's, twice for what one ridge's error does to the others.
-    """
-    weak = 0.01 * (np.ones((3, 3)) - np.eye(3)) + np.diag([0.3, 0.9, -0.5])
-    stub = Stub(Linear(), lambda d: weak @ (d - CENTRE), 3)
-    stub.coupling.set_air_gaps(CENTRE * np.array([1.1, 0.9, 1.0]))
-    stub.coupling.solve()
-    assert len(stub.coupling.history.changes) <= 12
-    np.testing.assert_allclose(stub.coupling.d_eq, CENTRE, rtol=2e-6)
-    assert not stub.coupling.history.jumped
 
 
 # -- a flat ridge of the bearing area model ----------------------------------------------------------------
@@ -187,26 +164,6 @@ def test_small_changes_of_the_load_leave_no_error(gain):
     assert error < 1e-2 * stub.coupling.tolerance
 
 
-def test_only_the_last_solves_are_exact():
-    """Solves at air gaps that will change leave something out of balance; the state that is left is solved for."""
-    stub = line(0.5)
-    stub.coupling.solve()
-    assert EXACT not in stub.stops[:2]
-    assert stub.stops[-1] == EXACT
-
-
-def test_ridge_past_its_fold_is_given_the_free_air_gap_at_once():
-    """It is once its gain is seen to be above one while its air gap opens by far; the other ridge stays where it is."""
-    free, gain = 12e-6, np.array([1.5, 0.5])
-    secants = Secants(np.full(2, 2e-6), np.full(2, np.nan), free)
-    d = np.array([2e-6, 2e-6])
-    for _ in range(3):
-        secants.record(d, np.array([0.4e-6, 1e-9]) + (gain - 1) * (d - 2e-6))
-        d = secants.step()
-    assert d[0] == free
-    assert 2e-6 < d[1] < 2e-6 + 2e-9, "its fixed point"
-
-
 @pytest.mark.parametrize("also_free", [False, True])
 def test_ridge_that_lets_go_is_given_the_free_air_gap(also_free):
     """Where the skin finds no equilibrium while its air gap opens, it does at that of a ridge without contact.
@@ -224,24 +181,6 @@ def test_ridge_that_lets_go_is_given_the_free_air_gap(also_free):
     assert stub.coupling.d_eq[0] == free
     assert stub.coupling.history.jumped == {0}
     assert ("pseudo-transient" in stub.stops) == also_free
-
-
-def test_last_solve_is_exact_where_a_ridge_lets_go_late():
-    """The exact solve finds no equilibrium, and that at the air gap of a ridge without contact is exact in its place.
-
-    Nothing touches any more, so that the loop ends there.
-    """
-    free = float(BearingArea(H_0)(0.0).d_eq)
-    stub = flat(float(BearingArea(H_0).external_pressure(BearingArea(H_0).pull_off_fold(FOLD_VOLTAGE), FOLD_VOLTAGE)))
-    touches, stub.coupling.closure = stub.pressure, BearingArea(H_0)
-    stub.pressure = lambda d: np.where(d < 0.99 * free, touches(d) + 50.0, 0.0)
-    attempt = stub.attempt
-    stub.attempt = lambda stop: attempt(stop) and (stop.part > 0 or float(stub.d[0]) >= free)
-    start = float(BearingArea(H_0).air_gap(np.array([0.9 * BearingArea(H_0).pull_off_fold(FOLD_VOLTAGE)]))[0])
-    stub.coupling.set_air_gaps(np.array([start]))
-    stub.coupling.solve()
-    assert stub.coupling.d_eq[0] == free
-    assert [stop.part for stop in stub.stops[-2:]] == [0.0, 0.0]
 
 
 @pytest.mark.slow
@@ -273,20 +212,6 @@ def test_past_the_pull_off_fold(beyond):
     assert stub.coupling.d_eq[0] == closure(0.0).d_eq
 
 
-def test_past_the_pull_in_fold():
-    """A little beyond the other fold the ridge comes down to the branch in contact."""
-    closure = BearingArea(H_0, p_floor=1.0)
-    stub = flat(110.0)  # the fold is at 107 Pa
-    stub.coupling.set_air_gaps(closure.air_gap(np.array([12e-6])))
-    stub.coupling.solve()
-    assert stub.coupling.history.jumped == {0}
-    assert stub.coupling.d_eq[0] == pytest.approx(closure.air_gap_at_external(110.0, FOLD_VOLTAGE), rel=1e-6)
-    parts = [stop.part for stop in stub.stops]
-    assert 0.5 in parts, "on its way down the ridge is solved for roughly,"
-    assert any(0 < part < 0.5 for part in parts), "and where it arrives it is not"
-    assert stub.stops[-1] == EXACT
-
-
 # -- the length of Eq. 4 -----------------------------------------------------------------------------------
 @pytest.mark.parametrize("by_gap", [False, True])
 def test_mean_pressure_is_over_the_length_chosen(by_gap):
@@ -314,18 +239,3 @@ def finger(scene: Scene) -> tuple[Array, Array]:
     made = full.run(scene.replace(history=loads), RunContext(comm=MPI.COMM_SELF))
     touching = made.charged.p_c > 0
     return made.charged.p_c[touching], made.charged.d_eq[touching]
-
-
-@pytest.mark.slow
-def test_scene_chooses_the_length():
-    """By default each air gap is the closure's at the pressure over the length under pressure; by gap it is larger.
-
-    Tolerance: the loop's, which ends with an iteration or two to spare. A longer length by a twentieth opens the gap by
-    some 2 %.
-    """
-    mesh = NINE["mesh"] | {"contact": 30e-6}
-    scene = from_data(NINE | {"mesh": mesh, "output": {"receptors": False, "errors": False}})
-    for length, least, most in (("pressure", 1 - 1e-6, 1 + 1e-6), ("gap", 1.02, 2.5)):
-        p_c, d_eq = finger(scene.replace(contact={"length": length}))
-        ratio = d_eq / scene.closure()(p_c).d_eq
-        assert ((least < ratio) & (ratio < most)).all()

@@ -31,7 +31,7 @@ def test_friction_in_a_circuit_is_that_of_the_gap_at_each_instant():
     for k in (10, 300, 1500):
         gap = scene.h_0 * 3
         for _ in range(20):
-            across = scene.supply.across(gap)[k]
+            across = scene.drive.across(gap)[k]
             other = cylinders.solve(fp.Scene(voltage=abs(float(across)) * (scene.h_0 + gap) / gap))
             gap = other.record["full_slip_d_eq"]
         assert found.f_t[k] == pytest.approx(other.full_slip.f_t, rel=2e-3)

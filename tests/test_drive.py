@@ -7,16 +7,16 @@ from numpy.testing import assert_allclose
 import fingerpad as fp
 from fingerpad.reduced import cylinders
 from fingerpad.results.drive_picture import Period, over_period
+from fingerpad.scene.drive import GAPS, SAMPLES, Drive, drive_of, one_period
 from fingerpad.scene.remarks import leakage, remarks
-from fingerpad.scene.supply import GAPS, SAMPLES, Supply, one_period, supply_of
 from variational.attraction.circuit import GapCircuit
 
 SINE = {"waveform": "sine", "amplitude": 200.0, "frequency": 100.0}
 DRY = {"tissue": "dry", "leak": 300.0}
 
 
-def supply(drive: dict, **electric) -> Supply:
-    found = fp.Scene(voltage=drive, electric=electric).supply
+def driven(drive: dict, **electric) -> Drive:
+    found = fp.Scene(voltage=drive, electric=electric).drive
     assert found is not None
     return found
 
@@ -27,7 +27,7 @@ def supply(drive: dict, **electric) -> Supply:
 def test_every_measure_is_of_the_same_drive(kind, rms, measure):
     """Of an amplitude of 120 V. Tolerance: of the square's two samples at its jumps, and of the triangle's mean."""
     given = {"amplitude": 120.0, "peak_to_peak": 240.0, "rms": 120.0 * rms}[measure]
-    found = supply({"waveform": kind, measure: given, "frequency": 50.0}).measures()
+    found = driven({"waveform": kind, measure: given, "frequency": 50.0}).measures()
     assert_allclose((found.amplitude, found.peak_to_peak), (120.0, 240.0), rtol=1e-12)
     assert found.rms == pytest.approx(120.0 * rms, rel=3e-4)
     assert found.mean == 0
@@ -35,7 +35,7 @@ def test_every_measure_is_of_the_same_drive(kind, rms, measure):
 
 def test_rms_is_of_the_alternating_part():
     """An offset adds to the square of the whole voltage; tables have that of the whole."""
-    found = supply({"waveform": "sine", "rms": 100.0, "offset": 50.0, "frequency": 50.0}).measures()
+    found = driven({"waveform": "sine", "rms": 100.0, "offset": 50.0, "frequency": 50.0}).measures()
     assert found.amplitude == pytest.approx(100 * 2**0.5) and found.mean == pytest.approx(50.0)
     assert found.rms == pytest.approx(np.hypot(100.0, 50.0))
 
@@ -44,15 +44,15 @@ def test_carrier_is_within_its_envelope():
     """The rms that is given is that of the samples; the peaks of both differ by a twentieth of a period."""
     for depth in (0.3, 1.0):
         carrier = {"frequency": 2e3, "modulation": depth}
-        found = supply({"waveform": "sine", "rms": 70.0, "frequency": 100.0, "carrier": carrier}).measures()
+        found = driven({"waveform": "sine", "rms": 70.0, "frequency": 100.0, "carrier": carrier}).measures()
         assert found.rms == pytest.approx(70.0, rel=1e-9)
         drive = {"waveform": "triangle", "amplitude": 70.0, "frequency": 100.0, "carrier": carrier}
-        assert supply(drive).measures().amplitude == pytest.approx(70.0, rel=4e-2)
+        assert driven(drive).measures().amplitude == pytest.approx(70.0, rel=4e-2)
 
 
 def test_burst_repeats_itself_with_its_pause():
     """Three periods of five: the mean square is three fifths, and the frequency a fifth."""
-    found = supply(SINE | {"burst": {"on": 3, "off": 2}})
+    found = driven(SINE | {"burst": {"on": 3, "off": 2}})
     assert found.frequency == pytest.approx(20.0)
     assert np.mean(found.voltages**2) == pytest.approx(0.6 * 200**2 / 2, rel=1e-3)
     assert found.reference == pytest.approx(200 * 0.3**0.5, rel=1e-3)
@@ -60,7 +60,7 @@ def test_burst_repeats_itself_with_its_pause():
 
 def test_file_is_taken_as_one_period():
     table = {"waveform": "file", "times": [0.0, 0.01, 0.03, 0.04], "voltages": [0.0, 100.0, -100.0, 0.0]}
-    found = supply(table)
+    found = driven(table)
     assert found.frequency == pytest.approx(25.0) and len(found.voltages) >= SAMPLES
     assert found.reference == pytest.approx(100 / 3**0.5, rel=1e-5)
 
@@ -91,7 +91,7 @@ def test_ridge_has_the_share_of_its_own_gap(state):
 
 def test_interpolation_between_gaps():
     """Tolerance: of what the interpolation between gaps that differ by a tenth leaves, relative."""
-    found = supply(SINE | {"offset": 30.0}, **DRY)
+    found = driven(SINE | {"offset": 30.0}, **DRY)
     between = np.sqrt(GAPS[30:70:5] * GAPS[31:71:5])
     exact = [np.sqrt(np.mean((found.across(g) * (found.h_0 + g) / g) ** 2)) for g in between]
     assert_allclose(found.effective(between), exact, rtol=1e-3)
@@ -128,13 +128,13 @@ def test_scene_of_a_drive_survives_its_files():
     drive = SINE | {"carrier": {"frequency": 5e3}, "burst": {"on": 5, "off": 5}, "offset": -3.0}
     scene = fp.Scene(voltage=drive, electric={"leak": {"peak": "250 Hz"}, "tissue": "dry"})
     assert fp.Scene(**scene.parameters()) == scene
-    assert scene.replace(voltage=100.0).supply is None
+    assert scene.replace(voltage=100.0).drive is None
 
 
-def test_supply_is_computed_once():
+def test_drive_is_computed_once():
     scene = fp.Scene(voltage=SINE, electric=DRY)
-    assert scene.supply is scene.replace(f_ext=10.0).supply
-    assert supply_of(scene.voltage, scene.electric, 425e-6) is scene.supply
+    assert scene.drive is scene.replace(f_ext=10.0).drive
+    assert drive_of(scene.voltage, scene.electric, 425e-6) is scene.drive
 
 
 @pytest.mark.parametrize(
@@ -204,7 +204,7 @@ def test_drive_is_refused(drive, electric, words):
 
 
 def test_a_carrier_that_a_file_resolves_is_taken():
-    assert fp.Scene(voltage=FILE | {"carrier": {"frequency": 40.0}}).supply is not None
+    assert fp.Scene(voltage=FILE | {"carrier": {"frequency": 40.0}}).drive is not None
 
 
 # -- as a picture ----------------------------------------------------------------------------------------------------

@@ -37,11 +37,6 @@ def snapshot_of(gaps) -> StateSnapshot:
     return StateSnapshot(nothing, nothing, skin, {}, {}, {}, np.zeros(2), Control(), 0.0)
 
 
-def test_place_on_the_skin_gives_its_arc_length():
-    s = np.random.default_rng(3).uniform(-25, 25, 200) * 483e-6
-    np.testing.assert_allclose(ALONG(PROFILES.point(s, PROFILES.skin(s))), s, rtol=0, atol=1e-8)
-
-
 def test_ends_are_where_the_gap_is_zero():
     """Of a parabola on one ridge, closed over 81 um, and none on the other. Tolerance: lines between points."""
     found = edges.ends(snapshot_of({0: lambda s: s**2 - 40.5e-6**2, 2: lambda s: 0 * s + 1e-6}), ALONG, 10e-6)

@@ -80,6 +80,6 @@ def test_the_environment_and_the_command_line_are_obeyed(tmp_path):
 def test_modules_of_the_current_folder_are_not_run(tmp_path):
     """Processes of a sweep are started with python3 -m, which looks there first."""
     (tmp_path / "numpy.py").write_text("raise SystemExit('found')")
-    job = "processes.run('fingerpad.runs.batch', ['no.json', '.', '9', 'full'], 9).message"
+    job = "processes.run('fingerpad.runs.solve', ['no.json', '.', '9', 'full'], 9).message"
     code = f"from fingerpad.runs import processes; print({job})"
     assert "No such file or directory: 'no.json'" in run(tmp_path, code).stdout

@@ -4,7 +4,7 @@ import pytest
 
 from benchmarks.errors import stiffer
 from fingerpad.accuracy import solves
-from fingerpad.richardson import MORE, ONCE, ORDER, MeshParameter, errors, plus_minus, rigid, to_refine
+from fingerpad.accuracy.richardson import MORE, ONCE, ORDER, MeshParameter, errors, plus_minus, rigid, to_refine
 from fingerpad.scene import SceneError, from_data
 from variational.contact.penalty import Penalty
 

@@ -58,14 +58,6 @@ def ends(scene, folder: Path, *words: str, steps: int = GOOD) -> None:
     assert all(np.isfinite(float(row[name])) for row in rows for name in ("f_ext", "f_contact", "stored", "imbalance"))
 
 
-def test_undisturbed(scene, tmp_path):
-    """Without a fault the scene runs to its end."""
-    summary = run(scene(), tmp_path, MPI.COMM_WORLD)
-    assert "failure" not in summary
-    assert len(accepted(tmp_path)) == summary["steps"] > GOOD
-    assert summary["charged_stable"] is True
-
-
 @pytest.fixture
 def before_solves(monkeypatch):
     """Return a function that has something done to the solver before each solve after the good steps."""
@@ -86,14 +78,6 @@ def before_solves(monkeypatch):
         monkeypatch.setattr(Solver, "solve", disturbed)
 
     return install
-
-
-def test_not_a_number_in_the_displacement(scene, tmp_path, before_solves):
-    def act(solver):
-        solver.x.array_w[7] = np.nan
-
-    before_solves(act)
-    ends(scene(), tmp_path, "step 3 (charge", "NOT_A_NUMBER in the displacement", "try")
 
 
 def test_not_a_number_from_the_closure(scene, tmp_path, monkeypatch):

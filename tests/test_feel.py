@@ -1,18 +1,13 @@
 """The page on what is felt: rules of its verdicts on numbers made by hand, and what needs no finite elements."""
 
 import copy
-import json
 
 import numpy as np
 import pytest
 
 from benchmarks.feel import __main__ as feel
 from benchmarks.feel import rules, scenes, subfield
-from benchmarks.harness import kept
 from benchmarks.measured.rules import HIT, MISS
-from fingerpad.results import felt
-from fingerpad.results.files import FORMAT
-from fingerpad.results.result import Result
 
 STEP = {
     "rise": {"RA1": 20, "f_t": 2.0, "length": 2.0, "strain": 2.0},
@@ -70,45 +65,6 @@ def test_each_rule_can_miss(number):
     assert rules.judge(numbers)[number - 1].verdict == MISS
 
 
-def test_elastic_skin_stands_beside_viscous_skin_and_does_not_count():
-    """Elastic numbers that would be misses are printed, and change no verdict."""
-    numbers = copy.deepcopy(NUMBERS)
-    numbers["elastic"] = {load: {"rise": STEP["fall"], "fall": STEP["fall"]} for load in numbers["steps"]}
-    one, two, three, *_ = rules.judge(numbers)
-    assert [row.verdict for row in (one, two, three)] == [HIT] * 3
-    assert one.ours.endswith("elastic 10 and 10") and "elastic 1.000 (25 N/m)" in two.ours
-    assert three.ours.endswith("elastic all within 0.0% of 1")
-
-
-def test_weak_hits_say_so():
-    """A rank correlation of the bar exactly, a hit that rests on SA1 not increasing, and the first measure of shear."""
-    numbers = copy.deepcopy(NUMBERS)
-    for row, force in zip(numbers["gratings"], (3.0, 1.0, 4.0, 2.0), strict=True):
-        row["rate"] = force
-    for row, count in zip(numbers["gratings"], (2.0, 1.0, 4.0, 3.0), strict=True):
-        row["RA1"] = count
-    numbers["onset"] = {"RA1 strain": 0.5, "RA1": 0.5, "SA1": 0.9, "SA1 before": 0.9}
-    eight, nine, _, _, twelve = rules.judge(numbers)[7:12]
-    assert eight.verdict == nine.verdict == twelve.verdict == HIT
-    assert "0.80 of four gratings: the bar exactly" in eight.ours
-    assert "rests on SA1 not increasing" in nine.ours and "its verdict was miss" in twelve.ours
-    assert not any("exactly" in row.ours or "rests on" in row.ours for row in rules.judge(NUMBERS))
-
-
-def test_run_of_another_scene_is_not_taken(tmp_path, monkeypatch):
-    """A folder that has the run of one scene is not read for another."""
-    (tmp_path / "onset").mkdir()
-    kept = {"format": FORMAT, "parameters": json.loads(json.dumps(scenes.step(25.0).parameters()))}
-    (tmp_path / "onset" / "summary.json").write_text(json.dumps(kept), encoding="utf-8")
-    asked, done = [], Result(scenes.step(25.0), "full", None, None, None)
-    monkeypatch.setattr(scenes.fp, "run", lambda scene, out: asked.append(scene) or done)
-    monkeypatch.setattr(scenes.fp.Result, "load", lambda place: done)
-    scenes.run("onset", scenes.onset(), tmp_path)
-    assert asked == [scenes.onset()]
-    scenes.run("onset", scenes.step(25.0), tmp_path)
-    assert len(asked) == 1
-
-
 def test_gain_and_what_it_leaves():
     """Thresholds that are 3 times others leave nothing; a factor of 10 both ways leaves 1."""
     assert rules.log_gain([3.0, 30.0], [1.0, 10.0]) == pytest.approx((np.log10(3), 0.0))
@@ -122,21 +78,8 @@ def test_thresholds_of_the_classes():
     assert found["SA1"]["ours"][2] == pytest.approx(24.38, rel=1e-3)
 
 
-def test_error_of_sites():
-    """The note on stimuli has the known error of the path's mesh of the default scene, to two digits."""
-    numbers = kept("errors").numbers
-    assert felt.SITE_ERROR == round(feel.site_error(numbers), 2)
-    mesh, ours = numbers["again"]["path"]["mesh"], scenes.onset().mesh
-    assert all(mesh[key] == getattr(ours, key) for key in ("contact", "receptor", "growth"))
-
-
 def test_width_at_half_height():
     """Of a triangle, and of one on a foot beyond which there is more."""
     arcs = np.linspace(-2, 2, 401)
     assert subfield.width(arcs, np.maximum(1 - np.abs(arcs), 0)) == pytest.approx(1.0)
     assert subfield.width(arcs, np.maximum(1 - np.abs(arcs), 0) + 0.9 * (arcs > 1.5)) == pytest.approx(1.0)
-
-
-def test_every_scene_has_receptors_and_a_load_over_time():
-    every = [scenes.onset(), scenes.step(25.0), scenes.grating(25.0, 1e-3), scenes.charged(200.0, 0.25)]
-    assert all(scene.output.receptors and any(load.takes_time for load in scene.loads()) for scene in every)

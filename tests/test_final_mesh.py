@@ -8,9 +8,9 @@ import pytest
 from mpi4py import MPI
 
 from fingerpad.accuracy import solves
+from fingerpad.accuracy.richardson import SITES, TWO, of_two_meshes, value
 from fingerpad.model.options import FingerModel, by_rule, plan
 from fingerpad.results.interrupt import Interrupted
-from fingerpad.richardson import SITES, TWO, of_two_meshes, value
 from fingerpad.runs import restarts
 from fingerpad.scene import from_data
 from tests.runs import run

@@ -5,22 +5,18 @@ from functools import partial
 import numpy as np
 import pytest
 import ufl
-from dolfinx import fem
-from dolfinx import geometry as search
-from dolfinx.mesh import entities_to_geometry
 from mpi4py import MPI
 from scipy.spatial import cKDTree
 
 from fingerpad.scene import Scene
 from geometry import fingertip, sizing, tags
 from geometry.mesh import load
-from geometry.parameters import Fingertip, MeshSize
+from geometry.parameters import Fingertip
 from geometry.profiles import GeometryError
 from geometry.reflection import HalfMesh, swapped
-from geometry.sizing import touching_ridges
 from tests.measures import integral, vertices
 from tests.small_finger import SMALL
-from tests.test_profiles import MM, UM, WAVE, dense
+from tests.test_profiles import UM, WAVE, dense
 
 
 def shoelace(*chains) -> float:
@@ -60,29 +56,6 @@ def test_area(finger_mesh, profiles, layer):
     assert integral(finger_mesh, tag) == pytest.approx(areas(profiles)[tag], rel=off)
 
 
-@pytest.mark.parametrize("layer", list(tags.LAYERS))
-def test_layers_are_mirrored(finger_mesh, layer):
-    """Left and right of x = 0 weigh the same. Tolerance: the placing of nodes along the mirrored curves."""
-    tag = tags.LAYERS[layer]
-    moment = integral(finger_mesh, tag, ufl.SpatialCoordinate(finger_mesh.mesh)[0])
-    assert abs(moment) < 1e-6 * 20 * MM * integral(finger_mesh, tag)
-
-
-@pytest.mark.mpi
-def test_no_cell_is_without_layer(finger_mesh):
-    """The layers together are the whole section. Tolerance: roundoff of the sums."""
-    whole = finger_mesh.mesh.comm.allreduce(
-        fem.assemble_scalar(fem.form(fem.Constant(finger_mesh.mesh, 1.0) * ufl.dx(finger_mesh.mesh)))
-    )
-    assert sum(integral(finger_mesh, tag) for tag in tags.LAYERS.values()) == pytest.approx(whole, rel=1e-12, abs=0)
-
-
-@pytest.mark.mpi
-def test_ridges_that_can_touch(finger_mesh, coarse):
-    """Those with a tip within 2 mm of the centre, and half of one."""
-    assert finger_mesh.ridges() == list(range(-4, 5)) == list(touching_ridges(Fingertip(), coarse))
-
-
 def away_from(curve, points) -> float:
     """Return the greatest distance of points from a curve given densely."""
     return float(cKDTree(curve).query(points)[0].max())
@@ -99,15 +72,6 @@ def test_ridges_of_the_mesh(finger_mesh, profiles):
         assert away_from(profiles.point(s, profiles.skin(s)), nodes) < 0.01 * UM
         ends = profiles.point(s[[0, -1]], profiles.skin(s[[0, -1]]))
         assert away_from(nodes, ends) < 1e-15
-
-
-def test_lowest_node(finger_mesh):
-    """The mesh reaches the screen but for the sagitta of a facet, here up to 40 um, at a tip of radius 118 um.
-
-    Below the screen it may be by roundoff.
-    """
-    lowest = vertices(finger_mesh, finger_mesh.facet_tags.find(tags.ridge(0)))[:, 1].min()
-    assert -1e-9 * UM < lowest < (40 * UM) ** 2 / (8 * 118 * UM)
 
 
 def test_contact_size(finger_mesh):
@@ -148,52 +112,6 @@ def test_interfaces_of_the_mesh(finger_mesh, profiles, layers, depth, within):
     assert away_from(dense(profiles, getattr(profiles, depth)), nodes) < within
 
 
-def layer_at(body, points):
-    x = np.pad(points, ((0, 0), (0, 1)))
-    near = search.compute_collisions_points(search.bb_tree(body.mesh, 2), x)
-    cells = search.compute_colliding_cells(body.mesh, near, x)
-    layer = np.zeros(body.mesh.topology.index_map(2).size_local, dtype=int)
-    layer[body.cell_tags.indices] = body.cell_tags.values
-    return np.array([layer[cells.links(k)[0]] for k in range(len(points))])
-
-
-def test_cells_at_the_sites(finger_mesh, profiles):
-    """On a mesh of any size: each intermediate ridge has a node on its tip, each papilla on its top."""
-    np.testing.assert_array_equal(layer_at(finger_mesh, profiles.merkel_sites()), tags.VIABLE_EPIDERMIS)
-    np.testing.assert_array_equal(layer_at(finger_mesh, profiles.meissner_sites()), tags.DERMIS)
-
-
-RECEPTOR = 5 * UM
-
-
-def at_the_tips(receptors=True, growth=0.25):
-    """Return half a finger, coarse but for the tips below the Merkel sites, where ridges 0 to 2 can touch."""
-    size = MeshSize(contact=40 * UM, receptor=RECEPTOR, growth=growth, touching_half_arc=1 * MM)
-    return load(MPI.COMM_WORLD, partial(fingertip.build, Fingertip(), size, receptors, half=True))
-
-
-def test_elements_at_the_tips_below_the_merkel_sites(profiles):
-    """Where ridges can touch their edges are as long as asked, elsewhere several times as long.
-
-    Tolerance: an edge has the size asked for at its middle, 4/3 of that at the tip, to an eighth of it.
-    """
-    mesh = at_the_tips().mesh
-    own = np.arange(mesh.topology.index_map(1).size_local, dtype=np.int32)
-    ends = mesh.geometry.x[entities_to_geometry(mesh, 1, own)][:, :, :2]
-    s = np.arange(4) * WAVE
-    means = []
-    for tip in profiles.point(s, profiles.ve_d(s)):
-        here = ends[np.linalg.norm(ends - tip, axis=2).min(axis=1) < 1e-3 * UM]
-        means.append(np.concatenate(mesh.comm.allgather(np.linalg.norm(here[:, 1] - here[:, 0], axis=1))).mean())
-    assert max(means[:3]) < 1.5 * RECEPTOR < 4 * RECEPTOR < means[3]
-
-
-def test_triangles_of_a_merkel_site():
-    """By default fewer than 200 each, and more than 100; the site on the line of symmetry counts half."""
-    with_sites, without = (at_the_tips(wanted).mesh.topology.index_map(2).size_global for wanted in (True, False))
-    assert 100 < (with_sites - without) / 2.5 < 200
-
-
 @pytest.mark.mpi
 def test_bone_rim(finger_mesh, profiles):
     """The rim is closed: its normals add up to nothing; its length is the ellipse's. Tolerance: chords of 1 mm."""
@@ -203,12 +121,6 @@ def test_bone_rim(finger_mesh, profiles):
     assert integral(finger_mesh, tags.BONE_RIM, kind="ds") == pytest.approx(length, rel=1e-2)
     for k in (0, 1):
         assert abs(integral(finger_mesh, tags.BONE_RIM, n[k], "ds")) < 1e-12 * length
-
-
-def test_ridge_tags():
-    assert [tags.ridge_index(tags.ridge(j)) for j in (-50, -1, 0, 50)] == [-50, -1, 0, 50]
-    others = [*tags.LAYERS.values(), tags.BONE_RIM, tags.OUTER_SKIN, tags.NAIL_SURFACE, tags.SIDES, tags.SYMMETRY]
-    assert not {tags.ridge(j) for j in range(-50, 51)} & set(others)
 
 
 def test_finger_is_a_half_and_its_mirror_image(coarse, finger_mesh):
@@ -242,28 +154,6 @@ def test_corner_of_a_square_goes_to_its_neighbour(turn):
     assert {frozenset(nodes) for nodes in found.tolist()} == {frozenset((1, 2, 4)), frozenset((2, 3, 4))}
     a, b, c = (SQUARE[found[:, k] - 1] for k in range(3))
     np.testing.assert_allclose(np.linalg.det(np.stack([b - a, c - a], axis=1)), 1.0)
-
-
-@pytest.mark.parametrize(
-    ("skin", "layers"),
-    [
-        ([[1, 2]], {7: [[1, 2, 3], [1, 3, 4]]}),  # one side alone
-        ([[1, 2], [2, 3]], {7: [[1, 2, 3]], 8: [[1, 3, 4]]}),  # the neighbour is of another layer
-        ([[1, 2], [2, 3], [3, 4]], {7: [[1, 2, 3], [1, 3, 4]]}),  # the neighbour has a side of its own
-    ],
-)
-def test_what_cannot_or_need_not_be_swapped_stays(skin, layers):
-    given = {tag: np.array(nodes) for tag, nodes in layers.items()}
-    found = swapped(SQUARE, np.array(skin), given)
-    assert all(np.array_equal(found[tag], nodes) for tag, nodes in given.items())
-
-
-def test_concave_pair_stays():
-    """The other diagonal would lie outside of it."""
-    points = np.array([[0.0, 0.0], [1.0, -0.2], [2.0, 0.0], [5.0, 0.1]])
-    given = np.array([[1, 2, 3], [1, 3, 4]])
-    found = swapped(points, np.array([[1, 2], [2, 3]]), {7: given})[7]
-    assert np.array_equal(found, given)
 
 
 @pytest.mark.slow

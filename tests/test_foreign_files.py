@@ -17,7 +17,6 @@ from PIL import Image
 
 import fingerpad as fp
 from fingerpad.cli import main
-from fingerpad.reduced import cylinders
 from fingerpad.reduced.registry import find
 from fingerpad.report.page import again, picture
 from fingerpad.report.write import write
@@ -80,15 +79,14 @@ def answered(tmp_path_factory) -> Path:
 @pytest.mark.parametrize("key", ["full_slip_mu_app", "parameters", "finger", "notes", "provenance", "asked", "laws"])
 @pytest.mark.parametrize("value", [5, "x", [], {"a": [1]}, [[1]]])
 def test_summary_with_a_value_of_another_kind(answered, tmp_path, key, value):
-    """The report is made, or refused in a sentence; so is a run that another model is to take its contact from."""
+    """The report is made, or refused in a sentence."""
     copy = Path(shutil.copytree(answered, tmp_path / "copy"))
     summary = json.loads((copy / "summary.json").read_text()) | {"model": "full", key: value}
     (copy / "summary.json").write_text(json.dumps(summary))
-    for read in (write, lambda folder: cylinders.from_run(Scene(), folder)):
-        try:
-            read(copy)
-        except SceneError as error:
-            assert str(copy)[-20:] in str(error) or "copy" in str(error)
+    try:
+        write(copy)
+    except SceneError as error:
+        assert "copy" in str(error)
 
 
 @pytest.mark.timeout(20)

@@ -6,7 +6,6 @@ from typing import ClassVar
 
 import numpy as np
 import pytest
-from ffcx.naming import compute_signature
 from mpi4py import MPI
 
 from fingerpad.cli.check import _model
@@ -22,7 +21,6 @@ from variational.contact.formulation import Formulation, Springs
 from variational.contact.nitsche import Nitsche
 from variational.contact.penalty import Penalty
 from variational.solvers.continuation import Continuation, StepFailed, Target
-from variational.solvers.outcome import NotConverged
 
 pytestmark = [pytest.mark.mpi, pytest.mark.slow]
 NITSCHE = [Nitsche(10.0, 0), Nitsche(100.0, 1), Nitsche(10.0, -1)]
@@ -130,22 +128,6 @@ def test_force_of_a_ridge(pressed, exact, formulation):
     assert contact_force(run) == pytest.approx(run.solver.reaction[1], abs=100 * TOLERANCE)
 
 
-def test_augmented_lagrangian_leaves_no_more_than_its_tolerance(pressed):
-    """What bears pressure is on the screen, neither deeper nor higher than the tolerance."""
-    s = pressed(AugmentedLagrangian(1.5e13, 5e11, 5e-9)).surface_state
-    assert np.abs(s.y[s.p_n > 0]).max(initial=0.0) <= 5e-9
-
-
-def test_contact_length(pressed, exact):
-    """Where the trial pressure is positive: the same length to a tenth of a facet, of a dozen in contact."""
-
-    def length(run: Continuation) -> float:
-        return float(run.observer.ridge_loads(run.surface_state).length[0])
-
-    for formulation in (Penalty(7.5e12, 5e10), *NITSCHE):
-        assert length(pressed(formulation)) == pytest.approx(length(exact), abs=2e-6)
-
-
 # -- friction ------------------------------------------------------------------------------------------
 SLIDING = [Penalty(1e11, 1e10), AugmentedLagrangian(1e12, 1e10, 5e-9), *(Nitsche(10.0, theta) for theta in (0, 1, -1))]
 
@@ -185,25 +167,6 @@ def test_full_slip_is_the_cone(slid):
     assert reaction[0] == pytest.approx(-MU_F * f_contact, abs=100 * TOLERANCE)
 
 
-def test_stick_before_slip(slid):
-    """The first 0.2 um leave points that stick, and bear less friction than the cone."""
-    *_, (share, _), f_contact, reaction = next(step for step in slid if step[0] == "slide")
-    assert share < 1
-    assert 0 < -reaction[0] < 0.9 * MU_F * f_contact
-
-
-def test_elastic_slip():
-    """Points of the augmented Lagrangian that stick stay where they were accepted, to its tolerance.
-
-    In few steps: cut often enough, one would slip too little to need a multiplier.
-    """
-    states = [state for _, state, *_ in slide(MPI.COMM_WORLD.size, SLIDING[1])]
-    assert len(states) < 30
-    for before, after in zip(states, states[1:], strict=False):
-        sticks = (after.p_n > 0) & (np.abs(after.t_t) < MU_F * after.p_n * (1 - 1e-8))
-        assert np.abs(after.x - before.x)[sticks].max(initial=0.0) <= SLIDING[1].tolerance
-
-
 @pytest.mark.parametrize("formulation", [SLIDING[1], SLIDING[2]], ids=repr)
 def test_ranks(formulation):
     """Forces by step are those of one rank, to the tolerances of solves and multipliers."""
@@ -231,30 +194,6 @@ def test_points_that_slip_are_expected_to_slip_on():
 
 
 # -- history -------------------------------------------------------------------------------------------
-@pytest.mark.parametrize(
-    "formulation", [Penalty(1e11, 1e10), AugmentedLagrangian(1e11, 1e10, 5e-9), Nitsche(10.0)], ids=repr
-)
-def test_rejected_attempts_leave_no_trace(formulation):
-    """After attempts given up in the middle of a coupling iteration, anchors and multipliers are the accepted ones."""
-    run = make(load(MPI.COMM_WORLD, block(WIDTH, HEIGHT, 0.25e-3)), formulation, MU_F, held=False)
-    run.run(Target("press", bone_height=-2e-6))
-    run.run(Target("slide", bone_x=0.5e-6))
-    anchor, multiplier = run.problem.anchor.x.array.copy(), run.problem.multiplier.x.array.copy()
-    solve = run.coupling.solve
-
-    def fail(pseudo_transient=False):
-        solve(pseudo_transient)
-        state = run.observer.state()
-        doubled = {"anchor": 2 * state.anchor, "pressure": 2 * state.p_n}
-        run.problem.history.impose({**run.problem.history.accepted, **doubled})
-        raise NotConverged("TEST", False)
-
-    run.coupling.solve = fail
-    with pytest.raises(StepFailed):
-        run.run(Target("slide", bone_x=1e-6))
-    np.testing.assert_array_equal(run.problem.anchor.x.array, anchor)
-    np.testing.assert_array_equal(run.problem.multiplier.x.array, multiplier)
-    assert np.abs(anchor).max(initial=0.0) > 0 and multiplier.max(initial=0.0) > 0
 
 
 def test_too_many_coupling_iterations():
@@ -263,13 +202,3 @@ def test_too_many_coupling_iterations():
     run.coupling.cap = 1
     with pytest.raises(StepFailed, match="COUPLING_CAP at a contact error of"):
         run.run(Target("press", bone_height=-0.1 * HEIGHT))
-
-
-def test_bodies_of_a_process_share_their_kernels():
-    """Stresses are differentiated by labelled gradients, and a label of the next free number makes another kernel."""
-
-    def name() -> str:
-        compiled = make(load(MPI.COMM_WORLD, block(WIDTH, HEIGHT, 0.5e-3)), Nitsche(10.0)).observer._compiled
-        return compute_signature([(compiled.ufl_expression, np.zeros((1, 1)))], "")
-
-    assert name() == name()

@@ -56,14 +56,6 @@ def test_open_point_carries_its_anchor_along():
     assert formulation.new_anchor(5e-7, 0.0, EPS_T) == 5e-7
 
 
-@pytest.mark.parametrize("u_x", [5e-7, -5e-7, 0.0])
-def test_open_point_has_no_stiffness(u_x):
-    """Nothing holds a point without pressure, be its spring slack or not: its place was carried along."""
-    x = ufl.variable(ufl.as_ufl(u_x))
-    slope = ufl.diff(formulation.traction(x, 0.0, 0.0, EPS_T), x)
-    assert float(ufl.algorithms.apply_derivatives.apply_derivatives(slope)) == 0
-
-
 # -- laws ------------------------------------------------------------------------------------------------------
 LAW = Derjaguin(0.25, tau_0=4e3, p_reg=1e3)
 PRESSURES = np.array([0.0, 1.0, 1e3, 1e4, 1e6])
@@ -83,11 +75,6 @@ def test_derjaguin_is_coulomb_and_a_constant():
     p = np.array([1e4, 1e5, 1e6])
     missing = 1 - (LAW.limit(p) - LAW.mu_f * p) / LAW.tau_0
     np.testing.assert_allclose(missing, (LAW.p_reg / p) ** 2 / 2, rtol=0.01, atol=1e-9)
-
-
-def test_derjaguin_begins_without_a_jump():
-    """At small pressures the limit is proportional to them. Tolerance: the regularisation's next term, of order p^2."""
-    assert LAW.coefficient(1.0) == pytest.approx(LAW.mu_f + LAW.tau_0 / LAW.p_reg, rel=1e-6)
 
 
 def test_dissipation_is_the_limit_times_the_way():
@@ -130,13 +117,6 @@ def test_what_is_no_law_is_refused(law, sentence):
     assert "\n" not in str(error.value)
 
 
-@pytest.mark.parametrize("scale", [2e3, 5e3, 1e4])
-def test_finite_slopes_are_laws(scale):
-    """Whatever roundoff leaves of them at small pressures, the advised form among them."""
-    for limit in (lambda p: 5e3 * (1 - np.exp(-p / scale)), lambda p: 2 * ((p + scale) ** 0.9 - scale**0.9)):
-        Formula(limit).check()
-
-
 def test_no_law_is_derived_from_coulombs():
     """Its coefficient would stand for the law where there are no pressures."""
     with pytest.raises(
@@ -152,11 +132,6 @@ def test_no_law_is_derived_from_coulombs():
 def test_what_is_no_coefficient_is_refused(given):
     with pytest.raises(ValueError, match="it must be a Friction, a friction coefficient of at least 0, or None"):
         law_of(given)
-
-
-def test_interface_takes_a_law_a_coefficient_or_none():
-    laws = [Interface(Penalty(1e12, 1e11), given, 1e-6).friction for given in (LAW, 0.25, 1, 0, 0.0, None)]
-    assert laws == [LAW, Coulomb(0.25), Coulomb(1.0), None, None, None]
 
 
 # -- in the weak form ------------------------------------------------------------------------------------------
@@ -225,18 +200,6 @@ def test_adhesion_is_that_of_the_width():
     law = Derjaguin(0.02, tau_0=500.0, p_reg=1e3)
     friction = -slid(law, 0.5e-3).solver.reaction[0]
     assert friction - law.mu_f * FORCE == pytest.approx(law.tau_0 * WIDTH, rel=0.02)
-
-
-def test_unloading_leaves_no_friction():
-    """Lifted off as it slides, the block is released: at every step friction is within the limit, at last none."""
-    made = slid(LAW, 0.5e-3)
-    found = []
-    for height in (0.0, 2e-6, 5e-6, 20e-6):
-        made.continuation.run(Target("lift", bone_height=height))
-        loads = made.observer.ridge_loads(made.continuation.surface_state)
-        found.append((abs(float(loads.f_friction[0])), float(loads.f_limit[0])))
-        assert found[-1][0] <= found[-1][1] * (1 + 2 * CONE_ROUNDOFF)
-    assert found[-1] == (0.0, 0.0)
 
 
 @pytest.mark.slow

@@ -4,22 +4,16 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from mpi4py import MPI
 
 from fingerpad.accuracy.states import StateRecorder
 from fingerpad.model.checks import FullSlip
 from fingerpad.scene import from_data
-from geometry.bodies import block
-from geometry.mesh import load
 from tests.runs import followed, path_of
 from tests.small_finger import NINE, small
 from tests.test_body import FORCE, MU_F, RIDGE, SKIN, SPRINGS, VOLTAGE, Body
-from tests.test_contact import HEIGHT, WIDTH, over
 from variational.contact.augmented import AugmentedLagrangian
 from variational.contact.nitsche import Nitsche
 from variational.roughness.bam import BearingArea
-from variational.solvers.accepted import return_to_onset
-from variational.solvers.continuation import Target
 
 pytestmark = pytest.mark.slow
 SCENE = NINE | {"f_ext": 1.0, "voltage": 100.0}
@@ -69,17 +63,6 @@ def test_slide_goes_on_the_way_it_came(end):
     assert (np.diff(places) > 0).all()
     assert places[-1] == pytest.approx(abs(first) + 0.2e-3, rel=1e-9)
     assert slid[-1].f_t == pytest.approx(np.sign(end) * 0.25, rel=1e-6)
-
-
-def test_slide_of_no_length_is_none():
-    """A move by nothing until full slip, where full slip is: the bone stays, whichever way it came."""
-    press, back = {"name": "press", "f_ext": 1.0}, {"name": "back", "bone_x": -5e-3, "until_full_slip": True}
-    stay = {"name": "stay", "bone_x_by": 0.0, "until_full_slip": True}
-    scene = small(output={"receptors": False}).replace(history=[press, back, stay])
-    simulation = followed(scene)
-    last = [state for state in simulation.states if state.load == "back"][-1]
-    assert all(state.bone_x == last.bone_x for state in simulation.states if state.load == "stay")
-    assert last.slip_held and last.f_t < 0
 
 
 def test_time_goes_on_where_full_slip_is_not_steady_at_once(monkeypatch):
@@ -144,40 +127,3 @@ def test_place_of_full_slip_does_not_depend_on_the_step(contact, way):
     assert long.state.all_slip and short.state.all_slip
     assert long.state.bone_x == pytest.approx(short.state.bone_x, abs=0.3e-6)
     assert way * long.state.f_t == pytest.approx(MU_F * long.state.f_contact, rel=1e-8)
-
-
-def test_work_of_friction_does_not_depend_on_the_step():
-    """There and back to full slip, under steps of 60 and of 15 um.
-
-    Tolerance: the trapezoidal rule on the way to full slip, measured 2 %. Without the way back the longer steps
-    have nine times the work of the shorter ones.
-    """
-    spent = []
-    for scale in (1.0, 0.25):
-        body = Body(RIDGE, SKIN, contact=SPRINGS, friction=MU_F, step_scale=scale).press(FORCE)
-        body.slide(until_full_slip=True).slide(-0.5e-3, until_full_slip=True)
-        spent.append(body.energy.dissipated)
-    assert spent[0] == pytest.approx(spent[1], rel=5e-2)
-
-
-def test_full_slip_begins_at_once_where_it_is():
-    """A second slide the same way moves nothing and spends nothing; one by a given length goes on from there."""
-    body = charged(SPRINGS).slide(until_full_slip=True)
-    x, spent, f_t = body.state.bone_x, body.energy.dissipated, body.state.f_t
-    body.slide(until_full_slip=True)
-    assert body.state.bone_x == pytest.approx(x, rel=1e-6)
-    assert body.energy.dissipated == pytest.approx(spent, rel=1e-5)
-    body.slide(50e-6)
-    assert body.state.bone_x == pytest.approx(x + 50e-6, rel=1e-6)
-    assert body.energy.dissipated - spent == pytest.approx(f_t * 50e-6, rel=1e-4)
-
-
-def test_body_that_something_else_holds_stays_where_it_is():
-    """The lateral facets of a block are held in place: translated back the forces would not balance, so it stays."""
-    run = over(load(MPI.COMM_WORLD, block(WIDTH, HEIGHT, 0.25e-3)), MU_F, 1e11, 1e10).continuation
-    run.run(Target("press", bone_height=-2e-6))
-    run.run(Target("slide", bone_x=0.1e-3))
-    x, unknowns = run.solver.control.x, run.solver.x.array_r.copy()
-    assert return_to_onset(run.solver, run.observer, 0.1e-3) == 0.0
-    assert run.solver.control.x == x
-    np.testing.assert_allclose(run.solver.x.array_r, unknowns, rtol=0, atol=1e-18)

@@ -2,7 +2,6 @@
 
 from dataclasses import dataclass, replace
 
-import numpy as np
 import pytest
 import ufl
 from mpi4py import MPI
@@ -14,7 +13,6 @@ from fingerpad.scene import from_data
 from tests.runs import followed
 from tests.small_finger import NINE
 from variational.materials.neo_hooke import NeoHooke
-from variational.solvers import newton as solvers
 
 pytestmark = pytest.mark.slow
 CLOSE = 1e-5  # relative: air gaps are within 1e-6
@@ -68,13 +66,6 @@ def test_half_leads_to_the_states_of_the_whole(history):
         assert mine.ridges.d_eq == pytest.approx(other.ridges.d_eq, rel=CLOSE, nan_ok=True)
 
 
-def test_state_that_the_half_leads_to_is_symmetric():
-    last = [state for state in follow(HISTORY, True).states if state.load == "charge"][-1]
-    assert last.bone_x == 0.0
-    assert abs(last.f_t) < 1e-12
-    assert np.array_equal(last.ridges.d_eq, last.ridges.d_eq[::-1])
-
-
 def test_stability_is_examined_on_the_whole_finger(monkeypatch):
     """Where the symmetric state is not stable the result says so; a whole finger's would be symmetric, too."""
     checks, examined = simulation.StabilityChecks.check, []
@@ -91,25 +82,6 @@ def test_stability_is_examined_on_the_whole_finger(monkeypatch):
     assert examined[:2] == ["press", "charge"]
 
 
-def test_work_of_the_half_is_counted():
-    path = follow(HISTORY, True)
-    counted = path.finger.solver.counts.newton
-    assert counted >= sum(state.record.newton_iterations for state in path.states)
-
-
-def test_record_is_that_of_the_state_and_not_of_a_probe(monkeypatch):
-    """Sliding on, which is not accepted, may end at another floor of roundoff than the state itself."""
-    placed, path = simulation.FullSlip.placed, Simulation(model(HISTORY[:3]), MPI.COMM_SELF)
-
-    def and_probed(self, *args):
-        path.finger.solver.iteration.floor = 1.0
-        return placed(self, *args)
-
-    monkeypatch.setattr(simulation.FullSlip, "placed", and_probed)
-    path.run()
-    assert all(state.record.floor < 1e-6 for state in path.states)
-
-
 @pytest.mark.mpi
 def test_mixed_element_is_in_balance_on_the_whole_finger():
     """The pressure comes over with the displacement. Solved for again it left up to 5e-8, with a floor of 0."""
@@ -121,23 +93,6 @@ def test_mixed_element_is_in_balance_on_the_whole_finger():
     tolerance = scene.numerics.tolerance
     assert [state.record.imbalance for state in path.states if state.record.imbalance > tolerance] == []
     assert [state.record.floor for state in path.states] == [0.0] * len(path.states)
-
-
-def test_floor_is_that_of_the_whole_finger(monkeypatch):
-    """States handed over with an error at one node have the residual of that error, and their floor says so."""
-    take, norms = solvers.Solver.take, []
-
-    def and_wrong(self, w, bone, pressure):
-        w[np.argmax(w[:, 1])] += 1e-14
-        take(self, w, bone, pressure)
-        self.equations.residual(self.x, self.iteration.f)
-        norms.append(self.iteration.f.norm() / self.force_scale)
-
-    monkeypatch.setattr(solvers.Solver, "take", and_wrong)
-    path = Simulation(model(BRIEF), MPI.COMM_SELF)
-    path.run()
-    assert min(norms) > 1e-9
-    assert [state.record.floor for state in path.states[: len(norms)]] == norms
 
 
 @dataclass(frozen=True)
@@ -166,11 +121,3 @@ def test_no_half_with_multipliers_that_a_step_corrects():
     scene = from_data(NINE | {"history": HISTORY, "contact": {"formulation": "augmented"}})
     assert not plan(scene).symmetric_start
     assert plan(scene.replace(contact={"formulation": "nitsche"})).symmetric_start
-
-
-def test_half_leads_a_path_that_ends_before_sliding():
-    """As the accuracy's paths with other steps do."""
-    charged = model(HISTORY).changed(loads=model(HISTORY).loads[:2])
-    path = Simulation(charged, MPI.COMM_SELF)
-    assert path.run() is None
-    assert path.states[-1].load == "charge"

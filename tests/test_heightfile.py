@@ -1,14 +1,16 @@
 """Height maps from files: formats, missing heights, and what is refused."""
 
 import builtins
+import itertools
+import re
+from pathlib import Path
 
 import numpy as np
 import pytest
 import scipy.io
 
 from tests.test_topography import grid, wave
-from variational import files
-from variational.roughness.heightfile import _matrix, scan
+from variational.roughness.heightfile import _refuse_mark, _refuse_uneven, scan
 from variational.roughness.spectrum import SelfAffine
 from variational.roughness.topography import filled
 
@@ -43,30 +45,62 @@ def test_lengths_that_are_exchanged(tmp_path):
 
 
 # -- missing pixels ----------------------------------------------------------------------------------------
-
-
 @pytest.mark.parametrize("pixels", [1, 40, 1000])
-@pytest.mark.parametrize("value", [-9999.0, 32767.0, -3.4028234663852886e38])
-@pytest.mark.parametrize("name", ["map.csv", "map.npy"])
-def test_unfilled_value_is_refused(name, value, pixels, tmp_path):
-    """Of heights of some µm; 1000 of 2304 pixels are more than the quartiles bear. As a mark it is missing."""
-    path, h = tmp_path / name, SelfAffine().surface((48, 48), (300e-6, 300e-6), 3).heights * 1e6
+@pytest.mark.parametrize("value", [-9999.0, -3.4028234663852886e38])
+def test_unfilled_value_is_refused(value, pixels, tmp_path):
+    """Of heights of some µm; 1000 of 1440 pixels are more than the quartiles bear. As a mark it is missing."""
+    path, h = tmp_path / "map.csv", smooth()
     h.ravel()[:pixels] = value
-    if path.suffix == ".npy":
-        np.save(path, h)
-    else:
-        np.savetxt(path, h, delimiter=",")
-    count, text = "1 pixel" if pixels == 1 else f"{pixels} pixels", repr(value).removesuffix(".0")
-    with pytest.raises(ValueError) as refusal:
+    np.savetxt(path, h, delimiter=",")
+    text = repr(value).removesuffix(".0")
+    with pytest.raises(ValueError, match=re.escape(f"has {text} at {pixels} pixels, far from all other heights")):
         scan(path, **PLAIN)
-    assert str(refusal.value) == (
-        f"{path} has {text} at {count}, far from all other heights, as a mark of missing pixels; give "
-        f"'missing'=\"{text}\", or 'missing'=\"nan\" if it was measured"
-    )
     if pixels == 40:
         assert scan(path, **PLAIN, missing=text).missing == pixels
-    if value == 32767:
-        assert np.ptp(scan(path, **PLAIN, missing="nan").map.heights) > 0.03
+
+
+@pytest.mark.parametrize("width", [1, 20])
+def test_deep_grooves_are_no_marks(width):
+    """Walls are steep and 1000 interquartile ranges deep, but the floor has heights of its own."""
+    h = 0.1 * np.random.default_rng(1).normal(size=(64, 64))
+    h[30 : 30 + width] -= 135.0
+    _refuse_mark(Path("map"), h)
+    _refuse_mark(Path("map"), np.zeros((4, 4)))
+
+
+@pytest.mark.parametrize("turn", [False, True])
+@pytest.mark.parametrize(
+    ("wrong", "words"),
+    [
+        (
+            lambda h: np.vstack([np.append([40, 36, 2.5, 2.5], np.zeros(32)), h]),
+            "from {} 1 to 2, .* the first {} seems",
+        ),
+        (lambda h: np.vstack([h, np.arange(36)]), "from {} 40 to 41, .* the last {} seems"),
+        (
+            lambda h: h + np.where(np.arange(40) < 21, 0, 20.0)[:, None],
+            "from {} 21 to 22, .* stitched",
+        ),
+    ],
+)
+def test_lines_that_are_no_part_of_the_surface_are_refused(tmp_path, wrong, words, turn):
+    """Of 2.6 µm each makes an rms height of 3 to 10 µm."""
+    h = wrong(smooth())
+    np.save(tmp_path / "map.npy", h.T if turn else h)
+    with pytest.raises(ValueError, match=words.replace("{}", "column" if turn else "line")):
+        scan(tmp_path / "map.npy", **PLAIN)
+    assert scan(tmp_path / "map.npy", **PLAIN, missing="nan").map.h_rms > 3e-6
+
+
+@pytest.mark.parametrize("hurst", [0.3, 0.95])
+def test_surfaces_of_nature_have_no_such_lines(hurst):
+    """Self-affine ones, with ridges along the lines or across, or a groove: none of 60 maps is refused."""
+    ridges = 50 * np.sin(np.arange(40) / 6)[:, None]
+    groove = np.where(np.arange(40) == 20, -90.0, 0.0)[:, None]
+    for seed, n in itertools.product(range(5), (16, 24, 40)):
+        h = SelfAffine(hurst=hurst).surface((n, n), (2.5e-6 * n, 2.5e-6 * n), seed).heights * 1e6
+        for each in (h, h + ridges[:n], h.T + groove[-n:], (h + ridges[:n]).T):
+            _refuse_uneven(Path("map"), each)
 
 
 def test_missing_heights_are_those_of_a_plane():
@@ -105,16 +139,19 @@ def test_too_much_is_missing():
 @pytest.mark.parametrize(
     ("text", "rows"),
     [
-        ("1 2 3 4\n5 6 7 8", [[1, 2, 3, 4], [5, 6, 7, 8]]),
-        ("1.5, 2, 3, 4\r\n5, 6, 7, 8\r\n", [[1.5, 2, 3, 4], [5, 6, 7, 8]]),
-        ("1\t2\t\t4\n5\t6\tbad\t8", [[1, 2, np.nan, 4], [5, 6, np.nan, 8]]),
-        ('"1","2","3","4"\n"5","6","","8"', [[1, 2, 3, 4], [5, 6, np.nan, 8]]),
+        ("1 2 3 4\n5 6 7 8\n9 9 9 9", [[1, 2, 3, 4], [5, 6, 7, 8], [9, 9, 9, 9]]),
+        ("1.5, 2, 3, 4\r\n5, 6, 7, 8\r\n9,9,9,9", [[1.5, 2, 3, 4], [5, 6, 7, 8], [9, 9, 9, 9]]),
+        ("1\t2\t\t4\n5\t6\tnan\t8\n9\t9\t9\t9", [[1, 2, np.nan, 4], [5, 6, np.nan, 8], [9, 9, 9, 9]]),
+        ('"1","2","3","4"\n"5","6","","8"\n9,9,9,9', [[1, 2, 3, 4], [5, 6, np.nan, 8], [9, 9, 9, 9]]),
     ],
 )
 @pytest.mark.parametrize("encoding", ["utf-8-sig", "utf-16"])
-def test_plain_matrix(text, rows, encoding):
-    """A pixel is missing where the place is empty, holds nan or the mark that is given, a word here."""
-    np.testing.assert_array_equal(_matrix(files.text(text.encode(encoding)), "bad")[0], rows)
+def test_plain_matrix(text, rows, encoding, tmp_path):
+    """A pixel is missing where the place is empty or holds nan; it is filled."""
+    (tmp_path / "map.txt").write_bytes(text.encode(encoding))
+    found, known = scan(tmp_path / "map.txt", "um", pixel=(1e-6, 1e-6)), np.isfinite(rows)
+    np.testing.assert_array_equal(found.map.heights[known], 1e-6 * np.array(rows)[known])
+    assert found.missing == np.count_nonzero(~known)
 
 
 PLAIN = {"unit": "um", "pixel": (1e-6, 1e-6)}
@@ -217,7 +254,7 @@ def test_instrument_with_a_size_and_unit_of_its_own(tmp_path):
     for given, sentence in (
         ({"size": (3e-6, 4e-6)}, "has a size of its own; give none"),
         ({"unit": "um"}, "has a unit of its own; give no 'unit'"),
-        ({"missing": "void"}, "has numbers alone"),
+        ({"missing": "void"}, "it must be a number"),
     ):
         with pytest.raises(ValueError, match=sentence):
             scan(path, **given)

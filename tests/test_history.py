@@ -16,7 +16,7 @@ from tests.runs import path_of
 from tests.test_contact import MU_F, over
 from tests.test_loads_over_time import PRESS, SLIDE, scene
 from variational import compat
-from variational.history import BodyField, History, SkinField
+from variational.history import BodyField, SkinField
 from variational.problem import Problem
 from variational.solvers.continuation import Continuation, StepFailed, Target
 from variational.solvers.outcome import NotConverged
@@ -131,21 +131,6 @@ def test_transferred(body, size):
     expected.interpolate(lambda x: np.stack([1e2 * x[0], 1e2 * x[1], 1e2 * x[1], 3e2 * x[0] + 1e2 * x[1]]))
     np.testing.assert_allclose(other.strain.x.array, expected.x.array, atol=1e-14)
     assert largest(other.slip.x.array) > 1e-6
-
-
-def test_translated(body):
-    """What follows the skin moves with it, and nothing else does."""
-    path, _ = prepare(body)
-    before, after = path.problem.history.accepted, path.problem.history.translated(1e-3)
-    moved = {name for name in before if largest(after[name] - before[name]) > 0}
-    assert moved == {"anchor", "x"}
-
-
-def test_two_of_one_name(body):
-    history = History(over(body, MU_F, held=False).problem.surface)
-    history.add(SkinField("a", None))
-    with pytest.raises(ValueError, match="two history fields of the name 'a'"):
-        history.add(SkinField("a", None))
 
 
 @pytest.mark.slow

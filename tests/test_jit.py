@@ -1,10 +1,7 @@
 """The cache of compiled forms: several processes, killed and stopped ones, and compilers that fail."""
 
-import errno
 import os
-import posix
 import shutil
-import signal
 import subprocess
 import sys
 import sysconfig
@@ -95,20 +92,6 @@ def test_killed_compile_is_made_again_at_once(others, capfd):
     assert integral() == 2.5 and capfd.readouterr().err == ""
 
 
-def test_stopped_compile_loses_nothing(others, monkeypatch, capfd):
-    """However long it was stopped: another process compiles for itself, and the first one goes on to its end."""
-    other = others.start()
-    other.send_signal(signal.SIGSTOP)
-    for file in others.cache.iterdir():
-        os.utime(file, times=(0, 0))
-    monkeypatch.setitem(jit.OPTIONS, "timeout", 0)
-    assert integral() == 2.5 and UNFINISHED in capfd.readouterr().err
-    others.hold.unlink()
-    other.send_signal(signal.SIGCONT)
-    assert other.communicate()[0] == "2.5\n" and other.returncode == 0
-    assert integral() == 2.5 and capfd.readouterr().err == ""
-
-
 @pytest.mark.slow
 def test_two_processes_compile_a_form_once(others):
     """The second waits, says so, and takes what the first has compiled."""
@@ -149,27 +132,6 @@ def test_what_is_not_whole_is_compiled_again(cache, tmp_path, monkeypatch, capfd
     assert (cache / f"{name}.c").exists() is compiled or "source" in left
 
 
-def test_cache_is_not_listed(cache, monkeypatch):
-    """It may have thousands of files, and a run takes some hundred forms from it."""
-
-    def refuse(*_):
-        raise AssertionError("the cache was listed")
-
-    assert integral() == 2.5
-    monkeypatch.setattr(posix, "listdir", refuse)
-    assert integral() == 2.5
-
-
-def test_without_locks(cache, monkeypatch):
-    """Some file systems have none: processes then compile a form several times."""
-
-    def refuse(file, how):
-        raise OSError(errno.ENOLCK, "no locks")
-
-    monkeypatch.setattr(jit.fcntl, "flock", refuse)
-    assert integral() == 2.5
-
-
 def test_compiled_forms_keep_what_is_no_number():
     """The logarithm of a negative Jacobian determinant is NaN, in each cell that is inside out and in no other."""
     square = mesh.create_unit_square(MPI.COMM_SELF, 2, 2)
@@ -178,12 +140,6 @@ def test_compiled_forms_keep_what_is_no_number():
     J.x.array[:] = np.linspace(-1.0, 2.0, len(J.x.array))
     form = fem.form((ufl.ln(J) - ufl.ln(J) + J / J) * v * ufl.dx, jit_options=jit.OPTIONS)
     assert np.array_equal(np.isnan(fem.assemble_vector(form).array), J.x.array < 0)
-
-
-def test_cache_that_cannot_be_written_is_one_sentence(cache):
-    cache.touch()
-    with pytest.raises(jit.CompileError, match="^a form cannot be compiled .* exists: .*cache"):
-        integral()
 
 
 def test_compiler_that_fails_is_one_sentence(cache, monkeypatch):
@@ -196,28 +152,12 @@ def test_compiler_that_fails_is_one_sentence(cache, monkeypatch):
     assert integral() == 2.5
 
 
-def test_compiler_that_gets_a_signal_starts_again(cache, tmp_path, monkeypatch):
-    """Ctrl-C reaches all processes of a terminal, and the run holds it back until the end of its step."""
-    compiler, real = tmp_path / "compiler", os.environ.get("CC") or sysconfig.get_config_var("CC")
-    compiler.write_text(f'#!/bin/sh\nif mkdir {tmp_path / "once"} 2>&-; then kill -INT $$; fi\nexec {real} "$@"\n')
-    compiler.chmod(0o755)
-    monkeypatch.setenv("CC", str(compiler))
-    assert integral() == 2.5 and (tmp_path / "once").exists()
-
-
 def test_command_refuses_where_the_compiler_fails(cache, monkeypatch, tmp_path, capfd):
     """In one line, without a traceback."""
     monkeypatch.setenv("CC", "false")
     assert main(["run", str(SMALL), "--out", str(tmp_path / "results"), "--quiet"]) == 2
     (line,) = capfd.readouterr().err.splitlines()
     assert line.startswith("fingerpad: a form cannot be compiled in ")
-
-
-@pytest.mark.mpi
-def test_failure_of_the_first_rank_has_its_cause_on_all(cache, monkeypatch):
-    monkeypatch.setenv("CC", "false")
-    with pytest.raises(jit.CompileError, match="false'"):
-        integral(MPI.COMM_WORLD)
 
 
 @pytest.mark.mpi
@@ -232,12 +172,3 @@ def test_failure_of_one_rank_is_all_ranks(monkeypatch):
     monkeypatch.setattr(jit, "_on_each_rank", fail)
     with pytest.raises(jit.CompileError, match="^no room on its node$"):
         jit._on_all_ranks(MPI.COMM_WORLD)
-
-
-@pytest.mark.mpi
-def test_ranks_that_work_alone_share_a_cache(tmp_path, monkeypatch):
-    """All compile a form at the same time."""
-    monkeypatch.setitem(jit.OPTIONS, "cache_dir", MPI.COMM_WORLD.bcast(tmp_path))
-    MPI.COMM_WORLD.barrier()
-    assert integral() == 2.5
-    MPI.COMM_WORLD.barrier()

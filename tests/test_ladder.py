@@ -1,6 +1,6 @@
 """The ladder's rungs: one set of keys, forces in balance, sources named, and what they cannot answer refused."""
 
-import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -8,12 +8,10 @@ import pytest
 from fingerpad.cli import compare
 from fingerpad.reduced import cylinders
 from fingerpad.reduced.cylinder_errors import REGIONS
-from fingerpad.reduced.model import STATES
-from fingerpad.results.result import Result
 from fingerpad.scene import SceneError, from_data
 from tests.test_laws import Held
 from variational.contact.friction import Derjaguin
-from variational.state import RESULTS
+from variational.state import Errors
 
 
 def scene(**data):
@@ -33,13 +31,6 @@ def test_forces_balance(default, state):
     assert s.f_contact - s.f_electrostatic == pytest.approx(75.0, rel=1e-9)
 
 
-def test_what_it_cannot_know_is_absent(default):
-    unknown = [(state, name) for state, s in default.named.items() for name in RESULTS if np.isnan(getattr(s, name))]
-    assert unknown == [(state, name) for state in ("charged", "full_slip") for name in ("bone_height", "p_max")]
-    assert default.to_dict()["full_slip_bone_height"] is None and default.uncharged is None
-    assert any("bone's height" in note for note in default.notes)
-
-
 def test_uncharged_length_is_the_runs(default):
     """At a force of the runs nothing is interpolated; they are kept with four digits."""
     found = cylinders.solve(scene(f_ext=50.0, voltage=0.0))
@@ -49,12 +40,6 @@ def test_uncharged_length_is_the_runs(default):
     assert (found.charged.ridges_in_contact, found.full_slip.ridges_in_contact) == (15, 14)
 
 
-def test_length_that_is_given_is_kept():
-    answer = cylinders.solve(scene(), cylinders.given(1.5e-3, 16))
-    assert answer.full_slip.contact_length == pytest.approx(1.5e-3, rel=1e-12)
-    assert "as given" in answer.notes[0]
-
-
 def nearest(key: str, value: float, friction: float) -> str:
     """Return the nearest range of a key among the regions over screens that have the friction coefficient."""
     regions = [r.ranges for r in REGIONS[1:] if r.ranges["friction"][0] <= friction <= r.ranges["friction"][1]]
@@ -62,27 +47,13 @@ def nearest(key: str, value: float, friction: float) -> str:
     return f"{key} is {value:g} {'m' if '.' in key else 'N/m'}, and it is known for {low:g} to {high:g}"
 
 
-def test_force_beyond_the_runs_is_said():
-    found = cylinders.solve(scene(f_ext=1.0, voltage=20.0))
-    assert "extrapolated" in found.notes[0]
-    assert any(nearest("f_ext", 1.0, 0.25) in text for text in found.cautions)
-    assert not cylinders.solve(scene()).cautions
-
-
 def test_other_screen_than_the_runs_is_said():
     found = cylinders.solve(scene(friction=0.3, electric={"d_i": 2e-5}))
     assert any(nearest("electric.d_i", 2e-5, 0.3) in text for text in found.cautions)
-    assert not cylinders.solve(scene(friction=0.3), cylinders.given(1.5e-3, 16)).cautions, "its length is given"
     own = scene().replace(roughness=Held(), friction=Derjaguin(0.3, 1e3))
     (text,) = cylinders.solve(own).cautions
     for table in ("friction", "roughness"):
         assert f"{table} is of another law, and it is known for that of the default scene" in text
-
-
-def test_state_past_the_end_of_the_closure_is_said():
-    """A tenth of the length bears ten times the pressure, beyond zero separation."""
-    cautions = cylinders.solve(scene(voltage=50.0), cylinders.given(0.15e-3, 16)).cautions
-    assert any("beyond zero separation" in text for text in cautions)
 
 
 @pytest.mark.parametrize(
@@ -98,74 +69,11 @@ def test_scene_it_does_not_know_is_refused(data, sentence):
         cylinders.solve(scene(**data))
 
 
-def test_other_finger_with_its_length_is_answered():
-    other = scene(geometry={"width": 19e-3})
-    assert cylinders.solve(other, cylinders.given(1.5e-3, 16)).full_slip.mu_app > 0.4
-
-
-def test_ridge_without_a_round_tip_is_refused():
-    with pytest.raises(SceneError, match="gives a ridge 2 crests; the model 'cylinders' takes ridges for cylinders"):
-        cylinders.solve(scene(geometry={"ridge_profile": [1.0, -0.5]}), cylinders.given(1.5e-3, 16))
-
-
-# -- lengths of a run --------------------------------------------------------------------------------------
-def keep(folder, **values):
-    names = {f"{state}_{name}": 1.0 for state in ("charged", "full_slip") for name in RESULTS}
-    lengths = {"charged_contact_length": 1.7e-3, "full_slip_contact_length": 1.6e-3}
-    ridges = {"charged_ridges_in_contact": 17, "full_slip_ridges_in_contact": 16}
-    cost = {"wall_seconds": 9.0, "factorisations": 3, "unknowns": 5, "full_slip": True}
-    flat, at = names | lengths | ridges, {"f_ext": 75.0, "voltage": 200.0}
-    states = {name: at | {key: flat[f"{name}_{key}"] for key in RESULTS} for name in STATES}
-    summary = at | {"parameters": scene().parameters(), "states": states} | flat | cost | values
-    (folder / "summary.json").write_text(json.dumps(summary), encoding="utf-8")
-    return summary
-
-
-@pytest.mark.parametrize("sign", [1, -1])
-def test_length_of_a_run(tmp_path, sign):
-    """Of either sign of the voltage, which changes no force."""
-    keep(tmp_path, voltage=200.0 * sign)
-    found = cylinders.solve(scene(), cylinders.from_run(scene(), tmp_path))
-    assert found.charged.contact_length == pytest.approx(1.7e-3, rel=1e-12)
-    assert found.full_slip.contact_length == pytest.approx(1.6e-3, rel=1e-12)
-    assert found.full_slip.ridges_in_contact == 16
-
-
-@pytest.mark.parametrize(
-    ("values", "sentence"),
-    [
-        ({"model": "cylinders"}, "is one of the model 'cylinders'; give a full run"),
-        ({"voltage": 50.0}, "is one at voltage 50 V"),
-        ({"full_slip_contact_length": None}, "did not reach full slip"),
-        (
-            {"parameters": scene(geometry={"ridge_amplitude": 50e-6}).parameters()},
-            r"is one of another finger \(its geometry.ridge_amplitude was 5e-05, and is 0.0001 now\)",
-        ),
-    ],
-)
-def test_run_of_no_use_is_refused(tmp_path, values, sentence):
-    keep(tmp_path, **values)
-    with pytest.raises(SceneError, match=sentence):
-        cylinders.from_run(scene(), tmp_path)
-
-
-def test_missing_run_is_refused(tmp_path):
-    (tmp_path / "refused").mkdir()
-    (tmp_path / "refused" / "summary.json").write_text('{"failure": "mesh.contact is too large"}', encoding="utf-8")
-    with pytest.raises(SceneError, match="refused has no results: mesh.contact is too large"):
-        cylinders.from_run(scene(), tmp_path / "refused")
-    with pytest.raises(SceneError, match="is not a folder of a finished run"):
-        cylinders.from_run(scene(), tmp_path)
-    (tmp_path / "summary.json").write_text("{", encoding="utf-8")
-    with pytest.raises(SceneError, match="cannot be read"):
-        cylinders.from_run(scene(), tmp_path)
-
-
-def test_errors_of_a_run_stand_beside_its_values(tmp_path):
+def test_errors_of_a_run_stand_beside_its_values(default):
     """With what ± is; a state that comes without an error has its value alone."""
-    summary = keep(tmp_path)
-    summary["states"]["full_slip"]["error"] = {"contact_length": 2e-5}
-    answer = Result.from_dict(summary)
+    slip = replace(default.full_slip, contact_length=1.6e-3, error=Errors.of({"contact_length": 2e-5}))
+    charged = replace(default.charged, contact_length=1.7e-3, error=Errors())
+    answer = replace(default, model="full", record={}, charged=charged, full_slip=slip)
     assert answer.full_slip.error.known() == {"contact_length": 2e-5}
     lines = compare.table([answer]).splitlines()
     assert next(line for line in lines if line.startswith("full slip: contact length")).endswith("1.600 ± 0.020")

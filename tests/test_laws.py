@@ -14,10 +14,9 @@ from fingerpad.reduced import cylinders
 from fingerpad.scene import CONTACT, Scene, SceneError, law_keys, load
 from fingerpad.scene.keys import docstrings, schema
 from fingerpad.scene.law_code import digest
-from fingerpad.scene.materials import CLOSURES, FRICTION_LAWS, LAYERS, MATERIALS
+from fingerpad.scene.materials import CLOSURES, FRICTION_LAWS, MATERIALS
 from fingerpad.scene.reading import flat
 from fingerpad.scene.remarks import used
-from geometry import tags
 from variational.coefficients import parameter
 from variational.contact.formulation import Springs
 from variational.contact.friction import Coulomb, Derjaguin, Friction
@@ -71,11 +70,6 @@ OWN = {"roughness": Held(), "materials": {"dermis": Mine(2.5e3, 6e4)}, "friction
 
 
 # -- in the scene ----------------------------------------------------------------------------------------------
-def test_scene_has_the_laws_of_the_paper():
-    scene = Scene()
-    assert scene.closure() == BearingArea(scene.h_0)
-    assert scene.friction_law() == Coulomb(0.25)
-    assert scene.solids()[tags.DERMIS] == Ogden(2.55e3, -14.53, 0.48)
 
 
 TABLES = {
@@ -114,11 +108,6 @@ def test_laws_are_kept_by_changes():
     assert changed.friction == Saturating(0.2, 2e4)
     assert (changed.materials.dermis, changed.materials.nail) == (Mine(2.5e3, 6e4), NeoHooke(1e7))
     assert changed.replace(friction={"law": "Derjaguin", "mu_f": 0.3, "tau_0": 5e3}).friction == DERJAGUIN
-
-
-@pytest.mark.parametrize(("given", "law"), [(0.4, Coulomb(0.4)), (0, None), (0.0, None), (DERJAGUIN, DERJAGUIN)])
-def test_friction_is_a_law_or_a_coefficient(given, law):
-    assert Scene(friction=given).friction_law() == law
 
 
 @dataclass(frozen=True)
@@ -189,11 +178,6 @@ def test_closure_of_one_s_own_has_the_insulator_of_the_attraction():
         scene.replace(geometry={"sc_thickness": 250e-6})
 
 
-def test_closure_of_the_package_follows_the_insulator():
-    found = Scene(roughness=BearingArea(Scene().h_0, h_rms=2e-6)).replace(geometry={"sc_thickness": 250e-6})
-    assert found.closure() == BearingArea(found.h_0, h_rms=2e-6)
-
-
 # -- recipes of CONTRIBUTING -----------------------------------------------------------------------------------
 @dataclass(frozen=True)
 class Softer(Mine):
@@ -248,7 +232,8 @@ def test_law_of_the_package_is_one_line_of_a_registry(kind, law, table, key, mon
     assert words <= set(re.findall('"description": "([^"]*)"', json.dumps(schema(Scene))))
     with pytest.raises(SceneError, match=f"{key} is '1 s'; its unit is not a unit of"):
         load(None, flat(table) | {key: "1 s"})
-    cylinders.solve(scene, cylinders.given(1.5e-3, 15))
+    if kind in (FRICTION_LAWS, CLOSURES):  # with others the contact length is another
+        cylinders.solve(scene)
 
 
 def test_registries_of_the_recipes_are_there():
@@ -278,28 +263,6 @@ def test_parameters_tell_laws_apart(tmp_path):
     assert json.dumps(again.parameters(), sort_keys=True) == texts[3]
     file.write_text("other", encoding="utf-8")
     assert json.dumps(Scene(geometry={"file": file}).parameters(), sort_keys=True) != texts[-1]
-
-
-def test_mesh_is_read_when_it_is_given(tmp_path):
-    """A run of hours ends with the hash of what it began with, be the file gone."""
-    file = tmp_path / "mine.msh"
-    file.write_text("one", encoding="utf-8")
-    scene = Scene(geometry={"file": file})
-    before = scene.parameters()
-    file.unlink()
-    assert scene.parameters() == before
-    assert len(before["geometry"]["file_sha256"]) == 64
-
-
-def test_names_of_the_laws():
-    found = used(Scene(**OWN))
-    assert set(found) == {*LAYERS, "contact", "friction", "attraction", "closure"}
-    assert found["dermis"] == "Mine(shear_modulus=2500, bulk=60000)"
-    assert found["subcutis"] == "Ogden(shear_modulus=25000 Pa, alpha=5, poisson=0.48, convention='printed')"
-    assert found["nail"] == "SaintVenant(young=1.7e+08 Pa, poisson=0.3)"
-    assert found["friction"] == "Saturating(mu_f=0.4, t_most=20000)"
-    assert found["closure"] == "Held(gap=2e-06)"
-    assert found["contact"].startswith("Penalty(eps_n=")
 
 
 def test_laws_of_a_run_tell_its_folder():

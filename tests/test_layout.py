@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 import ufl
 from dolfinx import fem, mesh
-from dolfinx.fem.petsc import assemble_matrix
 from mpi4py import MPI
 from numpy.testing import assert_allclose
 
@@ -61,14 +60,6 @@ def matrix(layout, space):
     return A
 
 
-def test_size(space, layout):
-    """Every node that is not on the rim has its own two unknowns; the rim has two together."""
-    degree = space.element.basix_element.degree
-    line = degree * CELLS + 1
-    assert layout.global_size == 2 * (line * (line - 1) + 1)
-    assert space.mesh.comm.allreduce(layout.local_size) == layout.global_size
-
-
 def test_round_trip(space, layout):
     """Nodal values survive the way to the unknowns and back, ghosts included."""
     f, back = smooth(space), np.empty_like(smooth(space).x.array)
@@ -91,24 +82,6 @@ def test_rim_moves_as_one(space, layout):
         np.testing.assert_array_equal(nodal.reshape(-1, 2), expected)
 
 
-def test_rigid_part_is_known_to_every_rank(space, layout):
-    """Read back as written."""
-    np.testing.assert_array_equal(layout.rigid_part(unknowns(layout, smooth(space))), [0.7, -0.4])
-
-
-def test_forces_of_the_rim_add_up(space, layout):
-    """The rigid body's rows of a load are the sum over the rim's nodes: here all of it. Tolerance: roundoff."""
-    v = ufl.TestFunction(space)
-    facets = rim(space.mesh)
-    top = mesh.meshtags(space.mesh, 1, np.sort(facets), np.full(len(facets), 1, dtype=np.int32))
-    ds = ufl.Measure("ds", space.mesh, subdomain_data=top)
-    nodal = fem.assemble_vector(fem.form((2 * v[0] - 3 * v[1]) * ds(1))).array
-    f = layout.create_vector()
-    f.set(0.0)
-    layout.add_to_unknowns(nodal, f)
-    assert_allclose(layout.rigid_part(f), [2, -3], rtol=1e-13)
-
-
 @pytest.mark.parametrize("transposed", [False, True])
 def test_matrix_is_the_reduced_one(space, layout, transposed):
     """The matrix times the unknowns of u is T^T times the action on u. Tolerance: roundoff of some thirty terms.
@@ -122,30 +95,6 @@ def test_matrix_is_the_reduced_one(space, layout, transposed):
     layout.add_to_unknowns(nodal, expected)
     (A.multTranspose if transposed else A.mult)(unknowns(layout, f), product)
     assert_allclose(product.array_r, expected.array_r, rtol=0, atol=1e-13 * expected.norm(3))
-
-
-def test_every_entry(space, layout):
-    """On one rank: the matrix is T^T A T of the plain one, entry by entry. Tolerance: roundoff."""
-    if space.mesh.comm.size > 1:
-        pytest.skip("the plain matrix is compared as a whole")
-    plain = assemble_matrix(fem.form(bilinear(space)))
-    plain.assemble()
-    n = plain.getSize()[0]
-    T = np.zeros((n, layout.global_size))
-    T[np.arange(n), layout.rows] = 1
-    every = range(layout.global_size)
-    reduced = T.T @ plain.getValues(range(n), range(n)) @ T
-    entries = matrix(layout, space).getValues(every, every)
-    assert_allclose(entries, reduced, rtol=0, atol=1e-14 * np.abs(reduced).max())
-
-
-def test_rows_sum_to_zero(space, layout):
-    """Translating body and rim together costs no force. Tolerance: roundoff."""
-    A = matrix(layout, space)
-    x, y = A.createVecs()
-    x.set(1.0)
-    A.mult(x, y)
-    assert y.norm(3) < 1e-13 * A.norm()
 
 
 def test_assembling_again_gives_the_same(space, layout):

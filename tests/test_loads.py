@@ -2,13 +2,12 @@
 
 import itertools
 import json
-import math
 
 import pytest
 
 from benchmarks.loads import compared, meshes
 from benchmarks.loads.__main__ import REGIONS_FILE, far
-from benchmarks.loads.scenes import AXES, COUNT, checked, forces, scenes, section
+from benchmarks.loads.scenes import AXES, checked, section
 from fingerpad.reduced import cylinder_errors, cylinders, uncharged
 from fingerpad.runs.solve import run
 from fingerpad.scene import Scene, from_data
@@ -41,15 +40,6 @@ def reached(sections) -> list[compared.Compared]:
 @pytest.fixture(scope="module")
 def fingers(numbers, mesh) -> list[compared.Compared]:
     return compared.fingers(meshes.without(numbers["scenes"], mesh))
-
-
-def test_scenes_are_the_seeded_ones(numbers):
-    """So that no scene was chosen for its error."""
-    every = scenes()
-    assert len(every) == numbers["count"] == COUNT
-    for each in numbers["scenes"]:
-        assert each["values"] == pytest.approx(every[each["scene"]])
-        assert [state["f_ext"] for state in each["states"]] == pytest.approx(forces(each["values"]))
 
 
 def test_regions_of_the_program_are_those_of_the_states(sections, fingers):
@@ -114,44 +104,6 @@ def test_band_with_enough_states_has_an_error(monkeypatch):
     finger = {"force": 0.5, "voltage": 100.0, "friction": 0.5, "electric": {"d_i": 2e-6}}
     (outside,) = cylinder_errors.outside(from_data(finger))
     assert (outside.key, outside.known) == ("force", "sections alone")
-
-
-def test_strong_attraction_has_an_error_of_its_own():
-    """States with more than the limit's attraction over force, and larger errors, leave the others theirs."""
-    some = [each._replace(attraction=500.0, error=0.2) if k % 4 > 1 else each for k, each in enumerate(made_up(80))]
-    some = [each._replace(scene=k // 2) for k, each in enumerate(some)]
-    near, far = compared.regions(compared.levels(some, []))
-    errors = [each["errors"]["full_slip"]["f_electrostatic"] for each in (near, far)]
-    ends = [each["ranges"][cylinder_errors.PULL][1] for each in (near, far)]
-    assert errors[0] < 0.05 < 0.2 < errors[1] and ends[0] < compared.PULLED[-2] < ends[1]
-
-
-def test_ranges_end_with_the_states_or_close_by_with_the_sequence():
-    """The sequence of 64 scenes has coatings from 0.1 to 10 µm, a ratio of 1.07 apart in the mean."""
-    thin, thick = made_up(1)
-    thin.values["electric.d_i"], thick.values["electric.d_i"] = 0.105e-6, 8e-6
-    assert compared.hull([thin, thick], [])["electric.d_i"] == (0.1e-6, 8e-6)
-    thin.values["electric.d_i"], thick.values["electric.d_i"] = 0.11e-6, 9.5e-6
-    assert compared.hull([thin, thick], [])["electric.d_i"] == (0.11e-6, 10e-6)
-    assert compared.hull([thin, thick], [])["friction"] == (0.4, 0.6)
-
-
-def test_region_ends_where_the_full_model_has_no_result():
-    """Of sections over force every second one above 60 N/m is not reached: the region ends with a tenth of those."""
-    some = [each._replace(force=5.0 + 2.5 * k, attraction=2.0 + k) for k, each in enumerate(made_up(40))]
-    lost = [each._replace(error=math.nan) if each.force > 60 and k % 2 else each for k, each in enumerate(some)]
-    band = compared.bands(lost, [])[1]
-    assert len(band.some) + len(band.without) < len(some)
-    assert 0 < len(band.without) <= compared.WITHOUT * (len(band.some) + len(band.without))
-    assert max(each.force for each in band.some) == compared.region_of(band)["ranges"]["f_ext"][1] > 60
-    assert len(compared.bands(some, [])[1].some) == len(some)
-
-
-def test_a_bound_that_is_too_small_does_not_cover(reached):
-    """So that the count above can fail: a third of an error leaves more than a tenth of the states outside."""
-    error = compared.bound(each.error for each in reached)
-    assert compared.covered(reached, error) >= compared.PART * len(reached) - 1
-    assert compared.covered(reached, error / 3) < COVERED * len(reached)
 
 
 def test_tables_go_on_by_the_kept_states(numbers):

@@ -3,11 +3,8 @@
 from functools import cache, partial
 
 import pytest
-from dolfinx import fem
 from mpi4py import MPI
 
-from fingerpad.accuracy.refinement import Refinement
-from fingerpad.accuracy.solves import Solves
 from fingerpad.model.finger import meshed
 from fingerpad.model.options import FingerModel, check, memory, plan, unknowns
 from fingerpad.scene import SceneError, from_data
@@ -16,8 +13,6 @@ from geometry.mesh import load
 from geometry.parameters import Fingertip, MeshSize
 from geometry.profiles import GeometryError
 from geometry.sizing import least_triangles
-from tests.test_accuracy import known
-from variational.element import ELEMENTS
 
 FINE = {"contact": 10e-6, "receptor": 10e-6, "touching_half_arc": 1.0e-3}
 COARSE = {"contact": 30e-6, "receptor": 60e-6, "interface": 120e-6, "growth": 0.5, "touching_half_arc": 2.0e-3}
@@ -47,31 +42,6 @@ def test_triangles_are_bounded_before_meshing(finger, size, receptors, half):
     assert triangles / 3 < least_triangles(finger, size, receptors, half) <= triangles
 
 
-@pytest.mark.parametrize(
-    ("size", "triangles"),
-    [
-        ({}, 26152),
-        ({"contact": 60e-6, "receptor": 60e-6, "interface": 60e-6, "coarsest": 60e-6}, 123404),
-        ({"contact": 0.5e-6, "growth": 0.1}, 268528),
-    ],
-)
-def test_triangles_of_larger_meshes_are_bounded(size, triangles):
-    """The same for numbers that gmsh 4.13 gave, which are not made again here."""
-    found = least_triangles(Fingertip(), MeshSize(**({"touching_half_arc": 5e-3} | size)))
-    assert triangles / 3 < found <= triangles
-
-
-@pytest.mark.parametrize("element", sorted(ELEMENTS))
-def test_unknowns_are_counted(element):
-    """As those of the function spaces, on a mesh with a hole; of the half without one it is an edge less."""
-    mesh, kind = coarse(), ELEMENTS[element]
-    spaces = [fem.functionspace(mesh, ("Lagrange", kind.degree, (2,)))]
-    spaces += [fem.functionspace(mesh, ("Lagrange", 1))] if kind.mixed else []
-    number = sum(space.dofmap.index_map.size_global * space.dofmap.index_map_bs for space in spaces)
-    points, triangles = (mesh.topology.index_map(d).size_global for d in (0, 2))
-    assert unknowns(points, triangles, element) == number
-
-
 @pytest.mark.parametrize(("number", "gigabytes"), [(27258, 0.354), (73208, 0.561), (186302, 1.171), (873366, 5.729)])
 def test_memory_of_runs(number, gigabytes):
     """Measured, in GB, of runs with quadratic elements: never more than by the constant, and a fifth less at most."""
@@ -98,14 +68,3 @@ def test_too_fine_a_mesh(mesh, key):
         check(from_data({"mesh": mesh}))
     if key == "contact":
         check(from_data({"mesh": mesh, "numerics": {"memory": 1e12}}))
-
-
-def test_refinement_ends_where_memory_does():
-    """A search says that the accuracy could not be established, and solves nothing."""
-    scene = from_data({"accuracy": {"mu_app": 0.01}, "mesh": COARSE, "contact": {"formulation": "nitsche"}})
-    numerics = scene.numerics.model_copy(update={"memory": 3e8})
-    scene = scene.model_copy(update={"numerics": numerics})
-    model = FingerModel(scene, plan(scene))
-    search = Refinement(Solves(model, known(model, {}, MPI.COMM_SELF), MPI.COMM_SELF, lambda line: None, lambda: None))
-    search.run()
-    assert search.failure.startswith("the accuracy asked for could not be established: the mesh ")

@@ -70,28 +70,6 @@ def test_body_from_a_file_is_the_body(place, version, order):
     assert body.state.bone_height == pytest.approx(itself.state.bone_height, rel=1e-8)
 
 
-def test_clockwise_cells_are_the_same_body(place):
-    """All of one orientation, whichever: the same integrals but for roundoff, below Newton's tolerance of 1e-9."""
-    clockwise = changed(lambda: gmsh.model.mesh.reverse(gmsh.model.getEntities(2)))
-    body = Body(write(place, clockwise), SKIN, contact=SPRINGS, friction=0.25).press(1.0)
-    itself = Body(RIDGE, SKIN, contact=SPRINGS, friction=0.25).press(1.0)
-    assert body.state.bone_height == pytest.approx(itself.state.bone_height, rel=1e-7)
-
-
-def test_numbers_of_groups_do_not_matter(place):
-    def renumbered():
-        model()
-        for dim, tag in gmsh.model.getPhysicalGroups():
-            name, entities = gmsh.model.getPhysicalName(dim, tag), gmsh.model.getEntitiesForPhysicalGroup(dim, tag)
-            gmsh.model.removePhysicalGroups([(dim, tag)])
-            gmsh.model.addPhysicalGroup(dim, entities, tag % 7 + 50, name)
-
-    made = load(MPI.COMM_WORLD, geometry.file(write(place, renumbered)))
-    assert made.ridge_tags() == {0: tags.ridge(0)}
-    assert len(made.rim) > 0
-    assert set(made.cell_tags.values) == {tags.STRATUM_CORNEUM}
-
-
 # -- refusals ------------------------------------------------------------------------------------------
 def named(dim: int, tag: int, name: str | None):
     """Return what meshes the ridge with a group renamed or, without a name, removed."""
@@ -245,24 +223,6 @@ def test_file_is_refused(place, case):
     assert "\n" not in str(error.value)
 
 
-def test_name_in_another_encoding_is_refused(place):
-    """An ö of Latin-1; gmsh takes bytes as they are."""
-    write(place, version=2.2)
-    place.write_bytes(place.read_bytes().replace(b'"ridge 0"', b'"r\xf6cken"'))
-    with pytest.raises(GeometryError, match=r"mine.msh: group \d+ has a name that is no text in UTF-8"):
-        load(MPI.COMM_SELF, geometry.file(place))
-
-
-def test_triangles_outside_the_layers_are_refused(place):
-    def partly():
-        two_parts()
-        gmsh.model.removePhysicalGroups([(2, 2)])
-        gmsh.option.setNumber("Mesh.SaveAll", 1)
-
-    with pytest.raises(GeometryError, match=r"\d+ of \d+ triangles are in no group of cells"):
-        load(MPI.COMM_WORLD, geometry.file(write(place, partly)))
-
-
 @pytest.mark.mpi
 def test_no_file_is_refused_on_every_rank(place):
     with pytest.raises(GeometryError, match="mine.msh: the mesh file cannot be read: No such file or directory"):
@@ -320,10 +280,3 @@ def test_numbers_of_nodes_do_not_matter(place, build, version):
     for dim in (0, 2):
         assert made.mesh.topology.index_map(dim).size_global == own.mesh.topology.index_map(dim).size_global
     assert MPI.COMM_WORLD.allreduce(len(made.rim)) == MPI.COMM_WORLD.allreduce(len(own.rim))
-
-
-def test_partitions_are_refused(place):
-    """Their groups are of pieces, whose edges are more than the outline."""
-    written = write(place, changed(lambda: gmsh.model.mesh.partition(2)))
-    with pytest.raises(GeometryError, match="mine.msh: the mesh is cut into partitions; write it whole, as by gmsh's"):
-        load(MPI.COMM_WORLD, geometry.file(written))

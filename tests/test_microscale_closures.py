@@ -8,7 +8,7 @@ from scipy.optimize import brentq
 
 import fingerpad as fp
 from variational.roughness import persson, tables
-from variational.roughness.statistics import breakdown_voltage, breaking_gaps
+from variational.roughness.gaps import breakdown_voltage, breaking_gaps
 
 H_0 = 0.514e-6
 PRESSURES = np.array([5e3, 10e3, 20e3, 50e3, 100e3])

@@ -10,7 +10,7 @@ from mpi4py import MPI
 from fingerpad.model import options
 from fingerpad.model.options import plan
 from fingerpad.runs import full as run_module
-from fingerpad.scene import Scene, from_data
+from fingerpad.scene import from_data
 from geometry import tags
 from geometry.bodies import ridge
 from geometry.mesh import load
@@ -33,10 +33,6 @@ PRESS = {"name": "press", "f_ext": 2.0}
 
 
 # -- the plan ----------------------------------------------------------------------------------------------
-def test_default_scene_needs_everything():
-    needed = plan(Scene())
-    assert needed.voltage and needed.friction and needed.receptors
-    assert needed.omitted == ()
 
 
 @pytest.mark.parametrize(
@@ -103,11 +99,6 @@ def test_forms_without_voltage(body, law):
     assert np.isnan(less.path.coupling.d_eq).all() and not np.isnan(whole.path.coupling.d_eq).any()
 
 
-def test_one_solve_a_step_without_voltage(body):
-    less = Path(body, Interface(Penalty(1.5e12, 5e10), 0.25, H_0, None))
-    assert less.path.coupling.history.changes == [0.0]
-
-
 def test_contact_of_an_augmented_lagrangian_is_corrected_without_voltage(body):
     """Its coupling iterations are not those of the scales: depth and slip stay below the tolerance."""
     law = AugmentedLagrangian(1.5e13, 5e11, 5e-9)
@@ -126,11 +117,6 @@ def test_forms_without_friction(body, law):
     assert less.problem.anchor is None
     assert less.compiled[0] < whole.compiled[0] and less.compiled[1] == whole.compiled[1] - 1
     assert less.solver.counts.factorisations <= whole.solver.counts.factorisations
-
-
-def test_all_points_slip_without_friction(body):
-    """Whichever way: the part of the points that slip is one, not two."""
-    assert Path(body, Interface(Penalty(1.5e12, 5e10), 0.0, H_0, None)).path.slip == (1.0, True)
 
 
 # -- runs --------------------------------------------------------------------------------------------------

@@ -7,7 +7,6 @@ from mpi4py import MPI
 from geometry.bodies import block, ridge
 from geometry.mesh import load
 from tests.test_contact import HEIGHT, MU_F, WIDTH, make
-from variational.contact.formulation import SLIPS, STICKS
 from variational.solvers import iteration as module
 from variational.solvers.equations import Control
 from variational.solvers.outcome import NotConverged
@@ -99,47 +98,6 @@ def test_step_that_inverts_is_halved(flat, monkeypatch):
         solver.solve()
 
 
-def test_load_starts_from_its_own_tangent(body):
-    """A load solved twice from the same state takes the same iterations, whatever was factorised in between."""
-    solver = make(body)
-    start = solver.x.array_r.copy()
-    counts = []
-    for _ in range(2):
-        solver.x.array_w[:] = start
-        solver.new_load(Control(0.0, -10e-6), 0.0)
-        before = solver.counts.newton
-        solver.solve()
-        counts.append(solver.counts.newton - before)
-    assert counts[0] == counts[1]
-
-
-@pytest.mark.parametrize(("slipping", "guess"), [(True, SLIPS), (False, STICKS)])
-def test_guess_of_a_load(flat, slipping, guess):
-    solver = make(flat, MU_F)
-    solver.new_load(Control(), 0.0, slipping)
-    assert float(solver.problem.guess.value) == guess
-
-
-@pytest.mark.parametrize(
-    ("mu_f", "on_cone", "sideways", "runs"),
-    [(MU_F, True, 0.6, 2), (MU_F, True, 0.3, 1), (MU_F, False, 0.6, 1), (0.0, True, 0.6, 1)],
-)
-def test_other_guess_is_tried_where_points_may_be_on_the_cone(flat, monkeypatch, mu_f, on_cone, sideways, runs):
-    """And where mostly friction is out of balance."""
-    solver, guesses = make(flat, mu_f), []
-
-    def lost(x, shifted, stop):
-        guesses.append(float(solver.problem.guess.value))
-        return -1
-
-    monkeypatch.setattr(solver.iteration, "run", lost)
-    monkeypatch.setattr(solver, "_sideways", lambda: sideways)
-    solver.new_load(Control(), 0.0, on_cone=on_cone)
-    with pytest.raises(NotConverged):
-        solver.solve()
-    assert guesses == [STICKS, SLIPS][:runs]
-
-
 def test_steady_slip_is_solved_at_once(body):
     """At full slip a further translation is the first step of Newton's method if points are taken to slip on."""
     solver = make(body, MU_F, eps_t=5e10, held=False)
@@ -167,19 +125,6 @@ def test_shift_is_no_part_of_roundoff(body):
     assert shifted == pytest.approx(plain, rel=1e-9) and plain > 0
     assert float(eta.value) == 1e16
     assert tangent.matrix.norm() == larger
-
-
-def test_error_in_a_callback_is_raised_as_it_was(flat, monkeypatch):
-    """Not as PETSc's error -1, which names no cause."""
-
-    def fail(*args):
-        raise OSError("the cause")
-
-    solver = make(flat)
-    monkeypatch.setattr(solver.equations, "residual", fail)
-    solver.new_load(Control(0.0, -1e-6), 0.0)
-    with pytest.raises(OSError, match="^the cause$"):
-        solver.solve()
 
 
 # -- Anderson acceleration with a kept factorisation -----------------------------------------------------------------
@@ -219,24 +164,3 @@ def test_change_of_low_rank_is_learnt(linear):
     plain, accelerated = norms(linear, False), norms(linear, True)
     assert accelerated[RANK + 2] < 1e-6 * accelerated[0]
     assert plain[RANK + 2] > 1e-3 * plain[0]
-
-
-def test_differences_of_another_factorisation_are_forgotten(linear):
-    """With a new factorisation the first step is the plain one."""
-    anderson, (matrix, right, kept) = Anderson(MPI.COMM_WORLD), linear
-    first, second = right[ROWS], (kept @ right)[ROWS]
-    anderson.correction(first, first, first)
-    assert anderson.correction(second, first, second) is None, "a residual that stayed is no difference"
-    assert anderson.correction(first, second, (matrix @ right)[ROWS]) is not None
-    anderson.forget()
-    assert anderson.correction(second, first, first) is None
-
-
-def test_no_difference_is_drawn_between_other_equations(linear):
-    """An interruption leaves out the difference that would mix two loads, and keeps the ones before."""
-    anderson, (_, right, kept) = Anderson(MPI.COMM_WORLD), linear
-    first, second = right[ROWS], (kept @ right)[ROWS]
-    assert anderson.correction(first, first, first) is None
-    anderson.interrupt()
-    assert anderson.correction(second, second, second) is None
-    assert anderson.correction(first, first, second) is not None

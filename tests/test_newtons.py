@@ -1,4 +1,4 @@
-"""Newtons by branches of one simulation: beside runs of their own, with more ridges, cut short, on more ranks."""
+"""Newtons by branches of one simulation: beside runs of sections, with more ridges, cut short, on more ranks."""
 
 import signal
 from dataclasses import replace
@@ -13,12 +13,12 @@ from fingerpad.results.folder import full_scene
 from fingerpad.results.states import WORDS
 from fingerpad.runs import newtons
 from fingerpad.runs.branches import Branches
-from fingerpad.runs.context import RunContext
 from fingerpad.scene import Load, SceneError, from_data
 from fingerpad.slices import traces
 from fingerpad.slices.total import BeyondTrace
 from tests.runs import path_of, tables_alone
 from tests.small_finger import NINE, small
+from variational.solvers.continuation import StepFailed
 
 pytestmark = pytest.mark.slow
 SMALL = {"output": {"receptors": False, "errors": False}, "slices": {"radius": 6e-3, "length": 8e-3}}
@@ -45,21 +45,6 @@ def found() -> tuple[fp.Result, dict[str, list]]:
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(newtons, "solve_again", kept)
         return fp.run(scene()), fine
-
-
-def unsuited(given, context):
-    raise newtons.Unsuited("of a test")
-
-
-def test_sums_are_those_of_runs_of_their_own(found, monkeypatch):
-    """Within the printed errors of both; the note says why runs are made."""
-    monkeypatch.setattr(newtons, "run", unsuited)
-    runs = fp.run(scene())
-    assert "The traces are runs of their own: of a test." in runs.notes
-    for name, total in runs.finger.states.items():
-        for key, value in total.values.items():
-            errors = [each.finger.error[name].get(key, 0.0) for each in (runs, found[0])]
-            assert found[0].finger.values(name)[key] == pytest.approx(value, abs=sum(errors) + 1e-2 * abs(value)), key
 
 
 def test_states_on_the_scenes_mesh_are_those_of_a_run(found):
@@ -154,28 +139,31 @@ def test_force_that_was_interrupted_goes_on(tmp_path, of, method, words):
         fp.run(scene().replace(force=1.1 * FORCE), out=out)
 
 
-def test_profile_that_does_not_fit_is_refused_at_once(monkeypatch):
-    """Runs of their own are not tried: they would be refused as well."""
-    monkeypatch.setattr(traces, "whole", None)
+def test_profile_that_does_not_fit_is_refused():
     short = scene().replace(slices={"radius": 6e-3, "length": 1e-3})
     with pytest.raises(SceneError, match="the finger ends at z"):
         fp.run(short)
 
 
-def test_accuracy_takes_runs_of_their_own():
-    with pytest.raises(newtons.Unsuited, match="an accuracy is asked for"):
-        newtons.run(scene(accuracy={"mu_app": 0.05}), None)
+def test_accuracy_is_refused():
+    with pytest.raises(SceneError, match="accuracy is given and force is 0.002 N; the traces"):
+        fp.run(scene(accuracy={"mu_app": 0.05}))
 
 
-def test_corrected_trace_that_is_too_short_takes_runs_of_their_own(monkeypatch):
-    """As where other ridges touch on the scene's own mesh: what the traces cost is not lost by a refusal."""
+@pytest.mark.parametrize(
+    ("of", "name", "error", "words"),
+    [
+        (newtons, "at_force", BeyondTrace("of a test"), "the correction of the traces failed: of a test; give f_ext"),
+        (Branches, "follow", StepFailed("no equilibrium"), "the light press failed: no equilibrium; give f_ext"),
+    ],
+)
+def test_lost_trace_is_refused_with_its_reason(monkeypatch, of, name, error, words):
+    def lost(*given):
+        raise error
 
-    def short(*given):
-        raise BeyondTrace("of a test; give a trace to a larger force")
-
-    monkeypatch.setattr(newtons, "at_force", short)
-    with pytest.raises(newtons.Unsuited, match="of a test"):
-        newtons.run(from_data(COARSE), RunContext())
+    monkeypatch.setattr(of, name, lost)
+    with pytest.raises(SceneError, match=words):
+        fp.run(from_data(COARSE))
 
 
 @pytest.mark.mpi

@@ -5,24 +5,17 @@ from dataclasses import dataclass
 import numpy as np
 import pytest
 import ufl
-from mpi4py import MPI
 
 import fingerpad as fp
 from fingerpad.model import options
 from fingerpad.model.simulation import Simulation
 from fingerpad.reduced import cylinders
-from fingerpad.runs import full
-from fingerpad.runs.context import RunContext
-from fingerpad.scene import Scene, SceneError, from_data, remarks
-from geometry import tags
-from tests.measures import rows_of
-from tests.runs import followed, tables_alone
+from fingerpad.scene import Scene, SceneError, from_data
+from tests.runs import followed
 from tests.small_finger import NINE, small
-from tests.test_laws import DERJAGUIN, OWN, Held, Mine
+from tests.test_laws import DERJAGUIN, OWN, Held
 from variational.contact.friction import CONE_ROUNDOFF, Coulomb, Derjaguin, Friction
 from variational.materials.neo_hooke import NeoHooke
-from variational.materials.ogden import Ogden
-from variational.roughness.bam import BearingArea
 from variational.roughness.closure import AirGap, check
 from variational.solvers.coupling import Coupling
 
@@ -85,15 +78,6 @@ def test_cylinders_know_the_default_fingers_lengths_alone():
     scene = Scene(materials={"stratum_corneum": NeoHooke(1e5)})
     with pytest.raises(SceneError, match="materials is not that of the default finger or of one similar to it, whose"):
         cylinders.solve(scene)
-    given = cylinders.given(1.5e-3, 15)
-    own, default = (cylinders.solve(one, given).full_slip.f_electrostatic for one in (scene, Scene()))
-    assert own != default
-
-
-def test_modulus_of_the_skin_is_the_given_materials():
-    """The same solid given as a key and as an object has the same modulus. Tolerance: roundoff."""
-    own = Scene(materials={"stratum_corneum": Ogden(86.76e3, -14.53, 0.48)})
-    assert remarks.skin_modulus(own) == pytest.approx(remarks.skin_modulus(Scene()), rel=1e-12)
 
 
 def test_rule_of_thumb_takes_a_law():
@@ -102,21 +86,10 @@ def test_rule_of_thumb_takes_a_law():
     assert rough.mesh.touching_half_arc > plain.mesh.touching_half_arc
 
 
-def test_cylinders_take_no_mesh(tmp_path):
-    (tmp_path / "mine.msh").touch()
-    with pytest.raises(SceneError, match="geometry.file"):
-        cylinders.solve(Scene(geometry={"file": tmp_path / "mine.msh"}))
-
-
 # -- closures --------------------------------------------------------------------------------------------------------
 class Shape(Held):
     def __call__(self, p_c):
         return AirGap(np.array([1e-6, 1e-6]))
-
-
-class Telling(Held):
-    def state(self, p_c, voltage):
-        return repr(p_c)
 
 
 class Plain(Held):
@@ -152,29 +125,6 @@ def test_what_is_no_closure_is_refused(closure, sentence):
         Coupling(None, None, closure)
 
 
-def test_closures_of_the_package_are_closures():
-    check(BearingArea(0.5e-6))
-    check(Held())
-    assert Held().state(1e4, 200.0) == ""
-
-
-@pytest.mark.slow
-def test_notes_are_of_the_pressures_that_the_closure_gets(tmp_path):
-    """Held air gaps make the forces the same whatever the length of Eq. 4 is; below them the skin is longer."""
-    history = [{"name": "press", "f_ext": 1.0}, {"name": "charge", "voltage": 100.0}]
-    data = {key: value for key, value in SMALL.items() if isinstance(value, dict)} | {"history": history}
-    told = {}
-    for length in ("pressure", "gap"):
-        scene = from_data(data | {"contact": {"length": length}}).replace(roughness=Telling())
-        with tables_alone():
-            full.run(scene, RunContext(tmp_path / length, MPI.COMM_SELF))
-        rows = [row for row in rows_of(tmp_path / length, "ridges") if float(row["p_c"]) > 0]
-        told[length] = np.array([[float(row["p_c"]), float(row["note"])] for row in rows])
-    np.testing.assert_array_equal(told["pressure"][:, 0], told["pressure"][:, 1])
-    np.testing.assert_array_equal(told["gap"][:, 0], told["pressure"][:, 0])
-    assert (told["gap"][:, 1] < 0.98 * told["gap"][:, 0]).all()
-
-
 @pytest.fixture(scope="module")
 def slid() -> Simulation:
     """A small finger with a closure, a dermis and a friction law of one's own, pressed, charged and slid."""
@@ -191,28 +141,6 @@ def test_finger_of_own_laws_reaches_full_slip(slid):
     assert state.all_slip
     assert state.f_t == pytest.approx(limit, abs=slid.finger.force_error + CONE_ROUNDOFF * limit)
     assert state.f_contact - state.f_electrostatic == pytest.approx(1.0, abs=slid.finger.force_error)
-
-
-@pytest.mark.slow
-@pytest.mark.mpi
-def test_friction_of_own_law_is_below_coulombs(slid):
-    """It levels off with the pressure."""
-    loads = slid.finger.ridge_loads()
-    assert 0 < loads.f_limit.sum() < 0.95 * 0.4 * loads.f_contact.sum()
-
-
-@pytest.mark.slow
-@pytest.mark.mpi
-def test_air_gaps_are_the_closures(slid):
-    assert (slid.finger.coupling.d_eq == 2e-6).all()
-
-
-@pytest.mark.slow
-@pytest.mark.mpi
-def test_dermis_is_the_given_material(slid):
-    group = next(group for group in slid.finger.problem.laws if tags.DERMIS in group)
-    assert group == (tags.DERMIS,)
-    assert isinstance(slid.finger.problem.laws[group], Mine)
 
 
 @pytest.mark.slow

@@ -1,9 +1,7 @@
 """A scene on the mesh of a gmsh file: the same numbers as on its own mesh, what is left out, and what is refused."""
 
-import html
 import json
 import re
-import shlex
 from pathlib import Path
 
 import gmsh
@@ -12,10 +10,8 @@ from mpi4py import MPI
 
 import fingerpad as fp
 from fingerpad.cli import main
-from fingerpad.model.options import plan
-from fingerpad.report.page import again
 from fingerpad.results.folder import full_scene
-from fingerpad.scene import as_kept, from_data, load, override
+from fingerpad.scene import as_kept, from_data
 from geometry import fingertip
 from geometry.parameters import Fingertip, MeshSize
 from tests.measures import rows_of
@@ -95,28 +91,6 @@ def test_file_that_cannot_be_is_refused(given, words, tmp_path, monkeypatch):
     assert "\n" not in str(refused.value)
 
 
-def test_file_stays_with_other_keys_and_changes_with_its_own(tmp_path):
-    one, other = (write_text(tmp_path / name, name) for name in ("one.msh", "other.msh"))
-    given = from_data({"geometry": {"file": one, "sc_thickness": 3e-4}})
-    assert given.replace(voltage=100.0).geometry == given.geometry
-    assert given.replace(geometry={"file": other}) == fp.Scene(geometry={"file": other, "sc_thickness": 3e-4})
-    assert given.replace(geometry={"file": None}) == fp.Scene(geometry={"sc_thickness": 3e-4})
-    with pytest.raises(fp.SceneError, match="geometry.width is given and geometry.file too"):
-        given.replace(geometry={"width": 0.021})
-
-
-def test_mesh_is_that_of_the_scene(place, tmp_path, monkeypatch):
-    """Also where the program goes to another folder that has a file of its name; a file that changed is refused."""
-    write(place, finger(2e-3))
-    monkeypatch.chdir(place.parent)
-    given = scene().replace(geometry={"file": place.name})
-    monkeypatch.chdir(tmp_path.parent)
-    assert given.replace(friction=0.1).geometry.file == str(place)
-    write(place, finger(1e-3))
-    with pytest.raises(fp.SceneError, match=r"mine\.msh has changed since the scene was made; make the scene again"):
-        fp.run(given)
-
-
 def test_scene_is_kept_with_its_mesh(tmp_path):
     """For processes and for going on; a mesh that was changed since is refused."""
     file = write_text(tmp_path / "one.msh", "one")
@@ -134,14 +108,6 @@ def test_scene_is_kept_with_its_mesh(tmp_path):
 def write_text(path: Path, text: str) -> str:
     path.write_text(text, encoding="utf-8")
     return str(path)
-
-
-def test_command_line_is_the_run_again(tmp_path):
-    file = write_text(tmp_path / "my mesh.msh", "one")
-    kept = from_data({"geometry": {"file": file, "sc_thickness": 3e-4}, "voltage": 100.0}).parameters()
-    words = shlex.split(html.unescape(again(kept, "full")).removeprefix("<pre><code>").partition(" --out")[0])
-    assert words[:2] == ["fingerpad", "run"]
-    assert load(None, dict(override(word) for word in words[3::2])).parameters() == kept
 
 
 def test_check_reads_and_draws_the_file(place, tmp_path, capsys):
@@ -166,15 +132,6 @@ def test_skin_outside_the_ridges_touches(place):
     assert "skin of the group 'outer skin' is at a height of -" in result.failure
     assert "mine.msh must have more ridges, or f_ext be smaller" in result.failure
     assert len(result.steps) > 0
-
-
-def test_what_is_left_out_is_said(place):
-    whole = scene(output={"errors": True, "receptors": True}).replace(geometry={"file": write(place)})
-    needed = plan(whole)
-    assert (needed.receptors, needed.errors, needed.both_halves) == (False, False, True)
-    said = {omission.what: omission.reason for omission in needed.omitted}
-    assert said["receptor sites"] == "the mesh is of a file"
-    assert said["discretisation errors"] == "the mesh is of a file and cannot be refined"
 
 
 @pytest.mark.mpi

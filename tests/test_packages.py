@@ -5,15 +5,12 @@ import re
 import shutil
 import subprocess
 import sys
-import sysconfig
 import tomllib
 import zipfile
-from importlib.metadata import distributions
 from pathlib import Path
 
 import pytest
 
-from fingerpad.launcher import COMPILER, need_compiler
 from tests.commands import python
 
 ROOT = Path(__file__).parent.parent
@@ -115,21 +112,6 @@ def test_wheel_runs(wheel, tmp_path):
 
 
 # -- environment/lint, docs, wheels and venv -------------------------------------------------------------------------
-RUFF = "0.17.6"
-WANTED = re.search(r"^wanted=\((.*)\)$", (ROOT / "environment/wheels").read_text(), re.MULTILINE)[1].lower().split()
-WHEELS = [f"{name.replace('==', '-')}.dist-info" for name in WANTED]
-PACKAGES = "local/lib/python3.13/dist-packages"
-# Names the root's folder of packages, or installs as pip does, from nowhere; other commands are told and not run.
-ENTER = f"""#!/bin/bash
-[ "$2" != -c ] || {{ echo "$FOLDER"; exit; }}
-words=("$@")
-while [ $# -gt 0 ] && [ "$1" != --target ] && [ "$1" != --prefix ]; do shift; done
-[ $# -gt 0 ] || {{ echo "run ${{words[*]}}"; exit; }}
-[ -z "$OFFLINE" ] || {{ echo "no network"; exit 1; }}
-mkdir -p "$2/bin" {" ".join(f'"$2/{PACKAGES}/{wheel}"' for wheel in WHEELS)}
-echo "${{@:3}}" >"$2/wanted"
-cp "$RUFF" "$2/bin/ruff"
-"""
 # A Python that lacks something for the wheel, or nothing; it makes an empty venv, and writes what it is to install.
 PYTHON = f"""#!/bin/bash
 case "$*" in
@@ -145,77 +127,6 @@ def script(file: Path, text: str) -> None:
     file.parent.mkdir(exist_ok=True)
     file.write_text(text)
     file.chmod(0o755)
-
-
-@pytest.fixture
-def tool(tmp_path):
-    """Return a function that runs one of the scripts in a checkout whose root is a stand-in with an older ruff."""
-    environment, root = tmp_path / "checkout" / "environment", tmp_path / "cache" / "root" / "usr" / PACKAGES
-    root.mkdir(parents=True)
-    environment.mkdir(parents=True)
-    for name in ("docs", "lint", "pip", "wheels"):
-        shutil.copy(ROOT / "environment" / name, environment)
-    shutil.copy(ROOT / "pyproject.toml", environment.parent)
-    script(environment / "run", ENTER)
-    script(tmp_path / "bin" / "ruff", "#!/bin/sh\necho ruff 0.0.1\n")
-    script(tmp_path / "ruff", f'#!/bin/sh\n[ "$1" = --version ] && echo ruff {RUFF} || echo "ruff {RUFF} $*"\n')
-    variables = {name: value for name, value in os.environ.items() if name != "FINGERPAD_ROOT"}
-    variables |= {"PATH": f"{tmp_path / 'bin'}:{os.environ['PATH']}", "XDG_CACHE_HOME": str(tmp_path / "cache")}
-    variables |= {"FOLDER": str(root), "RUFF": str(tmp_path / "ruff")}
-
-    def run(name: str, *words: str, **more: str) -> subprocess.CompletedProcess[str]:
-        command = [environment / name, *words]
-        return subprocess.run(command, env=variables | more, capture_output=True, text=True, check=False)
-
-    return run
-
-
-TOOLS = {"lint": ((), f"ruff {RUFF}", 1), "docs": (("--get",), "Sphinx", 1), "wheels": ((), "SurfaceTopography", 0)}
-
-
-@pytest.mark.parametrize("name", TOOLS)
-def test_it_is_got_once(tool, name):
-    """After a try without a network, which is one sentence more."""
-    words, what, code = TOOLS[name]
-    failed = tool(name, *words, OFFLINE="yes")
-    assert failed.returncode == code and "cannot be had from PyPI" in failed.stderr.splitlines()[-1]
-    assert failed.stderr.splitlines()[-1].startswith(f"fingerpad: {what}") and "is there a network?" in failed.stderr
-    first, second = tool(name, *words), tool(name, *words)
-    assert (first.returncode, second.returncode, second.stderr) == (0, 0, "")
-    assert first.stderr.startswith(f"fingerpad: getting {what}") and first.stderr.count("\n") == 1
-
-
-def test_lint_runs_its_checks(tool):
-    """By the version that pyproject.toml names, whatever is on the path."""
-    assert tool("lint").stdout.splitlines()[-3:] == [
-        f"ruff {RUFF} check .",
-        f"ruff {RUFF} format --check .",
-        "run mypy",
-    ]
-
-
-def test_docs_are_built_in_the_versions_of_pyproject(tool):
-    tool("docs", "--get")
-    wanted = (Path(tool("docs", "--place").stdout.strip()) / "wanted").read_text().split()
-    assert [name.partition("==")[0] for name in wanted] == ["sphinx", "myst-parser", "furo", "math-core", "ziamath"]
-    command = tool("docs", "out", "-v").stdout.split()
-    assert command[:4] == ["run", "python3", "-m", "sphinx"] and command[-3:] == ["-v", ".", "out"]
-
-
-def test_another_version_of_a_wheel_is_replaced(tool, tmp_path):
-    """It goes first: pip leaves out what is there, which the old one may have brought."""
-    place = tmp_path / "cache" / "root" / "usr" / PACKAGES
-    (place / "surfacetopography-1.0.0.dist-info").mkdir()
-    tool("wheels")
-    assert sorted(path.name for path in place.iterdir()) == sorted(WHEELS)
-
-
-@pytest.mark.skipif("FINGERPAD_ROOT" not in os.environ, reason="not in the private root")
-def test_wheels_hide_nothing_of_debian():
-    """No package is there twice, so that none of Debian's has another version with them than without."""
-    folders = sysconfig.get_path("purelib"), "/usr/lib/python3/dist-packages"
-    ours, debian = ({re.sub(r"[-_.]+", "-", d.name).lower() for d in distributions(path=[f])} for f in folders)
-    assert debian and not ours & debian
 
 
 # -- the venv ------------------------------------------------------------------------------------------
@@ -255,10 +166,3 @@ def test_what_a_venv_lacks_is_one_sentence(variables, name):
     done = call(name, "true", **variables, LACKS=lacks)
     assert (done.returncode, done.stdout, done.stderr.count("\n")) == (1, "", 1)
     assert done.stderr.startswith(f"fingerpad: {lacks}; or name another Python")
-
-
-def test_no_compiler(monkeypatch):
-    monkeypatch.setenv("CC", "nosuchcompiler -O2")
-    with pytest.raises(ImportError, match="nosuchcompiler is not on the path; .* gcc") as found:
-        need_compiler()
-    assert found.value.name == COMPILER

@@ -5,10 +5,9 @@ import math
 import shutil
 
 import pytest
-from matplotlib.image import imread
 
-from benchmarks import fill, harness, hero, pages, same
-from benchmarks.harness import DOCS, Made, kept
+from benchmarks import fill, harness, pages, same
+from benchmarks.harness import DOCS, Made
 
 BY = Made("0.1.0", "abc1234", "2026-11-22", "0123456789ab")
 
@@ -154,17 +153,3 @@ def test_numbers_are_put_in_place():
 
 
 # -- The picture that opens the README is drawn from the numbers in git ---
-@pytest.mark.slow
-def test_hero_is_drawn_from_kept_numbers(tmp_path):
-    (tmp_path / "hero.json").write_bytes((DOCS / "hero.json").read_bytes())
-    image = imread(hero.draw(tmp_path))
-    assert image.shape[1] >= 900 and image[:, :, :3].std() > 0.05
-
-
-def test_friction_doubles():
-    """As the picture's title says: from 0.25 times the force at 0 V to more than twice as much at 200 V."""
-    numbers = kept("hero").numbers
-    force = numbers["default"]["force"]
-    voltages, f_t = zip(*numbers["friction"][force], strict=True)
-    assert voltages == (0, 50, 100, 150, 200)
-    assert abs(f_t[0] - 0.25 * float(force)) < 1e-6 and f_t[-1] > 2 * f_t[0]

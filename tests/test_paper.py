@@ -1,15 +1,14 @@
 """The paper's statements: those of a skin that is made up, and those of the page from its kept numbers."""
 
-from dataclasses import asdict
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
-from benchmarks.harness import DOCS, Made, keep, kept
+from benchmarks.harness import Made, keep
 from benchmarks.limits import Limit
 from benchmarks.paper import __main__ as command
-from benchmarks.paper import fields, friction, states
+from benchmarks.paper import fields, states
 from benchmarks.paper.statement import BUILT, HOLDS, NOT
 from fingerpad.scene import Scene
 
@@ -83,41 +82,6 @@ STICK = {"t": 0.01 * np.sign(RIDGES[:, None] + np.linspace(-0.3, 0.3, POINTS + 2
 )  # fmt: skip
 def test_verdict_on_a_skin(words, run, verdict):
     assert by(fields.section(run, run_of(skin(**STICK))), words).verdict == verdict
-
-
-def test_threshold_statements():
-    """155.2 V by Eq. 15, 163.6 V by Eq. 9."""
-    numbers = by(fields.microscale(), "155 V").numbers
-    assert numbers["eq_15"] == pytest.approx(155.2, abs=0.06)
-    assert numbers["eq_9"] == pytest.approx(163.6, abs=0.05)
-
-
-def test_missing_runs_are_named(tmp_path, capsys):
-    """Without a run the statements on the microscale are made all the same, and the page lists what is missing."""
-    numbers = command.collect(tmp_path / "runs")
-    assert [s["figure"] for s in numbers["statements"]] == ["4, Eq. 14", "5, Eq. 15"]
-    keep("paper", numbers, MADE, tmp_path)
-    assert "**Not run yet:** Fig. 2, Figs. 6 to 8" in command.draw(tmp_path).read_text(encoding="utf-8")
-    assert "missing: Fig. 2, run" in capsys.readouterr().out
-
-
-def test_page_in_git_is_of_its_numbers(tmp_path):
-    """Drawn anew from the kept numbers, text and statements on the grid are those of the page; none without a grid.
-
-    Tolerance: a fit of 40 runs by least squares has the roundoff of the processor, some 1e-15.
-    """
-    (tmp_path / "paper.json").write_bytes((DOCS / "paper.json").read_bytes())
-    numbers, again = kept("paper", tmp_path).numbers, []
-    if "grid" in numbers:
-        of = {key: next(s["numbers"] for s in numbers["statements"] if key in s["paper"]) for key in ("wavy", "0.55")}
-        limit = Limit(of["0.55"]["mu_app"], of["0.55"]["bar"], None)
-        grid = {name: np.array(values) for name, values in numbers["grid"].items()}
-        again = friction.statements(grid, of["wavy"], limit)
-    of_grid = ("2, section 3.2", "6", "9A, 6B", "2C", "7", "8", "8A")
-    for found, told in zip(again, [s for s in numbers["statements"] if s["figure"] in of_grid], strict=True):
-        assert asdict(found) | {"numbers": None} == told | {"numbers": None}
-        assert found.numbers == pytest.approx(told["numbers"], rel=1e-9)
-    assert command.draw(tmp_path).read_text(encoding="utf-8").count("| **") == len(numbers["statements"])
 
 
 def test_grid_beside_its_limits(monkeypatch):

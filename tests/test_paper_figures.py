@@ -1,31 +1,13 @@
 """The paper's figures: names, numbers of runs that are made up, pictures of the kept ones."""
 
 import json
-from dataclasses import replace
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from benchmarks.harness import kept
-from benchmarks.paper import loads, maps, scenes, section, sine
-from benchmarks.paper.figures import FIGURES, compute, draw, main
-from benchmarks.runs import Unfinished
-from variational.snapshot import Snapshot
-
-
-def test_list(capsys):
-    """Without a figure the command lists them with what they cost."""
-    assert main([]) == 0
-    lines = capsys.readouterr().out.splitlines()
-    assert [line.split()[1].rstrip(",") for line in lines] == list(FIGURES)
-    assert any("40 states" in line for line in lines)
-
-
-def test_unknown_figure(capsys):
-    with pytest.raises(SystemExit):
-        main(["10"])
-    assert "no figure 10" in capsys.readouterr().err
+from benchmarks.paper import loads, scenes, sine
+from benchmarks.paper.figures import FIGURES, draw, main
 
 
 def test_closed_forms(tmp_path):
@@ -36,25 +18,6 @@ def test_closed_forms(tmp_path):
     assert gap["d_eq"][0] == pytest.approx(1.489e-6, abs=5e-10)
     curves = json.loads((tmp_path / "figure_5.json").read_text(encoding="utf-8"))
     assert [min(p_ext) < 0 for p_ext in curves["p_ext"]] == [False] * 4 + [True]
-
-
-def test_a_run_that_fails(tmp_path, monkeypatch):
-    """It is named; no picture is made of others."""
-    monkeypatch.setattr("fingerpad.runs.batch.sweep", lambda *_: {})
-    monkeypatch.setattr("fingerpad.runs.batch.result", lambda *_: {"failure": "Newton's method"})
-    with pytest.raises(Unfinished, match="did not reach its end: Newton's method"):
-        main(["9A", "--out", str(tmp_path)])
-    assert not (tmp_path / "figure_9A.png").exists()
-
-
-def test_numbers_are_strict_json(tmp_path):
-    """What is no number, as between ridges, is null: other programs cannot read NaN."""
-    x = {"f_ext": 1.0, "voltage": 0.0, "scale": 1.0, "states": {}}
-    for state in ("charged", "partial", "full_slip"):
-        x["states"][state] = {name: [1.0, float("nan"), 2.0] for name in ("x", "p", "p_el", "t", "d_eq")}
-    _, kept_in = compute(replace(FIGURES["2"], numbers=lambda *_: x), tmp_path, 1)
-    found = json.loads(kept_in.read_text(encoding="utf-8"), parse_constant=pytest.fail)
-    assert found["states"]["partial"]["p"] == [1.0, None, 2.0]
 
 
 def test_sites_by_what_voltage_does():
@@ -80,21 +43,6 @@ def test_reduction_of_a_line():
     assert found.slope == pytest.approx(1e-5) and found.r_squared == pytest.approx(1)
 
 
-def test_map_keeps_what_is_in_view():
-    """Triangles outside are left out, those beside a line in view are not; places come back to a micrometre."""
-    x = 1e-3 * np.array([[0, 0.2], [1, 0.2], [0, 1.0], [0.5, 0.2], [1, 9], [0, 9], [0.5, 9]])
-    body = Snapshot(
-        x, np.full_like(x, 1e-7), np.array([[0, 1, 2], [4, 5, 6]]), np.array([123.4, 5.0]), np.array([1, 2]),
-        np.array([[0, 3, 1]]), np.array([[0, -1]]),
-    )  # fmt: skip
-    near = maps._near(body) | {"merkel": np.zeros((0, 2))}
-    back = maps._snapshot({name: maps._pack(name, values) for name, values in near.items()})
-    assert back.triangles.tolist() == [[0, 1, 2]] and back.beside.tolist() == [[0, -1]]
-    assert back.lines.tolist() == [[0, 3, 1]] and back.tag.tolist() == [1]
-    assert np.abs(back.x - x[:4]).max() <= 6e-7
-    assert back.sed == pytest.approx([123.4], rel=5e-4)
-
-
 GRID = kept("paper").numbers["grid"]
 KEPT = kept("paper_figures").numbers | {name: GRID for name, figure in FIGURES.items() if figure.of_loads}
 
@@ -105,26 +53,3 @@ def test_pictures_of_the_kept_numbers(name, tmp_path):
     figure, numbers = FIGURES[name], KEPT[name]
     draw(figure, numbers, tmp_path / "picture.png")
     assert (tmp_path / "picture.png").stat().st_size > 5000
-
-
-def test_picture_of_a_sine(tmp_path):
-    """One line a site, which has the paper's number for what it does."""
-    values = [1.0] * len(scenes.PHASES)
-    sites = [{"kind": kind, "ridge": k, "sed": values} for k, kind in enumerate(scenes.NAMED)]
-    columns = {"phase": scenes.PHASES.tolist(), "voltage": values, "mu_app": values}
-    draw(FIGURES["9B"], {"f_ext": 75.0, "sites": sites} | columns, tmp_path / "picture.png")
-    assert (tmp_path / "picture.png").stat().st_size > 5000
-
-
-def test_ridges_of_the_section(tmp_path, monkeypatch):
-    """Points under pressure are kept with those beside them; a gap parts ridges."""
-    ridge, p = np.repeat([0.0, 1.0, 2.0], 4), np.array([0, 5.0, 6.0, 0, 0, 0, 0, 0, 0, 0, 1.0, 0])
-    columns = {"x": np.arange(12.0), "p": p, "p_el": p, "t": p, "d_eq": p, "ridge": ridge}
-    states = ("charged", "partial", "full_slip")
-    skin = {f"{state}_{name}": values for state in states for name, values in columns.items()}
-    steps = {"f_ext": np.array([6.0]), "contact_length": np.array([2.0])}
-    made = SimpleNamespace(charged=0, steps=steps, arrays=lambda _: skin)
-    monkeypatch.setattr(section, "computed", lambda *_: {"section": made})
-    found = section.numbers(tmp_path, 1)
-    assert found["scale"] == 3.0
-    assert np.array(found["states"]["partial"]["x"]) == pytest.approx([0, 1, 2, 3, np.nan, 9, 10, 11], nan_ok=True)

@@ -4,9 +4,8 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 
-from benchmarks.peers import at_equal_error, equal, ours, plain
-from benchmarks.peers.__main__ import half_width
-from benchmarks.peers.at_equal_error import CURVED, OURS
+from benchmarks.peers import compared, equal, ours, plain
+from benchmarks.peers.compared import CURVED, OURS, half_width
 from benchmarks.peers.exchange import Answer, Case, Load, Ridge, State
 from geometry.bodies import ridge as one_ridge
 from geometry.mesh import load
@@ -65,7 +64,7 @@ def test_half_width_of_a_parabola():
     """An edge from (0, -1) to (2, 3) with its middle at (1, 0.25): y = -1 + x/2 + 3/4 x^2, below until its root."""
     points = np.array([[0.0, 0.0], [2.0, 0.0], [1.0, 0.0]])
     mesh = Ridge(points, np.zeros((0, 6), int), np.array([[0, 1, 2]]), np.zeros(0, int), np.zeros(0, int))
-    state = State("", 0, 0, [[0.0, -1.0], [0.0, 3.0], [0.0, 0.25]], [], [], [])
+    state = State("", 0, 0, [[0.0, -1.0], [0.0, 3.0], [0.0, 0.25]], 0.0)
     x = np.linspace(0, (-0.5 + np.sqrt(0.25 + 3)) / 1.5, 200001)
     exact = np.hypot(np.diff(x), np.diff(-1 + x / 2 + 0.75 * x**2)).sum() / 2
     assert half_width(mesh, state) == pytest.approx(exact, rel=1e-5)  # the error of six Gauss points
@@ -112,7 +111,7 @@ def test_cheapest_row_is_nowhere_less_accurate():
         {"program": CURVED, "size": size, "seconds": 10 / size, "errors": errors}
         for size, errors in ((8.0, [1e-3] * 3), (5.0, [1e-3, 2e-3, 1e-4]), (2.0, [1e-3, 1e-3, 1e-4]), (1.0, [1e-4] * 3))
     )
-    found = at_equal_error.words([lucky, mine, finest, coarse, fine])
+    found = compared.words([lucky, mine, finest, coarse, fine])
     assert found["pairs"] == [(mine, fine)] and found["reached"] == [5.0]
     assert found["lucky"] == [10 / 8] and found["asked"] == [mine, lucky]
-    assert at_equal_error.words([mine, coarse])["reached"] == []
+    assert compared.words([mine, coarse])["reached"] == []

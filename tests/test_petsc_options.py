@@ -1,8 +1,6 @@
 """Options of PETSc that it refuses or does not know end a run before it starts, with one sentence."""
 
-import importlib.util
 import json
-import re
 
 import pytest
 from mpi4py import MPI
@@ -58,31 +56,7 @@ def test_misspelt(given, option):
         module.refuse_unread()
 
 
-def test_what_petsc_reads_is_allowed(given, capfd):
-    """Monitors print nothing of the trial."""
-    given("-fingerpad_snes_monitor -fingerpad_snes_max_it 50 -fingerpad_mat_mumps_icntl_14 50")
-    check_options()
-    module.refuse_unread()
-    assert capfd.readouterr() == ("", "")
-
-
-def test_options_of_others_are_none_of_ours(given):
-    given("-other_snes_type nonsense")
-    check_options()
-    assert module.in_use()["-other_snes_type"] == "nonsense"
-
-
 # -- what else of the environment a summary holds --------------------------------------------------------------------
-PETSC_ALONE = importlib.util.find_spec("dolfinx_solver") is not None
-
-
-def test_versions():
-    versions = provenance()["versions"]
-    names = "fingerpad source dolfinx basix ffcx ufl petsc mumps gmsh numpy scipy python"
-    assert set(versions) == set(names.split())
-    linked = PETSC_ALONE and versions.pop("mumps") is None  # into PETSc's own file, which names no version of it
-    assert linked == PETSC_ALONE
-    assert all(re.match(r"\d+\.\d+", version) for name, version in versions.items() if name != "source")
 
 
 def test_nothing_else_of_the_environment(monkeypatch):

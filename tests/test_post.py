@@ -10,8 +10,8 @@ from fingerpad.cli import main
 from fingerpad.reduced.registry import find
 from fingerpad.results.result import Result
 from fingerpad.runs import post
-from fingerpad.runs.context import RunContext
-from fingerpad.runs.solve import ended, solved, summary
+from fingerpad.runs.context import RunContext, ended, summary
+from fingerpad.runs.solve import solved
 from fingerpad.scene import from_data
 from tests.commands import python
 from tests.runs import tables_alone

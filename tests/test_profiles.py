@@ -18,20 +18,6 @@ def dense(profiles, depth, count=400001):
     return profiles.point(s, depth(s))
 
 
-def test_tips_are_on_the_ellipse(profiles):
-    """The outline is x^2 / a^2 + (y - b)^2 / b^2 = 1. Tolerance: roundoff."""
-    s = np.array(profiles.ridges) * WAVE
-    x, y = profiles.point(s, profiles.skin(s)).T
-    assert_allclose((x / (10 * MM)) ** 2 + ((y - 7 * MM) / (7 * MM)) ** 2, 1, rtol=1e-14)
-
-
-def test_lowest_tip_is_on_the_screen(profiles):
-    """One ridge is centred on x = 0, and its tip is the lowest point of all, at y = 0. Tolerance: roundoff."""
-    assert_allclose(profiles.point(0.0, profiles.skin(0.0)), 0, atol=1e-18)
-    skin = dense(profiles, profiles.skin)
-    assert skin[:, 1].min() == pytest.approx(0, abs=1e-17)
-
-
 def test_arc_length(profiles):
     """Points one wavelength apart in s are so along the outline.
 
@@ -40,13 +26,6 @@ def test_arc_length(profiles):
     s = np.linspace(20 * WAVE, 21 * WAVE, 1001)
     steps = np.linalg.norm(np.diff(profiles.point(s), axis=0), axis=1)
     assert steps.sum() == pytest.approx(WAVE, rel=2e-8)
-
-
-def test_nail_begins_at_its_width(profiles):
-    """The nail's edge is on the outline, dorsal, at its half width. Tolerance: roundoff."""
-    x, y = profiles.point(profiles.nail_arc)
-    assert x == pytest.approx(6 * MM, rel=1e-12, abs=0)
-    assert y == pytest.approx(7 * MM * (1 + np.sqrt(1 - 0.6**2)), rel=1e-12, abs=0)
 
 
 def test_number_of_ridges(profiles):
@@ -71,33 +50,6 @@ def test_depths(profiles, theta):
     assert profiles.sc_ve(s) - HALF_DEPTH == pytest.approx((425 - 50 * np.cos(theta)) * UM, rel=1e-12, abs=0)
     assert profiles.ve_d(s) - HALF_DEPTH == pytest.approx(ve_d * UM, rel=1e-12, abs=0)
     assert profiles.d_sub(s) - HALF_DEPTH == pytest.approx(2000 * UM, rel=1e-12, abs=0)
-
-
-def test_thickness_of_the_viable_epidermis(profiles):
-    """175 um on average over a period, 20.8 um where it is thinnest. Tolerance: roundoff; the digits given."""
-    s = np.linspace(0, WAVE, 100001)
-    thickness = profiles.ve_d(s) - profiles.sc_ve(s)
-    assert thickness[:-1].mean() == pytest.approx(175 * UM, rel=1e-12, abs=0)
-    assert thickness.min() == pytest.approx(20.8 * UM, abs=0.05 * UM)
-
-
-def test_waves_fade_beyond_the_last_ridge(profiles):
-    """At the nail all layers are offset curves, reached smoothly: no step where the last ridge ends.
-
-    Tolerance: roundoff; what a groove's curvature makes of a nanometre, 4e-15 m.
-    """
-    end = np.array(profiles.nail_arc)
-    for depth, mean in ((profiles.skin, 0), (profiles.sc_ve, 425), (profiles.ve_d, 600)):
-        assert depth(end) - HALF_DEPTH == pytest.approx(mean * UM, abs=1e-15)
-        s = profiles.ridged_arc + np.array([-1e-9, 1e-9])
-        assert np.ptp(depth(s)) < 1e-8 * UM
-
-
-def test_curves_are_mirrored(profiles):
-    s = np.linspace(0, profiles.nail_arc, 5001)
-    for depth in (profiles.skin, profiles.sc_ve, profiles.ve_d, profiles.d_sub):
-        left = profiles.point(-s, depth(-s))
-        np.testing.assert_array_equal(left, profiles.point(s, depth(s)) * [-1, 1])
 
 
 def test_measured_profile_keeps_the_amplitude():
@@ -133,16 +85,6 @@ def test_lowest_point_is_on_the_screen_wherever_the_crest_is(profile, crests):
     s = np.linspace(0, WAVE, 20001)
     assert np.ptp(profiles.skin(s)) == pytest.approx(100 * UM, rel=1e-6)
     assert profiles.skin(s).min() == pytest.approx(0, abs=1e-12)
-
-
-def test_fine_facets_are_about_the_crests():
-    """Parts of 0.2 wavelengths about two crests, no farther than the ridge."""
-    arcs = Profiles(Fingertip(ridge_profile=(0.0, -1.0))).touching_arcs(0.2, 1e-6) / WAVE
-    distance = np.abs(np.abs(arcs) - 0.25)
-    assert distance.max() == pytest.approx(0.1, abs=1e-9)
-    assert distance.min() <= 0.5 * UM / WAVE
-    grooves = Profiles(Fingertip(ridge_profile=(-1.0,))).touching_arcs(0.2, 1e-6) / WAVE
-    assert (np.abs(grooves).min(), np.abs(grooves).max()) == pytest.approx((0.4, 0.5), abs=0.5 * UM / WAVE)
 
 
 @pytest.mark.parametrize(

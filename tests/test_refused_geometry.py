@@ -1,14 +1,12 @@
 """Shapes, sizes and meshes that are refused, in one sentence."""
 
-import re
-
 import gmsh
 import numpy as np
 import pytest
 from mpi4py import MPI
 from pydantic import ValidationError
 
-from geometry import sizing, tags
+from geometry import sizing
 from geometry.bodies import block
 from geometry.mesh import load
 from geometry.parameters import Fingertip, MeshSize
@@ -109,42 +107,6 @@ def test_skin_that_a_facet_cannot_follow_is_refused():
     assert profiles.radius(s)[5:-5] == pytest.approx(radius[5:-5], rel=1e-3)
 
 
-def test_grooves_may_be_sharper_than_facets():
-    """They do not touch, and a sinusoid's crest takes facets of a quarter of its wavelength."""
-    cusps = Fingertip(ridge_profile=(1.0, -0.25, 0.111))
-    profiles = Profiles(cusps)
-    assert profiles.radius(cusps.ridge_wavelength / 2) < profiles.radius(0.0) / 3
-    sizing.check(cusps, MeshSize(contact=cusps.ridge_wavelength / 4))
-    sizing.check(Fingertip(), MeshSize(contact=Fingertip().ridge_wavelength / 4))
-
-
-def test_limits_that_are_named_can_be_followed():
-    """They are rounded to the side that is accepted."""
-    small = {
-        **{"width": 4e-3, "height": 3e-3, "bone_width": 1.6e-3, "bone_height": 0.8e-3, "bone_centre": 1.7e-3},
-        **{"nail_half_width": 1e-3, "nail_bed_half_width": 0.4e-3, "ridge_count": 3},
-    }
-    with pytest.raises(GeometryError) as refusal:
-        sizing.check_shape(Profiles(Fingertip(**small, ridge_wavelength=5e-3)))
-    most = float(re.search(r"ridge_wavelength is ([0-9.e-]+) m or less", str(refusal.value))[1])
-    profiles = Profiles(Fingertip(**small, ridge_wavelength=most))
-    assert profiles.ridged_arc + most <= profiles.nail_arc < 1.01 * (profiles.ridged_arc + most)
-    with pytest.raises(GeometryError) as refusal:
-        sizing.check_shape(Profiles(Fingertip(nail_thickness=10e-6)))
-    least = float(re.search(r"the nail must be ([0-9.e-]+) m thick or more", str(refusal.value))[1])
-    sizing.check_shape(Profiles(Fingertip(nail_thickness=least)))
-
-
-def test_most_ridges_that_are_named_fit():
-    """The message gives a number that is accepted, and the next odd one is not."""
-    with pytest.raises(GeometryError) as refusal:
-        sizing.check_shape(Profiles(Fingertip(ridge_count=101)))
-    most = int(str(refusal.value).split()[-2])
-    sizing.check_shape(Profiles(Fingertip(ridge_count=most)))
-    with pytest.raises(GeometryError):
-        sizing.check_shape(Profiles(Fingertip(ridge_count=most + 2)))
-
-
 @pytest.mark.mpi
 @pytest.mark.parametrize("error", [GeometryError, RuntimeError, ZeroDivisionError])
 def test_refusal_reaches_every_rank(error):
@@ -168,11 +130,3 @@ def test_what_gmsh_refuses_is_one_sentence():
         GeometryError, match="gmsh cannot mesh the body: Invalid boundary mesh .*; try smaller elements"
     ):
         load(MPI.COMM_WORLD, refuse)
-
-
-@pytest.mark.mpi
-def test_missing_tag_is_refused():
-    build = block(MM, MM, 0.5 * MM)
-    load(MPI.COMM_WORLD, build, [tags.STRATUM_CORNEUM, tags.ridge(0), tags.BONE_RIM, tags.SIDES])
-    with pytest.raises(GeometryError, match=f"no cell or facet with tag {tags.NAIL_SURFACE}"):
-        load(MPI.COMM_WORLD, build, [tags.SIDES, tags.NAIL_SURFACE])

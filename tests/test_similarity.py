@@ -30,8 +30,8 @@ def test_contact_is_scaled():
 def test_default_finger_is_as_before():
     """Its scale is one, to the last digit."""
     assert similar(fp.Scene()) == similar(fp.Scene(finger="dry")) == Similar()
-    assert "times" not in cylinders.fitted(fp.Scene()).source
-    assert "0.9 times its lengths and 1 times" in cylinders.fitted(fp.Scene(geometry=SHAPE)).source
+    assert "times" not in cylinders.solve(fp.Scene()).notes[0]
+    assert "0.9 times its lengths and 1 times" in cylinders.solve(fp.Scene(geometry=SHAPE)).notes[0]
 
 
 @pytest.mark.parametrize(

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 
-from geometry.bodies import block, ridge
+from geometry.bodies import ridge
 from geometry.mesh import load
-from tests.test_contact import HEIGHT, MU_F, WIDTH, make
+from tests.test_contact import MU_F, make
 from tests.test_newton import walk
 from variational.solvers import skin_layer as module
 from variational.solvers.equations import OUTSIDE, Control
@@ -36,22 +36,6 @@ def pressed(body):
 def total(part) -> float:
     """Return the norm of a vector of which each rank has a part."""
     return float(np.sqrt(MPI.COMM_WORLD.allreduce(float(part @ part))))
-
-
-def test_layer_is_a_part_of_the_body(pressed):
-    """It has some nodes of the body."""
-    solver, layer, _ = pressed
-    size = MPI.COMM_WORLD.allreduce(len(layer._rows))
-    assert 20 < size < solver.layout.global_size / 2
-
-
-def test_bone_is_no_part_of_the_layer():
-    """A block one cell high, whose cells reach from the screen to the bone: the bone is held, all else is the layer."""
-    solver = make(load(MPI.COMM_WORLD, block(WIDTH, HEIGHT, HEIGHT)), MU_F)
-    walk(solver, [Control(0.0, -0.01 * HEIGHT)])
-    layer, rim = solver.iteration._layer, solver.layout.rim
-    assert not layer._nodes[rim].any()
-    assert MPI.COMM_WORLD.allreduce(len(layer._rows)) == solver.layout.global_size - 2
 
 
 def test_forms_of_the_layer_are_the_rows_of_the_whole(pressed):

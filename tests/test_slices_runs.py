@@ -11,12 +11,9 @@ import fingerpad as fp
 from fingerpad.reduced.registry import find
 from fingerpad.report import run_page, trust
 from fingerpad.report.page import GOOD
-from fingerpad.runs import solve
-from fingerpad.runs.context import RunContext
 from fingerpad.scene import SceneError, load
 from fingerpad.slices import traces
 from fingerpad.slices.estimate import with_newtons
-from fingerpad.slices.traces import history, points
 from tests.runs import no_pictures
 from tests.small_finger import small
 from variational.state import Errors
@@ -103,15 +100,6 @@ def test_section_at_the_centre_is_on_its_scale():
     assert found.full_slip.mu_app == pytest.approx(slip.columns["f_t"][at] / slip.columns["f_ext"][at], rel=0.02)
 
 
-def test_points_of_the_traces_are_of_one_kind():
-    """Each state of a trace is uncharged, charged at rest, or at full slip at the scene's voltage."""
-    scene = small(**SMALL)
-    for name in ("uncharged", "charged"):
-        found = points(solve.solved(history(scene, name, 1.0), find("full"), RunContext()), name)
-        assert len(found) > 1 and {state.voltage for state in found} == {0.0 if name == "uncharged" else scene.voltage}
-        assert all(state.bone_x == 0 for state in found)
-
-
 def test_run_has_newtons_for_nothing(ran):
     """The run's own states at the centre, and less beside it; F_ext over f_ext is no constant of 20 mm."""
     finger = ran.finger
@@ -182,12 +170,10 @@ def test_least_force(tmp_path):
     """Every scene of its traces is one that can be run; where that of the centre is none, the force is named."""
     given = []
 
-    def solve(scene, name):
+    def solve(scene):
         given.append(scene)
         raise Stop
 
-    with pytest.raises(Stop):
-        traces.whole(fp.Scene(force=1e-5), find("full"), solve)
     with pytest.raises(Stop):
         traces.whole(fp.Scene(force=1e-5), find("cylinders"), solve)
     assert all(load.f_ext >= 1e-3 for scene in given for load in scene.loads() if load.f_ext is not None)

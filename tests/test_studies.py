@@ -1,19 +1,13 @@
 """Measured findings beside ours: rules of the verdicts, fits with known answers, and what the page claims in words."""
 
-import argparse
-import shlex
-
 import numpy as np
 import pytest
 
-from benchmarks import assumptions
-from benchmarks.assumptions import LEAST_GAP, NEAR, PAPER
-from benchmarks.harness import DOCS, ROOT, kept
+from benchmarks.harness import DOCS, kept
 from benchmarks.measured import __main__ as command
-from benchmarks.measured import fingers, rows, rules
+from benchmarks.measured import rows, rules
 from benchmarks.measured.rules import HIT, MISS, PART, by_factor, by_form, by_share
-from benchmarks.runs import FORCES, VOLTAGES
-from fingerpad.cli.arguments import scene_of
+from benchmarks.runs import VOLTAGES
 
 
 @pytest.fixture(scope="module")
@@ -73,24 +67,6 @@ def test_pressures_find_their_own_curves(form):
     assert 0.005 < rules.of_largest(other, x, pressure).misfit < 0.1
 
 
-def test_kept_rows_are_those_of_the_other_pages(judged):
-    """Where the numbers of one of those are made anew, ``make measured`` has to be given again."""
-    own = kept("measured").numbers
-    again = command.numbers(own["runs"], own["held"], DOCS)
-    for table in ("rows", "others"):
-        verdicts = [{key: row["verdict"] for key, row in of[table].items()} for of in (again, own)]
-        assert verdicts[0] == verdicts[1]
-        for key, row in again[table].items():
-            assert row["numbers"] == pytest.approx(own[table][key]["numbers"], rel=1e-6, abs=1e-9), key
-    for name, values in again["curves"].items():
-        assert values == pytest.approx(own["curves"][name], rel=1e-9)
-
-
-def test_no_verdict_is_typed_where_a_scene_has_a_key():
-    """Adhesion without a voltage alone has none."""
-    assert [text["key"] for text in command._read("rows") if text["verdict"]] == ["adhesion"]
-
-
 @pytest.mark.parametrize(("form", "parameter"), [(rules.first_order, 0.2), (rules.ramp, 0.4)])
 def test_rises_find_their_own_curves(form, parameter):
     """Time and end come back; the other form leaves some per cent."""
@@ -101,71 +77,7 @@ def test_rises_find_their_own_curves(form, parameter):
     assert rules.of_largest(other, x, form(x, parameter)).misfit > 0.02
 
 
-def test_kept_friction_follows_the_attraction():
-    """At full slip f_T = µ_0 (f_ext + attraction), so that both rise by the same power of the voltage."""
-    found = rows.grid(kept("paper").numbers, kept("models").numbers)
-    coarse, forces = found.coarse, np.array(FORCES)[:, None]
-    # The slide ends where f_T is steady to 1e-6 of itself.
-    expected = 0.25 * (forces + coarse["full_slip_f_electrostatic"])
-    np.testing.assert_allclose(coarse["full_slip_f_t"], expected, rtol=1e-6)
-    known = [row for row in kept("newtons").numbers["friction"] if row["radius"] == 28e-3 and row["voltage"] == 200]
-    for name in ("gross_area", "contact_area"):  # of the page of newtons
-        sums = dict(zip(fingers.NEWTONS, found.full_finger[f"full_slip_200_{name}"], strict=True))
-        for row in known:
-            assert sums[round(row["f_ext"], 6)] == pytest.approx(row[name], rel=1e-9)
-
-
-def test_runs_of_the_page_balance_their_force():
-    wanted, runs = fingers.scenes(), kept("measured").numbers["runs"]
-    assert set(runs) == set(wanted)
-    for run in runs.values():
-        total = sum(run["pressure"]) * wanted["dry 20"].geometry.ridge_wavelength
-        assert total == pytest.approx(fingers.FORCE, rel=1e-6) and len(run["place"]) == run["ridges"]
-
-
 # -- the page of assumptions -----------------------------------------------------------------------------------------
 @pytest.fixture(scope="module")
 def found():
     return kept("assumptions").numbers
-
-
-@pytest.mark.slow
-def test_printed_options_give_the_scene(monkeypatch):
-    """As the command line reads them."""
-    monkeypatch.chdir(ROOT)
-    parser = argparse.ArgumentParser()
-    parser.add_argument("scene", nargs="?", type=assumptions.Path)
-    parser.add_argument("--set", action="append", default=[])
-    for name, options in (assumptions.runs() | assumptions.profiles()).items():
-        scene = scene_of(parser.parse_args(shlex.split(options)))
-        assert scene.parameters() == assumptions.scene(options).parameters(), name
-
-
-def test_sentences_hold_of_the_numbers(found):
-    """What the prose says without a number of its own."""
-    full, shaped, words = found["full"], found["profiles"], assumptions.sentences(found)
-    others = {*assumptions.LAWS, "flat 0", "blunt 25"}  # other friction laws and forces, and no voltage
-    mechanical = [name for name in full if not {"voltage", "friction"} & {*name.split("=")} and name not in others]
-    changes = {name: abs(full[name]["mu_app"] / full["reference"]["mu_app"] - 1) for name in mechanical}
-    profiles = {name for name in assumptions.PARAMETERS if "ridge_profile" in name}
-    assert changes["flat 200"] > max(changes[name] for name in mechanical if name != "flat 200")
-    assert max(changes[name] for name in assumptions.LITTLE) < min(changes[name] for name in profiles)
-    flat, inside = full["flat"], words["counts"]("flat")
-    assert inside[0] == inside[2] and abs(flat["mu_app"] / PAPER - 1) <= NEAR  # both statements at 170 V
-    assert max(flat["gaps"]["full_slip"]) in (flat["gaps"]["full_slip"][0], flat["gaps"]["full_slip"][-1])
-    at_200 = [row for name, row in shaped.items() if name.endswith("] at 200 V")]
-    assert len(at_200) == 7 and not any(
-        row["d_eq"] >= LEAST_GAP and abs(row["mu_app"] / PAPER - 1) <= NEAR for row in at_200
-    )
-    low = shaped["[1, -0.25] at 150 V"]
-    assert low["d_eq"] > LEAST_GAP and low["mu_app"] < PAPER * (1 - NEAR)
-    assert min(words["met"]) < 170 < max(words["met"])
-    assert min(words["change"](*pair, "charged") for pair in (assumptions.LIGHT, ("flat 200", "flat 0"))) > 0
-
-
-def test_default_is_that_of_other_pages(found):
-    """The same scene at 10 µm, run for the models' page; the other counts the ridges that can touch by a rule."""
-    models = kept("models").numbers["scenes"]["75 N/m, 200 V"]["full"]["summary"]
-    reference = found["full"]["reference"]
-    assert reference["mu_app"] == pytest.approx(models["full_slip_mu_app"], rel=1e-5)
-    assert reference["charged"] == pytest.approx(models["charged_contact_length"], rel=1e-3)

@@ -6,7 +6,6 @@ import xarray
 
 import fingerpad as fp
 from fingerpad.results.states import STATES
-from fingerpad.runs import newtons
 from fingerpad.scene.parameters import Slices
 from fingerpad.slices.total import at_indentation, profile
 from fingerpad.slices.trace import Trace
@@ -23,19 +22,13 @@ EVERY = [PULL, TOUCH, BY_RIDGE, SKIN, DEPTH]
 SAME = {"pull": "f_electrostatic", "touch": "contact_area"}
 SLICES = {"slices": {"radius": 6e-3, "length": 8e-3}}
 FORCE = {"force": 2e-3, "mesh": {"touching_half_arc": 1.2e-3}}
-FULL = {"in N/m": {}, "under a force": FORCE, "by runs of their own": FORCE}
-
-
-def unsuited(scene, context):
-    raise newtons.Unsuited("of a test")
+FULL = {"in N/m": {}, "under a force": FORCE}
 
 
 @pytest.fixture(scope="module", params=FULL)
 def full(request, tmp_path_factory):
-    with no_pictures(), pytest.MonkeyPatch.context() as patch:
+    with no_pictures():
         folder = tmp_path_factory.mktemp("full")
-        if request.param.startswith("by runs"):
-            patch.setattr(newtons, "run", unsuited)
         return request.param, fp.run(small(**SLICES).replace(**FULL[request.param]), out=folder, outputs=EVERY)
 
 

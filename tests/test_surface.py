@@ -11,7 +11,7 @@ from mpi4py import MPI
 from numpy.testing import assert_allclose
 
 from geometry import tags
-from geometry.bodies import block, ridge
+from geometry.bodies import block
 from geometry.mesh import TaggedMesh, load
 from tests.measures import integral
 from variational.surface import Surface
@@ -80,22 +80,6 @@ def test_history_is_evaluated_where_it_was_written(body, request):
     assert_allclose(surface.evaluate(surface.compile([history]))[0], values, rtol=0, atol=1e-13)
 
 
-def test_facets_of_every_local_number(strip):
-    """What the tests above rely on."""
-    surface = make(strip)
-    assert set().union(*strip.mesh.comm.allgather(set(surface.pairs[:, 1].tolist()))) == {0, 1, 2}
-
-
-def test_history_stays_on_its_facet(square):
-    """Writing one facet's history leaves that of all others as it was. Tolerance: roundoff."""
-    surface = make(square)
-    history = fem.Function(surface.history_space)
-    x, _ = points(surface)
-    chosen = np.abs(x).max(axis=1) < 0.13e-3  # the two facets beside the middle
-    surface.set_history(history, np.where(chosen[:, None], np.ones(4), 0.0))
-    assert total(surface, history) == pytest.approx(0.25e-3, rel=1e-13, abs=0)
-
-
 @pytest.mark.parametrize("name", ["strip", "finger_mesh"])
 def test_every_facet_is_counted_once(name, request):
     """Facets of all ranks together have the length that the mesh's own measure gives. Tolerance: roundoff."""
@@ -104,29 +88,6 @@ def test_every_facet_is_counted_once(name, request):
     lengths = surface.per_ridge(np.ones((len(surface.pairs), 4)))
     for k, j in enumerate(surface.ridge_numbers):
         assert lengths[k] == pytest.approx(integral(body, tags.ridge(j), kind="ds"), rel=1e-12, abs=0)
-
-
-def test_integrals_do_not_depend_on_the_ranks():
-    """The sum over ranks is the sum on one. Tolerance: roundoff of another order of the terms."""
-    values = []
-    for comm in (MPI.COMM_WORLD, MPI.COMM_SELF):
-        surface = make(load(comm, ridge(20e-6)))
-        x, y = points(surface)
-        lengths = surface.sum_over_facets(surface.closed_length(x, y, y - 9e-6))
-        values.append([*surface.per_ridge(np.cos(2e4 * x) * y), *lengths])
-    assert_allclose(values[0], values[1], rtol=1e-12)
-
-
-def test_gather(square):
-    """Rank 0 gets every facet's points, here the abscissae of eight facets."""
-    surface = make(square)
-    gathered = surface.gather(points(surface))
-    if surface.mesh.comm.rank > 0:
-        assert gathered is None
-    else:
-        assert gathered.shape == (2, 8, 4)
-        left = np.sort(gathered[0].min(axis=1))
-        assert_allclose(np.diff(left), 0.125e-3, rtol=1e-10)  # the mesh builder's roundoff
 
 
 # -- contact patches -----------------------------------------------------------------------------------
@@ -144,29 +105,6 @@ def test_flat_skin_partly_below(square, slope, part):
     y = 1e-4 + slope * (x + 0.5e-3)
     expected = part * 1e-3 * np.hypot(1, slope)
     assert below(surface, x, y, 1e-4 + part * slope * 1e-3) == pytest.approx(expected, rel=1e-10, abs=1e-13)
-
-
-@pytest.mark.parametrize(("level", "length"), [(-1e-9, 0.0), (0.0, 0.0), (1e-9, 1e-3)])
-def test_level_skin(square, level, length):
-    """Level skin is all below or not; on the level itself it is open. Tolerance: roundoff."""
-    surface = make(square)
-    x, _ = points(surface)
-    assert below(surface, x, np.zeros_like(x), level) == pytest.approx(length, rel=1e-12, abs=0)
-
-
-def test_parabolas_in_a_facet():
-    """One that dips below inside a facet, and one that rises above and leaves the two sides.
-
-    Tolerance: roundoff of the roots, and of a height of 1e-12 m.
-    """
-    surface = make(load(MPI.COMM_WORLD, block(1e-3, 1e-3, 1e-3 / 3)))
-    x, _ = points(surface)
-    half, curvature = 0.05e-3, 50.0
-    t = 2 * curvature * half
-    arc = (t * np.hypot(1, t) + np.arcsinh(t)) / (2 * curvature)
-    dip, hump = curvature * ((x - 0.02e-3) ** 2 - half**2), -1e-3 * (x**2 - half**2)
-    assert below(surface, x, dip, 0.0) == pytest.approx(arc, rel=1e-12, abs=0)
-    assert below(surface, x, hump, 0.0) == pytest.approx(1e-3 - 2 * half, rel=2e-12, abs=0)
 
 
 def test_order_of_the_contact_length():

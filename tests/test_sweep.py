@@ -9,23 +9,25 @@ import subprocess
 import sys
 import threading
 import time
-from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
+from multiprocessing import get_context
 from pathlib import Path
 
 import pytest
 
+import fingerpad as fp
 from fingerpad.launcher import source
 from fingerpad.results.files import replace
 from fingerpad.results.result import Result
 from fingerpad.runs import batch as module
 from fingerpad.runs import processes
 from fingerpad.runs.batch import key, result, sweep
-from fingerpad.runs.processes import End, Pool
+from fingerpad.runs.processes import End
 from fingerpad.runs.processes import run as run_module
 from fingerpad.runs.sweep import _older
 from fingerpad.runs.sweep_results import Sweep
 from fingerpad.scene import Scene, from_data
-from tests.small_finger import small
+from tests.small_finger import NINE, small
 
 
 @pytest.fixture
@@ -138,17 +140,39 @@ time.sleep(100)
 """
 
 
+def until(done):
+    end = time.monotonic() + 60
+    while not done():
+        assert time.monotonic() < end
+        time.sleep(0.05)
+
+
+@pytest.mark.slow
+def test_executor_whose_worker_is_killed(tmp_path):
+    """Points of lost workers fail with that reason; the same sweep computes them by the workers of another executor."""
+    scene = from_data(NINE | {"f_ext": 1.0, "output": {"receptors": False, "errors": False, "each_load": False}})
+    axes, workers = {"voltage": [0.0, 40.0, 60.0]}, lambda: ProcessPoolExecutor(2, get_context("spawn"))
+
+    def kill():
+        until(lambda: any(tmp_path.glob("full/*/scene.json")))
+        os.kill(next(iter(pool._processes)), signal.SIGKILL)
+
+    with workers() as pool:
+        threading.Thread(target=kill).start()
+        first = fp.sweep(scene, tmp_path, quiet=True, executor=pool, **axes)
+    assert any(r.failure.startswith("LOST: BrokenProcessPool") for r in first.results)
+    with workers() as pool:
+        found = fp.sweep(scene, tmp_path, quiet=True, executor=pool, **axes)
+    assert [r.failure for r in found.results] == [""] * 3 and (found.array("f_t")[1:] > found.array("f_t")[:-1]).all()
+    with pytest.raises(fp.SceneError, match="executor is 3; it must be one of concurrent.futures"):
+        fp.sweep(scene, tmp_path, executor=3, **axes)
+
+
 def test_program_that_is_killed_leaves_no_job(tmp_path):
     """Its job gets SIGTERM from the system, and is gone at once; it sleeps for longer than the test waits."""
     (tmp_path / "job.py").write_text(JOB, encoding="utf-8")
     code = "from fingerpad.runs.processes import run; run('job', [], 100.0)"
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join([str(Path(__file__).parents[1]), str(tmp_path)])}
-
-    def until(done):
-        end = time.monotonic() + 60
-        while not done():
-            assert time.monotonic() < end
-            time.sleep(0.05)
 
     with subprocess.Popen([sys.executable, "-c", code], cwd=tmp_path, env=environment) as program:
         until(lambda: (tmp_path / "pid").exists() and (tmp_path / "pid").read_text())
@@ -175,7 +199,7 @@ def test_signal_stops_the_jobs_too(capsys, waits, number, error):
     """Else they would go on without the program, or keep it."""
     ends = []
 
-    def job(k):
+    def job():
         ends.append(run_module("timeit", ["-n1", "-r1", "__import__('time').sleep(100)"], 100.0))
         return ends[-1]
 
@@ -190,7 +214,7 @@ def test_signal_stops_the_jobs_too(capsys, waits, number, error):
     try:
         threading.Thread(target=send).start()
         with pytest.raises(error) as stopped:
-            Pool[int, End](job, jobs=2).run(range(3), lambda *end: None)
+            processes.finish(dict.fromkeys(range(3), job), lambda *end: None, jobs=2)
         assert signal.getsignal(number) == usual
     finally:
         signal.signal(number, before)
@@ -203,7 +227,7 @@ def test_job_that_waits_for_its_turn_is_not_begun(waits):
     """As at a folder that another sweep has locked."""
     ends, stopped = [], threading.Event()
 
-    def job(k):
+    def job():
         assert stopped.wait(60.0)
         ends.append(run_module("timeit", ["-n1", "-r1", "__import__('time').sleep(100)"], 100.0))
         return ends[-1]
@@ -219,7 +243,7 @@ def test_job_that_waits_for_its_turn_is_not_begun(waits):
     try:
         threading.Thread(target=send).start()
         with pytest.raises(SystemExit):
-            Pool[int, End](job, jobs=1).run(range(1), lambda *end: None)
+            processes.finish({0: job}, lambda *end: None, jobs=1)
     finally:
         signal.signal(signal.SIGTERM, before)
     assert [end.reason for end in ends] == ["STOPPED"]

@@ -9,13 +9,10 @@ import pytest
 import ufl
 from mpi4py import MPI
 
-from fingerpad.accuracy import edges
 from fingerpad.model import options
-from fingerpad.model.finger import mirrored
 from fingerpad.model.options import plan
-from fingerpad.results import fields
 from fingerpad.runs import full as run_module
-from fingerpad.scene import Scene, from_data
+from fingerpad.scene import from_data
 from geometry import tags
 from geometry.mesh import TaggedMesh
 from tests.measures import rows_of
@@ -25,12 +22,10 @@ from variational.contact.interface import Interface
 from variational.contact.penalty import Penalty
 from variational.energy import EnergyBook
 from variational.materials.ogden import Ogden
-from variational.resultants import RidgeLoads
 from variational.roughness.bam import BearingArea
 from variational.snapshot import Snapshot
 from variational.solvers.continuation import Target
 from variational.solvers.stability import StabilityCheck
-from variational.solvers.state_snapshot import take_snapshot
 
 pytestmark = pytest.mark.slow
 H_0, WIDTH, HEIGHT, FORCE = 0.514e-6, 0.5e-3, 0.5e-3, 3.0
@@ -52,15 +47,6 @@ def test_half_the_finger_where_the_bone_never_moves_sideways(loads, both):
     needed = plan(from_data({"history": history}))
     assert needed.both_halves is both
     assert any("mirror image" in omission.reason for omission in needed.omitted) is not both
-
-
-def test_sliding_needs_both_halves():
-    assert plan(Scene()).both_halves
-
-
-def test_plan_for_the_whole_finger_says_nothing_of_halves():
-    needed = plan(from_data({"history": [{"name": "press", "f_ext": 5.0}]}))
-    assert [o.reason for o in needed.with_both_halves().omitted] == ["no load has a voltage"]
 
 
 # -- a block and its half ----------------------------------------------------------------------------------
@@ -129,29 +115,6 @@ def test_half_block_bears_and_sinks_as_the_whole(blocks):
     assert half.path.coupling.d_eq == pytest.approx(whole.path.coupling.d_eq, rel=CLOSE)
 
 
-def test_contact_of_half_a_block_ends_where_the_whole_s_does(blocks):
-    """Not on the line of symmetry, at which a mesh would be finest for nothing; and nothing in its history does.
-
-    Tolerance: of the states, by the largest of each field.
-    """
-    half, whole = (take_snapshot(block.path.coupling, block.path.surface_state) for block in blocks)
-    both = half.skin[0], whole.skin[0]
-    ends = [edges.ends(state, lambda places: places[:, 0], 10e-6) for state in (half, whole)]
-    assert len(ends[0]) == 2
-    np.testing.assert_allclose(*ends, rtol=CLOSE)
-    orders = [np.argsort(skin.reference[:, 0]) for skin in both]
-    for name in ("anchor", "pressure"):
-        mine, other = (skin.history[name][order] for skin, order in zip(both, orders, strict=True))
-        assert (name == "anchor") == (abs(mine + mine[::-1]).max() < CLOSE * abs(mine).max()), "odd, or even"
-        np.testing.assert_allclose(mine, other, rtol=0, atol=CLOSE * abs(other).max(), err_msg=name)
-
-
-@pytest.mark.parametrize("name", ["stored", "external", "voltage", "air_gap", "dissipation"])
-def test_half_block_s_energies_are_the_whole_s(blocks, name):
-    half, whole = (getattr(block.energy, name) for block in blocks)
-    assert half == pytest.approx(whole, rel=1e-6, abs=1e-9 * abs(blocks[1].energy.stored))
-
-
 def test_half_block_never_slips_one_way(blocks):
     """Where all its points slip forth the image's slip back."""
     slips = []
@@ -169,12 +132,6 @@ def test_stability_of_the_half_is_that_of_the_whole(blocks):
 
 
 # -- mirrored numbers --------------------------------------------------------------------------------------
-def test_mirrored_ridges():
-    ramp = np.array([1.0, 2.0, 3.0])
-    loads = RidgeLoads(ramp, ramp, ramp, ramp, ramp, ramp).whole()
-    assert mirrored([0, 1, 2]) == [-2, -1, 0, 1, 2]
-    assert loads.f_contact.tolist() == loads.length.tolist() == [3, 2, 2, 2, 3]
-    assert loads.f_friction.tolist() == [-3, -2, 0, 2, 3]
 
 
 def test_mirrored_snapshot_is_one_body():
@@ -232,16 +189,3 @@ def test_half_the_finger_has_the_whole_s_numbers_and_errors(fingers):
     assert set(half["accuracy"]["quantities"]) >= {"charged_contact_length", "charged_sed_0", "charged_sed_1"}
     assert half["unknowns"] < 0.55 * whole["unknowns"]
     assert half["charged_f_t"] == 0.0
-
-
-def test_picture_shows_the_whole_finger(tmp_path, monkeypatch):
-    """Pressed by its half and as a whole, with elements of 30 um."""
-    half, whole = folders = tmp_path / "half", tmp_path / "whole"
-    data = {"mesh": MESH | {"contact": 30e-6}, "history": HISTORY[:1], "geometry": {"ridge_count": 9}}
-    for folder in folders:
-        run(from_data(data | {"output": {"errors": False}}), folder, MPI.COMM_WORLD)
-        monkeypatch.setattr(run_module, "plan", lambda scene: options.plan(scene).with_both_halves())
-    mine, other = (fields.read(folder) for folder in (half, whole))
-    widths = [np.ptp(each["meshes/0"]["x"][:, 0]) for each in (mine, other)]
-    assert widths[0] == pytest.approx(widths[1], rel=1e-9)
-    assert mine["loads/press"]["merkel"] == pytest.approx(other["loads/press"]["merkel"], abs=1e-9)

@@ -6,7 +6,7 @@ import pytest
 
 import fingerpad as fp
 from fingerpad.cli import main
-from fingerpad.reduced.slide import STIFFNESS, too_short, way
+from fingerpad.cli.check import SLIDE_STIFFNESS, too_short
 from fingerpad.results.states import load_result
 from fingerpad.results.terminal import in_words
 from fingerpad.scene import Scene
@@ -72,12 +72,7 @@ def test_rule_of_thumb(force, voltage):
     mesh, output = {"contact": 60e-6}, {"errors": False, "receptors": False}
     run = fp.run(Scene(f_ext=force, voltage=voltage, mesh=mesh, numerics={"element": "P1"}, output=output))
     first = next(state for state in run.steps if state.all_slip)
-    assert first.f_t / (STIFFNESS * first.ridges_in_contact**0.5) == pytest.approx(first.bone_x, rel=0.1)
-
-
-def test_way_is_by_the_cylinders():
-    slip = fp.run(Scene(f_ext=10.0, voltage=150.0), model="cylinders").full_slip
-    assert way(Scene(), 10.0, 150.0) == pytest.approx(slip.f_t / (STIFFNESS * slip.ridges_in_contact**0.5))
+    assert first.f_t / (SLIDE_STIFFNESS * first.ridges_in_contact**0.5) == pytest.approx(first.bone_x, rel=0.1)
 
 
 def test_check_reports_a_short_load(tmp_path, capsys):

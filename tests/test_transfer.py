@@ -1,17 +1,14 @@
 """Snapshots restored on other meshes: what returns exactly; full slip is the path's; on any number of ranks."""
 
-from contextlib import nullcontext
-from dataclasses import replace
-
 import numpy as np
 import pytest
 from mpi4py import MPI
 
-from geometry.bodies import block, ridge
+from geometry.bodies import ridge
 from geometry.mesh import load
 from tests.measures import straightened
 from tests.test_contact import MU_F, over
-from variational.solvers.continuation import Continuation, StepFailed, Target
+from variational.solvers.continuation import Continuation, Target
 from variational.solvers.outcome import NotConverged
 from variational.solvers.state_snapshot import take_snapshot
 from variational.solvers.transfer import interpolate, restore, unfolded
@@ -102,16 +99,6 @@ def test_state_returns_on_its_own_mesh(bodies, reached):
     np.testing.assert_allclose(back.u, normal.u, atol=1e-16)
     path.re_equilibrate("normal contact")
     np.testing.assert_allclose(path.solver.bone, normal.bone, atol=1e-11)
-
-
-def test_skin_of_a_ridge_higher_than_wide_is_in_order():
-    """Its points lie farthest apart along its height, in which the skin turns back. Tolerance: roundoff of 1 mm."""
-    path = prepare(load(MPI.COMM_WORLD, ridge(COARSE, height=900e-6, amplitude=500e-6)))
-    path.solver.problem.w.interpolate(lambda x: np.stack([100 * x[0], 200 * x[0]]) * (900e-6 - x[1]))
-    state = take_snapshot(path.coupling, path.observer.state())
-    assert abs(state.skin[0].chord) == pytest.approx([1, 0], abs=1e-3)
-    restore(state, path.coupling)
-    np.testing.assert_allclose(take_snapshot(path.coupling, path.observer.state()).u, state.u, atol=1e-16)
 
 
 @pytest.mark.parametrize(("old", "new"), [(COARSE, FINE), (FINE, COARSE)])
@@ -256,79 +243,6 @@ def test_a_state_not_found_at_once_is_found(bodies, reached, monkeypatch, failur
         np.testing.assert_array_equal(calls[3][2], calls[1][2])
     assert solver.equations.load_part == 0
     assert -solver.reaction[0] == pytest.approx(reached[FINE][2], rel=2e-6)
-
-
-@pytest.mark.parametrize(
-    ("largest", "tried", "end"),
-    [(0.3, [0.5, 0.75, 0.5, 0.25, 0.0], nullcontext()), (0.1, [0.5, 0.75, 0.875], pytest.raises(NotConverged))],
-)
-def test_bits_are_halved_down_to_an_eighth(bodies, reached, monkeypatch, largest, tried, end):
-    """What is held after each bit, where none above a size can be let go."""
-    path = prepare(bodies[FINE])
-    restore(reached[COARSE][1], path.coupling, SLIDE)
-    solver, held, done = path.solver, [], 1.0
-
-    def solve(pseudo_transient=False):
-        nonlocal done
-        held.append(solver.equations.load_part)
-        if done - solver.equations.load_part > largest:
-            raise NotConverged("DIVERGED_LOCAL_MIN", False)
-        done = solver.equations.load_part
-
-    monkeypatch.setattr(solver, "solve", solve)
-    with end:
-        path._relax(0.5)
-    assert held == tried
-    assert solver.equations.load_part == 0
-
-
-def test_bits_are_let_go_where_the_body_cannot_be_settled(bodies, reached, monkeypatch):
-    """And the state is then the one put in, not what settling left behind. Tolerance: two ends of the loop at 1e-6."""
-    path = prepare(bodies[FINE])
-    restore(reached[COARSE][1], path.coupling, SLIDE)
-    solve, solver, calls, started = path.coupling.solve, path.solver, [], []
-    put_in, hold, once = solver.x.array_r.copy(), solver.equations.hold, solver.solve
-
-    def fails_once(pseudo_transient):
-        calls.append(pseudo_transient)
-        if len(calls) == 1:
-            raise NotConverged("DIVERGED_LOCAL_MIN", False)
-        solve(pseudo_transient)
-
-    def noted(x, skin=False):
-        started.append(solver.x.array_r.copy())
-        hold(x, skin)
-
-    def not_with_skin_held(*how):
-        once(*how)
-        if len(started) == 1 and len(calls) == 1:
-            raise NotConverged("DIVERGED_FUNCTION_DOMAIN", True)
-
-    monkeypatch.setattr(path.coupling, "solve", fails_once)
-    monkeypatch.setattr(solver.equations, "hold", noted)
-    monkeypatch.setattr(solver, "solve", not_with_skin_held)
-    attempt = path.re_equilibrate("full slip")
-    assert len(attempt.cutbacks) == 2
-    np.testing.assert_array_equal(started, [put_in, put_in])
-    assert calls == [False, False]
-    assert -solver.reaction[0] == pytest.approx(reached[FINE][2], rel=2e-6)
-
-
-def test_failure_names_the_state(bodies, reached):
-    """A voltage at which nothing was solved: the ridge cannot be had from there, and the sentence says which."""
-    path = prepare(bodies[FINE])
-    restore(replace(reached[COARSE][1], voltage=float("nan")), path.coupling, SLIDE)
-    with pytest.raises(StepFailed, match="full slip.*found no equilibrium"):
-        path.re_equilibrate("full slip")
-
-
-def test_another_body_and_other_ridges_are_refused(bodies, reached):
-    other = prepare(load(MPI.COMM_WORLD, block(2e-3, 2e-3, 0.25e-3)))
-    with pytest.raises(ValueError, match="of another body"):
-        restore(reached[COARSE][1], other.coupling)
-    state = reached[COARSE][1]
-    with pytest.raises(ValueError, match="ridges 1 to 1 that can touch and the mesh 0 to 0"):
-        restore(replace(state, d_eq={1: 1e-6}), prepare(bodies[FINE]).coupling)
 
 
 def test_element_that_a_displacement_folds_is_unfolded(bodies):

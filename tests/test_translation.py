@@ -3,9 +3,7 @@
 import numpy as np
 import pytest
 from dolfinx import fem
-from mpi4py import MPI
 
-from fingerpad.model.options import FingerModel, plan
 from fingerpad.model.simulation import Simulation
 from fingerpad.scene import from_data
 from tests.runs import followed, path_of
@@ -61,15 +59,6 @@ def test_forces_do_not_depend_on_where_the_finger_is(at_the_start, away):
     np.testing.assert_allclose(forces(moved), forces(at_the_start), rtol=0, atol=3e-9)
 
 
-def test_light_press_at_200_v_after_5_mm():
-    """Half a newton a metre: friction is mu_0 times the contact force, to the solve's tolerance over some ridges."""
-    made = slid(5e-3, 0.5, 200.0, 1e-9)
-    assert held(made)
-    loads = made.finger.ridge_loads()
-    assert abs(loads.f_friction.sum()) == pytest.approx(0.25 * loads.f_contact.sum(), rel=1e-8)
-    assert made.finger.solver.reaction[1] == pytest.approx(0.5, rel=1e-8)
-
-
 def test_translated_body_bears_no_force():
     """Off the screen, 10 mm aside: every nodal force is zero to the last bit."""
     scene = from_data(NINE | {"f_ext": 1.0})
@@ -95,20 +84,3 @@ def test_residual_that_stalls_above_roundoff_is_no_floor(monkeypatch):
     monkeypatch.setattr(iteration, "_ROUNDINGS", 1e-3)
     with pytest.raises(StepFailed, match="DIVERGED_"):
         slid(0.0, 1.0, 100.0, 1e-15)
-
-
-def test_points_of_little_friction_come_to_stick():
-    """At mu_0 = 0.002 a point sticks within 0.1 nm. The press goes on in full steps, and nothing is taken for a jump.
-
-    Without softened springs the first touch is cut to steps of a thousandth.
-    """
-    finger = {"geometry": {"ridge_count": 5}, "mesh": NINE["mesh"] | {"contact": 30e-6, "touching_half_arc": 0.6e-3}}
-    scene = from_data(finger | {"friction": 0.002, "history": [{"name": "press", "f_ext": 0.2}]})
-    needed, rows = plan(scene).with_both_halves(), []
-    made = Simulation(FingerModel(scene, needed), MPI.COMM_WORLD, lambda step, done: rows.append(step.state.row()))
-    made.run()
-    assert not any(row["jump"] for row in rows)
-    assert sum(row["cutbacks"] for row in rows) <= 1
-    assert float(made.finger.problem.ease.value) == 1.0
-    limit = 0.002 * made.finger.ridge_loads().f_contact
-    assert (np.abs(made.finger.ridge_loads().f_friction) <= limit * (1 + 1e-9)).all()

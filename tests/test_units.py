@@ -1,6 +1,5 @@
 """Numbers with units as text: the same number as in SI, or refused in one sentence that names the unit wanted."""
 
-import json
 import math
 from dataclasses import replace
 
@@ -10,12 +9,11 @@ import pytest
 from pydantic import Field, ValidationError
 
 from fingerpad.results.result import Result
-from fingerpad.scene import Scene, SceneError, as_kept
+from fingerpad.scene import Scene, SceneError
 from fingerpad.scene import scene as scenes
 from fingerpad.slices.estimate import with_newtons
-from fingerpad.slices.traces import history
 from geometry import units
-from geometry.units import QUANTITIES, computed, to_si
+from geometry.units import QUANTITIES, to_si
 from tests.measures import contact_state
 from tests.small_finger import small
 from tests.test_light import HEAVY, without
@@ -81,13 +79,6 @@ def test_refused(key, text, message):
     with pytest.raises(SceneError) as error:
         scenes.load(None, {key: text})
     assert str(error.value) == f"{key} is '{text}'; {message}"
-
-
-def test_range_is_of_the_converted_number():
-    """A text names its unit, so the refusal does not ask whether another unit was meant."""
-    with pytest.raises(SceneError) as error:
-        scenes.load(None, {"mesh.contact": "5 m"})
-    assert str(error.value) == "mesh.contact is 5 m; it must be from 1e-08 to 0.01 m"
 
 
 @pytest.mark.parametrize("unit", QUANTITIES)
@@ -169,20 +160,3 @@ def test_run_at_a_bound_has_its_newtons(bound, reached):
     found = with_newtons(Result(scene, "full", press[-1], charged, None, steps=press))
     assert found.notes == ()
     assert found.finger.traces["charged"].end[1] == reached
-
-
-@pytest.mark.parametrize("slide", [1e-9, 0.1])
-def test_trace_of_a_slide_at_a_bound_can_be_run_and_read(slide):
-    """Its loads move the bone by a quarter of slide_length and by twice of it."""
-    trace = history(small(slide_length=slide), "full_slip", 1.0)
-    assert [load.bone_x for load in trace.loads()[2:]] == [slide / 4, slide, 2 * slide]
-    assert as_kept(json.loads(json.dumps(trace.parameters()))) == trace
-
-
-def test_what_is_typed_is_refused_after_all():
-    """Beside a computed number, and after an error in its place."""
-    with pytest.raises(ZeroDivisionError), computed():
-        assert small().replace(f_ext=1e-4).f_ext == 1e-4
-        raise ZeroDivisionError
-    with pytest.raises(SceneError, match=r"f_ext is 0.0001 N/m; it must be from 0.001 to 5000 N/m"):
-        small().replace(f_ext=1e-4)

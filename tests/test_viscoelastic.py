@@ -9,7 +9,6 @@ from mpi4py import MPI
 from geometry import tags
 from geometry.bodies import block
 from geometry.mesh import load
-from tests.test_element import confined_stress
 from variational import kinematics
 from variational.body import Body
 from variational.contact.interface import Interface
@@ -90,12 +89,6 @@ def test_relaxation_function():
     np.testing.assert_allclose(MOUSE.relaxation(times), expected, atol=5.1e-5)
 
 
-def test_complex_modulus():
-    """Golden values of the mouse's set, computed apart. Tolerance: their four digits."""
-    expected = [0.4031 + 0.1008j, 0.6259 + 0.2361j, 0.9856 + 0.0853j, 0.9999 + 0.0088j]
-    np.testing.assert_allclose(MOUSE.complex_modulus([0.1, 1, 10, 100]), expected, atol=7.2e-5)
-
-
 @pytest.mark.parametrize("element", ["P1", "P2", "P2 reduced", "P2-P1", "P3"])
 def test_stress_relaxes(body, element):
     """After a step of strain the stress falls as G(t), whatever the steps in time. Tolerance: roundoff."""
@@ -106,17 +99,6 @@ def test_stress_relaxes(body, element):
         t += lapse
         found = strained.to(sheared(-0.05, 0.08), lapse)
         np.testing.assert_allclose(found, at_once * MOUSE.relaxation(t), atol=1e-10 * np.abs(at_once).max())
-
-
-def test_long_time(body):
-    """After a long time the elastic law is left. Tolerance: exp(-30) of the longest time."""
-    strained = Strained(over(body).problem)
-    strained.to(sheared(0.1, 0.05), 0.1)
-    problem, F = strained.problem, kinematics.deformation_gradient(ufl.grad(strained.problem.w))
-    sigma = fem.Expression(kinematics.cauchy(ELASTIC, F, 0.0), np.array([[0.2, 0.5]]))
-    elastic = sigma.eval(problem.mesh, np.array([0], dtype=np.int32)).reshape(3, 3)
-    found = strained.to(sheared(0.1, 0.05), 40.0)
-    np.testing.assert_allclose(found, elastic, atol=1e-9 * np.abs(elastic).max())
 
 
 @pytest.mark.parametrize("held", [0.0, 0.05, 1.0])
@@ -149,19 +131,6 @@ def test_convolution(body):
     for k, (beta, tau) in enumerate(LAW.branches, 1):
         direct = beta * sum(np.exp(-(t - place) / tau) * jump for jump, place in zip(jumps, places, strict=True))
         np.testing.assert_allclose(strained.value(f"overstress {k}"), direct, atol=1e-10 * np.abs(direct).max())
-
-
-def test_second_order(body):
-    """Under a ramp the error of Q falls with the square of the step; the limit is the convolution's closed form."""
-    errors = []
-    for steps in (4, 8, 16, 32):
-        strained = Strained(over(body, Viscoelastic(NeoHooke(1e3), MOUSE)).problem)
-        for k in range(steps):
-            strained.to(np.eye(2) + np.array([[0, 1e-6], [0, 0]]) * (k + 1) / steps, 0.1 / steps)
-        S = strained.value("isochoric stress")[2]
-        closed = sum(beta * S * tau / 0.1 * -np.expm1(-0.1 / tau) for beta, tau in LAW.branches)
-        errors.append(abs(sum(strained.value(f"overstress {k}")[2] for k in (1, 2)) / closed - 1))
-    np.testing.assert_allclose(np.log2(np.array(errors[:-1]) / errors[1:]), 2.0, atol=0.05)
 
 
 @pytest.mark.parametrize("frequency", [0.1, 1.0, 10.0, 100.0])
@@ -218,40 +187,6 @@ def test_creep(body):
     assert abs(errors[1]) < 0.4 * abs(errors[0])
 
 
-@pytest.mark.parametrize("held", ["force", "depth"])
-def test_convolution_of_a_solved_body(body, held):
-    """At each step of a creep or a relaxation the pressure is the convolution of all strains before it.
-
-    The confined block has the closed form of its elastic stress; the sum over all past steps is independent of the
-    recursion. Tolerance: 1e-10 of the pressure, that of the solve.
-    """
-    made, path = (found := over(body)), found.continuation
-    bulk, places, jumps, before = ELASTIC.bulk, [], [], 0.0
-    last = 0.0
-
-    def check(target, part, attempt):
-        nonlocal before, last
-        p_n = float(path.surface_state.p_n.max(initial=0.0))
-        p_n = MPI.COMM_WORLD.allreduce(p_n, op=MPI.MAX)
-        stretch = 1 + (float(made.solver.bone[1]) + p_n / Penalty().eps_n) / HEIGHT
-        S = (confined_stress(ELASTIC, stretch) - bulk * (stretch - 1)) / stretch
-        places.append((last + path.time) / 2)
-        jumps.append(S - before)
-        Q = sum(
-            beta * np.exp(-(path.time - place) / tau) * jump
-            for beta, tau in LAW.branches
-            for place, jump in zip(places, jumps, strict=True)
-        )
-        before, last = S, path.time
-        assert -(bulk * (stretch - 1) + stretch * (S + Q)) == pytest.approx(p_n, rel=1e-10)
-
-    path.on_accept = check
-    load = {"force": {"f_ext": 20.0}, "depth": {"bone_height": -20e-6}}[held]
-    path.run(Target("press", **load, duration=0.02))
-    path.run(Target("hold", **load, duration=0.5))
-    assert path.steps > 5
-
-
 def compliance(K: float, G: float, t: float) -> float:
     """Return the creep compliance (1/Pa) of a spring K beside G (1 + sum of branches), by partial fractions."""
     (b1, t1), (b2, t2) = LAW.branches
@@ -261,26 +196,6 @@ def compliance(K: float, G: float, t: float) -> float:
     roots = np.roots(n)
     slope = np.polyder(n)
     return 1 / (K + G) + sum(np.polyval(d, r) / (r * np.polyval(slope, r)) * np.exp(r * t) for r in roots).real
-
-
-def test_accepted_state_stays(body):
-    """An accepted state is an equilibrium of the history that it left. Tolerance: that of the solve, 1e-10 N/m."""
-    made = over(body, mu_f=0.3)
-    made.continuation.run(Target("press", bone_height=-10e-6, duration=0.01))
-    made.continuation.run(Target("drag", bone_x=10e-6, duration=0.01))
-    made.solver.equations.residual(made.solver.x, made.solver.iteration.f)
-    assert made.solver.iteration.f.norm() < 1e-9
-
-
-def test_weak_branches(body):
-    """With branches of a modulus of 1e-13 the state is the elastic one. Tolerance: 1e-9, that of the solves."""
-    found = []
-    for law in (ELASTIC, Viscoelastic(ELASTIC, QLV([1e-13], [0.1]))):
-        made = over(body, law, mu_f=0.3)
-        made.continuation.run(Target("press", bone_height=-10e-6, duration=0.1))
-        made.continuation.run(Target("drag", bone_x=10e-6, duration=0.1))
-        found.append(made.solver.reaction)
-    np.testing.assert_allclose(found[0], found[1], rtol=1e-9)
 
 
 # -- refusals ------------------------------------------------------------------------------------------

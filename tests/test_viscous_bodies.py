@@ -85,19 +85,6 @@ def test_energy_of_random_histories(seed):
     assert least_dissipation(body.continuation) >= 0.0
 
 
-@pytest.mark.slow
-def test_energy_by_steps():
-    """What is left over falls with the step faster than the first order, and so do changes of the viscous work."""
-    left, work = [], []
-    for steps in (20, 40, 80):
-        found = balances(made(), random_history(1, steps, 0.2))
-        left.append(sum(abs(each.released) for each in found))
-        work.append(sum(each.viscous for each in found))
-    assert left[0] > 2 * left[1] > 4 * left[2]
-    first, second = np.abs(np.diff(work))
-    assert second < 0.5 * first
-
-
 # -- jumps ---------------------------------------------------------------------------------------------
 @pytest.mark.slow
 @pytest.mark.mpi
@@ -236,16 +223,3 @@ def test_scene_is_written_and_read():
 def test_refused(viscosity, message):
     with pytest.raises(SceneError, match=message):
         fp.Scene(materials={"dermis": {"viscosity": viscosity}})
-
-
-def test_refused_beside():
-    """A nail has no isochoric stress apart; newtons, accuracies and models without time have no past."""
-    viscous = {"dermis": {"viscosity": {"preset": "fingerpad"}}}
-    with pytest.raises(SceneError, match="materials.nail.viscosity acts on the isochoric stress, and SaintVenant"):
-        fp.Scene(materials={"nail": {"viscosity": {"preset": "fingerpad"}}})
-    with pytest.raises(SceneError, match="force is given and materials.dermis.viscosity too"):
-        fp.Scene(force=0.5, materials=viscous)
-    with pytest.raises(SceneError, match="accuracy is given and materials.dermis.viscosity too"):
-        fp.Scene(accuracy={"mu_app": 0.01}, materials=viscous)
-    with pytest.raises(SceneError, match="the model 'cylinders' has no time"):
-        fp.run(fp.Scene(materials=viscous), model="cylinders")

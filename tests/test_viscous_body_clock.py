@@ -1,6 +1,5 @@
 """A viscous body at the door: how long its loads take, and refusals without."""
 
-import numpy as np
 import pytest
 
 import fingerpad as fp
@@ -46,15 +45,3 @@ def test_loads_without_a_time_are_refused(material, friction):
         with pytest.raises(ValueError, match=r"^\w+ takes seconds, how long the load lasts, 0 for at once"):
             load()
     assert body.states == [] and body.state.load == "unloaded"
-
-
-def test_time_that_is_none_is_refused():
-    body = ridge(SKIN)
-    for seconds, words in ((-1.0, "seconds is -1 s; it must be 0 or more"), (np.nan, "seconds is nan s"), ("1 m", "")):
-        with pytest.raises(ValueError, match=words):
-            body.press(4.0, seconds=seconds)
-
-
-def test_elastic_body_has_no_clock():
-    body = ridge(RELAXED).press(height=DEPTH)
-    assert np.isnan(body.state.time)

@@ -215,7 +215,7 @@ def test_nothing_but_the_voltage_holds_the_skin(offset, allowed):
         (TABLE + "0,1\n2,2\n2,3\n", "times are 2 and then 2 s; each must be later"),
         (
             TABLE + "".join(f"{k},{(-1) ** k}\n" for k in range(2500)),
-            "with 2500 points; there must be from 2 to 2000 of them, and means of 2 have 0.0",
+            "which has 2500 points; there must be from 2 to 2000 of them, and means of 2 have 0.0",
         ),
         (TABLE + "\0,1\n", "which is no text"),
     ],

@@ -12,12 +12,12 @@ from mpi4py import MPI
 import fingerpad as fp
 from fingerpad.accuracy import solves
 from fingerpad.accuracy.over_time import differences
+from fingerpad.accuracy.richardson import TWO, of_two_meshes, of_two_paths, value
 from fingerpad.accuracy.solves import Solves
 from fingerpad.accuracy.states import Solve
 from fingerpad.accuracy.whole_path import WholePath
 from fingerpad.model.options import FingerModel, by_rule, plan
 from fingerpad.model.simulation import Simulation
-from fingerpad.richardson import TWO, of_two_meshes, of_two_paths, value
 from geometry.parameters import MeshSize
 from tests.measures import contact_state
 from tests.runs import followed, tables_alone

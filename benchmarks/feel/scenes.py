@@ -76,7 +76,7 @@ def charged(volts: float, friction: float) -> Scene:
 
 def run(name: str, scene: Scene, folder: Path) -> fp.Result:
     """Return the result of a scene, which is kept in a folder of its name; one of another scene there is refused."""
-    from fingerpad.runs.solve import finished  # finite elements
+    from fingerpad.runs.context import finished  # finite elements
 
     place = folder / name
     ready = finished(scene, place) is not None

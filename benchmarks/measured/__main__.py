@@ -92,7 +92,8 @@ def judged(docs: Path) -> list[Row]:
         verdict = BUILT if text["built"] and verdict == HIT else verdict
         because = f": {text['why']}" if verdict != HIT and text["why"] else ""
         ours = text["ours"].format(**numbers).replace("%", " %")
-        line = cells(f"{text['measured']} {sources[text['source']]}", ours, _number(text["fitted"]), f"**{verdict}**{because}")
+        measured, fitted = f"{text['measured']} {sources[text['source']]}", _number(text["fitted"])
+        line = cells(measured, ours, fitted, f"**{verdict}**{because}")
         judged.append(Row(text["key"], text["kind"], numbers, verdict, line))
     return judged
 

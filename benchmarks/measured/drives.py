@@ -14,7 +14,7 @@ from benchmarks.measured.rules import SIMILAR, by_factor, by_share
 from benchmarks.runs import FORCES
 from fingerpad.reduced import cylinders, detection
 from fingerpad.scene import Scene
-from fingerpad.scene.supply import REFERENCE
+from fingerpad.scene.drive import REFERENCE
 from variational.attraction.circuit import LEAKS, GapCircuit, fit_leak
 from variational.attraction.dielectric import VACUUM_PERMITTIVITY
 

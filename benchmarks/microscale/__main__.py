@@ -17,12 +17,11 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from benchmarks import harness
-from benchmarks.measured.rules import EXPONENT
 from benchmarks.microscale import contacts, readings
 from benchmarks.microscale.readings import GAPS, LOAD, PAPER
 from fingerpad.reduced import cylinders
 from fingerpad.results import style
-from fingerpad.scene import Scene, load
+from fingerpad.scene import Scene
 from fingerpad.scene.messages import SceneError
 from variational.attraction.electroadhesion import VACUUM_PERMITTIVITY
 from variational.roughness.bam import BearingArea
@@ -42,11 +41,7 @@ CIRCUIT = {
 }
 """Drives of a sine of 1 kHz over screen, leaking gap and skin, the electric table below."""
 ELECTRIC = {"tissue": "dry", "leak": "sliding dry"}
-SHEAR = 13e6  # Pa, in the computed real contact of dry wrist skin on glass (doi 10.3762/bjnano.5.147, abstract)
-RISES = {"sine": (75.0 / 2**0.5, 150.0 / 2**0.5), "constant": (75.0, 150.0)}
-"""Effective voltages (V) of amplitudes of 75 and 150 V, between which the real contact rises as U²."""
 _FINE = 100e-6 / 64
-HURST, HELD = (0.6, 0.675, 0.75, 0.825, 0.9), 20e3  # exponents of a table, and its pressure (Pa)
 Law = BearingArea | TabulatedClosure
 
 
@@ -86,18 +81,6 @@ def full_scenes() -> dict[str, Scene]:
     }
 
 
-_ADHERING = ("charged_ridges_in_contact", "full_slip_ridges_in_contact", "full_slip_stable", "jumps", "penetration")
-SMALL, LOADED = harness.DOCS.parent / "demos" / "scenes" / "small_finger.toml", 10.0  # N/m, of three ridges
-
-
-def adhering() -> Scene:
-    """Return the scene of a small finger whose ridges adhere: boundary elements, a field in contact, 200 V."""
-    law = {"law": "BoundaryElements"}
-    return load(SMALL).replace(
-        f_ext=LOADED, voltage=NUMBER, roughness=law, output={"errors": False, "receptors": False}
-    )
-
-
 # -- numbers -------------------------------------------------------------------------------------------------
 def over_pressure(law: Law) -> dict[str, Any]:
     """Return what a closure has at the pressures of the page, and from which voltage a ridge would stick."""
@@ -120,14 +103,13 @@ def friction(law: Law, f_ext: float, voltage: float | Mapping[str, Any]) -> dict
     slip = found.full_slip
     assert slip is not None
     p_c, d_eq = (found.record[f"full_slip_{name}"] for name in ("p_c", "d_eq"))
-    effective = slip.voltage if scene.supply is None else float(scene.supply.effective(np.array(d_eq)))
+    effective = slip.voltage if scene.drive is None else float(scene.drive.effective(np.array(d_eq)))
     inside = law.statistics(np.clip(p_c, *law.pressures))
     beyond, balanced = False, 0.0
     if isinstance(law, TabulatedClosure):
         beyond, balanced = p_c > law.pressures[1], float(law.balanced(p_c, effective))
     return {
         "mu_app": slip.mu_app, "p_c": p_c, "d_eq": d_eq, "area": float(inside.area),
-        "real": slip.contact_length * float(inside.area),
         "beyond": float(beyond), "balanced": balanced,
     }  # fmt: skip
 
@@ -137,32 +119,10 @@ def _given() -> dict[str, float | Mapping[str, Any]]:
     return {**{name: NUMBER * part for name, part in READINGS.items()}, **CIRCUIT}
 
 
-def exponent(law: Law, f_ext: float, voltages: tuple[float, float]) -> float | None:
-    """Return the exponent of the rise of the real contact from 0 V on, between two voltages (V); None without it."""
-    found = [friction(law, f_ext, voltage) for voltage in (0.0, *voltages)]
-    if any(each is None or each["beyond"] for each in found):
-        return None
-    none, low, high = (each["real"] for each in found if each)
-    return float(np.log((high - none) / (low - none)) / np.log(voltages[1] / voltages[0]))
-
-
-def over_hurst() -> list[dict[str, Any]]:
-    """Return air gap (m), area and friction read as peak to peak of closures over the Hurst exponent."""
-    h_0, rows, voltage = Scene().h_0, [], NUMBER * READINGS["peak to peak"]
-    for words, law in (("boundary elements", BoundaryElements), ("Persson's theory", Persson)):
-        for hurst in HURST:
-            each = law(h_0, hurst=hurst)
-            gaps, slip = each.statistics(HELD), friction(each, 75.0, voltage)
-            values = {"d_eq": float(gaps.d_eq), "spread": float(each.spread(HELD)), "area": float(gaps.area)}
-            rows.append({"closure": words, "hurst": hurst, "mu": _mu(slip)} | values)
-    return rows
-
-
 def compute(args: argparse.Namespace) -> None:
     """Compute and keep the numbers."""
     exact = {"direct": contacts.direct(), "grids": contacts.grids(), "adhesive": contacts.adhesive()}
-    full = harness.run(full_scenes() | {"small": adhering()}, args, _LIMIT)
-    small = full.pop("small")
+    full = harness.run(full_scenes(), args, _LIMIT)
     closures = laws()
     keys = ("full_slip_mu_app", "full_slip_contact_length", "full_slip_f_electrostatic", "failure")
     found = {
@@ -175,12 +135,6 @@ def compute(args: argparse.Namespace) -> None:
             words: {f"{f:g}": [_mu(friction(law, f, u)) for u in VOLTAGES] for f in FORCES}
             for words, law in closures.items()
         },
-        "rises": {
-            words: {of: {f"{f:g}": exponent(law, f, voltages) for f in FORCES} for of, voltages in RISES.items()}
-            for words, law in closures.items()
-        },
-        "hurst": over_hurst(),
-        "small": {key: small.get(key) for key in (*keys, *_ADHERING)},
         "full": {words: {key: summary.get(key) for key in keys} for words, summary in full.items()},
     }
     harness.keep("microscale", found | exact, harness.made(full.values()), args.docs)
@@ -193,12 +147,6 @@ def _mu(found: Mapping[str, float] | None) -> float | None:
 # -- page ----------------------------------------------------------------------------------------------------
 FULL_OF = {words: (words.rpartition(", ")[0], words.rpartition(", ")[2]) for words in FULL}
 """Closure and reading of each full run."""
-
-
-def _as_measured(rises: Mapping[str, float | None]) -> bool:
-    """Return whether the real contact rises as U² at the paper's force, as measured: to the margin of measured.md."""
-    found = rises[LOAD]
-    return found is not None and abs(found - 2) <= EXPONENT
 
 
 def _reaches(values: list[float | None]) -> float | None:
@@ -244,9 +192,6 @@ def draw(docs: Path) -> Path:
         "with_gaps": [each.words for each in read if each.words != "bearing area" and each.gaps],
         "exact": [found["d_eq"] * 1e6 for found in solved],
         "loads": [found["p_c"] * 1e-3 for found in solved],
-        "rising": [words for words, of in numbers["rises"].items() if _as_measured(of["sine"])],
-        "touching": [v for words, of in numbers["rises"].items() if _touches(words) for v in of["sine"].values() if v],
-        "apart": [v for words, of in numbers["rises"].items() if not _touches(words) for v in of["sine"].values() if v],
         "span": lambda reading: readings.span(read, reading),
         "shown": lambda reading: readings.shown(read, reading),
         "others": lambda reading: readings.span([each for each in read if each.words != "bearing area"], reading),
@@ -256,7 +201,7 @@ def draw(docs: Path) -> Path:
         "pull": _pull, "area_scatter": [scatter / mean for mean, scatter in numbers["direct"]["wide"][2]],
         "reaches": _reaches, "compared": rows, "inside": sum(inside), "known_pairs": inside,
         "least_voltage": min(u for u in needed if u), "most_voltage": max(u for u in needed if u),
-        "small": numbers["small"], "tips": harness.kept("measured", docs).numbers["others"]["gap"]["numbers"],
+        "tips": harness.kept("measured", docs).numbers["others"]["gap"]["numbers"],
         "flat": lambda found: Scene().friction * (1 + found["attraction"] / contacts.P_EXT),
         "broken": [part for found in numbers["closures"].values() for part in found["broken"]],
         "first_off": deformed[0], "area_error": areas[min(areas)] / areas[max(areas)],
@@ -264,11 +209,6 @@ def draw(docs: Path) -> Path:
         "kPa": 1e-3,
     }  # fmt: skip
     return harness.page(docs, "microscale", "python3 -m benchmarks.microscale", globals() | names, "measured")
-
-
-def _touches(words: str) -> bool:
-    """Return whether a closure solves the contact and has the field act where surfaces touch."""
-    return words != "bearing area" and "no field" not in words
 
 
 def _gap(value: float, spread: float) -> str:

@@ -18,8 +18,7 @@ from mpi4py import MPI
 from numpy.typing import NDArray
 
 from benchmarks.peers import ours, plain
-from benchmarks.peers.__main__ import values
-from benchmarks.peers.at_equal_error import CURVED, OURS, STRAIGHT
+from benchmarks.peers.compared import CURVED, OURS, STRAIGHT, values
 from benchmarks.peers.exchange import Case, timed
 from fingerpad.accuracy import edges
 from geometry.bodies import ridge

@@ -6,8 +6,6 @@ programs are used.
 
 import argparse
 import json
-import os
-import resource
 from collections.abc import Callable, Iterator
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
@@ -17,25 +15,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[Any]
-PEERS = ("ngsolve", "felupe")
-# What explains where a peer is off: case, deviation, and the program that can be made to do the same.
-# As FElupe: skin integrated by Simpson's rule, whose points are nodes; new points drag since they touched.
-# As installed: the program's own element, known to be wrong.
-VARIANTS = (
-    ("frictionless", "as FElupe", "ngsolve"),
-    ("friction", "as FElupe", "ngsolve"),
-    ("frictionless", "as installed", "felupe"),
-)
-TIMED = ("ours", "plain", *PEERS)
 DELTA = 1e-6  # of the stretches: keeps the root's derivatives finite where two coincide
 TOLERANCE, MOST = 1e-12, 60  # N/mm, norm of the nodal imbalance at which a solve ends; iterations a step
 _PRESS, _STEPS = -0.06, 20  # mm
 _SLIDES = ((0.005, 10), (0.05, 15))  # mm, steps
-
-
-def plain(values: Array) -> Any:
-    """Return an array as lists of Python's own numbers, which JSON takes."""
-    return values.tolist()
 
 
 def nearest(places: Array, points: Array) -> list[int]:
@@ -59,7 +42,7 @@ class Case:
     .. math:: W = \frac{2 G_0}{a^2} (\bar\lambda_1^a + \bar\lambda_2^a + \bar\lambda_3^a - 3) + \frac K2 (J - 1)^2
 
     The contact pressure is eps_n times the penetration and friction that of springs eps_t, dragged where they would
-    bear more than mu_f times the pressure; all per reference area. A variant is a deviation of VARIANTS.
+    bear more than mu_f times the pressure; all per reference area.
     """
 
     mu_f: float
@@ -69,7 +52,6 @@ class Case:
     poisson: float = 0.48
     eps_n: float = 1000.0
     eps_t: float = 100.0
-    variant: str = ""
 
     @property
     def bulk_modulus(self) -> float:
@@ -103,15 +85,6 @@ def timed() -> Case:
     """Return the history that is timed: pressed by 25 µm in five steps, moved to full slip in five; all reported."""
     press = [Load(0.0, -0.005 * k, f"pressed {5 * k} µm") for k in range(1, 6)]
     return Case(0.25, (*press, *(Load(0.0035 * k, -0.025, f"moved {3.5 * k:g} µm") for k in range(1, 6))))
-
-
-TASKS = [(name, "", peer) for name in cases() for peer in PEERS] + list(VARIANTS)
-"""Case, deviation and program of every answer but fingerpad's."""
-
-
-def answer_path(folder: Path, size: float, name: str, variant: str, program: str) -> Path:
-    """Return where a program's answer is."""
-    return folder / f"{program}_{name}_{variant}_{size:g}.json".replace(" ", "_").replace("__", "_")
 
 
 @dataclass(frozen=True)
@@ -152,7 +125,7 @@ class Ridge:
     @property
     def skin_pairs(self) -> set[frozenset[int]]:
         """Vertices of the edges that can touch."""
-        return {frozenset(pair) for pair in plain(self.skin[:, :2])}
+        return {frozenset(pair) for pair in self.skin[:, :2].tolist()}
 
     def save(self, path: Path) -> None:
         """Write the mesh as .npz."""
@@ -179,63 +152,33 @@ def left_to_right(edges: Array, x: Array) -> Array:
 
 @dataclass
 class State:
-    """A reported equilibrium.
-
-    Attributes:
-        name: of the load.
-        f_n: normal force on the ridge's top (N/mm).
-        f_t: friction on the skin (N/mm), positive towards x > 0.
-        displacement: of the skin's nodes (mm), in the order of ``Ridge.skin``, shape (3 edges, 2).
-        x: current abscissae (mm) of the program's own contact points, ascending.
-        p_n, t_t: pressure and friction there (MPa of reference area).
-    """
+    """A reported equilibrium."""
 
     name: str
+    """Of the load."""
     f_n: float
+    """Normal force on the ridge's top (N/mm)."""
     f_t: float
+    """Friction on the skin (N/mm), positive towards x > 0."""
     displacement: list[list[float]]
-    x: list[float]
-    p_n: list[float]
-    t_t: list[float]
-
-
-def processor_seconds() -> float:
-    """Return the processor time of this program and of those that it started and that ended."""
-    used = [resource.getrusage(who) for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN)]
-    return sum(one.ru_utime + one.ru_stime for one in used)
+    """Of the skin's nodes (mm), in the order of ``Ridge.skin``, shape (3 edges, 2)."""
+    p_n: float
+    """Highest pressure at the program's own contact points (MPa of reference area)."""
 
 
 @dataclass
 class Answer:
-    """What a program gives for a case, with its factorisations if these are fewer than its iterations.
-
-    ``setup`` are processor seconds to :meth:`ready`, ``seconds`` from there to :meth:`done`; ``load`` is the machine's.
-    """
+    """What a program gives for a case."""
 
     program: str
-    version: str
-    licence: str
     states: list[State] = field(default_factory=list)
     iterations: int = 0
-    factorisations: int = 0
-    setup: float = 0.0
-    seconds: float = 0.0
-    load: float = 0.0
 
-    def ready(self) -> None:
-        """End the set-up."""
-        self.setup = processor_seconds()
-
-    def done(self) -> None:
-        """End the timed part."""
-        self.seconds, self.load = processor_seconds() - self.setup, os.getloadavg()[0]
-
-    def report(self, load: Load, f_n: float, f_t: float, displacement: Array, *points: Array) -> None:
-        """Add a state if the load has a name; ``points`` are x, p_n and t_t of :class:`State`, in any order of x."""
+    def report(self, load: Load, f_n: float, f_t: float, displacement: Array, p_n: Array) -> None:
+        """Add a state if the load has a name."""
         if load.name:
-            order = np.argsort(points[0])
-            columns = [plain(values[order]) for values in points]
-            self.states.append(State(load.name, float(f_n), float(f_t), plain(displacement), *columns))
+            shown = np.asarray(displacement).tolist()
+            self.states.append(State(load.name, float(f_n), float(f_t), shown, float(np.max(p_n))))
 
     @classmethod
     def read(cls, path: Path) -> "Answer":
@@ -258,7 +201,5 @@ def main(solve: Callable[[Case, Ridge], Answer]) -> None:
         parser.add_argument(name, type=Path)
     args = parser.parse_args()
     answer = solve(Case.read(args.case), Ridge.read(args.mesh))
-    if not answer.seconds:
-        answer.done()
     write(answer, args.answer)
-    print(f"{answer.program} {answer.version}: {answer.iterations} iterations, {answer.seconds:.2f} s", flush=True)
+    print(f"{answer.program}: {answer.iterations} iterations", flush=True)

@@ -1,15 +1,12 @@
 """The ridge by this package, and its mesh for the others."""
 
-import importlib.metadata
-import sys
 from collections.abc import Iterator
-from pathlib import Path
 
 import dolfinx
 import numpy as np
 from mpi4py import MPI
 
-from benchmarks.peers.exchange import Answer, Case, Load, Ridge, left_to_right, main, nearest, plain
+from benchmarks.peers.exchange import Answer, Case, Load, Ridge, left_to_right, nearest
 from geometry import tags
 from geometry.bodies import ridge
 from geometry.mesh import TaggedMesh, load
@@ -48,12 +45,12 @@ def for_peers(body: TaggedMesh) -> Ridge:
     pairs = np.sort(cells[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
     number = np.unique(pairs, axis=0, return_inverse=True)[1]
     triangles = np.hstack([cells, len(corners) + number.reshape(-1, 3)])
-    middle_of = {frozenset(edge): len(corners) + k for k, edge in enumerate(plain(edges))}
+    middle_of = {frozenset(edge): len(corners) + k for k, edge in enumerate(edges.tolist())}
 
     def edges_of(tag: int) -> np.ndarray:
         facets = body.facet_tags.find(tag)
         ends = np.searchsorted(used, dolfinx.mesh.entities_to_geometry(mesh, 1, facets)[:, :2])
-        return np.array([[*pair, middle_of[frozenset(pair)]] for pair in plain(ends)])
+        return np.array([[*pair, middle_of[frozenset(pair)]] for pair in ends.tolist()])
 
     points = np.vstack([corners, x[nodes[:, 3:].ravel()[first]]])
     skin = edges_of(tags.ridge(0))
@@ -97,20 +94,10 @@ def solve(case: Case, body: TaggedMesh, skin: np.ndarray) -> Answer:
     problem, solver, observer = made.problem, made.solver, made.observer
     places = problem.V.tabulate_dof_coordinates()[:, :2] / _MM
     nodes = nearest(places, skin)
-    answer = Answer("fingerpad", f"{importlib.metadata.version('fenics-dolfinx')} (dolfinx)", "this project")
-    answer.ready()
+    answer = Answer("fingerpad")
     for now, s in follow(case, made):
         displacement = problem.displacement()[nodes] / _MM + (now.x, 0.0)
         f_n, f_t = solver.reaction[1] * _MM, observer.ridge_loads(s).f_friction[0] * _MM
-        answer.report(now, f_n, f_t, displacement, s.x.ravel() / _MM + now.x, s.p_n.ravel() / 1e6, s.t_t.ravel() / 1e6)
-    answer.iterations, answer.factorisations = solver.counts.newton, solver.counts.factorisations
+        answer.report(now, f_n, f_t, displacement, s.p_n / 1e6)
+    answer.iterations = solver.counts.newton
     return answer
-
-
-def solve_file(case: Case, mesh: Ridge) -> Answer:
-    """Lead the ridge along the loads as the other programs are told to, on a mesh of the size that its file names."""
-    return solve(case, make(float(Path(sys.argv[2]).stem) * _MM), mesh.points[mesh.skin].reshape(-1, 2))
-
-
-if __name__ == "__main__":
-    main(solve_file)

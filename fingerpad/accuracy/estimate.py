@@ -5,10 +5,10 @@ from contextlib import suppress
 from dataclasses import fields, replace
 from typing import TYPE_CHECKING, Any
 
+from fingerpad.accuracy.richardson import RECEPTOR, TWO, of_sum, of_two_meshes, plus_minus, rigid
 from fingerpad.accuracy.states import Solve, with_values
 from fingerpad.results.quantities import QUANTITIES, Output
 from fingerpad.results.states import WORDS
-from fingerpad.richardson import RECEPTOR, TWO, of_sum, of_two_meshes, plus_minus, rigid
 from fingerpad.scene.messages import SceneError
 from variational.element import ELEMENTS
 from variational.state import ContactState, Errors
@@ -20,7 +20,7 @@ _ROUNDOFF = 1e-9  # relative: friction without voltage does not depend on the me
 
 
 class Estimate:
-    """Errors of named states from those on two meshes (:func:`fingerpad.richardson.of_two_meshes`).
+    """Errors of named states from those on two meshes (:func:`fingerpad.accuracy.richardson.of_two_meshes`).
 
     Attributes:
         model: with the mesh of the path.

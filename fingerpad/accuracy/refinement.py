@@ -4,13 +4,13 @@ r"""Named states on a final mesh with their discretisation errors, refined until
 elements twice as large as those that the scene gives, and its named states, normal contact and full slip, are restored
 on the final mesh and solved for again (:mod:`variational.solvers.transfer`). That mesh has the scene's sizes, and
 facets of a sixteenth where the contact of its states ends (:mod:`fingerpad.accuracy.edges`). The difference of the two
-meshes makes the estimated error (:func:`fingerpad.richardson.of_two_meshes`), without a further solve. Where other
-ridges touch on the final mesh, or a state is not found there, the path is followed on the scene's sizes, and states on
-elements twice as large are solved for instead.
+meshes makes the estimated error (:func:`fingerpad.accuracy.richardson.of_two_meshes`), without a further solve. Where
+other ridges touch on the final mesh, or a state is not found there, the path is followed on the scene's sizes, and
+states on elements twice as large are solved for instead.
 
 **An accuracy** that a scene asks for is met on one mesh after the other. The path is followed once, on the mesh that
 the scene gives (a coarse one where it gives no sizes). Changing one mesh parameter at a time gives each its share of
-the error (:mod:`fingerpad.richardson`):
+the error (:mod:`fingerpad.accuracy.richardson`):
 
 * ``contact``: size of the facets that can touch, and of those where contact ends,
 * ``bulk``: growth of the elements, their size on the junctions, and the coarsest,
@@ -22,9 +22,9 @@ Each parameter is halved in turn and the states go on from there; then those wit
 estimate is within what is allowed, or the run reports that it is not. A state in which another number of ridges touches
 is noted; it appears as a large share.
 
-The result is the *estimated discretisation error*: the estimate with its factors of safety, which in whole runs
-covers the known errors of nine of ten numbers (``docs/errors.md``; with an accuracy ``docs/errors.md``). It is of
-the mesh, over the screen as it is. The effect of a penalty is reported beside it (:mod:`fingerpad.richardson`).
+The result is the *estimated discretisation error*: the estimate with its factors of safety, which in whole runs covers
+the known errors of nine of ten numbers (``docs/errors.md``; with an accuracy ``docs/errors.md``). It is of the
+mesh, over the screen as it is. The effect of a penalty is reported beside it (:mod:`fingerpad.accuracy.richardson`).
 
 Not estimated: the effect on normal contact of a friction history that is the first mesh's.
 """
@@ -35,12 +35,12 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from fingerpad.accuracy.estimate import Estimate, of_key
+from fingerpad.accuracy.richardson import MeshParameter, errors, rigid, to_refine
 from fingerpad.accuracy.states import Solve, quantities
-from fingerpad.model.adhesion import lost
+from fingerpad.model.cautions import lost
 from fingerpad.model.simulation import RestartRequired
 from fingerpad.results.interrupt import Interrupted
 from fingerpad.results.states import WORDS
-from fingerpad.richardson import MeshParameter, errors, rigid, to_refine
 from fingerpad.scene.messages import counted
 from geometry.profiles import GeometryError
 from variational.solvers.continuation import StepFailed

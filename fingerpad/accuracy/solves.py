@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from fingerpad.accuracy import edges
 from fingerpad.accuracy.states import Solve, State, StateRecorder, together
-from fingerpad.model.adhesion import adhering, lost
+from fingerpad.model.cautions import adhering, lost
 from fingerpad.model.checks import FingerExceeded
 from fingerpad.model.options import FingerModel
 from fingerpad.model.record import Viewer

@@ -3,16 +3,17 @@ r"""Discretisation errors of a path whose states have a past: from the same path
 A state of viscous layers cannot be solved again on another mesh, since what the layers keep of their past is of their
 own mesh. So the whole path is followed on the mesh that the scene gives, whose states are the results, and once more on
 elements twice as large. The difference of the named states makes their estimated errors
-(:func:`fingerpad.richardson.of_two_meshes`). Facets where contact ends are those of the two meshes, and not shorter as
-on the final mesh of other runs. So friction has the order of lengths in contact, p = 1, as where an accuracy is met.
+(:func:`fingerpad.accuracy.richardson.of_two_meshes`). Facets where contact ends are those of the two meshes, and not
+shorter as on the final mesh of other runs. So friction has the order of lengths in contact, p = 1, as where an accuracy
+is met.
 
 In loads over time the two paths are compared over time as well (:mod:`fingerpad.accuracy.over_time`). The error of the
-finer one is that of the largest difference (:func:`fingerpad.richardson.of_two_paths`).
+finer one is that of the largest difference (:func:`fingerpad.accuracy.richardson.of_two_paths`).
 
 Not estimated: what the penalty changes, and the error of the time steps, which the two paths have in common. A path
 that is lost on the coarser mesh leaves the results without errors, with a note that says why. Where fewer than
-:data:`fingerpad.richardson.FEW_FACETS` facets of a ridge touch, its length changes by accident with the mesh, and the
-estimate may be too small: a note says so.
+:data:`fingerpad.accuracy.richardson.FEW_FACETS` facets of a ridge touch, its length changes by accident with the mesh,
+and the estimate may be too small: a note says so.
 """
 
 from collections.abc import Callable, Sequence
@@ -21,13 +22,13 @@ from typing import TYPE_CHECKING, Any
 
 from fingerpad.accuracy.estimate import Estimate
 from fingerpad.accuracy.over_time import differences
+from fingerpad.accuracy.richardson import FEW_FACETS, of_two_paths
 from fingerpad.accuracy.states import Solve
 from fingerpad.model.simulation import Simulation
 from fingerpad.model.stimuli import SiteStimuli
 from fingerpad.results.interrupt import Interrupted
 from fingerpad.results.states import WORDS
 from fingerpad.results.terminal import about
-from fingerpad.richardson import FEW_FACETS, of_two_paths
 from fingerpad.scene.messages import counted
 from geometry.profiles import GeometryError
 from variational.solvers.continuation import StepFailed

@@ -1,7 +1,7 @@
 /* The closed form of the calculator page, a copy of the Python one with its names and equation numbers:
  *   BearingArea             variational/roughness/bam.py
  *   Cylinder, RidgeState    variational/attraction/cylinder.py
- *   fitted, given, solve    fingerpad/reduced/cylinders.py
+ *   fitted, solve           fingerpad/reduced/cylinders.py
  *   refuse                  fingerpad/scene/materials.py
  * The numbers of the default finger come from Python (fingerpad/calculator/page.py). tests/test_calculator.py compares
  * the answers of both. Equations are those of Forsbach et al. 2023. SI units, forces per metre of finger. */
@@ -91,18 +91,6 @@ const closedForm = (function () {
         return beyond;
       }, f, voltage);
     }
-    over_length(length, f, voltage) {
-      this.half = length / 2;
-      this.slope = 0;
-      return this.branch((sigma, d_eq, tolerance) => {
-        const beyond = this.edge(() => this.half, sigma, d_eq, tolerance);
-        if (beyond >= LARGEST)
-          throw new NoEquilibriumError(
-            `a contact of ${show(length, 3)} m is too short for an attraction that reaches ` +
-              `${show(this.h_0 + 2 * d_eq, 3)} m; try a longer one`);
-        return beyond;
-      }, f, voltage);
-    }
     /** Return m - 1 where the gap at c, which grows with m, is the reach of the attraction; an end beyond all. */
     edge(half_width, sigma, d_eq, tolerance) {
       const reach = this.h_0 + 2 * d_eq, { radius } = this, pull = (4 * sigma) / (Math.PI * this.modulus);
@@ -188,13 +176,7 @@ const closedForm = (function () {
       length[state] = interpolate(f_ext, data.lengths[state]);
       ridges[state] = Math.max(1, Math.round(interpolate(f_ext, data.ridges[state])));
     }
-    return { length, ridges, charged: false };
-  }
-
-  /** Return a contact length (m) at the voltage, the same in both states. */
-  function given(length, ridges) {
-    const both = (value) => Object.fromEntries(STATES.map((state) => [state, value]));
-    return { length: both(length), ridges: both(ridges), charged: true };
+    return { length, ridges };
   }
 
   /** Return what two keys contradict each other in, empty where they do not. */
@@ -215,8 +197,8 @@ const closedForm = (function () {
   }
 
   /** Return full slip, which needs normal contact before; p has the values of a scene by dotted key, in SI units. */
-  function solve(p, footprint) {
-    const known = footprint || fitted(p.f_ext);
+  function solve(p) {
+    const known = fitted(p.f_ext);
     const closure = closure_of(p);
     let ridge = null;
     for (const state of STATES) {
@@ -236,13 +218,11 @@ const closedForm = (function () {
   }
 
   /** Return a ridge in a state. */
-  function ridge_of(p, footprint, state, closure) {
-    const n = footprint.ridges[state], length = footprint.length[state], f = p.f_ext / n, radius = data.tip_radius, { h_0 } = closure;
-    if (footprint.charged)
-      return new Cylinder(radius, data.skin_modulus, h_0, closure).over_length(length / n, f, p.voltage);
+  function ridge_of(p, known, state, closure) {
+    const n = known.ridges[state], length = known.length[state], f = p.f_ext / n, radius = data.tip_radius, { h_0 } = closure;
     const stiffening = state === "full_slip" ? (p_c) => data.shear * Math.max(p.friction - data.friction, 0) * p_c : undefined;
     return new Cylinder(radius, hertz_modulus(radius, f, length / n), h_0, closure, stiffening).under_load(f, p.voltage);
   }
 
-  return { NoEquilibriumError, solve, given, refuse, interpolate, fitted, closure_of, ridge_of };
+  return { NoEquilibriumError, solve, refuse, interpolate, fitted, closure_of, ridge_of };
 })();

@@ -18,7 +18,7 @@ const form = (function () {
   };
   function at_place(field, part) {
     const [low, high] = field.slider, value = by_ratio(field) ? low * (high / low) ** part : low + (high - low) * part;
-    return field.whole ? Math.round(value) : Number(value.toPrecision(3));
+    return Number(value.toPrecision(3));
   }
 
   /** Make the fields for texts, which they change in place; changed(soon) is called after that. */
@@ -35,7 +35,6 @@ const form = (function () {
     const set = (key, text, soon) => { texts[key] = text; changed(soon); };
     group("Start from").append(...presets(texts, changed));
     for (const field of fields) {
-      if (field.key === "length") group(field.group).append(...choice("finger", { default: "the default finger, its contact from full runs", given: "a contact as measured, at this force and voltage" }, set));
       if (field.key === "force") group(field.group).append(...choice("load", { whole: "force on the whole finger, in newtons", metre: "force per metre of finger, at its centre" }, set));
       group(field.group).append(field_box(field, set));
     }
@@ -95,8 +94,7 @@ const form = (function () {
       tell(field.key, unread ? "" : said[field.key]);
       if (said[field.key] && field.group === FOLDED) find("more").open = true;
     }
-    for (const name of ["finger", "load"]) find(`${name}_${texts[name]}`).checked = true;
-    find("load_whole").disabled = texts.finger === "given"; // one contact is no finger
+    find(`load_${texts.load}`).checked = true;
     for (const key of ["target", "quantity", "x", "y"]) put(find(key), texts[key]);
     tell("target", said.target);
     find("map_refused").textContent = said.x || "";

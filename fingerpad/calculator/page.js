@@ -27,17 +27,17 @@
 
   // -- answers -------------------------------------------------------------------------------------------
   /** Return the answer at values, why there is none as a text; brief: of full slip alone, for curves and maps. */
-  function answer(values, given, brief) {
+  function answer(values, brief) {
     try {
       if (values.newtons) return closedForm.whole(values, brief);
-      return closedForm.solve(values, given ? closedForm.given(values.length, values.ridges) : undefined);
+      return closedForm.solve(values);
     } catch (error) {
       if (error instanceof closedForm.NoEquilibriumError) return error.message;
       throw error;
     }
   }
 
-  const error_of = (values, given, found) => (given ? null : modelErrors.of(values, found));
+  const error_of = (values, found) => modelErrors.of(values, found);
   const goal_of = (goal, values, quantity) => goal && (goal.times
     ? goal.value * values.friction * (quantity === "f_t" ? (values.newtons ? values.force : values.f_ext) : 1) : goal.value);
   const unit_of = (quantity, values) => (quantity === "mu_app" ? "" : values.newtons ? " N" : " N/m");
@@ -51,8 +51,8 @@
     return td;
   }
 
-  function show_point(found, { values, given }, other) {
-    const rows = values.newtons ? ROWS_OF_FINGERS : ROWS, error = error_of(values, given, found), body = find("point").tBodies[0];
+  function show_point(found, { values }, other) {
+    const rows = values.newtons ? ROWS_OF_FINGERS : ROWS, error = error_of(values, found), body = find("point").tBodies[0];
     const head = values.newtons ? "Whole finger, as a sum of slices" : "Middle section of the finger";
     find("point").caption.textContent = head + (error ? "" : ": error not known");
     const beside = other && typeof other.found !== "string" && other.values.newtons === values.newtons;
@@ -60,7 +60,7 @@
       const cells = [create("th", { scope: "row" }, row[1]), cell(found, row, error)];
       if (!beside) return cells;
       const ratio = found[row[0]] / other.found[row[0]];
-      return [...cells, cell(other.found, row, error_of(other.values, other.given, other.found), true),
+      return [...cells, cell(other.found, row, error_of(other.values, other.found), true),
         create("td", {}, Number.isFinite(ratio) ? `${ratio >= 1 ? "+" : "−"}${Math.abs(100 * (ratio - 1)).toFixed(1)} %` : "–")];
     };
     body.replaceChildren(...(beside ? [create("tr", {}, ...["", "this screen", "kept screen", "this over kept"].map((text) => create("th", { scope: "col" }, text)))] : []),
@@ -73,16 +73,15 @@
     return `${name} ${ends[0] === ends[1] ? ends[0] : ends.join(" to ")}${unit}`;
   };
 
-  function remarks(found, { values, given }) {
+  function remarks(found, { values }) {
     const parts = [], percent = (v) => `${(100 * v).toFixed(1)} %`;
-    const error = error_of(values, given, found);
+    const error = error_of(values, found);
     if (values.newtons) {
-      const section = { ...values, newtons: false, f_ext: found.section.f_ext }, known = error_of(section, given, found.section);
+      const section = { ...values, newtons: false, f_ext: found.section.f_ext }, known = error_of(section, found.section);
       const shown = numerics.plus_minus(found.section.mu_app, known ? found.section.mu_app * known.mu_app : 0, 3);
       parts.push(`Middle section, second: ${show(found.centre, 3)} N/m, where µ_app is ${shown}.`);
     }
-    if (given) parts.push("The contact is as given along both curves; the error of this answer is not known.");
-    else if (error) parts.push(`Error, by closed form${values.newtons ? " and points of the traces" : ""}: µ_app and friction within ${percent(error.mu_app)}, attraction within ${percent(error.f_electrostatic)}.`);
+    if (error) parts.push(`Error, by closed form${values.newtons ? " and points of the traces" : ""}: µ_app and friction within ${percent(error.mu_app)}, attraction within ${percent(error.f_electrostatic)}.`);
     else {
       const beyond = modelErrors.outside(values, found).filter(({ low }) => !Number.isNaN(low)).map(span).join(", ");
       parts.push(`The error is not known here${beyond && `; it is known for ${beyond}`}.`);
@@ -110,14 +109,14 @@
   }
 
   function draw_curves(asked, found, other) {
-    const { values, given, goal } = asked, quantity = texts.quantity, load = values.newtons ? "force" : "f_ext";
+    const { values, goal } = asked, quantity = texts.quantity, load = values.newtons ? "force" : "f_ext";
     const name = `${WORDS[quantity][0]} of the ${values.newtons ? "whole finger" : "section"}`, rows = [];
-    const others = other || (changed(values, given) ? { values: { ...data_defaults(values), [load]: values[load], voltage: values.voltage }, given: false } : null);
+    const others = other || (changed(values) ? { values: { ...data_defaults(values), [load]: values[load], voltage: values.voltage } } : null);
     for (const [id, key] of [["voltage", "voltage"], ["force", load]]) {
       const axis = axis_of(key, values), unit = axis.field.unit;
       const at = (from) => (x) => {
-        const here = { ...from.values, newtons: values.newtons, [key]: state.in_si(axis.field, x) }, result = answer(here, from.given, true), none = typeof result === "string";
-        const error = none ? null : error_of(here, from.given, result);
+        const here = { ...from.values, newtons: values.newtons, [key]: state.in_si(axis.field, x) }, result = answer(here, true), none = typeof result === "string";
+        const error = none ? null : error_of(here, result);
         return { x, y: none ? null : result[quantity], error: error && error[quantity] !== undefined ? error[quantity] : null, goal: goal_of(goal, here, quantity) };
       };
       const points = points_of(axis, asked, quantity, at(asked));
@@ -156,24 +155,24 @@
   }
 
   const data_defaults = (values) => ({ ...state.read(state.start()).values, newtons: values.newtons });
-  const LOADS = ["f_ext", "force", "voltage", "length", "ridges"];
-  const changed = (values, given) => given || fields.some(({ key }) => !LOADS.includes(key) && values[key] !== data_defaults(values)[key]);
+  const LOADS = ["f_ext", "force", "voltage"];
+  const changed = (values) => fields.some(({ key }) => !LOADS.includes(key) && values[key] !== data_defaults(values)[key]);
 
   // -- the map -------------------------------------------------------------------------------------------
   let map = { key: "" };
   function draw_map(asked) {
-    const { values, given, goal } = asked, quantity = texts.quantity, axes = [texts.x, texts.y].map((key) => axis_of(key, values));
+    const { values, goal } = asked, quantity = texts.quantity, axes = [texts.x, texts.y].map((key) => axis_of(key, values));
     const [x_axis, y_axis] = axes, name = `${WORDS[quantity][0]}${unit_of(quantity, values) && ` (${unit_of(quantity, values).trim()})`}`;
     const idle = axes.find(({ key }) => state.unread(texts, key));
     find("map_refused").textContent = idle ? `${idle.key.split(".").pop()} has no part in this answer; choose another axis.` : "";
     if (idle) return find("map").replaceChildren();
     const here = (x, y) => ({ ...values, [x_axis.key]: state.in_si(x_axis.field, x), [y_axis.key]: state.in_si(y_axis.field, y) });
     const at = (x, y) => {
-      const point = here(x, y), found = closedForm.refuse(point) || answer(point, given, true), none = typeof found === "string", error = none ? null : error_of(point, given, found);
+      const point = here(x, y), found = closedForm.refuse(point) || answer(point, true), none = typeof found === "string", error = none ? null : error_of(point, found);
       return { value: none ? null : found[quantity], known: Boolean(error && error[quantity] !== undefined), goal: goal_of(goal, point, quantity) };
     };
     const rest = Object.entries(values).filter(([key]) => key !== x_axis.key && key !== y_axis.key);
-    const key = JSON.stringify([rest, quantity, goal, given, axes.map(({ key, low, high }) => [key, low, high])]);
+    const key = JSON.stringify([rest, quantity, goal, axes.map(({ key, low, high }) => [key, low, high])]);
     if (map.key !== key) map = { key, made: heat.compute(x_axis, y_axis, at) };
     if (!map.made.cells.flat().some(({ value }) => value !== null)) {
       find("map_refused").textContent = "No place of this map has an answer; change another field.";
@@ -202,17 +201,17 @@
       find("always").textContent = "A field is refused.";
       return;
     }
-    const other = kept && state.read(kept), beside = other && !other.refused ? { ...other, found: answer({ ...other.values, newtons: other.values.newtons }, other.given) } : null;
-    const { values, given } = asked, found = answer(values, given), none = typeof found === "string";
+    const other = kept && state.read(kept), beside = other && !other.refused ? { ...other, found: answer({ ...other.values, newtons: other.values.newtons }) } : null;
+    const { values } = asked, found = answer(values), none = typeof found === "string";
     find("refusal").textContent = none ? `No answer at this point: ${found}.` : "";
     if (none) for (const box of [find("point").tBodies[0], find("notes")]) box.replaceChildren();
     else {
       show_point(found, asked, beside);
       remarks(found, asked);
     }
-    const sure = !none && error_of(values, given, found) ? "" : ", error not known", of = values.newtons ? "Whole finger: " : "Section: ";
+    const sure = !none && error_of(values, found) ? "" : ", error not known", of = values.newtons ? "Whole finger: " : "Section: ";
     find("always").textContent = none ? "No answer at this point." : `${of}µ_app ${find("value_mu_app").textContent}${sure}`;
-    find("command").textContent = commands.of(values, given, texts);
+    find("command").textContent = commands.of(values, texts);
     draw_curves(asked, none ? null : found, beside);
     clearTimeout(waiting_rest);
     if (drawn) waiting_rest = setTimeout(() => rest(asked), 120);

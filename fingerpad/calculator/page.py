@@ -24,7 +24,7 @@ from fingerpad.results.states import WORDS
 from fingerpad.scene import Scene
 from fingerpad.scene.keys import by_name
 from fingerpad.scene.materials import BEARING_AREA, LARGEST_GAP
-from fingerpad.scene.remarks import LEAKAGE, skin_modulus
+from fingerpad.scene.remarks import LEAKAGE
 from fingerpad.slices import traces
 from geometry.units import Range
 from variational.attraction.dielectric import VACUUM_PERMITTIVITY
@@ -54,8 +54,6 @@ class Field:
     """Whether zero is allowed besides values from ``low`` to ``high``."""
     value: float = 0.0
     """The default."""
-    whole: bool = False
-    """Whether only whole numbers are allowed."""
     per: float = 1.0
     """Units in one SI unit: 1e6 for µm."""
 
@@ -84,15 +82,6 @@ def fields() -> Iterator[Field]:
     for field in _SHOWN:
         key = keys[field.key]
         yield _bounded(field, key.limits, _FORCE if key.name == "force" else key.default)
-    # A contact as given; the values shown first are the default finger's at full slip.
-    default = cylinders.solve(Scene()).full_slip
-    assert default is not None
-    facet, width = keys["mesh.contact"].limits, keys["geometry.width"].limits
-    assert facet is not None and width is not None
-    length = Field("length", "contact length L_R", "mm", (0.2, 4.0), "Finger")
-    yield _bounded(length, Range(facet.low, width.high), float(f"{default.contact_length:.6f}"))
-    ridges = Field("ridges", "ridges in contact", "", (1.0, 25.0), "Finger", whole=True)
-    yield _bounded(ridges, keys["geometry.ridge_count"].limits, default.ridges_in_contact)
 
 
 def _bounded(field: Field, limits: Range | None, value: float) -> Field:
@@ -117,7 +106,6 @@ def data() -> dict[str, Any]:
         "eps_0": VACUUM_PERMITTIVITY,
         "sc_thickness": scene.geometry.sc_thickness,
         "tip_radius": cylinders.tip_radius(scene.geometry),
-        "skin_modulus": skin_modulus(scene),
         "friction": scene.friction,
         "shear": cylinders.SHEAR,
         "largest_gap": LARGEST_GAP,
@@ -160,7 +148,7 @@ def part(name: str) -> str:
 def _whole(force: float, voltage: float) -> Result:
     """Return the default finger under a force (N) and a voltage (V)."""
     scene = Scene(force=force, voltage=voltage)
-    return traces.whole(scene, cylinders.Cylinders(), lambda each, _: cylinders.solve(each))
+    return traces.whole(scene, cylinders.Cylinders(), cylinders.solve)
 
 
 def _mu_app(force: float, voltage: float) -> float:

@@ -3,11 +3,9 @@
 const state = (function () {
   const { show } = numerics;
   const fields = data.fields, by_key = Object.fromEntries(fields.map((field) => [field.key, field]));
-  const FOOTPRINT = ["length", "ridges"];
   const NUMBER = /^[-+]?(\d+\.?\d*|\.\d+)(e[-+]?\d{1,3})?$/i;
   const CHOICES = { // by name in the address: what may be chosen, the first by default
     load: ["whole", "metre"],
-    finger: ["default", "given"],
     quantity: ["mu_app", "f_t"],
     x: ["electric.d_i", ...fields.map(({ key }) => key)],
     y: ["voltage", ...fields.map(({ key }) => key)],
@@ -29,7 +27,6 @@ const state = (function () {
     if (/^[-+]?\d*,\d+$/.test(given)) return `${name} is ${clip(given)}; write it with a point, as ${clip(given).replace(",", ".")}.`;
     if (given === "") return `${name} is no number; ${allowed}.`;
     if (!NUMBER.test(given) || !Number.isFinite(value)) return `${name} is ${clip(given)}, which is no number; ${allowed}.`;
-    if (field.whole && !Number.isInteger(value)) return `${name} is ${show(value, 12)}; it must be a whole number.`;
     const inside = (value >= field.low && value <= field.high) || (field.zero && value === 0);
     return inside ? "" : `${name} is ${show(value, 12)}${unit}; ${allowed}.`;
   }
@@ -49,12 +46,11 @@ const state = (function () {
   }
 
   /** Return whether a field has no part in the answer. */
-  const unread = (texts, key) => (FOOTPRINT.includes(key) && texts.finger !== "given") ||
-    key === (texts.load === "whole" && texts.finger !== "given" ? "f_ext" : "force");
+  const unread = (texts, key) => key === (texts.load === "whole" ? "f_ext" : "force");
 
-  /** Return the values of texts: {values, given}; or {refused: sentence by key}. */
+  /** Return the values of texts: {values, goal}; or {refused: sentence by key}. */
   function read(texts) {
-    const given = texts.finger === "given", newtons = texts.load === "whole" && !given, said = {}, values = { newtons };
+    const newtons = texts.load === "whole", said = {}, values = { newtons };
     for (const field of fields) {
       const text = unread(texts, field.key) ? "" : refused(field, texts[field.key]);
       if (text) said[field.key] = text;
@@ -67,7 +63,7 @@ const state = (function () {
       const why = closedForm.refuse(values), key = "roughness.p_floor";
       if (why) said[key] = `p_floor is ${show(values[key], 12)} Pa; ${why}.`;
     }
-    return Object.keys(said).length ? { refused: said } : { values, given, goal };
+    return Object.keys(said).length ? { refused: said } : { values, goal };
   }
 
   // -- the address ---------------------------------------------------------------------------------------

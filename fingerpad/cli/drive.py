@@ -10,7 +10,7 @@ from fingerpad.cli import output, ranges
 from fingerpad.cli.arguments import PICTURE, Parser, changes, echo, refuse_twice, scene_of
 from fingerpad.reduced.detection import REFERENCE
 from fingerpad.results.quantities import Output
-from fingerpad.runs.drive import FREQUENCIES, Drive, drive, thresholds
+from fingerpad.runs.drive import FREQUENCIES, DrivenFriction, drive, thresholds
 from fingerpad.scene import Scene, load
 from fingerpad.scene.messages import SceneError, clip
 from fingerpad.scene.remarks import circuit_in_words, leakage
@@ -43,7 +43,7 @@ def main(argv: Sequence[str]) -> int:
     output.add_files(parser, _COLUMNS, "picture: relative thresholds over the frequency", "--thresholds")
     args = parser.read(argv)
     scene = _scene(args)
-    if args.period and scene.supply is None:
+    if args.period and scene.drive is None:
         raise SceneError(
             f"--plot is given and voltage is {scene.volts:g} V; it must be a drive to be drawn over a period"
         )
@@ -87,9 +87,9 @@ def _scene(args: argparse.Namespace) -> Scene:
     return load(args.scene, changes(args.set) | {"voltage": drive})
 
 
-def _over_period(scene: Scene) -> Drive | None:
+def _over_period(scene: Scene) -> DrivenFriction | None:
     """Print what the drive of a scene does, or what remains of a constant voltage."""
-    if scene.supply is None:
+    if scene.drive is None:
         echo(f"voltage is {scene.volts:g} V and no drive: no friction over a period.")
         for note in leakage(scene):
             echo(note)

@@ -17,7 +17,7 @@ from fingerpad.results.quantities import QUANTITIES, Output
 from fingerpad.scene import Scene, from_data, override
 from fingerpad.scene.materials import CLOSURES, Topography
 from fingerpad.scene.messages import SceneError, clip, first_error
-from fingerpad.scene.remarks import missing_waves, remarks, ridges_as_roughness
+from fingerpad.scene.remarks import on_waves, remarks
 from variational.attraction.electroadhesion import VACUUM_PERMITTIVITY
 from variational.roughness.bam import STICKING, BearingArea
 from variational.roughness.heightfile import Found, scan
@@ -68,9 +68,8 @@ def microscale(argv: Sequence[str]) -> int:
     echo("\npressure: mean contact pressure of the ridge; external: that less the attraction, what the finger presses")
     echo("with; separation: mean, of skin and screen; air gap: equivalent one; real area: of the nominal area.")
     low, high = (p * 1e-3 for p in closure.pressures)
-    end = "the pressure at zero separation" if isinstance(closure, BearingArea) else "the end of the table of gaps"
     begin = "roughness.p_floor" if low == closure.p_floor * 1e-3 else "the beginning of the table of gaps"
-    echo(f"The air gap stays constant below {low:.4g} kPa ({begin}) and above {high:.4g} kPa, {end}.")
+    echo(f"The air gap stays constant below {low:.4g} kPa ({begin}) and above {high:.4g} kPa, {closure.end}.")
     echo("\n".join([*_scatter(closure, [row["p_c"] for row in rows]), _sticking(closure)]))
     for text in remarks(scene):
         echo(f"{text}.")
@@ -89,8 +88,6 @@ def _pressures(text: str) -> list[float]:
 
 def _scatter(closure: BearingArea | TabulatedClosure, pressures: Sequence[float]) -> Iterator[str]:
     """Yield how the air gap scatters from one surface to the next, in a sentence; nothing without a scatter."""
-    if not isinstance(closure, TabulatedClosure):
-        return
     shares = 100 * closure.spread(pressures) / closure(pressures).d_eq
     if shares.any():
         ends = " to ".join(dict.fromkeys(f"{share:.2g}" for share in (shares.min(), shares.max())))
@@ -113,7 +110,7 @@ def microscopic(scene: Scene) -> BearingArea | TabulatedClosure:
         SceneError: it is a law of one's own, which has no separation and no real area.
     """
     closure = scene.closure()
-    if not isinstance(closure, BearingArea | TabulatedClosure):
+    if not closure.shared:
         names = " or ".join(CLOSURES.laws)
         raise SceneError(f"roughness is a {type(closure).__name__}; the microscale is that of a law {names}")
     return closure
@@ -220,8 +217,7 @@ def _report(file: Path, found: Found, table: dict[str, float], fit: Fit) -> Iter
         yield f"# roll-off at {fit.wavelength * um:.3g} µm: the largest wavelength"
     else:
         yield "# no roll-off within the map: the shorter side of the map stands for the largest wavelength"
-    remarks = ridges_as_roughness(table["wavelength"], Scene().geometry.ridge_wavelength)
-    for remark in remarks + missing_waves(min(m.size)):
+    for remark in on_waves(table["wavelength"], min(m.size), Scene().geometry.ridge_wavelength):
         yield f"# {remark}"
     try:
         from_data({"roughness": {key: float(f"{value:.4g}") for key, value in table.items()}})

@@ -1,20 +1,26 @@
-"""Measurements beside a quantity of finished runs or of a sweep, row by row, and their misfit; no dolfinx."""
+r"""Measurements and computed values row by row, with the friction coefficient of rows at 0 V, and their misfit.
+
+At full slip Coulomb's law gives :math:`f_T = \mu_0 (f_{ext} + f_{el})`. Without voltage the measured friction is
+:math:`\mu_0` itself, the mean over the rows at 0 V, and computed friction is scaled from the scene's coefficient to it.
+*Assumption*: the attraction stays that of the scene's coefficient, on which the contact length depends a little. Errors
+at 0 V are then zero on average by construction, so that these rows are left out of the misfit.
+"""
 
 import math
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pandas as pd
 
 from fingerpad.measurements import table as tables
 from fingerpad.measurements.computed import CLOSE, Array, Computed, Source, computed
-from fingerpad.measurements.fit import fitted, misfit
-from fingerpad.measurements.table import PERSON, Measured
+from fingerpad.measurements.table import Measured
 from fingerpad.scene.messages import SceneError
 
 COLUMNS = ("force", "voltage", "measured", "spread", "mu_0", "computed", "error", "difference", "relative_difference")
-"""Columns of a comparison, beside the participant."""
+"""Columns of a comparison."""
 
 
 def compare(
@@ -35,20 +41,20 @@ def compare(
     Returns:
         A row for each row of the table, in SI units, NaN where a value is not known: ``force``, ``voltage``,
         ``measured``, ``spread``, ``computed``, ``error`` (whole known error of the computed value),
-        ``difference`` (computed less measured) and ``relative_difference`` (of the measured value), and ``participant``
-        where the table has it. Computed friction is that of the coefficient of the rows at 0 V, where there are such
-        (:mod:`fingerpad.measurements.fit`), in a column ``mu_0``. Its ``attrs`` hold the quantity, the units, the
-        source, the state, the heads of ignored columns, how many rows have a friction below 0 (``turned``), the
-        coefficient of the results (``mu_0``), the ``fits`` and the ``misfit``.
+        ``difference`` (computed less measured) and ``relative_difference`` (of the measured value). Computed friction
+        is that of the coefficient of the rows at 0 V, where there are such, in a column ``mu_0``. Its ``attrs`` hold
+        the quantity, the units, the source, the state, the heads of ignored columns, the number of rows with a friction
+        below 0 (``turned``), the coefficient of the results (``mu_0``), the ``misfit``, and ``fit``: the coefficient
+        ``mu_0``, the standard deviation ``spread`` and the number of ``rows`` at 0 V.
 
     Raises:
         SceneError: the table or the results cannot be compared, in one sentence.
     """
     measured = tables.read(table, columns, state)
-    return beside(measured, computed(result, measured))
+    return comparison(measured, computed(result, measured))
 
 
-def beside(table: Measured, known: Computed) -> pd.DataFrame:
+def comparison(table: Measured, known: Computed) -> pd.DataFrame:
     """Return the rows of :func:`compare`.
 
     Raises:
@@ -65,14 +71,14 @@ def beside(table: Measured, known: Computed) -> pd.DataFrame:
     if not (rows.computed > 0).any():
         beyond = f", and {none} of them are not within the results" if none else ""
         raise SceneError(f"no {table.quantity} above 0 is computed in the {len(rows)} rows of {table.name}{beyond}")
-    rows, found = fitted(rows, table.quantity, known.mu_0)
+    rows, fit = _fitted(rows, table.quantity, known.mu_0)
     file = table.path or table.name
     about: dict[str, Any] = {"source": file, **table.about, "table": file, "ignored": table.ignored}
     about |= {"state": table.state, "quantity": table.quantity, "unit": table.unit, "force_unit": table.force_unit}
-    about |= {"turned": table.turned, "mu_0": known.mu_0, "fits": found}
-    used = rows[rows.voltage > 0] if found else rows
-    rows = rows[[name for name in (PERSON, *COLUMNS) if name in rows]]
-    rows.attrs = about | {"misfit": misfit(used)}
+    used = rows[rows.voltage > 0] if fit else rows
+    about |= {"turned": table.turned, "mu_0": known.mu_0, "fit": fit, "misfit": misfit(used)}
+    rows = rows[[name for name in COLUMNS if name in rows]]
+    rows.attrs = about
     return rows
 
 
@@ -81,3 +87,49 @@ def _single(table: str, name: str, unit: str, values: Array) -> float:
     if len(values) > 1 and (name == "voltage" or not math.isclose(values.min(), values.max(), rel_tol=CLOSE)):
         raise SceneError(f"{table} has no {name}, and the results have {len(values)}; add a column '{name} ({unit})'")
     return float(values.mean())
+
+
+def _fitted(rows: pd.DataFrame, quantity: str, mu_0: float | None) -> tuple[pd.DataFrame, dict[str, float]]:
+    """Return rows with differences, and the coefficient that they are fitted with; empty without one.
+
+    Args:
+        rows: with ``force``, ``voltage``, ``measured``, ``spread``, ``computed`` and ``error``.
+        quantity: of the table; another one than friction has no coefficient.
+        mu_0: friction coefficient of the results; None where it cannot be fitted.
+    """
+    still, charged = rows[rows.voltage == 0], rows[(rows.voltage > 0) & (rows.computed > 0)]
+    if mu_0 is None or not quantity.startswith("friction") or still.empty or charged.empty:
+        return _scaled(rows, 1.0), {}
+    mu = still.measured / (still.force if quantity == "friction force" else 1.0)
+    fit = {"mu_0": float(mu.mean()), "spread": float(mu.std()), "rows": len(mu)}
+    return _scaled(rows.assign(mu_0=fit["mu_0"]), fit["mu_0"] / mu_0), fit
+
+
+def _scaled(rows: pd.DataFrame, factor: float) -> pd.DataFrame:
+    """Return rows with computed values and errors times a factor, and the differences."""
+    rows = rows.assign(computed=rows.computed * factor, error=rows.error * factor)
+    difference = rows.computed - rows.measured
+    return rows.assign(difference=difference, relative_difference=difference / rows.measured.where(rows.measured > 0))
+
+
+def misfit(rows: pd.DataFrame) -> dict[str, float]:
+    """Return the distance of computed values from measured ones, as ratios.
+
+    Args:
+        rows: of :func:`compare`.
+
+    Returns:
+        ``ratio``: geometric mean of computed over measured; ``factor``: the largest factor between the two;
+        ``shape_factor``: the same once the computed values are scaled by one factor; ``rows``: number of these, without
+        those where one of the two is not known or 0; ``spreads``: number of these that have a spread; ``within``:
+        number of those that differ by no more than the spread plus the error. Empty without such rows.
+    """
+    used = rows[(rows.computed > 0) & (rows.measured > 0)]
+    if used.empty:
+        return {}
+    log = np.log(used.computed / used.measured)
+    with_spread = used[used.spread.notna()]
+    near = with_spread.difference.abs() <= with_spread.spread + with_spread.error.fillna(0.0)
+    ratios = {"ratio": log.mean(), "factor": log.abs().max(), "shape_factor": (log - log.mean()).abs().max()}
+    counts = {"rows": len(used), "spreads": len(with_spread), "within": int(near.sum())}
+    return {name: float(np.exp(value)) for name, value in ratios.items()} | counts

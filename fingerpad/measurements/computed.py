@@ -3,7 +3,7 @@
 import math
 import os
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from pathlib import Path
 from typing import Any
@@ -18,10 +18,8 @@ from fingerpad.report.write import read as content
 from fingerpad.results.result import Result
 from fingerpad.results.states import WORDS, before_sliding
 from fingerpad.runs.sweep_results import Sweep
-from fingerpad.scene import as_kept
 from fingerpad.scene.messages import SceneError, clip, ends, refuse_type, show
 from fingerpad.scene.reading import flat
-from fingerpad.slices.finger import WholeFinger
 
 Array = NDArray[np.float64]
 Source = Result | Sweep | Table | str | Path
@@ -29,9 +27,8 @@ Source = Result | Sweep | Table | str | Path
 _SOURCES = "a result of fp.run, a sweep of fp.sweep, a folder of either, or a list of these"
 CLOSE = 0.01
 """Relative distance of a force beyond the known ones up to which their end stands for it."""
-_CONDITION_TOLERANCE = 1e-6  # relative difference of conditions that count as the same
-_VALUE_TOLERANCE = 1e-4  # relative, of values at the same conditions: beyond any tolerance of the solvers
-_NAMED = 4  # voltages in a message
+_SAME_CONDITION = 1e-6  # relative difference of conditions that are the same
+_SAME_VALUE = 1e-4  # relative difference of values at the same conditions: beyond any tolerance of the solvers
 _FREE = re.compile(  # keys in which runs may differ:
     r"(history\[\d+\]\.)?(f_ext|force|voltage)"  # the conditions of a measurement,
     r"|history\[\d+\]\.(bone_height|name)"  # the force by another control, and a word for it,
@@ -62,7 +59,7 @@ class Computed:
         ]
 
     def at(self, force: Array, voltage: Array) -> tuple[Array, Array]:
-        """Return values and discretisation errors at pairs of force and voltage; NaN where they are not known.
+        """Return values and their errors at pairs of force and voltage; NaN where they are not known.
 
         The errors are interpolated as the values are, and do not contain the error of the interpolation.
         """
@@ -74,14 +71,8 @@ class Computed:
 
     def reach(self, force_unit: str) -> str:
         """Return in words which forces there are at which voltage."""
-        each = [f"{_span(forces)} {force_unit} at {voltage:g} V" for voltage, forces, _ in self._curves]
-        more = f" and others at {len(each) - _NAMED} more voltages" if len(each) > _NAMED else ""
-        return ", ".join(each[:_NAMED]) + more
-
-
-def _span(forces: Array) -> str:
-    single = math.isclose(forces[0], forces[-1], rel_tol=_CONDITION_TOLERANCE)
-    return f"{forces[0]:g}" if single else f"{forces[0]:g} to {forces[-1]:g}"
+        each = (f"{forces[0]:g} to {forces[-1]:g} {force_unit} at {voltage:g} V" for voltage, forces, _ in self._curves)
+        return clip(", ".join(each), 200)
 
 
 def _over_force(force: float, known: Array, values: Array) -> Array:
@@ -89,7 +80,7 @@ def _over_force(force: float, known: Array, values: Array) -> Array:
     end = float(np.clip(force, known[0], known[-1]))
     x = end if math.isclose(force, end, rel_tol=CLOSE) else force
     linear = _between(x, known, values)
-    if not known[0] < x < known[-1] or np.isclose(known, x, rtol=_CONDITION_TOLERANCE, atol=0.0).any():
+    if not known[0] < x < known[-1] or np.isclose(known, x, rtol=_SAME_CONDITION, atol=0.0).any():
         return linear
     k = int(np.searchsorted(known, x))
     low, high = values[k - 1], values[k]
@@ -100,7 +91,7 @@ def _over_force(force: float, known: Array, values: Array) -> Array:
 
 def _between(x: float, known: Array, values: Array) -> Array:
     """Return the values at one of the known places up to roundoff, or linear between two of them; NaN beyond."""
-    near = np.flatnonzero(np.isclose(known, x, rtol=_CONDITION_TOLERANCE, atol=0.0))
+    near = np.flatnonzero(np.isclose(known, x, rtol=_SAME_CONDITION, atol=0.0))
     if near.size:
         return np.asarray(values[near[0]])
     inside = known[0] < x < known[-1]
@@ -114,62 +105,59 @@ def computed(source: Source | Sequence[Source], table: Measured) -> Computed:
         SceneError: the source is of another type, the quantity is not there, the runs differ in more than force and
             voltage, or two of them have other values at the same force and voltage.
     """
-    found = list[Result | Table]()
-    several: list[Any] = [source]
-    if isinstance(source, Sequence) and not isinstance(source, Sweep | str | bytes):
-        several = [*source]
-    for each in several:
+    alone = not isinstance(source, Sequence) or isinstance(source, Sweep | str | bytes)
+    found = list[Any]()
+    for each in [source] if alone else source:
         refuse_type("result", each, Source, _SOURCES)
         found += each if isinstance(each, Sweep) else [content(Path(each)) if isinstance(each, str | Path) else each]
     if not found:
         raise SceneError(f"result is empty; it must be {_SOURCES}")
-    runs = [each for each in found if isinstance(each, Result)]
     if sweep := next((each for each in found if isinstance(each, Table)), None):
         if len(found) > 1:
-            raise SceneError(f"{_place(sweep)} is given with others; give one sweep, or runs")
+            raise SceneError(f"the sweep in {ends(sweep.folder)} is given with others; give one sweep, or runs")
         points, mu_0 = _of_sweep(sweep, table), sweep.parameters.get("friction")
     else:
-        refuse_mixed(runs)
-        points, mu_0 = _of_runs(runs, table), runs[0].scene.friction
-    if points.empty:
-        raise SceneError(f"the run has no state {WORDS[table.state]}, of which {table.name} is; compare another run")
-    if points.value.isna().all():
-        quantity = "friction coefficient" if table.key == "mu_app" else table.quantity
-        raise SceneError(f"the result has no {quantity} of {WORDS[table.state]}, which {table.name} has")
+        refuse_mixed(found)
+        points, mu_0 = _of_runs(found, table), found[0].scene.friction
+    if points.empty or points.value.isna().all():
+        what = "state" if points.empty else "friction coefficient" if table.key == "mu_app" else table.quantity
+        raise SceneError(f"the results have no {what} of {WORDS[table.state]}, which {table.name} has")
     return Computed(points, mu_0)
+
+
+# -- runs ----------------------------------------------------------------------------------------------------
+Point = dict[str, Any]
 
 
 def _of_runs(runs: Sequence[Result], table: Measured) -> pd.DataFrame:
     """Return the values of all runs; of one run the last state at a force and a voltage."""
-    points = list[dict[str, float]]()
-    of = list[Result]()
+    points = list[Point]()
     for run in runs:
-        for point in (_whole if table.whole else _section)(run, table):
-            k = next((k for k, known in enumerate(points) if _same(known, point)), len(points))
-            if k == len(points):
-                points.append(point)
-                of.append(run)
-            known = [each["error"] for each in (points[k], point) if not math.isnan(each["error"])]
-            allowed = _VALUE_TOLERANCE * abs(points[k]["value"]) + sum(known)
-            if of[k] is not run and abs(points[k]["value"] - point["value"]) > allowed:
-                raise SceneError(
-                    f"{table.quantity} is {points[k]['value']:.6g} in {folder(of[k])} and {point['value']:.6g} in "
-                    f"{folder(run)}, both at {point['force']:.6g} {table.force_unit} and {point['voltage']:g} V; "
-                    "give one of them"
-                )
-            points[k], of[k] = point, run
-    if table.whole:  # the run to the least force above has the trace with most points there
+        for point in _of_finger(run, table) if table.whole else _section(run, table):
+            if (same := next((each for each in points if _same(each, point)), None)) is not None:
+                allowed = _SAME_VALUE * abs(same["value"]) + np.nansum([same["error"], point["error"]])
+                if same["run"] is not run and abs(same["value"] - point["value"]) > allowed:
+                    raise SceneError(
+                        f"{table.quantity} is {same['value']:.6g} in {_folder(same['run'])} and {point['value']:.6g} "
+                        f"in {_folder(run)}, both at {point['force']:.6g} {table.force_unit} and "
+                        f"{point['voltage']:g} V; "
+                        "give one of them"
+                    )
+                points.remove(same)
+            points.append(point)
+    if table.whole and "force" in table.rows:  # the run to the least force above has the trace with most points there
         for run in sorted(runs, key=lambda run: run.finger.f_ext if run.finger else 0.0):
-            points += [point for point in _traced(run, table) if not any(_same(known, point) for known in points)]
+            for force in table.rows.force.unique():
+                points += [p for p in _of_finger(run, table, float(force)) if not any(_same(q, p) for q in points)]
     return pd.DataFrame(points, columns=["force", "voltage", "value", "error"])
 
 
-def _same(one: dict[str, float], other: dict[str, float]) -> bool:
+def _same(one: Point, other: Point) -> bool:
     """Return whether two points have the same force and voltage up to roundoff."""
-    return all(math.isclose(one[key], other[key], rel_tol=_CONDITION_TOLERANCE) for key in ("force", "voltage"))
+    return all(math.isclose(one[key], other[key], rel_tol=_SAME_CONDITION) for key in ("force", "voltage"))
 
 
-def _section(run: Result, table: Measured) -> Iterator[dict[str, float]]:
+def _section(run: Result, table: Measured) -> Iterator[Point]:
     """Yield the values of the cross-section: of the whole press in the uncharged state, else of the named state.
 
     The named state stands in place of its step: it has errors, and may be of a finer mesh.
@@ -180,63 +168,25 @@ def _section(run: Result, table: Measured) -> Iterator[dict[str, float]]:
         states = [s for s in before_sliding(run.steps) if s.voltage == 0 and s.ridges_in_contact and s.f_ext > 0]
         states = [named if named is not None and named.step == s.step else s for s in states]
     for state in states or [s for s in (named,) if s is not None]:
-        value, error = float(getattr(state, key)), float(getattr(state.error, key, math.nan))
-        yield {"force": state.f_ext, "voltage": abs(state.voltage), "value": sign * value, "error": error}
+        value, error = sign * float(getattr(state, key)), float(getattr(state.error, key, math.nan))
+        yield {"force": state.f_ext, "voltage": abs(state.voltage), "value": value, "error": error, "run": run}
 
 
-def _whole(run: Result, table: Measured) -> Iterator[dict[str, float]]:
-    """Yield the values of the whole finger."""
-    if run.finger is None:
+def _of_finger(run: Result, table: Measured, force: float | None = None) -> Iterator[Point]:
+    """Yield the value of the whole finger under the run's force, or under another one (N) that its traces reach."""
+    finger = run.finger
+    if finger is None:
         raise SceneError(
             f"the run has no newtons, which {table.name} has; run its scene, of press, charge and slide, with --force"
         )
-    if table.state in run.finger.states:
-        yield _of_finger(run, run.finger, table)
-
-
-def _traced(run: Result, table: Measured) -> Iterator[dict[str, float]]:
-    """Yield the values under the forces of a table (N) that the traces of a run reach."""
-    if run.finger is None or table.state not in run.finger.states or not run.finger.traces:
+    if table.state not in finger.states or (force is not None and not finger.traces):
         return
-    for force in table.rows.force.unique() if "force" in table.rows else ():
-        with suppress(SceneError):
-            yield _of_finger(run, run.finger.under(float(force)), table)
-
-
-def _of_finger(run: Result, finger: WholeFinger, table: Measured) -> dict[str, float]:
-    voltage = 0.0 if table.state == "uncharged" else abs(run.named[table.state].voltage)
-    value, error = finger.values(table.state)[table.key], finger.error.get(table.state, {}).get(table.key, math.nan)
-    return {"force": finger.f_ext, "voltage": voltage, "value": value, "error": error}
-
-
-def _of_sweep(sweep: Table, table: Measured) -> pd.DataFrame:
-    """Return the values in the table of a sweep."""
-    keys, fixed = {"force": "force" if table.whole else "f_ext", "voltage": "voltage"}, sweep.parameters
-    if not set(sweep.axes) <= set(keys.values()) <= {*sweep.axes, *fixed}:
-        raise SceneError(
-            f"{_place(sweep)} is over {', '.join(sweep.axes)}, and {table.name} has forces in {table.force_unit}; "
-            f"give one over {keys['force']} and voltage alone, or runs"
-        )
-    rows = pd.DataFrame(sweep.rows)
-    column = f"{table.state}_{'finger_' if table.whole else ''}{table.key}"
-    if column not in rows:
-        raise SceneError(
-            f"the table of the sweep has no {table.quantity} of {WORDS[table.state]}, which {table.name} has; "
-            "give one of its runs"
-        )
-    try:
-        taken = {name: rows[key] if key in rows else fixed[key] for name, key in keys.items()}
-        taken |= {"value": rows[column], "error": rows.get(f"{column}_error", math.nan)}
-        points = pd.DataFrame(taken).astype(float)
-    except (ValueError, TypeError) as error:
-        raise SceneError(f"the table of {_place(sweep)} cannot be read: {error}") from None
-    points["voltage"] = 0.0 if table.state == "uncharged" else points.voltage.abs()
-    # Another run may have the value, at another voltage or sign of it.
-    return points.sort_values("value", key=pd.isna, kind="stable").drop_duplicates(["force", "voltage"])
-
-
-def _place(sweep: Table) -> str:
-    return f"the sweep in {ends(sweep.folder)}"
+    with suppress(SceneError):
+        finger = finger if force is None else finger.under(force)
+        voltage = 0.0 if table.state == "uncharged" else abs(run.named[table.state].voltage)
+        error = finger.error.get(table.state, {}).get(table.key, math.nan)
+        value = finger.values(table.state)[table.key]
+        yield {"force": finger.f_ext, "voltage": voltage, "value": value, "error": error, "run": run}
 
 
 def refuse_mixed(runs: Sequence[Result]) -> None:
@@ -245,38 +195,45 @@ def refuse_mixed(runs: Sequence[Result]) -> None:
     Raises:
         SceneError: the first key that differs, its two values and the two folders.
     """
-    every = [_conditions(run) for run in runs]
-    for run, other in zip(runs[1:], every[1:], strict=True):
-        for key in dict.fromkeys([*every[0], *other]):
-            values = every[0].get(key), other.get(key)
+    first, *others = ({"model": run.model} | flat(run.scene.parameters()) for run in runs)
+    for run, other in zip(runs[1:], others, strict=True):
+        for key in dict.fromkeys([*first, *other]):
+            values = [each.get(key) for each in (first, other)]
             if values[0] != values[1] and not _FREE.fullmatch(key):
-                one, two = (_shown(value) for value in values)
+                one, two = ("not given" if value is None else clip(show(value), 40) for value in values)
                 raise SceneError(
-                    f"{key} is {one} in {folder(runs[0])} and {two} in {folder(run)}; "
+                    f"{key} is {one} in {_folder(runs[0])} and {two} in {_folder(run)}; "
                     "give runs that differ in force and voltage alone"
                 )
 
 
-def folder(run: Result) -> str:
+def _folder(run: Result) -> str:
     """Return the folder of a run for a message."""
     return "a run" if run.folder is None else ends(min(str(run.folder), os.path.relpath(run.folder), key=len), 50)
 
 
-def _conditions(run: Result) -> dict[str, Any]:
-    """Return the model of a run and every key of its scene, with the size of lists and tables."""
-    kept = as_kept(run.record.get("parameters") or run.scene.parameters()).model_dump(mode="json")
-    lists = {key: f"a list of {len(value)}" for key, value in kept.items() if isinstance(value, list)}
-    tables = {key: _called(value) for key, value in kept.items() if isinstance(value, Mapping)}
-    return {"model": run.model} | lists | flat(kept) | tables
-
-
-def _called(table: Mapping[str, Any]) -> str:
-    """Return a table for a message: the name of its law, or its size."""
-    return f"the law {table['law']}" if "law" in table else f"a table of {len(table)}"
-
-
-def _shown(value: Any) -> str:
-    """Return a value for a message; lists and tables by their size, laws by their name."""
-    if value is None:
-        return "not given"
-    return str(value) if str(value).startswith(("a list of", "a table of", "the law")) else clip(show(value), 40)
+# -- sweeps --------------------------------------------------------------------------------------------------
+def _of_sweep(sweep: Table, table: Measured) -> pd.DataFrame:
+    """Return the values in the table of a sweep."""
+    keys, fixed = {"force": "force" if table.whole else "f_ext", "voltage": "voltage"}, sweep.parameters
+    if not set(sweep.axes) <= set(keys.values()) <= {*sweep.axes, *fixed}:
+        raise SceneError(
+            f"the sweep in {ends(sweep.folder)} is over {', '.join(sweep.axes)}, and {table.name} has forces in "
+            f"{table.force_unit}; give one over {keys['force']} and voltage alone, or runs"
+        )
+    rows = pd.DataFrame(sweep.rows)
+    column = f"{table.state}_{'finger_' if table.whole else ''}{table.key}"
+    if column not in rows:
+        raise SceneError(
+            f"the table of the sweep has no {table.quantity} of {WORDS[table.state]}, which {table.name} has; "
+            "give one of its runs"
+        )
+    taken = {name: rows[key] if key in rows else fixed[key] for name, key in keys.items()}
+    taken |= {"value": rows[column], "error": rows.get(f"{column}_error", math.nan)}
+    try:
+        points = pd.DataFrame(taken).astype(float)
+    except (ValueError, TypeError) as error:
+        raise SceneError(f"the table of the sweep in {ends(sweep.folder)} cannot be read: {error}") from None
+    points["voltage"] = 0.0 if table.state == "uncharged" else points.voltage.abs()
+    # Another run may have the value, at another voltage or sign of it.
+    return points.sort_values("value", key=pd.isna, kind="stable").drop_duplicates(["force", "voltage"])

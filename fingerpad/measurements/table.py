@@ -4,17 +4,17 @@
     # doi: 10.1000/example
     # people: 5
     # state: full slip
-    participant; force [N/m]; voltage [V]; friction [%]; spread [%]; room temperature
-    A; 50; 100; 31,5; 4; 23
+    force [N/m]; voltage [V]; friction [%]; spread [%]; room temperature
+    50; 100; 31,5; 4; 23
 
-Files are those of :mod:`fingerpad.scene.tables`. A voltage is the effective value: ``voltage (Vpp)`` and ``voltage (V
+Files are those of :mod:`fingerpad.scene.tables`. A voltage is the rms value: ``voltage (Vpp)`` and ``voltage (V
 amplitude)`` are converted as those of a sine. Friction may be in percent; a spread in percent is a part of the measured
 value, if that is in another unit. The sign of a friction is its direction, and that of a voltage changes no force:
-neither is compared. ``participant`` is a person's name or number.
+neither is compared.
 
 A table with a column in newtons, or of an area, is of a whole finger; without one it is of a cross-section, in N/m.
-``force`` and ``voltage`` are conditions, each optional. One
-more column is the quantity, and ``spread`` is its standard deviation, which a row may lack. Others are ignored.
+``force`` and ``voltage`` are conditions, each optional. One more column is the quantity, and ``spread`` is its standard
+deviation, which a row may lack. Others are ignored.
 """
 
 import re
@@ -29,10 +29,9 @@ from fingerpad.scene import tables
 from fingerpad.scene.messages import SceneError, clip, ends, refuse_type, show
 from fingerpad.scene.tables import NUMBERS, Column, is_of, parts
 
-CONDITIONS = {"force": ("N", "N/m"), "voltage": ("V",)}
-"""Columns that are conditions, and their SI units."""
+_CONDITIONS = {"force": ("N", "N/m"), "voltage": ("V",)}
 _NONE = ("", "")  # of what a cross-section, or a whole finger, does not have
-QUANTITIES = {
+_QUANTITIES = {  # key of the result and SI unit: of a cross-section, and of a whole finger
     "friction": (("mu_app", "1"), ("mu_app", "1")),
     "friction force": (("f_t", "N/m"), ("f_t", "N")),
     "attraction": (("f_electrostatic", "N/m"), ("f_electrostatic", "N")),
@@ -40,22 +39,17 @@ QUANTITIES = {
     "ridges": (("ridges_in_contact", "1"), _NONE),
     "gross area": (_NONE, ("gross_area", "m^2")),
     "contact area": (_NONE, ("contact_area", "m^2")),
-    "depth": (("depth", "m"), ("indentation", "m")),
+    "depth": (("depth", "m"), ("indentation", "m")),  # the way down of the bone
 }
-"""Key of the result and SI unit of a cross-section, and of a whole finger; a depth is the way down of the bone."""
-STATES = {"uncharged": "uncharged", "charged": "charged", "full slip": "full_slip"}
-"""What the state of a table can be, and its name in results."""
-PERSON = "participant"
-"""Column of who was measured."""
-_NAMES = (*CONDITIONS, *QUANTITIES, "spread", PERSON)
+_STATES = {"uncharged": "uncharged", "charged": "charged", "full slip": "full_slip"}  # names in results
+_NAMES = (*_CONDITIONS, *_QUANTITIES, "spread")
 _PERCENT = ("%", "percent")
 _COMMENT = re.compile(r"(source|doi|url|people|state)\s*:(.*)", re.IGNORECASE)
-_SINE = re.compile(
+_SINE = re.compile(  # what a voltage is, behind its unit
     r"(?i)(?:^|(?<=[vu])|[ _-]+)(?:(rms|eff(?:ective)?)|(pp|p-p|pk-?pk|peak[ -]to[ -]peak)|(amplitude|peak))$"
 )
-_EFFECTIVE = {None: ("", 1.0), 1: ("", 1.0), 2: (" peak to peak", 8**-0.5), 3: (" amplitude", 2**-0.5)}
-"""How a voltage is given, behind the V, and the effective value of a sine over it; by the group of the expression."""
-_MAX_PATH = 40_000  # characters: of the longest path that Linux has, with all of them escaped
+_RMS = {1: 1.0, 2: 8**-0.5, 3: 2**-0.5}  # rms value of a sine over it, by the group of the expression
+_LONGEST_PATH = 40_000  # characters, with all of them escaped
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,8 +66,7 @@ class Measured:
     whole: bool
     """Whether it is of a whole finger, in N and m², and not of a cross-section."""
     rows: pd.DataFrame
-    """Columns ``measured``, ``spread`` (NaN where a row has none), the conditions that the table has, and
-    ``participant``."""
+    """Columns ``measured``, ``spread`` (NaN where a row has none), and the conditions that the table has."""
     ignored: tuple[str, ...] = ()
     """Heads of columns that are not read."""
     turned: int = 0
@@ -84,12 +77,12 @@ class Measured:
     @property
     def key(self) -> str:
         """The quantity's name in results."""
-        return QUANTITIES[self.quantity][self.whole][0]
+        return _QUANTITIES[self.quantity][self.whole][0]
 
     @property
     def unit(self) -> str:
         """The quantity's SI unit."""
-        return QUANTITIES[self.quantity][self.whole][1]
+        return _QUANTITIES[self.quantity][self.whole][1]
 
     @property
     def force_unit(self) -> str:
@@ -113,56 +106,30 @@ def read(
         SceneError: what is wrong in the table, with line and column.
     """
     refuse_type("table", table, str | Path | pd.DataFrame, "a DataFrame of pandas, or the path of a CSV file")
-    refuse_type("state", state, str | None, f"one of {', '.join(STATES)}")
+    refuse_type("state", state, str | None, f"one of {', '.join(_STATES)}")
     refuse_type("columns", columns, Mapping | None, "names by heads, as {'CoF': 'friction (1)'}")
     for head, of in (columns or {}).items():
         refuse_type(f"of columns, the name of {clip(repr(head))}", of, str | None, "text, as 'friction (1)'")
     name = "the table" if isinstance(table, pd.DataFrame) else ends(table)
     try:
-        return _measured(table, name, {head.strip(): of or "" for head, of in (columns or {}).items()}, state)
+        heads, about, path = _of_frame(table) if isinstance(table, pd.DataFrame) else _of_file(table)
+        wanted = (state or about.get("state", "full slip")).lower().replace("_", " ")
+        if wanted not in _STATES:
+            raise ValueError(f"has the state {show(wanted)}; it must be one of {', '.join(_STATES)}")
+        used = _named(heads, given := {head.strip(): of or "" for head, of in (columns or {}).items()})
+        quantity, whole = _quantity(heads, used, given, wanted)
+        used = {of: column for of, column in used.items() if of == quantity or of not in _QUANTITIES}
+        rows = _rows(used, quantity, whole)
+        taken = {column.head for column in used.values()} | {head for head, of in given.items() if not of}
+        ignored = [column for column in heads if column.head not in taken]
+        _refuse_overlooked(used, ignored)
     except ValueError as error:
         raise SceneError(f"{name} {error}") from None
-
-
-def _measured(table: str | Path | pd.DataFrame, name: str, given: Mapping[str, str], state: str | None) -> Measured:
-    """Return the measurements of :func:`read`, with the columns that are ``given`` by head; refusals have no name."""
-    heads, about, path = _of_frame(table) if isinstance(table, pd.DataFrame) else _of_file(table)
-    asked = (state or about.get("state", "full slip")).lower().replace("_", " ")
-    if asked not in STATES:
-        raise ValueError(f"has the state {show(asked)}; it must be one of {', '.join(STATES)}")
-    used = _named(heads, given)
-    found = [of for of in used if of in QUANTITIES]
-    found = [of for of in found if used[of].head in given] or found  # one that a mapping names is meant
-    if len(found) != 1:
-        has = ", ".join(found) or f"no quantity; it has the columns {clip(', '.join(each.head for each in heads), 100)}"
-        example = "by its heads or by columns, as in {'CoF': 'friction (1)'}"
-        raise ValueError(f"has {has}, and must have one of {', '.join(QUANTITIES)}, {example}")
-    (quantity,) = found
-    used = {of: column for of, column in used.items() if of == quantity or of not in QUANTITIES}
-    whole = any("area" in of or (of != "spread" and is_of(each.unit, "N")) for of, each in used.items())
-    if quantity.startswith("friction") and asked != "full slip":
-        raise ValueError(f"has {quantity} at the state {asked}; before the finger slides it has none")
-    if (known := QUANTITIES[quantity][whole]) == _NONE:
-        kind = "a whole finger, which has a column in newtons or of an area," if whole else "a cross-section"
-        others = ", ".join(of for of, each in QUANTITIES.items() if each[whole] != _NONE)
-        raise ValueError(f"has {quantity}, and {kind} has {others}")
-    units = {quantity: known[1], "spread": known[1], "force": "N" if whole else "N/m", "voltage": "V"}
-    rows = {of: _numbers(each, units[of]) for of, each in used.items() if of != PERSON}
-    turned = int((rows[quantity] < 0).sum())
-    rows[quantity] = rows[quantity].abs()
-    used[quantity].refuse((rows[quantity] == 0) & (rows.get("voltage", 1.0) != 0), "other than 0 but at 0 V")
-    if "spread" in used and used["spread"].unit in _PERCENT and used[quantity].unit not in _PERCENT:
-        rows["spread"] *= rows[quantity]
-    if PERSON in used:
-        used[PERSON].refuse(used[PERSON].cells == "", "a name in each row")
-        rows[PERSON] = used[PERSON].cells.map(lambda cell: clip(cell, 40))
-    taken = {column.head for column in used.values()} | {head for head, of in given.items() if not of}
-    ignored = [column for column in heads if column.head not in taken]
-    for condition in (each for each in CONDITIONS if each not in used):
-        _refuse_overlooked(condition, ignored)
     measured = pd.DataFrame({"spread": np.nan} | rows).rename(columns={quantity: "measured"})
+    turned = int((measured.measured < 0).sum())
+    measured["measured"] = measured.measured.abs()
     left = tuple(column.head for column in ignored)
-    return Measured(name, about, STATES[asked], quantity, whole, measured, left, turned, path)
+    return Measured(name, about, _STATES[wanted], quantity, whole, measured, left, turned, path)
 
 
 def _of_frame(table: pd.DataFrame) -> tuple[list[Column], dict[str, str], str]:
@@ -182,14 +149,14 @@ def _of_file(file: str | Path) -> tuple[list[Column], dict[str, str], str]:
     found = tables.read(file, "force (N/m), friction (1)")
     comments = [match for comment in found.comments if (match := _COMMENT.fullmatch(comment))]
     about = {match[1].lower(): match[2].strip() for match in comments}
-    return [column for column in found.columns if column.head], about, ends(file, _MAX_PATH)
+    return [column for column in found.columns if column.head], about, ends(file, _LONGEST_PATH)
 
 
 def _named(heads: Sequence[Column], given: Mapping[str, str]) -> dict[str, Column]:
     """Return columns by their names in this program, with their units."""
     found = dict[str, Column]()
-    has = clip(", ".join(column.head for column in heads), 200)
     if unknown := given.keys() - {column.head for column in heads}:
+        has = clip(", ".join(column.head for column in heads), 200)
         raise ValueError(f"has no column {show(min(unknown))}; it has {has}")
     for column in heads:
         of, unit = parts(given[column.head]) if column.head in given else (column.name, column.unit)
@@ -206,33 +173,63 @@ def _named(heads: Sequence[Column], given: Mapping[str, str]) -> dict[str, Colum
     return found
 
 
-def _refuse_overlooked(condition: str, ignored: Sequence[Column]) -> None:
+def _quantity(
+    heads: Sequence[Column], used: Mapping[str, Column], given: Mapping[str, str], state: str
+) -> tuple[str, bool]:
+    """Return the quantity of a table, and whether it is of a whole finger."""
+    found = [of for of in used if of in _QUANTITIES]
+    found = [of for of in found if used[of].head in given] or found  # one that a mapping names is meant
+    if len(found) != 1:
+        has = ", ".join(found) or f"no quantity; it has the columns {clip(', '.join(each.head for each in heads), 100)}"
+        example = "by its heads or by columns, as in {'CoF': 'friction (1)'}"
+        raise ValueError(f"has {has}, and must have one of {', '.join(_QUANTITIES)}, {example}")
+    of_kind = {of: each for of, each in used.items() if of == found[0] or of not in _QUANTITIES}
+    whole = any("area" in of or (of != "spread" and is_of(each.unit, "N")) for of, each in of_kind.items())
+    if found[0].startswith("friction") and state != "full slip":
+        raise ValueError(f"has {found[0]} at the state {state}; before the finger slides it has none")
+    if _QUANTITIES[found[0]][whole] == _NONE:
+        kind = "a whole finger, which has a column in newtons or of an area," if whole else "a cross-section"
+        others = ", ".join(of for of, each in _QUANTITIES.items() if each[whole] != _NONE)
+        raise ValueError(f"has {found[0]}, and {kind} has {others}")
+    return found[0], whole
+
+
+def _rows(used: Mapping[str, Column], quantity: str, whole: bool) -> "dict[str, pd.Series[float]]":
+    """Return the values of the columns by name, in SI units."""
+    si = _QUANTITIES[quantity][whole][1]
+    units = {quantity: si, "spread": si, "force": "N" if whole else "N/m", "voltage": "V"}
+    rows = {of: _numbers(each, units[of]) for of, each in used.items()}
+    used[quantity].refuse((rows[quantity] == 0) & (rows.get("voltage", 1.0) != 0), "other than 0 but at 0 V")
+    if "spread" in used and used["spread"].unit in _PERCENT and used[quantity].unit not in _PERCENT:
+        rows["spread"] *= rows[quantity].abs()
+    return rows
+
+
+def _refuse_overlooked(used: Mapping[str, Column], ignored: Sequence[Column]) -> None:
     """Refuse a table without a condition where an ignored column may be it."""
-    units = CONDITIONS[condition]
-    for column in ignored:
-        if any(is_of(_SINE.sub("", column.unit), si) for si in units) if column.unit else column.numeric:
-            measure = _SINE.search(column.name) if condition == "voltage" else None
-            words, effective = _EFFECTIVE[measure and measure.lastindex]
-            meant = f"{condition} ({units[0]}{words})" if words or not column.unit else condition
-            by, head = f", which is taken times {effective:.3g}" if words else "", show(column.head)
-            raise ValueError(
-                f"has no {condition}, and its column {head} may be one; name it by columns, as in {{{head}: '{meant}'}}"
-                f"{by}, or leave it out by {{{head}: ''}}"
-            )
+    for condition, units in _CONDITIONS.items():
+        for column in ignored if condition not in used else ():
+            if any(is_of(_SINE.sub("", column.unit), si) for si in units) if column.unit else column.numeric:
+                head, meant = show(column.head), f"'{condition} ({units[0]})'"
+                meant += " or 'voltage (V peak to peak)'" if condition == "voltage" else ""
+                raise ValueError(
+                    f"has no {condition}, and its column {head} may be one; name it by columns, as in {{{head}: "
+                    f"{meant}}}, or leave it out by {{{head}: ''}}"
+                )
 
 
 def _numbers(column: Column, si: str) -> "pd.Series[float]":
-    """Return the values of a column in SI units; a voltage as the effective value of a sine."""
-    of, unit, effective = column.name, column.unit, 1.0
+    """Return the values of a column in SI units; a voltage as the rms value of a sine."""
+    of, unit, rms = column.name, column.unit, 1.0
     if not unit:
         example = f"write '{of} ({si})' in the head or by columns, and (1) for a number without"
         raise ValueError(f"has {show(column.head)} without a unit; {example}")
     if of == "voltage" and (measure := _SINE.search(unit)):
-        unit, effective = unit[: measure.start()], _EFFECTIVE[measure.lastindex][1]
-    relative = of == "spread" and unit in _PERCENT
+        unit, rms = unit[: measure.start()], _RMS[measure.lastindex or 1]
     allowed = {"N/m": "N/m, or in N for a whole finger", "N": "N, as another column is of a whole finger"}
-    column, si = replace(column, unit=unit), "1" if relative else si
-    values = effective * column.numbers(si, allowed.get(si, "1 or %" if si == "1" else si), of == "spread")
+    si = "1" if of == "spread" and unit in _PERCENT else si
+    column = replace(column, unit=unit)
+    values = rms * column.numbers(si, allowed.get(si, "1 or %" if si == "1" else si), of == "spread")
     if of == "voltage":
         return values.abs()
     if of.startswith("friction"):

@@ -1,26 +1,58 @@
-"""Cautions on states: where the closure is outside of its range or overestimates, or the skin is deep in the screen.
+"""Cautions on a scene and on its states: closures out of range, deep skin, ridges that adhere, breakdown of air.
 
 They belong to a state, whatever computed it: runs, bodies, cheaper models and tables of the microscale take them here.
+
+**Adhesion.** A ridge adheres where its attraction is all that the screen bears. On closures of rough contact ridges can
+do so at a voltage at which the bearing area model has none; the states then depend on the path, and one may not be
+found.
+
+**Breakdown.** A ridge's gap is its equivalent air gap d_eq, and the voltage across it is that of the circuit at each
+instant. It breaks down by :func:`variational.roughness.gaps.breakdown_voltage`, in which the total voltage does
+not count. Where a state has the mean attraction of a drive, a period of the drive counts, in its steady state.
+*Assumption*: skin beside the contact, and ridges above the screen, are not examined.
 """
 
 from collections import Counter, defaultdict
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from fingerpad.model.adhesion import without_load
+from fingerpad.model import drive_loads
+from fingerpad.scene import Scene
+from fingerpad.scene.drive import Drive, drive_of
+from fingerpad.scene.remarks import remarks
+from fingerpad.scene.waveform import Waveform
 from variational.contact.formulation import Formulation
-from variational.roughness.closure import Closure, air_gaps
-from variational.roughness.tabulated import TabulatedClosure
+from variational.roughness.closure import PAST_THE_FOLD, Closure, air_gaps
+from variational.roughness.gaps import breakdown_voltage
 from variational.state import ContactState
 
 Array = NDArray[np.float64]
+Gap = tuple[str, float, float]
+"""Name of a ridge or a state, air gap (m), and voltage (V) of Eq. 3 where the scene has no drive."""
 BALANCED = 0.1
 """Part of the pressure in contact from which its attraction is overestimated by some 8 %."""
 _SHARE = 0.1  # of the contact force, from which ridges outside of the closure's range are mentioned
 _MADE = 1e-6  # of the largest dissipation of a branch at a point: roundoff of the others'
 _DEEP = 0.1  # of the air gap: largest penetration that is of no matter
+_NO_LOAD = 1e-6  # of the contact force: what the balance of forces leaves of a force of zero
+_LIGHT = 1e4  # Pa, of a ridge at the edge of a contact, whose gap is the widest
+
+
+def on_scene(scene: Scene, states: Iterable[ContactState] = (), gaps: Iterable[Gap] = ()) -> list[str]:
+    """Return the cautions on a scene, on states of it, and on gaps in which air breaks down.
+
+    Args:
+        scene: of the states.
+        states: in any order.
+        gaps: of states without ridges.
+    """
+    states, found = list(states), remarks(scene)
+    if states:
+        found += [*on_states(states, scene.closure(), scene.contact.law), *breakdown_in_states(scene, states)]
+    return found + breakdown_in_gaps(scene, gaps)
 
 
 def on_states(
@@ -39,10 +71,11 @@ def on_states(
     if closure is None or not touching:
         return viscous
     charged = [(*_pressures(state), state.voltage) for state in touching if state.voltage]
-    held = without_load(touching, closure)
+    held = _without_load(touching, closure)
     return [*held, *on_closure(closure, charged, "states"), *_deep(touching, closure, formulation), *viscous]
 
 
+# -- closures ------------------------------------------------------------------------------------------
 def on_closure(closure: Closure, points: Sequence[tuple[ArrayLike, ArrayLike, float]], noun: str) -> list[str]:
     """Return how many points have ridges under a tenth of the contact force or more outside of the closure's range.
 
@@ -57,26 +90,19 @@ def on_closure(closure: Closure, points: Sequence[tuple[ArrayLike, ArrayLike, fl
         for pressure, share in zip(np.atleast_1d(p_c), np.atleast_1d(force) / np.sum(force), strict=True):
             borne[closure.state(float(pressure), voltage)] += float(share)
         counts.update(place for place, share in borne.items() if place and share >= _SHARE)
-    return [
+    found = [
         f"in {count} of {len(points)} {noun} the closure is out of its range: the mean pressure of ridges is {place}"
         for place, count in counts.items()
-    ] + _undeformed(closure, points, noun)
-
-
-def _undeformed(closure: Closure, points: Sequence[tuple[ArrayLike, ArrayLike, float]], noun: str) -> list[str]:
-    """Return the caution on attraction in contact that the closure takes as a load, though it is balanced there."""
-    if not isinstance(closure, TabulatedClosure):
-        return []
-    shares = [float(closure.balanced(p_c, voltage).max(initial=0.0)) for p_c, _, voltage in points]
-    count = sum(share >= BALANCED for share in shares)
-    if not count:
-        return []
-    return [
-        f"in {count} of {len(points)} {noun} the closure {type(closure).__name__} overestimates the attraction, which "
-        f"deforms the asperities: it balances up to {100 * min(max(shares), 1.0):.0f} % of the pressure in contact "
-        "(overestimated by 11 % at a share of 14 %, by 85 % at 50 %: docs/microscale.md); the values are upper bounds, "
-        "and roughness.field_in_contact=false gives lower ones"
     ]
+    shares = [float(closure.balanced(p_c, voltage).max(initial=0.0)) for p_c, _, voltage in points]
+    if many := sum(share >= BALANCED for share in shares):
+        found.append(
+            f"in {many} of {len(points)} {noun} the closure {type(closure).__name__} overestimates the attraction, "
+            f"which deforms the asperities: it balances up to {100 * min(max(shares), 1.0):.0f} % of the pressure in "
+            "contact (overestimated by 11 % at a share of 14 %, by 85 % at 50 %: docs/microscale.md); the values are "
+            "upper bounds, and roughness.field_in_contact=false gives lower ones"
+        )
+    return found
 
 
 def _pressures(state: ContactState) -> tuple[Array, Array]:
@@ -116,3 +142,187 @@ def _made_energy(states: Sequence[ContactState]) -> list[str]:
         f"up to {-min(found):.1g} of the largest dissipation: quasi-linear viscoelasticity allows that at large "
         "strain, and no material does"
     ]
+
+
+# -- adhesion ------------------------------------------------------------------------------------------
+def sticking(closure: Closure | None, voltage: float) -> str:
+    """Return that ridges adhere without a load at a voltage (V, of either sign), in words; empty where they do not."""
+    least = None if closure is None else closure.sticking_voltage()
+    if least is None or not abs(voltage) >= least:
+        return ""
+    return f"by the closure {type(closure).__name__} ridges adhere without a load from {least:.3g} V on"
+
+
+def adhering(state: ContactState | None, closure: Closure | None) -> str:
+    """Return which ridge of a state adheres without a load, or is about to come down or let go; empty for none.
+
+    Below the voltage from which a flat ridge adheres the closure may have folds already, where a path can be lost.
+
+    Args:
+        state: the last one that was found.
+        closure: from a ridge's pressure to its air gap.
+    """
+    if closure is None or state is None or state.ridges is None:
+        return ""
+    ridges, at = state.ridges, f"at {state.voltage:.4g} V"
+    inside = np.flatnonzero(ridges.length > 0)
+    folded = [k for k in inside if closure.state(float(ridges.p_c[k]), state.voltage) == PAST_THE_FOLD]
+    words, most = sticking(closure, state.voltage), _most_attracted(state)
+    if not words and not folded:
+        return ""
+    if most is not None and most[1] >= 0:
+        return f"ridge {most[0]} adheres without a load {at}{f': {words}' if words else ''}; take a smaller voltage"
+    if folded:
+        k = max(folded, key=lambda k: ridges.f_contact[k])
+        name = type(closure).__name__
+        by = f": {words}" if words else f" of the closure {name}, where it comes down or lets go at once"
+        return f"ridge {ridges.number[k]} is past the fold {at}{by}; take a smaller voltage or another roughness.law"
+    nearest = at if most is None else f"ridge {most[0]} is nearest to adhering without a load {at}:"
+    return f"{nearest} {words}; take a smaller voltage or another roughness.law"
+
+
+def lost(error: Exception | str, state: ContactState | None, closure: Closure | None) -> str:
+    """Return why a state was not found: the words of a failure, and the ridge of a state before it that adheres.
+
+    Args:
+        error: the failure.
+        state: see :func:`adhering`.
+        closure: from a ridge's pressure to its air gap.
+    """
+    return "; ".join(filter(None, (str(error), adhering(state, closure))))
+
+
+def without_slip(states: Sequence[ContactState], closure: Closure | None) -> list[str]:
+    """Return the caution on a path that ended without full slip where ridges adhere; none where they do not."""
+    words = adhering(states[-1], closure) if states else ""
+    return [f"full slip was not reached, or not held: {words}"] if words else []
+
+
+def _without_load(states: Iterable[ContactState], closure: Closure) -> list[str]:
+    """Return in how many charged states attraction alone holds the finger, and the ridge that adheres most."""
+    charged = [state for state in states if state.voltage]
+    held = [state for state in charged if state.f_ext <= _NO_LOAD * state.f_contact]
+    if not held:
+        return []
+    last, most = held[-1], _most_attracted(held[-1])
+    pull, words = min(last.f_ext, 0.0) + 0.0, sticking(closure, last.voltage)
+    ridge = "" if most is None else f", most by ridge {most[0]}"
+    return [
+        f"in {len(held)} of {len(charged)} charged states the finger adheres without a load{ridge}, at {pull:.3g} N/m "
+        f"and {last.voltage:.4g} V" + (f"; {words}" if words else "")
+    ]
+
+
+def _most_attracted(state: ContactState) -> tuple[int, float] | None:
+    """Return the ridge in contact whose attraction exceeds its contact force most, and by how much (N/m)."""
+    if state.ridges is None or not (state.ridges.length > 0).any():
+        return None
+    excess = np.where(state.ridges.length > 0, state.ridges.f_electrostatic - state.ridges.f_contact, -np.inf)
+    return int(state.ridges.number[int(excess.argmax())]), float(excess.max())
+
+
+# -- breakdown of air ----------------------------------------------------------------------------------
+class _Across(NamedTuple):
+    """Voltage across a gap."""
+
+    where: str
+    """Ridge or state, and the instant, in words."""
+    gap: float
+    """Air gap (m)."""
+    volts: float
+    """Largest amount of the voltage across it (V)."""
+
+
+def breakdown_in_gaps(scene: Scene, gaps: Iterable[Gap]) -> list[str]:
+    """Return the caution on the gap in which air is the farthest beyond breakdown."""
+    drive, h_0 = scene.drive, scene.h_0
+    return _breakdown(
+        _Across(name, gap, abs(voltage) * gap / (gap + h_0)) if drive is None else _over_period(drive, name, gap)
+        for name, gap, voltage in gaps
+    )
+
+
+def breakdown_ahead(scene: Scene) -> list[str]:
+    """Return the caution on the loads of a scene before anything is solved, in the gap of a ridge under 10 kPa.
+
+    Ridges at the edge of a contact bear as little. Their gaps are the widest, and have the largest part of the voltage.
+    """
+    gap, name = float(scene.closure()(_LIGHT).d_eq), f"a ridge under {_LIGHT * 1e-3:g} kPa"
+    if scene.drive is not None:
+        return _breakdown([_over_period(scene.drive, name, gap)])
+    share, loads = drive_loads.gap_factor(scene), scene.loads()
+    part = gap / (gap + scene.h_0) * (1.0 if share is None else float(share(gap)))
+    found = [_Across(name, gap, abs(load.level) * part) for load in loads if load.level]
+    found += [_over_period(_drive(scene, load.wave), name, gap) for load in loads if load.wave is not None]
+    return _breakdown(found)
+
+
+def breakdown_in_states(scene: Scene, states: Iterable[ContactState]) -> list[str]:
+    """Return the caution on the ridge in contact in whose gap air is the farthest beyond breakdown, with the instant.
+
+    Args:
+        scene: that the full model follows.
+        states: in any order; those without a voltage or values by ridge have none.
+    """
+    charged = [state for state in states if state.voltage and state.ridges is not None]
+    return _breakdown([*_instants(scene, charged), *_periods(scene, charged)])
+
+
+def _breakdown(points: Iterable[_Across]) -> list[str]:
+    worst = max(points, key=lambda each: each.volts / float(breakdown_voltage(each.gap)), default=None)
+    if worst is None or not worst.volts > (limit := float(breakdown_voltage(worst.gap))):
+        return []
+    return [
+        f"{worst.volts:.4g} V are across a gap of {1e6 * worst.gap:.3g} µm in {worst.where}, and from "
+        f"{limit:.4g} V on air breaks down there, which is not in this model"
+    ]
+
+
+def _drive(scene: Scene, wave: Waveform) -> Drive:
+    return drive_of(wave, scene.electric, scene.geometry.sc_thickness)
+
+
+def _over_period(drive: Drive, name: str, gap: float) -> _Across:
+    period = np.abs(drive.across(gap))
+    when = int(period.argmax()) / len(period) / drive.frequency
+    return _Across(f"{name} {when:.3g} s after the start of a period", gap, float(period.max()))
+
+
+def _instants(scene: Scene, states: Sequence[ContactState]) -> Iterator[_Across]:
+    """Yield the farthest gap of each state at its voltage."""
+    share, loads = drive_loads.gap_factor(scene), scene.loads()
+    for state in states:
+        touching, gaps = _touching(state)
+        if not len(gaps):
+            continue
+        volts = abs(state.voltage) * (1.0 if share is None else share(gaps)) * gaps / (gaps + scene.h_0)
+        k = int(np.argmax(volts / breakdown_voltage(gaps)))
+        timed = 0 < state.load_number <= len(loads) and loads[state.load_number - 1].takes_time
+        when = f" at {state.time:.4g} s" if timed else ""
+        yield _Across(f"ridge {touching[k]} in {state.load!r}, step {state.step}{when}", gaps[k], volts[k])
+
+
+def _periods(scene: Scene, states: Sequence[ContactState]) -> Iterator[_Across]:
+    """Yield the narrowest and the widest gap under each drive of which states have the mean attraction.
+
+    One of the two is the farthest beyond breakdown: the voltage across a gap rises with it, and the field falls.
+    """
+    of_wave, loads = dict[Waveform, list[tuple[float, str]]](), scene.loads()
+    for state in states:
+        wave = loads[state.load_number - 1].wave if 0 < state.load_number <= len(loads) else None
+        mean = wave is not None and (scene.electric.follows == "mean" or wave.carrier is not None)
+        if scene.drive is not None or mean:
+            places = [f"ridge {number} in {state.load!r}, step {state.step}," for number in _touching(state)[0]]
+            under = wave if scene.drive is None else scene.drive.wave
+            assert under is not None
+            of_wave.setdefault(under, []).extend(zip(map(float, _touching(state)[1]), places, strict=True))
+    for wave, found in of_wave.items():
+        for gap, where in {min(found), max(found)} if found else ():
+            yield _over_period(_drive(scene, wave), where, gap)
+
+
+def _touching(state: ContactState) -> tuple[np.ndarray, np.ndarray]:
+    """Return number and air gap (m) of the ridges in contact."""
+    assert state.ridges is not None
+    inside = state.ridges.length > 0
+    return state.ridges.number[inside], state.ridges.d_eq[inside]

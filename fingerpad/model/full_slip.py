@@ -13,7 +13,7 @@ down yet. Then the state depends on the side from which it is reached.
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
-from fingerpad.model.followed import Share
+from fingerpad.model.drive_loads import GapFactor
 from fingerpad.model.simulation import Simulation
 from variational.coefficients import between
 from variational.contact.friction import Friction
@@ -41,7 +41,7 @@ class Conditions:
     """None where there is never a voltage."""
     h_0: float
     """Effective insulator thickness (m)."""
-    share: Share | None = None
+    share: GapFactor | None = None
     """Of each air gap in a drive; None where no drive of the model has losses."""
 
     @classmethod
@@ -146,6 +146,8 @@ class FullSlips:
             raise StepFailed(f"{state.reached}: full slip is {checked}")
         return replace(solved, state=checked.of(state))
 
-    def _set_laws(self, friction: Friction | None, roughness: Closure | None, h_0: float, share: Share | None) -> None:
+    def _set_laws(
+        self, friction: Friction | None, roughness: Closure | None, h_0: float, share: GapFactor | None
+    ) -> None:
         self.finger.problem.set_laws(friction, h_0, share)
         self.finger.closure = self.finger.coupling.closure = roughness

@@ -36,7 +36,7 @@ from variational.contact.formulation import Formulation
 from variational.materials.material import Material
 
 if TYPE_CHECKING:
-    from fingerpad.model.followed import Share
+    from fingerpad.model.drive_loads import GapFactor
     from fingerpad.scene import Load, Numerics, Scene
 
 COARSER = 2.0
@@ -156,7 +156,7 @@ class FingerModel:
             scene: a checked scene with a ``mesh.touching_half_arc``, see :func:`fingerpad.model.options.by_rule`.
             options: the parts of the model, see :func:`plan`.
         """
-        from fingerpad.model import followed
+        from fingerpad.model import drive_loads
 
         self.options = options
         self.geometry: Fingertip = scene.geometry
@@ -169,8 +169,8 @@ class FingerModel:
         self.friction = scene.friction_law()
         self.closure = scene.closure() if options.voltage else None
         self.h_0 = scene.h_0
-        self.loads = followed.loads(scene)
-        self.share = followed.share(scene)
+        self.loads = drive_loads.loads(scene)
+        self.share = drive_loads.gap_factor(scene)
         self.numerics: Numerics = scene.numerics
         self.asked: Mapping[str, float] = {} if scene.accuracy is None else scene.accuracy.tolerances()
         self.final: MeshSize | None = None
@@ -201,7 +201,7 @@ class FingerModel:
         contact: Formulation | None = None,
         loads: tuple["Load", ...] | None = None,
         numerics: "Numerics | None" = None,
-        share: "Share | None" = None,
+        share: "GapFactor | None" = None,
     ) -> "FingerModel":
         """Return a copy with some values changed, as the attributes are described; those left out stay."""
         found = copy(self)

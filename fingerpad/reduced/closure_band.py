@@ -38,8 +38,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from fingerpad.model.adhesion import sticking
-from fingerpad.model.cautions import BALANCED
+from fingerpad.model.cautions import BALANCED, sticking
 from fingerpad.reduced.cylinders import over_forces
 from fingerpad.results.closures import KNOWN, RECORD
 from fingerpad.scene import Scene
@@ -63,7 +62,6 @@ LAW = "friction law"
 SHEAR_STRESS = Derjaguin(mu_f=0.0, tau_0=1.0)
 """A constant shear stress on ridges in contact (Pa)."""
 OUTSIDE, OWN = "no field in contact", "the result's own closure"
-_SHARED = ("h_0", "h_rms", "wavelength", "young", "p_floor")
 
 
 def closures(own: Closure) -> dict[str, Closure]:
@@ -71,18 +69,18 @@ def closures(own: Closure) -> dict[str, Closure]:
 
     Boundary elements are left out where the package has no table of the ratio of waves or the Hurst exponent.
     """
-    if not isinstance(own, BearingArea | TabulatedClosure):
+    if not own.shared:
         return {}
-    shared = {name: getattr(own, name) for name in _SHARED}
-    waves: dict[str, Any] = {"shortest_wave": own.wavelength / 16, "hurst": 0.75}
-    waves |= {name: getattr(own, name) for name in waves if hasattr(own, name)}
-    found: dict[str, Closure] = {"bearing area": BearingArea(**shared)}
+    surface: dict[str, Any] = {name: getattr(own, name) for name in own.shared}
+    surface = {"shortest_wave": surface["wavelength"] / 16, "hurst": 0.75} | surface
+
+    def like(law: type[Closure], **more: Any) -> Closure:
+        return law(**{name: value for name, value in surface.items() if name in law.shared}, **more)
+
+    found = {"bearing area": like(BearingArea)}
     for law, words in ((BoundaryElements, "boundary elements"), (Persson, "Persson's theory")):
-        measured: dict[str, Any] = {}
-        if law is BoundaryElements and isinstance(own, BoundaryElements):
-            measured["surface"] = own.surface
         for touching, more in ((True, ""), (False, f", {OUTSIDE}")):
-            found[words + more] = law(**shared, **waves, **measured, field_in_contact=touching)
+            found[words + more] = like(law, field_in_contact=touching)
     return {words: law for words, law in found.items() if _is_there(law)}
 
 
@@ -162,12 +160,10 @@ def friction(scene: Scene, slip: ContactState, law: Closure, press: ContactState
 
 def _solved(scene: Scene, slip: ContactState, law: Closure, press: ContactState | None, tips: float = 1.0) -> Slip:
     """Return :func:`friction`; raise SceneError without an equilibrium, and for a finger that is none of cylinders."""
-    found = _cylinders(scene if scene.supply is not None else _at(scene, slip.voltage), slip, law, press, tips)
-    if not isinstance(law, TabulatedClosure):
-        return Slip(found.mu_app)
+    found = _cylinders(scene if scene.drive is not None else _at(scene, slip.voltage), slip, law, press, tips)
     p_c = found.f_contact / found.contact_length
-    voltage = slip.voltage if scene.supply is None else float(scene.supply.effective(law(p_c).d_eq))
-    if p_c > law.pressures[1]:
+    voltage = slip.voltage if scene.drive is None else float(scene.drive.effective(law(p_c).d_eq))
+    if p_c > law.pressures[1] and not law.extrapolates:
         return Slip(np.inf, _adhere(scene, law, voltage) or "the ridges' pressure is beyond the table")
     balanced = float(law.balanced(p_c, voltage))
     return Slip(found.mu_app, balanced=balanced if balanced >= BALANCED else 0.0)
@@ -189,7 +185,7 @@ def _at(scene: Scene, voltage: float) -> Scene:
 
 def _adhere(scene: Scene, law: Closure, voltage: float) -> str:
     """Return that ridges adhere, empty where they do not; the voltage that a circuit leaves is another by closure."""
-    under = f"at {voltage:.4g} V" if scene.supply is None else "under the drive"
+    under = f"at {voltage:.4g} V" if scene.drive is None else "under the drive"
     return f"ridges adhere {under}" if sticking(law, voltage) else ""
 
 
@@ -306,7 +302,7 @@ def changes(
         LAW: [(scene.model_copy(update={"friction": law}), own, 1.0) for law in laws],
         "tips": [(scene, own, tips) for tips in TIPS],
     }
-    if isinstance(own, BearingArea | TabulatedClosure):
+    if own.shared:
         found["roughness"] = [(scene, replace(own, h_rms=factor * own.h_rms), 1.0) for factor in CHANGE]
         found["coating"] = [(*_coated(scene, own, factor), 1.0) for factor in CHANGE]
     return found

@@ -152,7 +152,7 @@ def _given(scene: Scene, pull: float) -> dict[str, Any]:
 
     A constant voltage has no losses, so without a drive the keys of :data:`_OF_DRIVES` are those of the default scene.
     """
-    if scene.supply is None:
+    if scene.drive is None:
         default = Scene().electric
         lossless = {key: getattr(default, key) for key in _OF_DRIVES}
         scene = scene.model_copy(update={"electric": scene.electric.model_copy(update=lossless)})

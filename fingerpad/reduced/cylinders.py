@@ -2,16 +2,11 @@ r"""The model "cylinders": every ridge in contact the same charged cylinder, an 
 
 n ridges bear :math:`f = f_{ext} / n` each; :mod:`variational.attraction.cylinder` gives contact force, attraction and
 air gap of a ridge. Friction at full slip is the limit of the friction law at the mean pressure, over the length in
-contact; Coulomb's is :math:`f_T = \mu_0 (f_{ext} + f_{el})`. The number of ridges in
-contact and the length of their contact depend on the finger. They come from a :class:`Footprint` of normal contact and
-full slip:
-
-- :func:`fitted`: of the default finger *without* voltage, or of one similar to it
-  (:mod:`fingerpad.reduced.similarity`), interpolated between full runs. The modulus E* of the
-  cylinders is then the one with which Hertz's law gives that length, which includes finite strain, layers and
-  shear. The length under voltage follows from Maugis's equations. More shear stress stiffens the ridges, see below.
-- :func:`given`: the length *at* the scene's voltage, from a user or a run. E* is the stratum corneum's,
-  :math:`2 G_0 / (1 - \nu)`, and acts on the attraction beyond the contact's ends alone.
+contact; Coulomb's is :math:`f_T = \mu_0 (f_{ext} + f_{el})`. The number of ridges in contact and the length of their
+contact are those of the default finger *without* voltage, or of one similar to it
+(:mod:`fingerpad.reduced.similarity`), interpolated between full runs. The modulus E* of the cylinders is then the one
+with which Hertz's law gives that length, which includes finite strain, layers and shear. The length under voltage
+follows from Maugis's equations. More shear stress stiffens the ridges, see below.
 
 **Shear.** The table's finger has a friction coefficient of 0.25. Stronger friction leans the finger and its ridges
 further; their trailing sides lift, and the contact is shorter, about in proportion to the shear stress (Forsbach et al.
@@ -37,13 +32,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from fingerpad.model import breakdown
-from fingerpad.model.adhesion import sticking
-from fingerpad.model.cautions import on_states
+from fingerpad.model.cautions import on_scene, sticking
 from fingerpad.reduced import cylinder_errors, uncharged
-from fingerpad.reduced.footprint import Footprint
-from fingerpad.reduced.footprint import from_run as from_run
-from fingerpad.reduced.footprint import given as given
 from fingerpad.reduced.model import STATES, Model, reduced_state, refuse_others
 from fingerpad.reduced.similarity import Similar, similar
 from fingerpad.results.answer import MODEL_ERROR, Cost
@@ -53,7 +43,7 @@ from fingerpad.results.states import WORDS
 from fingerpad.scene import Scene, SceneError
 from fingerpad.scene.fingers import ADULT
 from fingerpad.scene.messages import show
-from fingerpad.scene.remarks import coefficient, leakage, remarks, skin_modulus, used
+from fingerpad.scene.remarks import coefficient, leakage, used
 from fingerpad.slices import errors
 from geometry.parameters import Fingertip
 from geometry.profiles import Profiles
@@ -67,31 +57,6 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 SHEAR = 10.0
 """What the modulus of a ridge gains, over the shear stress beyond that of the default friction coefficient."""
-_ELSE = (
-    "take the model 'full', fingerpad run, a minute or two; or give its contact to compare: --contact-length and "
-    "--ridges, or the --run of a folder"
-)
-
-
-def fitted(scene: Scene) -> Footprint:
-    """Return the default finger's contact without voltage, by interpolation of logarithms between full runs.
-
-    Raises:
-        SceneError: the scene's finger is another one.
-    """
-    default, scaled = _default(), _scaled(scene)
-    source = "uncharged contact length interpolated between full runs of the default finger"
-    f_ext = scene.f_ext / scaled.force
-    low, high = uncharged.FORCES[0], uncharged.FORCES[-1]
-    if not low <= f_ext <= high:
-        source = f"uncharged contact length extrapolated from full runs at {low:g} to {high:g} N/m"
-    source += f", {scaled.words}" if scaled.words else ""
-    if scene.friction != default.friction:
-        source += f"; that of full slip with a friction coefficient of {default.friction:g}, and shorter by more shear"
-    length = {state: scaled.length * float(uncharged.lengths(f_ext, state)) for state in STATES}
-    return Footprint(length, {state: int(uncharged.ridges(f_ext, state)) for state in STATES}, False, source)
-
-
 _default = cache(Scene)
 
 
@@ -102,9 +67,22 @@ def _scaled(scene: Scene) -> Similar:
         whose = "" if scene.finger == ADULT else f" of finger {show(scene.finger)}"
         raise SceneError(
             f"{found}{whose} is not that of the default finger or of one similar to it, whose contact length is known; "
-            f"{_ELSE}"
+            "take the model 'full', fingerpad run, a minute or two"
         )
     return found
+
+
+def _source(scene: Scene, scaled: Similar) -> str:
+    """Return in words where the contact length is from."""
+    default, f_ext = _default(), scene.f_ext / scaled.force
+    source = "uncharged contact length interpolated between full runs of the default finger"
+    low, high = uncharged.FORCES[0], uncharged.FORCES[-1]
+    if not low <= f_ext <= high:
+        source = f"uncharged contact length extrapolated from full runs at {low:g} to {high:g} N/m"
+    source += f", {scaled.words}" if scaled.words else ""
+    if scene.friction != default.friction:
+        source += f"; that of full slip with a friction coefficient of {default.friction:g}, and shorter by more shear"
+    return source
 
 
 def indentation(f_ext: float, state: str, scaled: Similar | None = None) -> float:
@@ -120,19 +98,15 @@ def indentation(f_ext: float, state: str, scaled: Similar | None = None) -> floa
 
 
 class Cylinders(Model):
-    """Every ridge in contact the same charged cylinder, over a footprint; without one it is the default finger's."""
+    """Every ridge in contact the same charged cylinder."""
 
     name, words = "cylinders", "A closed form of charged cylinders"
     traces = "traces of charged cylinders, indentations without voltage"
-
-    def __init__(self, footprint: Footprint | None = None) -> None:
-        """Take the footprint, which is known at one force alone where it is given."""
-        self._footprint = footprint
-        self.sums = footprint is None
+    sums = True
 
     def solve(self, scene: Scene, context: "RunContext") -> Result:
         """Return the answer of :func:`solve`."""
-        return solve(scene, self._footprint)
+        return solve(scene)
 
     def over_forces(
         self, scene: Scene, f_ext: Sequence[float], state: str, solve: Callable[[Scene], Result]
@@ -161,35 +135,33 @@ class Cylinders(Model):
         return replace(section, scene=scene, finger=finger, record=record, cautions=tuple(cautions))
 
 
-def solve(scene: Scene, footprint: Footprint | None = None) -> Result:
-    """Return the answer of the cylinders; without a footprint it is the default finger's.
+def solve(scene: Scene) -> Result:
+    """Return the answer of the cylinders.
 
     Raises:
-        SceneError: a scene with a history, another finger than the footprint's, or ridges that do not stay.
+        SceneError: a scene with a history, a finger that is not similar to the default one, or ridges that do not stay.
     """
     start = time.process_time()
     refuse_others(scene, Cylinders.name)
-    footprint = footprint or fitted(scene)
-    found: dict[str, ContactState] = {}
+    source, ridges = _source(scene, _scaled(scene)), dict[str, RidgeState]()
     exact = "a closed form, without a mesh: no discretisation error but that of the contact length it is given"
-    cautions, states = [*remarks(scene)], dict[str, RidgeState]()
+    cautions, found = list[str](), dict[str, ContactState]()
     for state in STATES:
-        n, length = np.array([footprint.ridges[state]]), np.array([footprint.length[state]])
-        ((found[state], states[state]),) = _solved(scene, [scene.f_ext], length, n, state, footprint.charged)
-        cautions += _others(state, states[state])
-    known = {} if footprint.charged else cylinder_errors.errors(scene.model_copy(update={"force": None}), found)
-    cautions += [] if footprint.charged else cylinder_errors.cautions(scene, _pull(found["full_slip"]))
+        ((found[state], ridges[state]),) = _over_forces(scene, [scene.f_ext], state)
+        cautions += _others(state, ridges[state])
+    known = cylinder_errors.errors(scene.model_copy(update={"force": None}), found)
+    cautions += cylinder_errors.cautions(scene, _pull(found["full_slip"]))
     notes = (
-        footprint.source,
+        source,
         exact,
         cylinder_errors.in_words(known),
         "the bone's height is not in this model",
         *leakage(scene),
     )
-    cautions += on_states(found.values(), scene.closure())
-    cautions += breakdown.of_gaps(scene, [(WORDS[state], ridge.d_eq, scene.volts) for state, ridge in states.items()])
+    gaps = [(WORDS[state], ridge.d_eq, scene.volts) for state, ridge in ridges.items()]
+    cautions += on_scene(scene, found.values(), gaps)
     more: dict[str, Any] = {
-        f"{state}_{name}": getattr(ridge, name) for state, ridge in states.items() for name in ("p_c", "d_eq")
+        f"{state}_{name}": getattr(ridge, name) for state, ridge in ridges.items() for name in ("p_c", "d_eq")
     }
     more |= {"laws": used(scene), MODEL_ERROR: known}
     found = {name: replace(each, error=_errors(each, known.get(name, {}))) for name, each in found.items()}
@@ -222,6 +194,18 @@ def over_forces(
         SceneError: as :func:`solve`, but for what is wrong with the other state alone.
     """
     refuse_others(scene, Cylinders.name)
+    return [found for found, _ in _over_forces(scene, f_ext, state, press, tips, shear)]
+
+
+def _over_forces(
+    scene: Scene,
+    f_ext: Sequence[float],
+    state: str,
+    press: Sequence[ContactState] = (),
+    tips: float = 1.0,
+    shear: float = SHEAR,
+) -> list[tuple[ContactState, RidgeState]]:
+    """Return the states of :func:`over_forces`, and those of a ridge."""
     if press:
         length = np.array([each.contact_length for each in press])
         ridges = np.array([each.ridges_in_contact for each in press])
@@ -229,41 +213,12 @@ def over_forces(
         scaled = _scaled(scene)
         of_default = np.array(f_ext) / scaled.force
         length, ridges = scaled.length * uncharged.lengths(of_default, state), uncharged.ridges(of_default, state)
-    return [found for found, _ in _solved(scene, f_ext, tips**0.5 * length, ridges, state, tips=tips, shear=shear)]
-
-
-def _solved(
-    scene: Scene,
-    f_ext: Sequence[float],
-    length: Array,
-    ridges: NDArray[np.int_],
-    state: str,
-    charged: bool = False,
-    tips: float = 1.0,
-    shear: float = SHEAR,
-) -> list[tuple[ContactState, RidgeState]]:
-    """Return a state of a scene under external forces (N/m), and that of its ridges.
-
-    Args:
-        scene: with the voltage of all.
-        f_ext: external forces (N/m).
-        length: contact length (m) under each.
-        ridges: in contact under each.
-        state: ``charged`` or ``full_slip``.
-        charged: whether the lengths are those at the voltage.
-        tips: radius of the ridges' tips over that of the scene.
-        shear: in place of :data:`SHEAR`.
-    """
     radius, closure = tips * tip_radius(scene.geometry), scene.closure()
-    forces, length = np.array(f_ext) / ridges, length / ridges
-    voltage = scene.volts if scene.supply is None else scene.supply.effective
+    forces, lengths = np.array(f_ext) / ridges, tips**0.5 * length / ridges
+    moduli, stiffening = hertz_modulus(radius, forces, lengths), _stiffening(scene, state, shear)
+    voltage = scene.volts if scene.drive is None else scene.drive.effective
     try:
-        if charged:
-            cylinder = Cylinder(radius, skin_modulus(scene), scene.h_0, closure)
-            found = [cylinder.over_length(*each, voltage) for each in zip(length, forces, strict=True)]
-        else:
-            moduli, stiffening = hertz_modulus(radius, forces, length), _stiffening(scene, state, shear)
-            found = Cylinder(radius, moduli, scene.h_0, closure, stiffening).under_loads(forces, voltage)
+        found = Cylinder(radius, moduli, scene.h_0, closure, stiffening).under_loads(forces, voltage)
     except NoEquilibriumError as error:
         why = "; ".join(filter(None, (str(error), sticking(closure, scene.volts))))
         raise SceneError(f"{WORDS[state]} of the model 'cylinders': {why}") from None

@@ -19,7 +19,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from fingerpad.scene.modulation import shape
+from fingerpad.scene.waveform import shape
 from variational.attraction.circuit import GapCircuit
 
 Array = NDArray[np.float64]
@@ -81,7 +81,7 @@ def of_wave(circuit: GapCircuit, wave: str, frequency: float, layers: tuple[floa
 
     Args:
         circuit: of the gap.
-        wave: as for :func:`fingerpad.scene.modulation.shape`.
+        wave: as for :func:`fingerpad.scene.waveform.shape`.
         frequency: of the wave (Hz).
         layers: gap (m), d_i (m), eps_i, d_sc (m).
 

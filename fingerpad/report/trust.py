@@ -4,6 +4,7 @@ import math
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, NamedTuple
 
+from fingerpad.accuracy.richardson import FEW_FACETS
 from fingerpad.reduced.cylinder_errors import in_words
 from fingerpad.reduced.registry import follows_path
 from fingerpad.report import page as html
@@ -11,7 +12,6 @@ from fingerpad.report.known import bars
 from fingerpad.report.page import BAD, CARE, GOOD
 from fingerpad.results.closures import KNOWN, why_not_known
 from fingerpad.results.states import called
-from fingerpad.richardson import FEW_FACETS
 from fingerpad.scene.remarks import coefficient
 from variational.state import ContactState
 

@@ -223,7 +223,7 @@ def _change(
         after: its value.
         unit: of both.
     """
-    drive = result.scene.supply is not None
+    drive = result.scene.drive is not None
     if before is None or not volts:
         under = "under the drive" if drive else f"and {volts:.4g} V"
         (shown,) = _numbers(after)

@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterable, MutableMapping, Sequence
 from dataclasses import dataclass, fields, replace
 from typing import Any
 
-from fingerpad.richardson import plus_minus
+from fingerpad.accuracy.richardson import plus_minus
 from fingerpad.scene.messages import SceneError, show
 from geometry.units import in_si
 from variational.state import EXTREMES as EXTREMES

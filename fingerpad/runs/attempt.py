@@ -9,7 +9,7 @@ from fingerpad.accuracy.refinement import Refinement
 from fingerpad.accuracy.solves import Solves
 from fingerpad.accuracy.states import StateRecorder
 from fingerpad.accuracy.whole_path import WholePath
-from fingerpad.model.adhesion import lost
+from fingerpad.model.cautions import lost
 from fingerpad.model.finger import Step, meshed
 from fingerpad.model.options import FingerModel
 from fingerpad.model.report import Clock, Report

@@ -2,27 +2,26 @@
 
 A scene's folder is named by a hash of all its parameters: run again, a sweep computes only what has changed, and runs
 that were cut short go on from their checkpoints. The hash does not depend on the program: after a change of the
-mechanics the folder must be deleted. A process is ``python3 -m fingerpad.runs.batch SCENE.json FOLDER LIMIT MODEL``.
+mechanics the folder must be deleted. A process is ``python3 -m fingerpad.runs.solve SCENE.json FOLDER LIMIT MODEL``.
 """
 
 import fcntl
 import hashlib
 import json
 import os
-import sys
-import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from concurrent.futures import Executor
+from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, NamedTuple
 
-from fingerpad.reduced.registry import find
 from fingerpad.results.files import below, lock_file, replace_json
-from fingerpad.results.folder import FolderError, identity
+from fingerpad.results.folder import identity
 from fingerpad.results.terminal import between, watched
-from fingerpad.runs.context import RunContext
-from fingerpad.runs.processes import End, Pool, limit_processor_time, run
-from fingerpad.runs.solve import OF_THE_MACHINE, Summary, ended, gone_on, summary
-from fingerpad.scene import Scene, SceneError, from_data
+from fingerpad.runs import processes
+from fingerpad.runs.context import OUT_OF_MEMORY, Summary, ended, summary
+from fingerpad.runs.processes import End, run
+from fingerpad.scene import Scene
 from fingerpad.scene.reading import DEFAULT_MODEL
 
 if TYPE_CHECKING:
@@ -73,13 +72,43 @@ def times_left(took: Sequence[float], left: int, jobs: int) -> tuple[float, floa
     return (rounds - 1) * low + low / 2, rounds * max(high, 1.25 * low)
 
 
-def _said(summary: Summary) -> str:
+def _description(summary: Summary) -> str:
     """Return what became of a run that did not fail, in words; of a whole finger where the force is on it."""
     if "force" in summary.get("parameters", {}):
         mu_app = summary["finger"]["states"].get("full_slip", {}).get("mu_app")
     else:
         mu_app = summary.get("full_slip_mu_app")
     return "done" if mu_app is None else f"done, µ_app {mu_app:.4f}"
+
+
+def point(parameters: Mapping[str, Any], folder: str, limit: float, model: str, law_folders: Sequence[str] = ()) -> End:
+    """Run a scene in a fresh process into its own folder, unless it is done; any machine with that folder can do it.
+
+    Args:
+        parameters: of the scene, ready for JSON.
+        folder: of the scene's results.
+        limit: processor time (s).
+        model: a name of :data:`fingerpad.reduced.registry.MODELS`.
+        law_folders: of laws of one's own.
+    """
+    place = Path(folder)
+    place.mkdir(parents=True, exist_ok=True)
+    with lock_file(place / "lock") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)  # another sweep may be at it
+        if ended(summary(place)) is not None:
+            return End(0, "", "", "")
+        (place / "summary.json").unlink(missing_ok=True)  # of a run that says nothing of this one
+        replace_json(place / "asked.json", dict(parameters))
+        return run("fingerpad.runs.solve", [str(place / "asked.json"), folder, str(limit), model], limit, law_folders)
+
+
+class Task(NamedTuple):
+    """Points of a sweep that one process computes."""
+
+    points: Sequence[str]
+    """Their names, in order."""
+    call: Callable[[], End]
+    """Starts the process and waits for it."""
 
 
 def sweep(
@@ -89,83 +118,81 @@ def sweep(
     limit: float = _LIMIT,
     model: str = DEFAULT_MODEL,
     quiet: bool = False,
+    executor: Executor | None = None,
 ) -> dict[str, Summary]:
-    """Run what has not been run yet, with a progress bar.
+    """Run what has not been run yet, each scene by :func:`point`; see :func:`finish`.
 
     Args:
         scenes: by name.
         folder: of all results.
-        jobs: processes at a time.
+        jobs: processes at a time, without an executor.
         limit: seconds of processor time for one scene.
         model: a name of :data:`fingerpad.reduced.registry.MODELS`, of one that meshes.
         quiet: whether to print nothing, and show no bar.
-
-    Returns:
-        The summaries by name. That of a run that crashed, took too long, had too little memory or was asked to stop
-        holds ``failure`` alone, and it goes on the next time; what it left is in its folder.
+        executor: of ``concurrent.futures``, whose workers share the folder.
     """
-
-    def kept(name: str) -> Summary | None:
-        return result(scenes[name], folder)
-
-    broken: dict[str, Summary] = {}
-    took: list[float] = []  # s, of each run
-
-    def job(name: str) -> End:
-        place = below(folder, key(scenes[name]))
-        place.mkdir(parents=True, exist_ok=True)
-        with lock_file(place / "lock") as lock:
-            fcntl.flock(lock, fcntl.LOCK_EX)  # another sweep may be at it
-            if kept(name) is not None:
-                return End(0, "", "", "")
-            (place / "summary.json").unlink(missing_ok=True)  # of a run that says nothing of this one
-            replace_json(place / "asked.json", scenes[name].parameters())
-            start = time.monotonic()
-            given = [str(place / "asked.json"), str(place), str(limit), model]
-            end = run("fingerpad.runs.batch", given, limit, scenes[name].law_folders())
-            took.append(time.monotonic() - start)
-            return end
-
-    def done(name: str, end: End, left: int) -> None:
-        found = kept(name)
-        if found is None:
-            crashed = f"{end.reason}: {end.message}" if end.reason else "INTERRUPTED"
-            said = (summary(folder / key(scenes[name])) or {}).get("failure", "")
-            of_process = end.message if end.code == os.EX_TEMPFAIL else crashed
-            broken[name] = {"failure": said if OF_THE_MACHINE in said else of_process}
-        if quiet:
-            return
-        words = (found or broken[name]).get("failure") or _said(found or {})
-        rest = f"; {between(*times_left(took, left, jobs))} left" if left and took else ""
-        text = f"{name}: {words} ({len(missing) - left} of {len(missing)}{rest})"
-        bar.console.print(text, highlight=False, markup=False, soft_wrap=True)
-        bar.update(task, advance=1, description=f"scenes{rest.replace(';', ',')}")
-
-    missing = [name for name in scenes if kept(name) is None]
-    with progress(quiet) as bar:
-        task = bar.add_task("scenes", total=len(missing))
-        Pool[str, End](job, jobs).run(missing, done)
-    return {name: kept(name) or broken[name] for name in scenes}
+    tasks = []
+    for name, scene in scenes.items():
+        if result(scene, folder) is None:
+            place = str(below(folder, key(scene)).absolute())
+            tasks.append(Task([name], partial(point, scene.parameters(), place, limit, model, scene.law_folders())))
+    return finish(scenes, tasks, folder, jobs, quiet, executor)
 
 
-def main(scene: Path, folder: Path, model: str) -> None:
-    """Run a scene into a folder, from its checkpoint where it has one.
+def finish(
+    scenes: Mapping[str, Scene],
+    tasks: Sequence[Task],
+    folder: Path,
+    jobs: int,
+    quiet: bool = False,
+    executor: Executor | None = None,
+) -> dict[str, Summary]:
+    """Do tasks with a line for each point and a progress bar.
 
     Args:
-        scene: file of its parameters in JSON.
-        folder: of the results.
-        model: a name of :data:`fingerpad.reduced.registry.MODELS`.
+        scenes: by name, those of all tasks and those that are finished already.
+        tasks: of the others.
+        folder: of all results.
+        jobs: processes at a time, without an executor.
+        quiet: whether to print nothing, and show no bar.
+        executor: of ``concurrent.futures``.
+
+    Returns:
+        The summaries by name. That of a point that crashed, took too long, had too little memory or was asked to stop
+        holds ``failure`` alone, and it goes on the next time; what it left is in its folder.
     """
-    asked, way = from_data(json.loads(scene.read_text(encoding="utf-8"))), find(model)
-    try:
-        gone_on(asked, way, RunContext(folder, lines=way.path, bar=way.path, report=False))
-    except FolderError as error:  # another run is at it, or the disk is full: it may be gone the next time
-        print(error, file=sys.stderr)
-        sys.exit(os.EX_TEMPFAIL)
-    except SceneError as error:  # it would be the same the next time
-        replace_json(folder / "summary.json", {"failure": str(error)})
+    left = {k: [*task.points] for k, task in enumerate(tasks)}
+    total = sum(map(len, left.values()))
+    timed = executor is None and total == len(tasks)
+    lost, took = dict[str, Summary](), list[float]()
 
+    def report(name: str, found: Summary) -> None:
+        if not quiet:
+            count = sum(map(len, left.values()))
+            rest = f"; {between(*times_left(took, count, jobs))} left" if timed and count and took else ""
+            words = found.get("failure") or _description(found)
+            text = f"{name}: {words} ({total - count} of {total}{rest})"
+            bar.console.print(text, highlight=False, markup=False, soft_wrap=True)
+            bar.update(shown, advance=1, description=f"points{rest.replace(';', ',')}")
 
-if __name__ == "__main__":
-    limit_processor_time(float(sys.argv[3]))
-    main(Path(sys.argv[1]), Path(sys.argv[2]), sys.argv[4])
+    def look() -> None:
+        for names in left.values():  # the end of a task tells of its last point
+            while len(names) > 1 and (found := result(scenes[names[0]], folder)) is not None:
+                report(names.pop(0), found)
+
+    def done(k: int, end: End, _: int) -> None:
+        took.extend([end.seconds] if end.seconds else [])
+        while left[k]:
+            name = left[k].pop(0)
+            found = result(scenes[name], folder)
+            if found is None:
+                failure = f"{end.reason}: {end.message}" if end.reason else "INTERRUPTED"
+                failure = end.message if end.code == os.EX_TEMPFAIL else failure
+                before = (summary(folder / key(scenes[name])) or {}).get("failure", "")
+                found = lost[name] = {"failure": before if OUT_OF_MEMORY in before else failure}
+            report(name, found)
+
+    with progress(quiet) as bar:
+        shown = bar.add_task("points", total=total)
+        processes.finish({k: task.call for k, task in enumerate(tasks)}, done, jobs, executor, look)
+    return {name: result(scene, folder) or lost[name] for name, scene in scenes.items()}

@@ -40,7 +40,7 @@ _BEGIN = {"press": "uncharged", "charge": "charged"}  # traces by the load that 
 
 
 @dataclass
-class Followed:
+class TraceStates:
     """A trace, with some of its states to be solved for again on the scene's own mesh."""
 
     top: float
@@ -50,7 +50,7 @@ class Followed:
     """Those, at growing forces, the last one about at the centre of the finger."""
 
 
-class Again(Exception):  # noqa: N818
+class RestartTraces(Exception):  # noqa: N818
     """The traces must be followed again with another model."""
 
     def __init__(self, restart: RestartRequired) -> None:
@@ -74,7 +74,7 @@ class Branches:
         comm: MPI.Comm,
         on_step: Callable[[Step, float], None],
         on_trace: Callable[[str], None],
-        kept: dict[str, Followed],
+        kept: dict[str, TraceStates],
         pause: Callable[[], None],
         outputs: Sequence[Output] = (),
     ) -> None:
@@ -94,7 +94,7 @@ class Branches:
         self._reach = Reach(scene, self._made)
         with computed():
             light = max(LIGHT, traces.SMALLEST / self._reach.top)
-            self.section = traces.history(scene.replace(force=None), "full_slip", self._reach.top, light)
+            self.section = traces.history(scene.replace(force=None), self._reach.top, light)
         self.kept, self.found, self.counts, self.force_error = kept, dict[str, Traced](), Counts(), 0.0
         self._solved: Solved | None = None  # the last full slip
 
@@ -105,7 +105,7 @@ class Branches:
             model: whose loads are those of :attr:`section` up to full slip.
 
         Raises:
-            Again: more must be part of the model.
+            RestartTraces: more must be part of the model.
             StepFailed: a state was not found.
             ValueError: full slip depends on its past.
         """
@@ -116,7 +116,7 @@ class Branches:
         conditions = Conditions.of(model)
         try:
             if (restart := simulation.run()) is not None:
-                raise Again(restart)
+                raise RestartTraces(restart)
             if "full_slip" in traces.states(self._scene):
                 self._solved = self._slips.first(conditions)
                 self.found["full_slip"] = self._reach.follow("full_slip")
@@ -131,7 +131,7 @@ class Branches:
         if name is not None:
             self.found[name] = self._reach.follow(name)
 
-    def _made(self, name: str, top: float, tries: int) -> Traced:
+    def _made(self, name: str, top: float) -> Traced:
         """Return the trace of a state to a largest force."""
         followed = self.kept.get(name)
         if followed is None or followed.top != top:
@@ -143,26 +143,26 @@ class Branches:
         made = trace(followed.states, self._scene.geometry.ridge_wavelength, smooth, self._outputs)
         return Traced(made, followed.states)
 
-    def _raised(self, name: str, top: float) -> Followed:
+    def _raised(self, name: str, top: float) -> TraceStates:
         """Return the trace of normal contact from the present state on."""
-        simulation, found = self._simulation, Followed(top)
+        simulation, found = self._simulation, TraceStates(top)
         voltage = simulation.states[-1].voltage
         with simulation.aside(), computed():
             forces = (KEPT * top, top / traces.MARGIN, top)
             loads = [Load(name="raise", f_ext=force) for force in forces]
             simulation.reach(loads, lambda: self._anchor(found, name))
             if simulation.restart is not None:
-                raise Again(simulation.restart)
+                raise RestartTraces(simulation.restart)
             del found.anchors[-1]  # the end, beyond the centre
             found.states = [s for s in simulation.states if s.voltage == voltage and s.load != FIRST_TOUCH]
         return found
 
-    def _slipped(self, top: float) -> Followed:
+    def _slipped(self, top: float) -> TraceStates:
         """Return the trace of full slip, each state solved for from the one before."""
         slips, now = self._slips, self._solved
         assert now is not None
         before = self.kept.get("full_slip") if now.state.reached != "path" else None
-        found = Followed(top, [now.state]) if before is None else replace(before, top=top)
+        found = TraceStates(top, [now.state]) if before is None else replace(before, top=top)
         anchors = (KEPT * top, top / traces.MARGIN)
         for force in _forces(now.conditions.f_ext, top, anchors):
             self._pause()
@@ -172,7 +172,7 @@ class Branches:
                 if isinstance(error, Interrupted):
                     raise
                 if self._simulation.restart is not None:
-                    raise Again(self._simulation.restart) from None
+                    raise RestartTraces(self._simulation.restart) from None
                 if force in (*anchors, top):
                     raise
                 continue  # the trace has one point less
@@ -182,7 +182,7 @@ class Branches:
         self._solved = slips.checked(now)
         return found
 
-    def _anchor(self, found: Followed, name: str) -> None:
+    def _anchor(self, found: TraceStates, name: str) -> None:
         """Keep the present state as one to be solved for again; collective."""
         self._recorder.keep(name)
         found.anchors.append(self._recorder.states[name])

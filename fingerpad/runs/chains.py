@@ -3,15 +3,16 @@
 import fcntl
 import itertools
 import json
-import threading
 from collections.abc import Iterator, Mapping, Sequence
+from concurrent.futures import Executor
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 from fingerpad.results.files import lock_file, replace_json
 from fingerpad.runs import batch
-from fingerpad.runs.processes import End, Pool, run
-from fingerpad.runs.solve import Summary
+from fingerpad.runs.context import Summary
+from fingerpad.runs.processes import End, run
 from fingerpad.scene import Scene, SceneError, law_name
 from fingerpad.scene.law_keys import parameters
 from fingerpad.scene.messages import show
@@ -22,10 +23,9 @@ _FREE = ("f_ext", "voltage", "friction", "roughness", "electric", "slide_length"
 _SHORTEST = 8  # points of a chain, of which the first takes the time of some fifteen others
 _LIMIT = 4 * 3600.0  # s of processor time for a chain
 _LEFT_OUT = "with states='full_slip' it must be left out, or give states='all'"
-_LOOK = 1.0  # s between two looks for points that are finished
 
 
-def refuse_others(scene: Scene) -> None:
+def check_supported(scene: Scene) -> None:
     """Refuse a scene of which full slip is not that of press, charge and slide under a force per length, or has a past.
 
     Raises:
@@ -45,26 +45,44 @@ def refuse_others(scene: Scene) -> None:
         )
 
 
-def sweep(scenes: Mapping[str, Scene], folder: Path, jobs: int, quiet: bool) -> dict[str, Summary]:
-    """Solve what has not been solved yet, with a progress bar.
+def sweep(
+    scenes: Mapping[str, Scene], folder: Path, jobs: int, quiet: bool, executor: Executor | None = None
+) -> dict[str, Summary]:
+    """Solve what has not been solved yet; see :func:`fingerpad.runs.batch.finish`.
 
     Args:
         scenes: by name, each beside the one before.
         folder: of all results.
-        jobs: processes at a time.
+        jobs: processes at a time; with an executor the number of chains, at most.
         quiet: whether to print nothing, and show no bar.
-
-    Returns:
-        The summaries by name; of a point whose process ended before, with its ``failure`` alone.
+        executor: of ``concurrent.futures``, whose workers share the folder.
     """
+    folder = folder.absolute()
     folder.mkdir(parents=True, exist_ok=True)
     with lock_file(folder / "lock") as lock:
         fcntl.flock(lock, fcntl.LOCK_EX)  # another sweep may be at it
-        missing = [name for name in scenes if batch.result(scenes[name], folder) is None]
-        asked = list(chains({name: scenes[name] for name in missing}, jobs))
-        ends = _followed(scenes, asked, missing, folder, jobs, quiet)
-    lost = {"failure": next((f"{end.reason}: {end.message}" for end in ends if end.reason), "INTERRUPTED")}
-    return {name: batch.result(scene, folder) or lost for name, scene in scenes.items()}
+        missing = {name: scene for name, scene in scenes.items() if batch.result(scene, folder) is None}
+        half_arc, tasks, files = _half_arc([*missing.values()]), list[batch.Task](), list[Path]()
+        for k, names in enumerate(chains(missing, jobs)):
+            files.append(folder / f"chain_{k}.json")
+            replace_json(files[-1], {"half_arc": half_arc, "scenes": [missing[name].parameters() for name in names]})
+            law_folders = sorted({place for name in names for place in missing[name].law_folders()})
+            tasks.append(batch.Task(names, partial(chain, str(files[-1]), str(folder), law_folders)))
+        found = batch.finish(scenes, tasks, folder, jobs, quiet, executor)
+        for file in files:
+            file.unlink(missing_ok=True)
+    return found
+
+
+def chain(file: str, folder: str, law_folders: Sequence[str]) -> End:
+    """Follow a chain in a fresh process, which writes each point into its own folder.
+
+    Args:
+        file: of the chain's scenes.
+        folder: of all results.
+        law_folders: of laws of one's own.
+    """
+    return run("fingerpad.runs.full_slip", [file, folder, str(_LIMIT)], _LIMIT, law_folders)
 
 
 def chains(scenes: Mapping[str, Scene], jobs: int) -> Iterator[list[str]]:
@@ -87,52 +105,6 @@ def chains(scenes: Mapping[str, Scene], jobs: int) -> Iterator[list[str]]:
 def _kind(law: Any) -> tuple[str, dict[str, Any]]:
     """Return a law's name and its parameters that are no numbers."""
     return type(law).__name__, {name: value for name, value in parameters(law).items() if isinstance(value, bool | str)}
-
-
-def _followed(
-    scenes: Mapping[str, Scene], asked: list[list[str]], missing: list[str], folder: Path, jobs: int, quiet: bool
-) -> list[End]:
-    """Follow chains in processes of their own; return how these ended."""
-    ends: list[End] = []
-    files = [folder / f"chain_{k}.json" for k in range(len(asked))]
-    half_arc = _half_arc([scenes[name] for name in missing])
-    for file, names in zip(files, asked, strict=True):
-        replace_json(file, {"half_arc": half_arc, "scenes": [scenes[name].parameters() for name in names]})
-
-    def job(k: int) -> End:
-        folders = sorted({place for name in asked[k] for place in scenes[name].law_folders()})
-        return run("fingerpad.runs.chain", [str(files[k]), str(folder), str(_LIMIT)], _LIMIT, folders)
-
-    stop = threading.Event()
-    with batch.progress(quiet) as bar:
-        task, left = bar.add_task("states of full slip", total=len(missing)), list(missing)
-
-        def look() -> None:
-            for name in [*left]:
-                found = batch.result(scenes[name], folder)
-                if found is None:
-                    continue
-                left.remove(name)
-                if not quiet:
-                    words = found.get("failure") or f"µ_app {found['full_slip_mu_app']:.4f}"
-                    bar.console.print(f"{name}: {words}", highlight=False, markup=False, soft_wrap=True)
-                bar.update(task, advance=1)
-
-        def watch() -> None:
-            while not stop.wait(_LOOK):
-                look()
-
-        watcher = threading.Thread(target=watch, daemon=True)
-        watcher.start()
-        try:
-            Pool[int, End](job, jobs).run(range(len(asked)), lambda k, end, left: ends.append(end))
-        finally:
-            stop.set()
-            watcher.join()
-        look()
-    for file in files:
-        file.unlink(missing_ok=True)
-    return ends
 
 
 def _half_arc(scenes: Sequence[Scene]) -> float | None:

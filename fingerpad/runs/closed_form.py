@@ -58,11 +58,10 @@ class ClosedForm:
         """
         try:
             self.model.check(scene)
-            solve: traces.Solve = lambda each, _: self.section(each)  # noqa: E731
             if scene.force is not None:
-                return traces.whole(scene, self.model, solve)
+                return traces.whole(scene, self.model, self.section)
             section = self.section(scene)
-            return traces.with_sum(section, self.model, solve) if self.model.sums else section
+            return traces.with_sum(section, self.model, self.section) if self.model.sums else section
         except LawError as error:
             raise SceneError(str(error)) from error
 
@@ -82,9 +81,8 @@ class ClosedForm:
     def _total(self, scene: Scene) -> Total:
         section = scene.model_copy(update={"force": None})
 
-        def traced(name: str, top: float, _: int) -> traces.Traced:
-            solve: traces.Solve = lambda each, _: self.section(each)  # noqa: E731
-            return traces.Traced(*of_points(section, self.model, solve, name, scene.centre_force, top))
+        def traced(name: str, top: float) -> traces.Traced:
+            return traces.Traced(*of_points(section, self.model, self.section, name, scene.centre_force, top))
 
         found = traces.Reach(scene, traced).follow(STATE).total
         assert found is not None

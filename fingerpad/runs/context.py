@@ -1,19 +1,27 @@
 """What a run has beside its scene: ranks, folder, console, report, and where it goes on."""
 
+import json
 from collections.abc import Callable, Sequence
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from fingerpad import launcher
-from fingerpad.results.folder import Folder, Serial
+from fingerpad.results.files import has_other_format, read_object
+from fingerpad.results.folder import Folder, Serial, identity
 from fingerpad.results.quantities import Output
 from fingerpad.scene import Scene
 from variational.state import ContactState
 
 if TYPE_CHECKING:
     from fingerpad.startup import MPI
+
+Summary = dict[str, Any]
+OUT_OF_MEMORY = "MUMPS_OUT_OF_MEMORY"
+"""Failure caused by the machine; the run can be repeated."""
+BEGUN = "begun"
+"""Key of a summary that was written before what follows from its states, for runs that end in between."""
 
 
 @dataclass(frozen=True)
@@ -59,3 +67,26 @@ class RunContext:
         if self.folder is None:
             return nullcontext()
         return Folder(self.folder, scene.parameters(), self.ranks, model)
+
+
+# -- what an earlier run has left in a folder -------------------------------------------------------------------
+def finished(scene: Scene, place: Path) -> Summary | None:
+    """Return the summary of a scene that has been run in a folder of its own to its end; None of another scene's."""
+    found = ended(summary(place))
+    own = json.loads(json.dumps(identity(scene.parameters())))
+    return found if found is not None and identity(found.get("parameters", {})) == own else None
+
+
+def ended(found: Summary | None) -> Summary | None:
+    """Return a summary; None of a run that was stopped or killed or had too little memory, and of another format."""
+    if found is None or OUT_OF_MEMORY in str(found.get("failure")):
+        return None
+    return None if found.get("interrupted") or BEGUN in found or has_other_format(found) else found
+
+
+def summary(place: Path) -> Summary | None:
+    """Return the summary in a folder; None without one, or with one that was damaged."""
+    try:
+        return read_object(place / "summary.json")
+    except (OSError, ValueError):
+        return None

@@ -1,7 +1,7 @@
 """The friction of a drive over its period, and whether it is felt: quasi-static, by the closed form.
 
 At each instant of a period the finger is at full slip under the attraction of that instant. It is that of the model
-"cylinders" at the voltage of Eq. 3 that a ridge of its own air gap has then (:mod:`fingerpad.scene.supply`). Friction
+"cylinders" at the voltage of Eq. 3 that a ridge of its own air gap has then (:mod:`fingerpad.scene.drive`). Friction
 and air gap are computed at :data:`POINTS` voltages, evenly in their square, and interpolated by monotone cubic curves.
 """
 
@@ -13,15 +13,15 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from fingerpad.model import breakdown
+from fingerpad.model.cautions import on_scene
 from fingerpad.reduced import detection
 from fingerpad.reduced.cylinders import Cylinders
 from fingerpad.runs.context import RunContext
 from fingerpad.runs.solve import solved
 from fingerpad.scene import Scene
+from fingerpad.scene.drive import REFERENCE, Drive
 from fingerpad.scene.messages import SceneError
-from fingerpad.scene.remarks import leakage, remarks
-from fingerpad.scene.supply import REFERENCE, Supply
+from fingerpad.scene.remarks import leakage
 from geometry.units import computed
 
 if TYPE_CHECKING:
@@ -54,7 +54,7 @@ class Threshold:
 
 
 @dataclass(frozen=True)
-class Drive:
+class DrivenFriction:
     """What a drive does: arrays over one period, all of shape (samples,)."""
 
     scene: Scene
@@ -109,7 +109,7 @@ class Drive:
         return over_period(drawn, title, None if path is None else Path(path))
 
 
-def drive(scene: Scene) -> Drive:
+def drive(scene: Scene) -> DrivenFriction:
     """Return what the drive of a scene does over its period, by the closed form in less than a second.
 
     Args:
@@ -118,33 +118,33 @@ def drive(scene: Scene) -> Drive:
     Raises:
         SceneError: its voltage is a number, or the model "cylinders" has no answer.
     """
-    supply = scene.supply
-    if supply is None:
+    given = scene.drive
+    if given is None:
         raise SceneError(
             f"voltage is {scene.volts:g} V; it must be a drive, as in voltage = {{waveform = 'sine', amplitude = 200, "
             "frequency = 100}"
         )
-    squares, friction, gaps = _curve(scene, supply)
-    gap: Array = np.full(len(supply.voltages), gaps[0])
+    squares, friction, gaps = _curve(scene, given)
+    gap: Array = np.full(len(given.voltages), gaps[0])
     for _ in range(_ITERATIONS):
-        volts = supply.instants(gap)
+        volts = given.instants(gap)
         before, gap = gap, _monotone(squares, gaps, volts**2)
         if np.all(np.abs(gap - before) <= _SAME * gap):
             break
     f_t = _monotone(squares, friction, volts**2)
     amplitude = 2 / len(f_t) * np.abs(np.fft.rfft(f_t))[1:]
-    sigma = supply.pressure(volts, gap)
-    time = np.arange(len(f_t)) / len(f_t) / supply.frequency
+    sigma = given.pressure(volts, gap)
+    time = np.arange(len(f_t)) / len(f_t) / given.frequency
     least = float(gap[int(np.argmax(volts))])
-    said = [*remarks(scene), *breakdown.of_gaps(scene, [("full slip", least, 0.0)])]
-    notes = [*leakage(scene), *(f"! {text}" for text in said)]
-    if 2 * (supply.wave.frequency or supply.frequency) > _QUASI_STATIC:
+    cautions = on_scene(scene, gaps=[("full slip", least, 0.0)])
+    notes = [*leakage(scene), *(f"! {text}" for text in cautions)]
+    if 2 * (given.wave.frequency or given.frequency) > _QUASI_STATIC:
         notes.append(
             f"! friction varies faster than {_QUASI_STATIC:g} Hz, where inertia of the skin begins to matter: "
             "amplitudes are quasi-static"
         )
-    frequency = supply.frequency * np.arange(1, len(amplitude) + 1)
-    return Drive(scene, time, supply.voltages, sigma, f_t, frequency, amplitude, tuple(notes))
+    frequency = given.frequency * np.arange(1, len(amplitude) + 1)
+    return DrivenFriction(scene, time, given.voltages, sigma, f_t, frequency, amplitude, tuple(notes))
 
 
 def thresholds(scene: Scene, frequencies: Sequence[float] = FREQUENCIES) -> list[Threshold]:
@@ -174,7 +174,7 @@ def thresholds(scene: Scene, frequencies: Sequence[float] = FREQUENCIES) -> list
     return found
 
 
-def _curve(scene: Scene, supply: Supply) -> tuple[Array, Array, Array]:
+def _curve(scene: Scene, given: Drive) -> tuple[Array, Array, Array]:
     """Return squares of voltages (V²), and there the friction force and the air gap of a ridge (m)."""
     model, context = Cylinders(), RunContext()
 
@@ -188,7 +188,7 @@ def _curve(scene: Scene, supply: Supply) -> tuple[Array, Array, Array]:
         return force, float(found.record["full_slip_d_eq"])
 
     still = at(0.0)
-    most = supply.largest(_MARGIN * still[1], still[1])
+    most = given.largest(_MARGIN * still[1], still[1])
     squares = np.linspace(0.0, most**2, POINTS)
     values = np.array([still, *(at(float(np.sqrt(square))) for square in squares[1:])])
     return squares, np.array(values[:, 0]), np.array(values[:, 1])

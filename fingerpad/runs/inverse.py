@@ -197,7 +197,7 @@ def solve(
         raise SceneError(f"{given}; give one quantity and its value, such as mu_app=0.4")
     form = ClosedForm(Cylinders() if way.path else way)
     form.model.check(scene)
-    if over == "voltage" and scene.supply is not None:
+    if over == "voltage" and scene.drive is not None:
         raise SceneError("voltage is a drive and over is voltage; give one of its keys, as voltage.rms")
     newtons = over == "force" or (scene.force is not None and over != "f_ext")
     ((name, value),), notes = target.items(), list[str]()

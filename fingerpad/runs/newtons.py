@@ -5,8 +5,7 @@ large as the scene's. The state of each trace about at the centre of the finger,
 (:data:`fingerpad.runs.branches.KEPT`), are solved for again on the scene's own mesh, finest where their contact ends.
 These correct the traces (:mod:`fingerpad.slices.correction`); the stability of those at the centre is examined there.
 
-Where full slip depends on its past, where an accuracy is asked for, or where a state is not found this way, the traces
-are runs of their own (:mod:`fingerpad.slices.traces`).
+A scene of which a state is not found this way, or that asks for an accuracy, is refused with the reason.
 """
 
 from collections.abc import Sequence
@@ -17,7 +16,7 @@ from typing import Any
 import fingerpad.startup  # noqa: F401
 from fingerpad.accuracy.solves import solve_again
 from fingerpad.accuracy.states import State
-from fingerpad.model import followed
+from fingerpad.model import drive_loads
 from fingerpad.model.finger import Step
 from fingerpad.model.options import FingerModel, by_rule, plan
 from fingerpad.model.report import Clock
@@ -29,7 +28,7 @@ from fingerpad.results.quantities import PENALTY, Output
 from fingerpad.results.result import Result
 from fingerpad.results.states import WORDS
 from fingerpad.results.terminal import Console
-from fingerpad.runs.branches import Again, Branches, Followed
+from fingerpad.runs.branches import Branches, RestartTraces, TraceStates
 from fingerpad.runs.checkpoint import Checkpoint, checkpoint_of, read
 from fingerpad.runs.context import RunContext
 from fingerpad.runs.post import Entry, cautions_on, kept, of_outputs
@@ -44,16 +43,11 @@ from fingerpad.slices.trace import TraceError
 from fingerpad.slices.traces import Traced
 from fingerpad.startup import MPI
 from geometry.profiles import GeometryError
-from variational.coefficients import LawError
 from variational.element import ELEMENTS
 from variational.solvers.continuation import StepFailed
 from variational.solvers.outcome import Counts
 
 _WORDS = "traces of the full model on coarser elements, corrected on those of the scene,"
-
-
-class Unsuited(Exception):  # noqa: N818
-    """Why the traces must be runs of their own, in words."""
 
 
 def run(scene: Scene, context: RunContext) -> Result:
@@ -68,11 +62,14 @@ def run(scene: Scene, context: RunContext) -> Result:
         stopped it.
 
     Raises:
-        SceneError: a profile that does not fit, or a force that no trace reached.
-        Unsuited: the traces must be runs of their own.
+        SceneError: an accuracy is asked for, the profile does not fit, no trace reached the force, or a state was not
+            found.
     """
     if scene.accuracy is not None:
-        raise Unsuited("an accuracy is asked for")
+        raise SceneError(
+            f"accuracy is given and force is {scene.force:g} N; the traces of a force have the errors of their own two "
+            "meshes, so leave the accuracy out and make mesh.contact smaller, or give f_ext instead"
+        )
     comm = context.comm or MPI.COMM_WORLD
     all_together(comm)
     check_options(comm, scene.numerics.element)
@@ -85,12 +82,11 @@ def run(scene: Scene, context: RunContext) -> Result:
             failure = f"{str(stopped).partition(';')[0]} of the {made.doing}; the same command goes on with it"
             bare = Result(scene, DEFAULT_MODEL, None, None, None, failure=failure, interrupted=stopped.signal.name)
             return replace(bare, cost=made.clock.cost(made.branches.counts, 0))
-        except (BeyondTrace, TraceError) as error:  # of the corrected trace, which other ridges can make too short
-            raise Unsuited(str(error)) from error
-        except (SceneError, LawError):  # a run of its own would be refused as well
-            raise
-        except (StepFailed, GeometryError, ValueError) as error:
-            raise Unsuited(str(error)) from error
+        except (BeyondTrace, TraceError, StepFailed, GeometryError) as error:
+            raise SceneError(
+                f"force is {scene.force:g} N, and the {made.doing} failed: {error}; give f_ext, of the middle section, "
+                "or use the model 'cylinders'"
+            ) from error
         result = kept(bare, context, [cautions, *of_outputs(context.outputs)])
         if checkpoint is not None and comm.rank == 0:
             checkpoint.delete()
@@ -125,7 +121,7 @@ class _Newtons:
         section, states = self.branches.section, traces.states(self._scene)
         model = FingerModel(by_rule(section), replace(plan(section), receptors=False, errors=False))
         loads = model.loads[: 1 + bool(self._scene.volts) + ("full_slip" in states)]
-        model = model.changed(loads=loads, share=followed.share(self._scene))
+        model = model.changed(loads=loads, share=drive_loads.gap_factor(self._scene))
         model = model.changed(mesh=model.coarser(model.mesh), final=model.mesh)
         self._console.expect(1 + len(states))
         self._console.head()
@@ -134,7 +130,7 @@ class _Newtons:
             try:
                 self.branches.follow(model)
                 break
-            except Again as again:
+            except RestartTraces as again:
                 self._restarts.append(again.restart.reason)
                 self._console.show(f"fingerpad: {again.restart.reason}; all traces again")
                 self.branches.kept, model = {}, again.restart.model
@@ -159,16 +155,16 @@ class _Newtons:
         if self._checkpoint is not None and self._comm.rank == 0:
             self._checkpoint.write({"traces": self.branches.kept, "seconds": seconds})
 
-    def _earlier(self) -> dict[str, Followed]:
+    def _earlier(self) -> dict[str, TraceStates]:
         """Return the traces that an earlier command finished; collective."""
         if self._checkpoint is None:
             return {}
         try:
-            kept = read(self._checkpoint, self._comm, (Followed,))
+            kept = read(self._checkpoint, self._comm, (TraceStates,))
         except CheckpointError:  # nothing to go on from
             return {}
         self.clock.earlier(*kept["seconds"])
-        found: dict[str, Followed] = kept["traces"]
+        found: dict[str, TraceStates] = kept["traces"]
         return found
 
     # -- on the scene's own mesh -----------------------------------------------------------------------
@@ -235,7 +231,7 @@ class _Newtons:
         }
         if stiffer is not None:
             carried[PENALTY] = penalty_errors(pairs[-1].fine, stiffer.state, wavelength, made.own)
-        return Traced(made, each.states, None, at_force(finger, made, force, count), pairs[-1].fine, carried)
+        return Traced(made, each.states, at_force(finger, made, force, count), pairs[-1].fine, carried)
 
     def _record(self, model: FingerModel) -> dict[str, Any]:
         """Return what the summary holds besides, ready for JSON."""

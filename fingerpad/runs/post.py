@@ -19,12 +19,10 @@ from fingerpad.results.folder import Serial
 from fingerpad.results.quantities import Output, checked
 from fingerpad.results.result import Result
 from fingerpad.results.writing import Writer
-from fingerpad.runs.context import RunContext
+from fingerpad.runs.context import BEGUN, RunContext
 from fingerpad.scene.messages import SceneError, alike, clip
 from variational.state import ContactState
 
-BEGUN = "begun"
-"""Key of a summary that was written before the entries, for runs that end in between."""
 _LONGEST = 300  # characters of a failure in a note, whose traceback is in run.log
 _BEGUN = "The run ended before what follows from its states was computed: no newtons, bands, cautions or pictures."
 
@@ -52,19 +50,16 @@ def with_cautions(result: Result, found: Iterable[str]) -> Result:
 
 def _cautions(result: Result, states: Sequence[ContactState]) -> Result:
     """Return a result of the full model with the notes on its drives, and the cautions on scene, states and loads."""
-    from fingerpad.model import breakdown, cautions
-    from fingerpad.model.adhesion import without_slip
+    from fingerpad.model.cautions import on_scene, without_slip
     from fingerpad.results.over_time import NOTE
     from fingerpad.results.states import long_steps
-    from fingerpad.scene.remarks import leakage, remarks
+    from fingerpad.scene.remarks import leakage
 
     scene, loads = result.scene, result.scene.loads()
     notes = [*leakage(scene), *([NOTE] if any(load.takes_time for load in loads) else [])]
     lacks_slip = result.full_slip is None and any(load.until_full_slip for load in loads) and not result.failure
     found = [
-        *remarks(scene),
-        *cautions.on_states(states, scene.closure(), scene.contact.law),
-        *breakdown.of_states(scene, states),
+        *on_scene(scene, states),
         *long_steps(result.loads, result.record.get("force_error", 0.0)),
         *(without_slip(states, scene.closure()) if lacks_slip else []),
     ]

@@ -1,9 +1,8 @@
-"""Jobs in processes of their own, a few at a time.
+"""Jobs in processes of their own, a few at a time, started by threads or by any executor of ``concurrent.futures``.
 
-A job that is killed, crashes in the linear solver or takes too long costs that job and no other: a thread of the pool
-only waits for a fresh process, which, unlike a worker of a process pool, can be stopped by itself. Time is that of the
-processor, the same on a busy machine. What ends the program stops its jobs, too, also where it is killed: each gets
-SIGTERM.
+A job that is killed, crashes in the linear solver or takes too long costs that job and no other: a thread, or a worker
+of an executor, only waits for a fresh process, which can be stopped by itself. Time is processor time, the same on a
+busy machine. What ends the program or the worker stops its jobs, too, also where it is killed: each gets SIGTERM.
 """
 
 import ctypes
@@ -15,25 +14,24 @@ import subprocess
 import sys
 import threading
 import time
-from collections.abc import Callable, Iterable, Iterator, Sequence
-from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from concurrent.futures import FIRST_COMPLETED, Executor, Future, ThreadPoolExecutor, wait
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from types import FrameType
-from typing import Generic, TypeVar
+from typing import TypeVar
 
 from fingerpad.scene.law_code import LAWS, entries
 
 _ROOT = Path(__file__).resolve().parents[2]
 _LAUNCHERS = ("OMPI_", "PMIX_", "PMI_", "PRTE_", "MV2_")  # by whose variables MPI takes a process for a rank of theirs
 _STUCK = 20  # times its limit that a job may take by the clock
-_RUNNING = set[subprocess.Popen[str]]()  # of all pools: a signal is to the program
+_RUNNING = set[subprocess.Popen[str]]()  # of all threads: a signal is to the program
 _STOPPED = threading.Event()
 _PROGRAM, _SIGNAL_OF_PARENT = "FINGERPAD_PROGRAM", 1  # whose job a process is; PR_SET_PDEATHSIG of <sys/prctl.h>
 _NOTICED = 0.5  # s after which a signal is seen at the latest
 Key = TypeVar("Key")
-Result = TypeVar("Result")
 
 
 @dataclass(frozen=True)
@@ -42,9 +40,11 @@ class End:
 
     code: int
     reason: str
-    """TIME_LIMIT, STUCK, STOPPED, CRASH with the exit code, or nothing if it ended by itself without an error."""
+    """TIME_LIMIT, STUCK, STOPPED, LOST, CRASH with the exit code, or nothing if it ended without an error."""
     message: str
     stdout: str
+    seconds: float = 0.0
+    """Elapsed time; 0 where it was not begun or did not end by itself."""
 
 
 def limit_processor_time(seconds: float) -> None:
@@ -64,7 +64,7 @@ def run(module: str, arguments: Sequence[str], limit: float, folders: Sequence[s
     Args:
         module: calls :func:`limit_processor_time`.
         arguments: of its command line.
-        limit: what it calls it with; a twentieth of the time it may take by the clock.
+        limit: processor time (s); wall time is limited to 20 times this.
         folders: of laws of one's own.
     """
     path, laws = os.pathsep.join([str(_ROOT), *entries("PYTHONPATH")]), os.pathsep.join([*entries(LAWS), *folders])
@@ -74,6 +74,7 @@ def run(module: str, arguments: Sequence[str], limit: float, folders: Sequence[s
     command = [sys.executable, "-P", "-m", module, *arguments]  # -P: no modules of the current folder
     if _STOPPED.is_set():  # while the job waited for its turn
         return End(-signal.SIGTERM, "STOPPED", "a signal came before it began", "")
+    start = time.monotonic()
     process = subprocess.Popen(command, env=env, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
     _RUNNING.add(process)
     try:
@@ -90,7 +91,7 @@ def run(module: str, arguments: Sequence[str], limit: float, folders: Sequence[s
         return End(process.returncode, "TIME_LIMIT", f"not done after {limit:g} s of processor time", out)
     last = (errors.strip().splitlines() or ["no message"])[-1]
     reason = f"CRASH_{process.returncode}" if process.returncode else ""
-    return End(process.returncode, reason, last if reason else "", out)
+    return End(process.returncode, reason, last if reason else "", out, time.monotonic() - start)
 
 
 @contextmanager
@@ -125,47 +126,48 @@ def _stopped_by_signals() -> Iterator[None]:
             signal.signal(number, signal.SIG_DFL)
 
 
-@dataclass(frozen=True)
-class Pool(Generic[Key, Result]):
-    """Runs jobs.
+def finish(
+    calls: Mapping[Key, Callable[[], End]],
+    done: Callable[[Key, End, int], None],
+    jobs: int,
+    executor: Executor | None = None,
+    look: Callable[[], None] = lambda: None,
+) -> None:
+    """Make calls and wait for them.
 
-    Attributes:
-        job: from a key to what becomes of it; waits for its process.
-        jobs: processes at a time.
-        hours: after which no further one is started.
+    Args:
+        calls: by key, in order; each waits for a process of :func:`run`. An executor must be able to pickle them.
+        done: called with each key, how its process ended, and the number of those left.
+        jobs: processes at a time, without an executor.
+        executor: of ``concurrent.futures``; by default threads of this process. It stays open.
+        look: called in between, at least every :data:`_NOTICED` s.
+
+    Raises:
+        KeyboardInterrupt: SIGINT, after the processes of this program have ended.
+        SystemExit: SIGTERM or SIGHUP, after the processes of this program have ended.
     """
+    own = ThreadPoolExecutor(jobs) if executor is None else None
+    running: dict[Future[End], Key] = {}
+    try:
+        with _stopped_by_signals():
+            for key, call in calls.items():
+                running[(executor or own).submit(call)] = key  # type: ignore[union-attr]
+            while running:
+                ended, _ = wait(running, timeout=_NOTICED, return_when=FIRST_COMPLETED)  # then a signal is seen
+                look()
+                for future in ended:
+                    done(running.pop(future), _end(future), len(running))
+    finally:
+        for future in running:
+            future.cancel()
+        if own is not None:
+            own.shutdown(cancel_futures=True)
+        _STOPPED.clear()  # all processes have ended
 
-    job: Callable[[Key], Result]
-    jobs: int
-    hours: float = math.inf
 
-    def run(self, keys: Iterable[Key], done: Callable[[Key, Result, int], None]) -> int:
-        """Run all jobs in order.
-
-        Args:
-            keys: of the jobs.
-            done: called with each key, its result and the number of those left.
-
-        Returns:
-            The number of jobs that were not started for want of time.
-
-        Raises:
-            KeyboardInterrupt: SIGINT, after the jobs that were running have ended.
-            SystemExit: SIGTERM or SIGHUP, after the jobs that were running have ended.
-        """
-        waiting, stop = list(keys), time.monotonic() + 3600 * self.hours
-        running: dict[Future[Result], Key] = {}
-        try:
-            with ThreadPoolExecutor(self.jobs) as pool, _stopped_by_signals():
-                while running or (waiting and time.monotonic() < stop):
-                    while waiting and len(running) < self.jobs and time.monotonic() < stop:
-                        key = waiting.pop(0)
-                        running[pool.submit(self.job, key)] = key
-                    # A signal just before the wait is seen after it only.
-                    ended, _ = wait(running, timeout=_NOTICED, return_when=FIRST_COMPLETED)
-                    for future in ended:
-                        key = running.pop(future)
-                        done(key, future.result(), len(waiting) + len(running))
-        finally:
-            _STOPPED.clear()  # all jobs have ended
-        return len(waiting)
+def _end(future: Future[End]) -> End:
+    """Return how a process ended; LOST where the worker of an executor that waited for it is gone."""
+    try:
+        return future.result()
+    except Exception as error:  # of any executor
+        return End(1, "LOST", f"{type(error).__name__}: {error}", "")

@@ -3,6 +3,7 @@
 import json
 import os
 import signal
+import sys
 import warnings
 from collections.abc import Callable, Sequence
 from dataclasses import replace
@@ -11,29 +12,25 @@ from typing import TYPE_CHECKING, Any
 
 from fingerpad import launcher
 from fingerpad.launcher import needed_by, source, version
-from fingerpad.model import breakdown
+from fingerpad.model.cautions import breakdown_ahead
 from fingerpad.reduced.registry import find
-from fingerpad.results.files import below, has_other_format, read_object
-from fingerpad.results.folder import CheckpointError, Serial, identity, on_rank_0
+from fingerpad.results.files import replace_json
+from fingerpad.results.folder import CheckpointError, FolderError, Serial, on_rank_0
 from fingerpad.results.quantities import Output
 from fingerpad.results.quantities import checked as checked_outputs
 from fingerpad.results.result import Result
-from fingerpad.runs.context import RunContext
-from fingerpad.runs.post import BEGUN, Entry, kept, of_outputs
-from fingerpad.scene import Scene
+from fingerpad.runs.context import RunContext, finished
+from fingerpad.runs.post import Entry, kept, of_outputs
+from fingerpad.runs.processes import limit_processor_time
+from fingerpad.scene import Scene, from_data
 from fingerpad.scene.messages import SceneError, show
 from fingerpad.scene.reading import DEFAULT_MODEL, flat
-from fingerpad.scene.supply import REFERENCE
 from variational.coefficients import LawError
 from variational.state import ContactState
 
 if TYPE_CHECKING:
     from fingerpad.reduced.model import Model
     from fingerpad.startup import MPI
-
-Summary = dict[str, Any]
-OF_THE_MACHINE = "MUMPS_OUT_OF_MEMORY"
-"""A failure that says nothing of the scene."""
 
 
 def run(
@@ -80,7 +77,7 @@ def run(
         raise SceneError(
             f"resume is true, out is {show(out)} and model {show(model)}; only a full run in a folder can go on"
         )
-    for caution in breakdown.ahead(scene.resolved()) if way.path and launcher.rank() == 0 else ():
+    for caution in breakdown_ahead(scene.resolved()) if way.path and launcher.rank() == 0 else ():
         warnings.warn(caution, stacklevel=2)
     context = RunContext(None if out is None else Path(out), comm, resume=resume, outputs=outputs, on_step=on_step)
     result = solved(scene, way, context)
@@ -140,7 +137,7 @@ def _section(scene: Scene, model: "Model", context: RunContext) -> Result:
         from fingerpad.slices import traces
 
         here = replace(context, folder=None)
-        return traces.with_sum(result, model, lambda each, _: _solved(each, model, here), context.outputs)
+        return traces.with_sum(result, model, lambda each: _solved(each, model, here), context.outputs)
 
     own = [Entry("newtons of the whole finger", lambda *_: model.sums, with_sum), *of_outputs(context.outputs)]
     return kept(result, context, own)
@@ -183,11 +180,7 @@ def _refuse_different(scene: Scene, comm: "MPI.Comm | Serial") -> None:
 
 
 def _whole(scene: Scene, model: "Model", context: RunContext) -> Result:
-    """Return the result of a force on the whole finger: a sweep of scenes without one, each in a folder of its own.
-
-    What an earlier run of the same scene has finished is taken from there, and what it began goes on.
-    """
-    from fingerpad.model import followed
+    """Return the result of a force on the whole finger; what an earlier run has finished is taken from its folder."""
     from fingerpad.slices import traces
 
     with context.place(scene, model.name) as place:
@@ -195,29 +188,15 @@ def _whole(scene: Scene, model: "Model", context: RunContext) -> Result:
             if on_rank_0(context.ranks, lambda: finished(scene, place.folder) is not None):
                 return Result.load(place.folder)
             place.take()  # the scene is then there for those who go on with it
-    notes = list[str]()
     if model.path:
         with needed_by(f"the model {model.name!r}"):
             from fingerpad.runs import newtons  # finite elements
         _refuse_different(scene, context.ranks)
         model.check(scene)
-        try:
-            return newtons.run(scene, context)
-        except newtons.Unsuited as why:
-            notes = [f"The traces are runs of their own: {why}."]
-            if followed.share(scene) is not None:
-                notes.append(f"All ridges then have the share of the drive at a gap of {1e6 * REFERENCE:g} µm.")
-
-    def solve(each: Scene, name: str) -> Result:
-        if not model.path:
-            return _solved(each, model, replace(context, folder=None))
-        if context.lines and context.ranks.rank == 0:
-            print(f"\nTrace of the cross-section, {name.replace('_', ' ')}", flush=True)
-        return gone_on(each, model, replace(context, folder=context.folder and below(context.folder, name)))
-
-    found = traces.whole(scene, model, solve, context.outputs)
-    found = replace(found, notes=(*found.notes, *notes))
-    return found if found.interrupted else kept(found, context, of_outputs(context.outputs))
+        return newtons.run(scene, context)
+    here = replace(context, folder=None)
+    found = traces.whole(scene, model, lambda each: _solved(each, model, here), context.outputs)
+    return kept(found, context, of_outputs(context.outputs))
 
 
 def gone_on(scene: Scene, model: "Model", context: RunContext) -> Result:
@@ -233,23 +212,24 @@ def gone_on(scene: Scene, model: "Model", context: RunContext) -> Result:
         return solved(scene, model, replace(context, resume=False))
 
 
-def finished(scene: Scene, place: Path) -> Summary | None:
-    """Return the summary of a scene that has been run in a folder of its own to its end; None of another scene's."""
-    found = ended(summary(place))
-    own = json.loads(json.dumps(identity(scene.parameters())))
-    return found if found is not None and identity(found.get("parameters", {})) == own else None
+def main(file: Path, folder: Path, model: str) -> None:
+    """Run a point of a sweep into its folder, from its checkpoint where it has one.
 
-
-def ended(found: Summary | None) -> Summary | None:
-    """Return a summary; None of a run that was stopped or killed or had too little memory, and of another format."""
-    if found is None or OF_THE_MACHINE in str(found.get("failure")):
-        return None
-    return None if found.get("interrupted") or BEGUN in found or has_other_format(found) else found
-
-
-def summary(place: Path) -> Summary | None:
-    """Return the summary in a folder; None without one, or with one that was damaged."""
+    Args:
+        file: the scene's parameters in JSON.
+        folder: of the results.
+        model: a name of :data:`fingerpad.reduced.registry.MODELS`.
+    """
+    scene, way = from_data(json.loads(file.read_text(encoding="utf-8"))), find(model)
     try:
-        return read_object(place / "summary.json")
-    except (OSError, ValueError):
-        return None
+        gone_on(scene, way, RunContext(folder, lines=way.path, bar=way.path, report=False))
+    except FolderError as error:  # another run is at it, or the disk is full: it may be gone the next time
+        print(error, file=sys.stderr)
+        sys.exit(os.EX_TEMPFAIL)
+    except SceneError as error:  # it would be the same the next time
+        replace_json(folder / "summary.json", {"failure": str(error)})
+
+
+if __name__ == "__main__":
+    limit_processor_time(float(sys.argv[3]))
+    main(Path(sys.argv[1]), Path(sys.argv[2]), sys.argv[4])

@@ -4,6 +4,7 @@ import itertools
 import math
 import os
 from collections.abc import Mapping, Sequence
+from concurrent.futures import Executor
 from dataclasses import replace
 from numbers import Integral
 from pathlib import Path
@@ -19,6 +20,7 @@ from fingerpad.results.files import FORMAT, below, check_folder, replace_json
 from fingerpad.results.quantities import Output
 from fingerpad.results.quantities import checked as checked_outputs
 from fingerpad.results.result import Result
+from fingerpad.runs import batch, chains
 from fingerpad.runs.context import RunContext
 from fingerpad.runs.post import applied, of_kept
 from fingerpad.runs.solve import checked, solved
@@ -49,13 +51,14 @@ def sweep(
     quiet: bool = False,
     outputs: Sequence[Output] = (),
     states: str = STATES[0],
+    executor: Executor | None = None,
     **axes: Sequence[Any],
 ) -> Sweep:
     """Return what a model answers to a scene over values of some of its keys.
 
-    Each point is run in a process of its own. Its results are kept in ``out``, and the same sweep, or another one that
-    shares points with it, computes only those that are missing. A point that fails has its ``failure`` in the table,
-    and the others go on.
+    Each point is run in a process of its own, here or by the workers of an executor. Its results are kept in ``out``,
+    and the same sweep, or another one that shares points with it, computes only those that are missing. A point that
+    fails has its ``failure`` in the table, and the others go on.
 
     Args:
         scene: the scene; by default press, charge and slide of the default finger.
@@ -66,8 +69,12 @@ def sweep(
         quiet: whether to print no line for each point, and show no progress bar.
         outputs: further quantities, each computed from every state; the folders of the points do not have them.
         states: ``"all"``, each point by its own path; or ``"full_slip"``, full slip alone, which the full model solves
-            for from point to point (:mod:`fingerpad.runs.chain`): some four times as fast, and without
+            for from point to point (:mod:`fingerpad.runs.full_slip`): some four times as fast, and without
             ``output.errors`` some sixteen times.
+        executor: any of ``concurrent.futures`` whose workers share ``out``: a ``ProcessPoolExecutor``,
+            ``mpi4py.futures.MPIPoolExecutor`` or dask's ``client.get_executor()``. It decides how many points are run
+            at a time, and stays open. A point whose worker is lost has that as its ``failure``, and the same sweep
+            computes it. A model that answers at once does not need it.
         **axes: values by key: ``voltage=[0, 100, 200]``, or ``**{"roughness.h_rms": [2e-6, 3e-6]}``.
             With ``force`` tables and arrays are of the whole finger.
 
@@ -82,7 +89,9 @@ def sweep(
         raise SceneError(f"states is {show(states)}; it must be {' or '.join(map(repr, STATES))}")
     if states != STATES[0] and not way.path:
         raise SceneError(f"states is {states!r} and model {model!r}; full slip alone is of the model 'full'")
-    if launcher.ranks() > 1:
+    if executor is not None and not hasattr(executor, "submit"):
+        raise SceneError(f"executor is {show(executor)}; it must be one of concurrent.futures, such as a process pool")
+    if launcher.ranks() > 1 and not (executor is not None and way.meshes):
         raise SceneError("a sweep runs its points in processes of its own; start it without mpirun, and use jobs")
     if not isinstance(jobs, Integral) or jobs < 1:
         raise SceneError(f"jobs is {show(jobs)}; it must be a whole number, at least 1")
@@ -94,10 +103,8 @@ def sweep(
     scenes = [with_values(scene, point) for point in _points(axes)]
     values = _values(scenes, axes)
     if states != STATES[0]:
-        from fingerpad.runs.chains import refuse_others
-
         for each in scenes:
-            refuse_others(each)
+            chains.check_supported(each)
     for each in scenes if way.meshes else ():
         each.refuse_laws_of_program("the processes of a sweep")
     folder = None if out is None else Path(out)
@@ -105,7 +112,7 @@ def sweep(
         _claim(folder)
     if way.meshes:
         assert folder is not None
-        kept = _in_processes(scenes, values, folder, jobs, way, quiet, states)
+        kept = _in_processes(scenes, values, folder, jobs, way, quiet, states, executor)
         found = [applied(each, of_kept(outputs)) for each in kept]
     else:
         found = [_here(each, way, outputs) for each in scenes]
@@ -220,10 +227,9 @@ def _in_processes(
     model: "Model",
     quiet: bool,
     states: str,
+    executor: Executor | None,
 ) -> list[Result]:
     """Return the results of points, those that can be run in processes of their own, kept by their parameters."""
-    from fingerpad.runs import batch, chains
-
     chained = states != STATES[0]
     place = below(folder, states if chained else model.name)
     keys, results, named = [batch.key(scene) for scene in scenes], dict[str, Result](), dict[str, Scene]()
@@ -241,9 +247,9 @@ def _in_processes(
             order.append(None)
     if chained:
         along = [order[k] for k in _neighbours(axes)]
-        found = chains.sweep({name: named[name] for name in along if name is not None}, place, jobs, quiet)
+        found = chains.sweep({name: named[name] for name in along if name is not None}, place, jobs, quiet, executor)
     else:
-        found = batch.sweep(named, place, jobs, _LIMIT, model.name, quiet)
+        found = batch.sweep(named, place, jobs, _LIMIT, model.name, quiet, executor)
     for name, scene in named.items():
         summary, key = found[name], batch.key(scene)
         lost = set(summary) == {"failure"}

@@ -18,7 +18,7 @@ from fingerpad import launcher
 from fingerpad.scene.electric import Electric
 from fingerpad.scene.law_keys import Kept, Kind, LawKey, fail, inside, keys_of, range_of, reading_results, whole
 from fingerpad.scene.messages import show
-from fingerpad.scene.viscosity import Viscosity
+from fingerpad.scene.viscosity import Viscosity, elastic
 from geometry import tags
 from geometry.parameters import Fingertip
 from geometry.units import Finite, Table, within
@@ -63,8 +63,8 @@ class MaterialKey(LawKey):
     def read(self, value: Any, info: ValidationInfo) -> Any:
         """Return the law of a value, see :meth:`fingerpad.scene.law_keys.LawKey.read`."""
         given: Any = value.table if isinstance(value, Kept) else value
-        if isinstance(given, Viscoelastic):
-            return self._viscous(super().read(given.elastic, info), given.viscosity)
+        if elastic(given) is not given:
+            return self._viscous(super().read(elastic(given), info), given.viscosity)
         if not isinstance(given, Mapping) or "viscosity" not in given:
             return super().read(value, info)
         found = super().read({key: each for key, each in given.items() if key != "viscosity"}, info)
@@ -73,7 +73,7 @@ class MaterialKey(LawKey):
         return Kept(given) if isinstance(found, Kept) else self._viscous(found, given["viscosity"])
 
     @staticmethod
-    def _viscous(elastic: Material, viscosity: Any) -> Viscoelastic:
+    def _viscous(solid: Material, viscosity: Any) -> Viscoelastic:
         if not isinstance(viscosity, QLV):
             try:
                 viscosity = Viscosity.model_validate(viscosity).qlv()
@@ -82,7 +82,7 @@ class MaterialKey(LawKey):
                 if first["type"] != "value_error":
                     raise inside(error, Viscosity, "viscosity") from None
                 raise whole(f"viscosity.{first['ctx']['error']}", "viscosity") from None
-        found = Viscoelastic(elastic, viscosity)
+        found = Viscoelastic(solid, viscosity)
         try:
             found.check()
         except ValueError as error:
@@ -91,10 +91,10 @@ class MaterialKey(LawKey):
 
     def written(self, law: Any) -> Any:
         """Return a law as it stands in a file."""
-        if not isinstance(law, Viscoelastic):
+        if elastic(law) is law:
             return super().written(law)
         branches = {"moduli": law.viscosity.moduli, "times": law.viscosity.times}
-        return super().written(law.elastic) | {"viscosity": {"law": "QLV", **branches}}
+        return super().written(elastic(law)) | {"viscosity": {"law": "QLV", **branches}}
 
 
 def _layer(default: Material) -> Any:
@@ -146,8 +146,8 @@ class Topography(Table):
     pixel: tuple[Length, Length] | None = None
     """Lengths of a pixel along x and y (m), in place of the map's lengths."""
     missing: str | None = None
-    """Mark of missing pixels besides nan and empty places: a number, in a plain matrix also a word. Without it a value
-    far from all other heights is refused; "nan" takes all values and lines as measured."""
+    """Number that marks missing pixels, besides nan and empty places. Without it a value far from all other heights is
+    refused; "nan" takes all values and lines as measured."""
 
     def roughness(self, law: type[BearingArea | TabulatedClosure]) -> dict[str, Any]:
         """Return the parameters of a law that the map gives.
@@ -219,19 +219,14 @@ class RoughnessKey(LawKey):
 
     def check(self, law: Any) -> None:
         """Refuse a floor of the pressure that is no floor, or holds the gap of an unloaded ridge at over a metre."""
-        if isinstance(law, BearingArea | TabulatedClosure) and not reading_results():
+        if getattr(law, "shared", ()) and not reading_results():
             self._refuse_floor(law)  # results are read where a measured map's table is not
         super().check(law)
 
     @staticmethod
-    def _refuse_floor(law: BearingArea | TabulatedClosure) -> None:
-        most, where = (
-            (law.full_pressure, "at zero separation")
-            if isinstance(law, BearingArea)
-            else (law.pressures[1], "of the table's end")
-        )
-        if law.p_floor >= most:
-            raise ValueError(f"p_floor is {show(law.p_floor)}; it must be below the pressure {where}, {most:.4g} Pa")
+    def _refuse_floor(law: Any) -> None:
+        if law.p_floor >= law.pressures[1]:
+            raise ValueError(f"p_floor is {show(law.p_floor)}; it must be below {law.end}, {law.pressures[1]:.4g} Pa")
         with np.errstate(all="ignore"):  # infinite where the surfaces no longer see each other
             gap = float(law(law.p_floor).d_eq)
         if not gap < LARGEST_GAP:

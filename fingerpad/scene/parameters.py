@@ -37,8 +37,8 @@ Many = Field(min_length=1, max_length=MOST_PLACES)
 class Accuracy(Table):
     """Largest relative discretisation errors allowed.
 
-    See :mod:`fingerpad.richardson` and :mod:`fingerpad.accuracy.refinement`. Friction is that of full slip, lengths and
-    energy densities are those of normal contact and of full slip.
+    See :mod:`fingerpad.accuracy.richardson` and :mod:`fingerpad.accuracy.refinement`. Friction is that of full slip,
+    lengths and energy densities are those of normal contact and of full slip.
     """
 
     mu_app: Asked | None = None

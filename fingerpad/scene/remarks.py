@@ -12,18 +12,15 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from fingerpad.scene.drive import drive_of, leak_in_words, remains
 from fingerpad.scene.fingers import ADULT, FINGERS
 from fingerpad.scene.law_keys import Kept
 from fingerpad.scene.materials import LAYERS
 from fingerpad.scene.messages import clip, show
-from fingerpad.scene.supply import leak_in_words, remains, supply_of
 from fingerpad.scene.viscosity import elastic, viscous_layers
 from fingerpad.scene.waveform import Waveform
 from variational.attraction.circuit import GapCircuit
 from variational.contact.friction import Coulomb, Friction
-from variational.materials.viscoelastic import Viscoelastic
-from variational.roughness.bam import BearingArea
-from variational.roughness.tabulated import TabulatedClosure
 
 if TYPE_CHECKING:
     from fingerpad.scene.scene import Scene
@@ -49,11 +46,6 @@ _LONGEST = 100e-6  # m, lambda_0 of the paper (Table 3), and the default
 def coefficient(scene: "Scene") -> float | None:
     """Return the friction coefficient of Coulomb's law; None where the scene has another one."""
     return None if isinstance(scene.friction, Kept | Friction) else scene.friction
-
-
-def skin_modulus(scene: "Scene") -> float:
-    """Return the plane strain modulus of the stratum corneum, E* = 2 G / (1 - nu) (Pa), unloaded."""
-    return scene.solids()[LAYERS["stratum_corneum"]].plane_modulus
 
 
 # -- in words ------------------------------------------------------------------------------------------
@@ -83,8 +75,8 @@ def _call(name: str, numbers: Mapping[str, Any], units: Mapping[str, str] | None
 def _words(law: Any) -> str:
     if isinstance(law, Kept):
         return _call(str(law.table.get("law")), {k: v for k, v in law.table.items() if k not in ("law", "sha256")})
-    if isinstance(law, Viscoelastic):
-        return f"{_words(law.elastic)}, {_words(law.viscosity)}"
+    if elastic(law) is not law:
+        return f"{_words(elastic(law))}, {_words(law.viscosity)}"
     units = _OF_SCENE | {f.name: f.metadata["range"][2] for f in fields(law) if "range" in f.metadata}
     return _call(type(law).__name__, {f.name: getattr(law, f.name) for f in fields(law)}, units)
 
@@ -96,19 +88,7 @@ def _shown(value: Any) -> str:
     return show(value) if isinstance(value, int | float | str | None) else clip(str(value))
 
 
-# -- remarks -------------------------------------------------------------------------------------------
-def remarks(scene: "Scene") -> list[str]:
-    """Return the remarks on a scene for the cautions of its results.
-
-    There is none on the roughness of a closure of one's own, or of a mesh of a file.
-    """
-    found = [*offsets(scene), *nothing_ages(scene), *name_without_effect(scene)]
-    if isinstance(scene.roughness, BearingArea | TabulatedClosure) and scene.geometry.file is None:
-        found += ridges_as_roughness(scene.roughness.wavelength, scene.geometry.ridge_wavelength)
-        found += missing_waves(scene.roughness.wavelength)
-    return found
-
-
+# -- notes -----------------------------------------------------------------------------------------------
 def leakage(scene: "Scene") -> list[str]:
     """Return the notes on drives and on a constant voltage; none at 0 V.
 
@@ -118,9 +98,9 @@ def leakage(scene: "Scene") -> list[str]:
     """
     circuit = scene.electric.circuit(scene.geometry.sc_thickness)
     found = [_drive_in_words(name, wave, scene) for name, wave in scene.drives().items()]
-    constant = scene.supply is None and any(load.level for load in scene.loads())
+    constant = scene.drive is None and any(load.level for load in scene.loads())
     if constant and circuit.lossless:
-        found += [] if offsets(scene) else [LEAKAGE]
+        found += [] if _offset(scene) else [LEAKAGE]
     elif constant:
         found.append(_remains_in_words(scene, circuit))
     return found
@@ -131,7 +111,7 @@ def drive_in_short(scenes: Iterable["Scene"]) -> str:
     found = dict[str, None]()
     for scene in scenes:
         lossless = scene.electric.circuit(scene.geometry.sc_thickness).lossless
-        if scene.supply is not None:
+        if scene.drive is not None:
             found["a drive without losses" if lossless else "a drive with the losses of each finger's circuit"] = None
         elif scene.volts:
             found["a voltage without losses (Eq. 3)"] = None
@@ -140,16 +120,16 @@ def drive_in_short(scenes: Iterable["Scene"]) -> str:
 
 def other_under_a_drive(scenes: Iterable["Scene"]) -> list[str]:
     """Return a sentence where a constant voltage is put on a finger whose circuit would lose it; none elsewhere."""
-    constant = (scene for scene in scenes if scene.supply is None and scene.volts)
+    constant = (scene for scene in scenes if scene.drive is None and scene.volts)
     loses = any(not scene.electric.circuit(scene.geometry.sc_thickness).lossless for scene in constant)
     return [UNDER_A_DRIVE] if loses else []
 
 
 def _drive_in_words(name: str, wave: Waveform, scene: "Scene") -> str:
-    supply = supply_of(wave, scene.electric, scene.geometry.sc_thickness)
-    losses = "without losses (Eq. 3)" if supply.circuit.lossless else circuit_in_words(supply.circuit)
+    drive = drive_of(wave, scene.electric, scene.geometry.sc_thickness)
+    losses = "without losses (Eq. 3)" if drive.circuit.lossless else circuit_in_words(drive.circuit)
     return (
-        f"Drive {name}: {wave}, {losses}. {supply.measures()}, as a constant {supply.reference:.4g} V does without "
+        f"Drive {name}: {wave}, {losses}. {drive.measures()}, as a constant {drive.reference:.4g} V does without "
         "losses."
     )
 
@@ -174,33 +154,6 @@ def _remains_in_words(scene: "Scene", circuit: GapCircuit) -> str:
     )
 
 
-def offsets(scene: "Scene") -> list[str]:
-    """Return a caution on the waveform with the largest mean voltage; none where no mean reaches 1 % of its peak."""
-    name, wave = max(scene.drives().items(), key=lambda each: abs(each[1].mean), default=("", None))
-    if wave is None or abs(wave.mean) < _MEAN * wave.peak or scene.electric.leak != "none":
-        return []
-    return [
-        f"the drive {name} has a mean of {wave.mean:.4g} V, which leaks away in a real finger; here it "
-        "attracts all the time, without leakage (Eq. 3), so that the attraction is too large"
-    ]
-
-
-def nothing_ages(scene: "Scene") -> list[str]:
-    """Return a remark on viscous layers and on friction with a memory where no load takes time."""
-    if any(load.takes_time for load in scene.loads()):
-        return []
-    timeless, remedy = "no load takes time, so that", "give loads of a history a duration or a speed"
-    found = [
-        f"{layer}.viscosity is given and {timeless} nothing will relax and viscous layers have their modulus at once; "
-        f"{remedy}"
-        for layer in viscous_layers(scene.materials)[:1]
-    ]
-    law = scene.friction
-    if isinstance(law, Friction) and law.memory is not None:
-        found.append(f"friction is {type(law).__name__} and {timeless} friction stays as it begins; {remedy}")
-    return found
-
-
 def finger_in_words(scene: "Scene") -> list[str]:
     """Return who a scene's finger is, keys of its name with other values, and its remark; none of the default one."""
     if scene.finger == ADULT:
@@ -211,14 +164,6 @@ def finger_in_words(scene: "Scene") -> list[str]:
     finger = FINGERS[scene.finger]
     words = f"finger {scene.finger}, {finger.words}: {count} keys by its name (docs/assumptions.md){more}"
     return [words, finger.remark]
-
-
-def name_without_effect(scene: "Scene") -> list[str]:
-    """Return a remark where all keys of a finger's name are given otherwise."""
-    values = FINGERS[scene.finger].values
-    if not values or len(_changed(scene)) < len(values):
-        return []
-    return [f"finger is {show(scene.finger)} and all of its keys are given with other values: the name has no effect"]
 
 
 def _changed(scene: "Scene") -> list[str]:
@@ -233,35 +178,80 @@ def _value(scene: "Scene", key: str) -> Any:
     return found
 
 
-def missing_waves(longest: float) -> list[str]:
-    """Return a remark where roughness ends at waves that are short beside the paper's largest ones.
+# -- cautions ------------------------------------------------------------------------------------------
+def remarks(scene: "Scene") -> list[str]:
+    """Return the cautions on a scene, by every check of :data:`CHECKS`."""
+    return [text for check in CHECKS for text in check(scene)]
 
-    *Assumption*: they are below half of 100 µm. h_rms of a self-affine surface is then 0.6 of the whole one's or less.
 
-    Args:
-        longest: wave (m) that a height map can hold, its shorter side, or largest one of the roughness.
-    """
-    if longest >= _LONGEST / 2:
+def _offset(scene: "Scene") -> list[str]:
+    """Return a caution on the waveform with the largest mean voltage; none where no mean reaches 1 % of its peak."""
+    name, wave = max(scene.drives().items(), key=lambda each: abs(each[1].mean), default=("", None))
+    if wave is None or abs(wave.mean) < _MEAN * wave.peak or scene.electric.leak != "none":
         return []
     return [
-        f"roughness ends at waves of {longest:.3g} m, and skin has waves up to {_LONGEST:.3g} m: waves longer than a "
-        "height map are missing in its h_rms, which depends on the size of the map; take a larger map"
+        f"the drive {name} has a mean of {wave.mean:.4g} V, which leaks away in a real finger; here it "
+        "attracts all the time, without leakage (Eq. 3), so that the attraction is too large"
     ]
 
 
-def ridges_as_roughness(wavelength: float, ridge_wavelength: float) -> list[str]:
-    """Return a remark where the roughness is not short beside a ridge, as that of a height map of several ridges is.
+def _nothing_relaxes(scene: "Scene") -> list[str]:
+    """Return a caution on viscous layers and on friction with a memory where no load takes time."""
+    if any(load.takes_time for load in scene.loads()):
+        return []
+    timeless, remedy = "no load takes time, so that", "give loads of a history a duration or a speed"
+    found = [
+        f"{layer}.viscosity is given and {timeless} nothing will relax and viscous layers have their modulus at once; "
+        f"{remedy}"
+        for layer in viscous_layers(scene.materials)[:1]
+    ]
+    law = scene.friction
+    if isinstance(law, Friction) and law.memory is not None:
+        found.append(f"friction is {type(law).__name__} and {timeless} friction stays as it begins; {remedy}")
+    return found
 
-    *Assumption*: it is not where its largest wavelength is above half of the ridges' distance.
+
+def _name_without_effect(scene: "Scene") -> list[str]:
+    """Return a caution where all keys of a finger's name are given otherwise."""
+    values = FINGERS[scene.finger].values
+    if not values or len(_changed(scene)) < len(values):
+        return []
+    return [f"finger is {show(scene.finger)} and all of its keys are given with other values: the name has no effect"]
+
+
+def _roughness(scene: "Scene") -> list[str]:
+    """Return the cautions on the waves of a roughness; none of a closure of one's own, or of a mesh of a file."""
+    if scene.geometry.file is not None or not getattr(scene.roughness, "shared", ()):
+        return []
+    longest = scene.roughness.wavelength
+    return on_waves(longest, longest, scene.geometry.ridge_wavelength)
+
+
+CHECKS = (_offset, _nothing_relaxes, _name_without_effect, _roughness)
+"""Each takes a scene and returns its cautions."""
+
+
+def on_waves(wavelength: float, longest: float, ridge_wavelength: float) -> list[str]:
+    """Return cautions on a roughness that ridges may be part of, and on one without the paper's largest waves.
+
+    *Assumption*: the first holds above half of the ridges' distance, the second below half of 100 µm. h_rms of a
+    self-affine surface is then 0.6 of the whole one's or less.
 
     Args:
         wavelength: the largest one (m) of the roughness.
+        longest: wave (m) that a height map can hold, its shorter side, or again the largest one.
         ridge_wavelength: distance (m) of ridges.
     """
-    if wavelength <= ridge_wavelength / 2:
-        return []
-    return [
-        f"roughness.wavelength is {wavelength:.3g} m, above half of geometry.ridge_wavelength, {ridge_wavelength:.3g} "
-        "m: ridges or the finger's form may count as roughness; remove both from the height map, or take a smaller map "
-        "on one ridge"
-    ]
+    found = []
+    if wavelength > ridge_wavelength / 2:
+        found.append(
+            f"roughness.wavelength is {wavelength:.3g} m, above half of geometry.ridge_wavelength, "
+            f"{ridge_wavelength:.3g} m: ridges or the finger's form may count as roughness; remove both from the "
+            "height map, or take a smaller map on one ridge"
+        )
+    if longest < _LONGEST / 2:
+        found.append(
+            f"roughness ends at waves of {longest:.3g} m, and skin has waves up to {_LONGEST:.3g} m: waves longer than "
+            "a height map are missing in its h_rms, which depends on the size of the map; take a larger map"
+        )
+    return found

@@ -14,6 +14,7 @@ from pydantic import BeforeValidator, Field, PrivateAttr, ValidationError, model
 
 from fingerpad import notebook
 from fingerpad.scene.changes import DEFAULT_HISTORY, changed, preset_keys, with_presets, without
+from fingerpad.scene.drive import Drive, drive_of, refuse_drives
 from fingerpad.scene.electric import Electric
 from fingerpad.scene.fingers import ADULT, FingerName
 from fingerpad.scene.keys import every
@@ -40,7 +41,6 @@ from fingerpad.scene.parameters import (
     refuse_beside_mesh,
 )
 from fingerpad.scene.reading import flat, plain, put_all, read_scene
-from fingerpad.scene.supply import Supply, refuse_drives, supply_of
 from fingerpad.scene.viscosity import elastic, refuse_beside, viscous_layers
 from fingerpad.scene.waveform import Waveform
 from geometry.parameters import MeshSize
@@ -179,15 +179,15 @@ class Scene(Table):
         return drives(self.voltage, self.history or ())
 
     @property
-    def supply(self) -> Supply | None:
-        """The drive ``voltage`` and the circuit behind it; None where it is a number."""
-        drive = self.drives().get("voltage")
-        return None if drive is None else supply_of(drive, self.electric, self.geometry.sc_thickness)
+    def drive(self) -> Drive | None:
+        """The drive ``voltage`` through the circuit of the gap; None where it is a number."""
+        wave = self.drives().get("voltage")
+        return None if wave is None else drive_of(wave, self.electric, self.geometry.sc_thickness)
 
     @property
     def volts(self) -> float:
         """The voltage (V) of Eq. 3: ``voltage``, or what attracts as a drive does on average over a ridge's gap."""
-        return self.voltage if isinstance(self.voltage, float) else self.supply.reference  # type: ignore[union-attr]
+        return self.voltage if isinstance(self.voltage, float) else self.drive.reference  # type: ignore[union-attr]
 
     # -- laws ------------------------------------------------------------------------------------------
     def laws(self) -> dict[str, Any]:

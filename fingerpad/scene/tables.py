@@ -23,7 +23,6 @@ MOST = 50e6
 """Largest size (bytes) of a table."""
 _MOST_CELLS, _MOST_COLUMNS = 10_000_000, 1000
 _LAST = 10  # lines at the end of a file, which show what parts its cells
-_PREAMBLE = 100  # lines that are searched for facts
 _MAX_HEAD = 200  # characters of a head with a unit
 _DECIMAL = r"^([+-]?\d*),(\d+(?:[eE][+-]?\d+)?\s*%?)$"
 _BRACKETS = re.compile(r"(.*?)\s*[(\[]\s*([^()\[\]]*?)\s*[)\]]")  # the last ones have the unit
@@ -187,7 +186,7 @@ def read(file: str | Path, header: str) -> Table:
         raise ValueError(f"has more cells in line {more.idxmax()} than its {width} heads; {why}")
     every = ((*heads[k], body[k], k in places) for k in frame if heads[k][0] or (body[k] != "").any())
     columns = [Column(head, name, unit, cells, numeric) for head, name, unit, cells, numeric in every]
-    facts = {key.casefold(): value for key, value in frame.iloc[:_PREAMBLE, :2].itertuples(index=False) if value}
+    facts = {key.casefold(): value for key, value in frame.iloc[:100, :2].itertuples(index=False) if value}
     return Table(columns, facts, comments, not above.empty)
 
 

@@ -1,19 +1,19 @@
-"""Voltages over time from a CSV file: under a header of two columns, or as an oscilloscope writes it.
+"""Voltages over time from a CSV file with heads, as ``time (s),voltage (V)`` or as an oscilloscope writes it.
 
-Names and units of columns decide, wherever they stand (:mod:`fingerpad.scene.tables`): the times are in the column that
-is named or united as time, and a column that counts samples is none. Without units they are in s, and the voltages in
-V. Times may begin anywhere: the first becomes 0.
+Names and units of columns decide (:mod:`fingerpad.scene.tables`): the times are in the first column that is named or
+united as time. Without units they are in s, and the voltages in V. Times may begin anywhere: the first becomes 0.
 
 A file that repeats itself ends where a period does. One of 1.5 periods or more is cut to whole ones, another one must
 end with its first voltage, or one sample before. Where all periods have more than :data:`POINTS` samples, fewer of them
-are kept, one at least. Files of more than :data:`POINTS` samples are averaged in groups, all
-of as many. Where this would take more than :data:`_LOST` of the mean square, as of a carrier, the file is refused.
+are kept, one at least. Files of more than :data:`POINTS` samples are averaged in groups, all of as many. Where this
+would take more than :data:`_LOST` of the mean square, as of a carrier, the file is refused.
 """
 
 import math
 import re
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
+from itertools import pairwise
 from typing import TYPE_CHECKING, Annotated, Any
 
 import numpy as np
@@ -29,26 +29,37 @@ POINTS = 2000
 """Most points of a waveform."""
 HIGHEST = 5e3
 """Largest voltage (V)."""
+MEASURES = ("amplitude", "peak_to_peak", "rms")
+"""Keys that say how large a wave is; one of them is given, and none of a file."""
 Probe = Annotated[Finite, within(1e-3, 1e5)]
-_LEAST = 1e-3  # V; what is less in a table is 0: noise, or roundoff of a computed sine
+_SMALLEST = 1e-3  # V; what is less in a table is 0: noise, or roundoff of a computed sine
 _LOST = 0.01  # of the mean square
-Volts = Annotated[Finite, within(_LEAST, HIGHEST, "V", zero=True, sides=2)]
+Volts = Annotated[Finite, within(_SMALLEST, HIGHEST, "V", zero=True, sides=2)]
 Seconds = Annotated[Finite, within(1e-9, 1e5, "s", zero=True)]
+Sample = tuple[float, float]
+"""Time (s) since the start of a load, and voltage (V)."""
 Array = NDArray[np.float64]
 _HEADER = "time (s),voltage (V)"
 _TIME = re.compile(r"(time|zeit|temps|tiempo|tempo)\b.*|t|x([-_ ]?(axis|values?))?", re.IGNORECASE)
 _COUNT = re.compile(r"(samples?|ticks?|index|points?|number|no\.?|nr\.?|n|i|row|#|unnamed: \d+)?", re.IGNORECASE)
-_SIDE = {"s": "horizontal units", "V": "vertical units"}  # of a preamble
-_THOUSANDS = (1e3, 1e6, 1e9)  # by which a unit changes within a file
 _CLOSED = 0.02  # of the peak-to-peak value: a difference of the ends that is none
 _ALIKE = 0.05  # of the variance: half the mean square by which periods differ
+_SUDDEN = 0.01  # of the peak: a change of the voltage, within one sample before a piece of a table, that cuts the piece
+_OWN = 0.5  # of the piece's own change: a smaller change before it cuts no piece
+_TIME_TOLERANCE = 1e-9  # of a piece
 
 
 def or_zero(value: Any) -> Any:
     """Return a voltage of a table, and 0 for one that is less than a scene can have."""
-    return 0.0 if isinstance(value, float) and abs(value) < _LEAST else value
+    return 0.0 if isinstance(value, float) and abs(value) < _SMALLEST else value
 
 
+def range_of(annotation: Any) -> Range:
+    """Return the range of a key's annotation."""
+    return next(part.func for part in annotation.__metadata__ if isinstance(getattr(part, "func", None), Range))
+
+
+# -- reading -----------------------------------------------------------------------------------------------------
 def table(file: str, column: str | None = None, probe: float = 1.0, *, repeat: bool = False) -> dict[str, Any]:
     """Return times (s) and voltages (V) of a CSV file.
 
@@ -66,78 +77,53 @@ def table(file: str, column: str | None = None, probe: float = 1.0, *, repeat: b
 
     name = f"file is {show(file)}"
     try:
-        t, u = _columns(tables.read(file, _HEADER), column)
+        found = tables.read(file, _HEADER)
+        sides = zip(_columns(found, column), (("s", "horizontal units"), ("V", "vertical units")), strict=True)
+        t, u = (
+            replace(each, unit=each.unit or found.facts.get(side, si)).numbers(si).to_numpy()
+            for each, (si, side) in sides
+        )
         t, u = t - t[0], probe * u
-        if len(t) > 1 and (np.diff(t) > 0).all():
-            _refuse_units(np.diff(t))
-            t, u = _whole(t, u) if repeat else (t, u)
+        if repeat and len(t) > 1 and (np.diff(t) > 0).all():
+            t, u = _whole(t, u)
+        t, u = _fewer(t, u)
     except ValueError as error:
         raise ValueError(f"{name}, which {error}") from None
-    t, u = _fewer(name, t, u)
     allowed = range_of(Volts)
     wrong = next((k for k, value in enumerate(u) if or_zero(float(value)) not in allowed), None)
     if wrong is not None:
         words = allowed.words(float(u[wrong])).partition(" (")[0]
         raise ValueError(f"{name}, which at {t[wrong]:.6g} s has a number that {words}")
-    if np.abs(u).max() < _LEAST:
+    if np.abs(u).max() < _SMALLEST:
         raise ValueError(f"{name}, which has 0 V throughout; give a voltage, or the number 0 in its place")
     return {"times": t.tolist(), "voltages": [or_zero(float(value)) for value in u]}
 
 
-def _columns(found: "Table", wanted: str | None) -> list[Array]:
-    """Return the times (s) and the voltages (V) of a table, the latter by the name of its column."""
+def _columns(found: "Table", wanted: str | None) -> "tuple[Column, Column]":
+    """Return the columns of the times and of the voltages, the latter by its name or as the one in volts."""
     from fingerpad.scene.tables import is_of
 
     columns = [each for each in found.columns if each.numeric]
-    if len(columns) < 2:
-        raise ValueError("has no two columns of numbers; it must have one in s and one in V")
-    if not found.headed and _SIDE["s"] not in found.facts:
-        raise ValueError(f"has no heads above its numbers; write '{_HEADER}' there")
-    if not found.headed:  # a preamble beside the numbers has times first
-        heads = ["time", *[found.facts.get("source", "voltage")] * (len(columns) - 1)]
-        columns = [replace(each, name=head, head=head) for each, head in zip(columns, heads, strict=True)]
+    if len(columns) < 2 or not found.headed:
+        raise ValueError(f"has no two columns of numbers with heads; write '{_HEADER}' above them")
+    among = clip(" or ".join(show(each.head) for each in columns), 100)
     named = [each for each in columns if _TIME.fullmatch(each.name)]
-    times = [each for each in columns if is_of(each.unit, "s")]
-    times = [each for each in named if each in times] or times or [each for each in named if not each.unit] or named
+    united = [each for each in columns if is_of(each.unit, "s")]
+    times = [each for each in named if each in united] or united or named
     if not times:
-        among = clip(", ".join(show(each.head) for each in columns), 100)
         raise ValueError(f"has nothing named or united as time among {among}; write a head such as 'time (s)'")
-    first = times[0]
     others = [each for each in columns if each not in times and (each.unit or not _COUNT.fullmatch(each.name))]
-    if other := next((each for each in times[1:] if (each.cells != first.cells).any()), None):
-        raise ValueError(f"has time twice, as {show(first.head)} and {show(other.head)}; it must have one alone")
-    units = {si: found.facts.get(_SIDE[si]) or si for si in _SIDE}
-    both = (("s", first), ("V", _chosen(others, wanted)))
-    return [replace(each, unit=each.unit or units[si]).numbers(si).to_numpy() for si, each in both]
-
-
-def _chosen(columns: "Sequence[Column]", wanted: str | None) -> "Column":
-    """Return the column of a name, or the one that has voltages."""
-    from fingerpad.scene.tables import is_of
-
-    if not columns:
+    if not others:
         raise ValueError("has nothing in V beside its time")
-    volts = [each for each in columns if is_of(each.unit or "V", "V")] or columns
-    if wanted is None and len(volts) == 1:
-        return volts[0]
-    given = "not given" if wanted is None else show(wanted)
-    for heads in ([each.head for each in columns], [each.name for each in columns]):
-        for column, head in zip(columns, heads, strict=True):
-            if wanted is not None and head.casefold() == wanted.strip().casefold():
-                return column
-    names = " or ".join(show(each.name) for each in volts)
-    raise ValueError(f"has {names}, and column is {given}; it must be one of these")
-
-
-# -- times -------------------------------------------------------------------------------------------------------
-def _refuse_units(steps: Array) -> None:
-    """Refuse times whose unit changes on the way, as equal steps and then others a thousand times as large."""
-    equal = steps[1:][np.isclose(steps[1:], steps[:-1], rtol=0.01)]
-    if equal.size and np.isclose(equal.max() / equal.min(), _THOUSANDS, rtol=0.02).any():
-        raise ValueError(
-            f"has steps of time of {equal.min():.4g} s and then {equal.max():.4g} s, as if their unit "
-            "changed; give one unit throughout, or the points as times and voltages"
-        )
+    volts = [each for each in others if is_of(each.unit or "V", "V")] or others
+    if wanted is not None:
+        name = wanted.strip().casefold()
+        heads, names = ([each for each in others if getattr(each, key).casefold() == name] for key in ("head", "name"))
+        volts = heads or names
+    if len(volts) != 1:
+        given = "not given" if wanted is None else show(wanted)
+        raise ValueError(f"has {among}, and column is {given}; it must be one of these, that of the voltages")
+    return times[0], volts[0]
 
 
 def _whole(t: Array, u: Array) -> tuple[Array, Array]:
@@ -184,7 +170,7 @@ def _period(t: Array, u: Array) -> float | None:
     return float(scipy.optimize.minimize_scalar(differ, bounds=ends, method="bounded").x) / count
 
 
-def _fewer(name: str, t: Array, u: Array) -> tuple[Array, Array]:
+def _fewer(t: Array, u: Array) -> tuple[Array, Array]:
     """Return samples that are few enough: the first, means of groups, and the last."""
     count = len(t)
     if count <= POINTS:
@@ -197,12 +183,83 @@ def _fewer(name: str, t: Array, u: Array) -> tuple[Array, Array]:
     left = float(np.sum(np.concatenate([[1], number, [1]]) * means[1] ** 2)) / count
     if left < (1 - _LOST) * square:
         raise ValueError(
-            f"{name} with {count} points; there must be from 2 to {POINTS} of them, and means of {size} have "
+            f"has {count} points; there must be from 2 to {POINTS} of them, and means of {size} have "
             f"{left / square:.2g} of the mean square: give a shorter part, or fewer points"
         )
     return means[0], means[1]
 
 
-def range_of(annotation: Any) -> Range:
-    """Return the range of a key's annotation."""
-    return next(part.func for part in annotation.__metadata__ if isinstance(getattr(part, "func", None), Range))
+# -- tables of a scene -------------------------------------------------------------------------------------------
+def refuse_table(wave: Any) -> None:
+    """Refuse a waveform of a table that is none.
+
+    Raises:
+        ValueError: in one sentence, with the waveform's keys.
+    """
+    times, voltages, carrier = wave.times, wave.voltages, wave.carrier
+    for name in (*MEASURES, "frequency", "offset", "burst"):
+        if name in wave.model_fields_set and getattr(wave, name) not in (None, 0.0):
+            given = "given" if name == "burst" else show(getattr(wave, name))
+            raise ValueError(f"{name} is {given} and waveform is 'file', which has none")
+    if times is None or voltages is None:
+        raise ValueError("file is missing; waveform is 'file' and needs it")
+    if len(times) != len(voltages):
+        raise ValueError(f"times are {len(times)} and voltages are {len(voltages)}; give as many of each")
+    if not 2 <= len(times) <= POINTS:
+        raise ValueError(f"times are {len(times)}; there must be from 2 to {POINTS} of them")
+    if times[0] != 0:
+        raise ValueError(f"times start at {show(times[0])} s; the first must be 0, where the load starts")
+    for before, after in pairwise(times):
+        if after <= before:
+            raise ValueError(
+                f"times are {show(before)} and then {show(after)} s; each must be later than the one before, so give a "
+                "jump a short time"
+            )
+    if carrier is None:
+        return
+    if carrier.modulation is not None:
+        raise ValueError(
+            f"carrier.modulation is {show(carrier.modulation)} and waveform is 'file', whose voltages have their "
+            "carrier in them; leave it out"
+        )
+    step = max(after - before for before, after in pairwise(times))
+    if step * carrier.frequency > 0.5:
+        raise ValueError(
+            f"carrier.frequency is {show(carrier.frequency)} Hz and the file has times {step:.4g} s apart; they "
+            f"must be at most {0.5 / carrier.frequency:.4g} s apart, two in a period (Nyquist)"
+        )
+
+
+def refined(times: Sequence[float], voltages: Sequence[float], most: float, behind: int) -> Iterator[Sample]:
+    """Yield the points of a table, the zeros between them, and more within its pieces.
+
+    Args:
+        times: of the table (s).
+        voltages: of the table (V).
+        most: change of the voltage between two samples (V).
+        behind: samples of a piece behind a sudden change, and of the first piece.
+    """
+    least = _SUDDEN * max(map(abs, voltages))
+    yield times[0], voltages[0]
+    for k in range(1, len(times)):
+        (t0, t1), (u0, u1) = times[k - 1 : k + 1], voltages[k - 1 : k + 1]
+        before = _change_before(times, voltages, k - 1, (t1 - t0) / behind)
+        even = behind if k == 1 or before > max(least, _OWN * abs(u1 - u0)) else 1
+        zero = [(t0 + (t1 - t0) * u0 / (u0 - u1), 0.0)] if u0 * u1 < 0 else []
+        for (a, ua), (b, ub) in pairwise([(t0, u0), *zero, (t1, u1)]):
+            by_time = math.ceil(even * (b - a) / (t1 - t0) - _TIME_TOLERANCE)
+            by_voltage = math.ceil(abs(ub - ua) / most - _TIME_TOLERANCE) if most > 0 else 1
+            pieces = max(by_time, by_voltage, 1)
+            for j in range(1, pieces):
+                yield a + (b - a) * j / pieces, ua + (ub - ua) * j / pieces
+            yield b, ub
+
+
+def _change_before(times: Sequence[float], voltages: Sequence[float], k: int, seconds: float) -> float:
+    """Return by how much the voltage of a table changes in some seconds before its point k."""
+    first, seen = times[k] - seconds, [voltages[k]]
+    while k > 0 and times[k] > first:
+        k -= 1
+        part = min((times[k + 1] - first) / (times[k + 1] - times[k]), 1.0)
+        seen.append(voltages[k + 1] + part * (voltages[k] - voltages[k + 1]))
+    return max(seen) - min(seen)

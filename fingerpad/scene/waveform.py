@@ -2,48 +2,99 @@ r"""A voltage over time: sine, square, triangle or a table of a file, with the s
 
 .. math:: U(t) = U_0 + \hat U \, w(f t), \quad w = \sin 2 \pi f t \text{ or the square or triangle of its phase}
 
-Time starts with the load. The model is quasi-static: without viscous layers, friction in time and losses of the drive,
-the frequency sets how far the finger slides in a period, and nothing else.
+Time starts with the load. With a carrier the wave is the envelope of a sine of higher frequency, with the depth m of
+``modulation``, so that the amplitude is that of the peak:
+
+.. math:: U(t) = U_0 + \hat U \, \frac{1 + m \, w(f t)}{1 + m} \sin 2 \pi f_c t
+
+A burst is a number of whole periods of the wave, and a pause at the offset.
 
 Turning points, jumps and zeros are always among the samples. A period has 24 of them: friction has twice the frequency
-of the voltage, so that 12 are in each of its periods and 6 in each of its second harmonic's. The attraction goes with
-the square of the voltage; that of a sine is off straight lines between the samples by 1.7 % of the peak at most. A
-table's pieces are cut where the voltage changes by as much as between two samples of a sine. A piece behind a sudden
-change of the voltage, and the first one, has the 12 samples of half a square's period: there friction goes on to
-change at a constant voltage, as the finger slides. States between two samples, where a step must be shorter, are at the
-waveform's own voltage. Fewer or more samples follow from ``numerics.step_scale``, as for all steps.
+of the voltage, so that 12 are in each of its periods. The square of a sine is off straight lines between the samples by
+1.7 % of the peak at most. A table's pieces are cut where the voltage changes by as much. A piece behind a sudden change
+of the voltage, and the first one, has the 12 samples of half a square's period: there friction goes on to change at a
+constant voltage, as the finger slides. Fewer or more samples follow from ``numerics.step_scale``.
 """
 
 import math
 from collections.abc import Iterator
-from itertools import count, pairwise
+from itertools import count
 from typing import Annotated, Any, Literal
 
 import numpy as np
-from pydantic import BeforeValidator, Field, model_validator
+from annotated_types import Ge, Le
+from numpy.typing import ArrayLike, NDArray
+from pydantic import BeforeValidator, Field, Strict, model_validator
 
 from fingerpad.scene.messages import show
-from fingerpad.scene.modulation import Burst, Carrier, refuse_carrier, shape, square_mean
-from fingerpad.scene.wavefile import HIGHEST, POINTS, Probe, Seconds, Volts, or_zero, range_of, table
+from fingerpad.scene.wavefile import (
+    HIGHEST,
+    MEASURES,
+    Probe,
+    Sample,
+    Seconds,
+    Volts,
+    or_zero,
+    range_of,
+    refined,
+    refuse_table,
+    table,
+)
 from geometry.units import Finite, Switch, Table, within
 
 SAMPLES = 24
 """Samples of a period at ``numerics.step_scale`` 1."""
 MOST = 10_000
 """Most samples of a load."""
+_MOST_CARRIED = 2000.0  # periods of a carrier in one of the wave and its burst
+_SQUARE_MEAN = {"sine": 0.5, "square": 1.0, "triangle": 1 / 3}  # of each wave of amplitude 1
+_HIGHEST_FREQUENCY = 1e6  # Hz
 _TIME_TOLERANCE = 1e-9  # of a period: two times that are one
-_SUDDEN = 0.01  # of the peak: a change of the voltage, within one sample before a piece of a table, that cuts the piece
-_OWN = 0.5  # of the piece's own change: a smaller change before it cuts no piece
-_NOTHING = 1e-12  # of the peak: a voltage that is roundoff of zero
-Sample = tuple[float, float]
-"""Time (s) since the start of the load, and voltage (V)."""
+_ROUNDOFF = 1e-12  # of the peak
+_Count = Annotated[int, Strict(), Ge(1), Le(500)]
 _Tabled = Annotated[Volts, BeforeValidator(or_zero)]
 # Behind a validator that reads a file, strict rules no longer take a list for a tuple.
 _LISTED = BeforeValidator(lambda value: tuple(value) if isinstance(value, list) else value)
-MEASURES = ("amplitude", "peak_to_peak", "rms")
-"""Keys that say how large a wave is; one of them is given."""
-OF_FILE = ("file", "column", "probe")
-"""Keys of a file, of which a scene keeps the points alone."""
+_OF_FILE = ("file", "column", "probe")  # keys of a file, of which a scene keeps the points alone
+
+
+def shape(waveform: str, part: ArrayLike, parts: float = 1.0) -> NDArray[np.float64]:
+    """Return a wave of amplitude 1, at a jump the value behind it; its quarters are the same to the last bit.
+
+    Args:
+        waveform: ``"sine"``, ``"square"`` or ``"triangle"``.
+        part: place in time, in parts of the period.
+        parts: of a period.
+    """
+    quarter, rest = np.divmod(part, parts / 4)
+    rise = np.where(quarter % 2 == 0, rest, parts / 4 - rest) / (parts / 4)
+    size = {"sine": np.sin(np.pi / 2 * rise), "square": np.ones_like(rise), "triangle": rise}[waveform]
+    return np.where(quarter % 4 < 2, size, -size)
+
+
+class Carrier(Table):
+    """A sine of higher frequency, of which the wave is the envelope."""
+
+    frequency: Annotated[Finite, within(1e-3, _HIGHEST_FREQUENCY, "Hz")]
+    """Frequency of the carrier (Hz), above that of the wave. It is taken at the nearest multiple of the frequency with
+    which the drive repeats itself."""
+    modulation: Annotated[Finite, within(1e-3, 1)] | None = None
+    """Depth m of the modulation, from none to 1, the default: an envelope that closes. Not for a file, whose voltages
+    have their carrier in them."""
+
+    @property
+    def depth(self) -> float:
+        """Depth m of the modulation."""
+        return 1.0 if self.modulation is None else self.modulation
+
+
+class Burst(Table):
+    """Whole periods of the wave, and a pause at the offset."""
+
+    on: _Count
+    """Number of periods of the wave."""
+    off: _Count
+    """Length of the pause, in periods of the wave."""
 
 
 class Waveform(Table):
@@ -58,12 +109,12 @@ class Waveform(Table):
     """Peak-to-peak value (V), in place of the amplitude."""
     rms: Annotated[Finite, within(1e-3, HIGHEST, "V")] | None = None
     """Root mean square (V) of the alternating part, without offset and pauses, in place of the amplitude."""
-    frequency: Annotated[Finite, within(1e-3, 1e6, "Hz")] | None = None
+    frequency: Annotated[Finite, within(1e-3, _HIGHEST_FREQUENCY, "Hz")] | None = None
     """Frequency (Hz). Required but for a file. Range: a period of a quarter of an hour to a radio wave."""
     offset: Volts = 0.0
     """Direct voltage (V) to which the wave is added, of either sign."""
     carrier: Carrier | None = None
-    """A sine of higher frequency, of which the wave is the envelope; see :mod:`fingerpad.scene.modulation`."""
+    """A sine of higher frequency, of which the wave is the envelope; see :mod:`fingerpad.scene.waveform`."""
     burst: Burst | None = None
     """Whole periods of the wave, and a pause at the offset."""
     file: Annotated[str | None, Field(exclude=True)] = None
@@ -93,17 +144,18 @@ class Waveform(Table):
         for name in ("times", "voltages"):
             if data.get(name) is not None:
                 raise ValueError(f"{name} and file are both given; give the file alone, which has them")
-        rest = {key: value for key, value in data.items() if key not in OF_FILE}
+        rest = {key: value for key, value in data.items() if key not in _OF_FILE}
         return rest | table(data["file"], column, factor, repeat=data.get("repeat") is True)
 
     @model_validator(mode="after")
     def _consistent(self) -> "Waveform":
-        for name in OF_FILE[1:]:
+        for name in _OF_FILE[1:]:
             if getattr(self, name) is not None:
                 raise ValueError(f"{name} is {show(getattr(self, name))} and no file is given; {name} is one of a file")
-        if self.waveform == "file":
-            self._refuse_table()
-            return self
+        refuse_table(self) if self.waveform == "file" else self._refuse_wave()
+        return self
+
+    def _refuse_wave(self) -> None:
         if self.repeat:
             raise ValueError(f"repeat is true and waveform is {show(self.waveform)}, which always is so; leave it out")
         for name in ("file", "times", "voltages"):
@@ -114,39 +166,22 @@ class Waveform(Table):
             values = " and ".join(f"{name} is {show(getattr(self, name))}" for name in given[:2])
             raise ValueError(f"{values}; give one of {', '.join(MEASURES)}")
         if not given or self.frequency is None:
-            what = "amplitude" if not given else "frequency"
-            instead = ", or peak_to_peak or rms in its place" if not given else ""
+            what = "frequency" if given else "amplitude"
+            instead = "" if given else ", or peak_to_peak or rms in its place"
             raise ValueError(f"{what} is missing; waveform is {show(self.waveform)} and needs it{instead}")
         if self.peak > HIGHEST:
             raise ValueError(
                 f"offset is {show(self.offset)} and {given[0]} is {show(getattr(self, given[0]))}, together "
                 f"{self.peak:g} V; they must reach at most {HIGHEST:g} V"
             )
-        if self.carrier is not None:
-            refuse_carrier(self)
-        return self
-
-    def _refuse_table(self) -> None:
-        for name in (*MEASURES, "frequency", "offset", "burst"):
-            if name in self.model_fields_set and getattr(self, name) not in (None, 0.0):
-                given = "given" if name == "burst" else show(getattr(self, name))
-                raise ValueError(f"{name} is {given} and waveform is 'file', which has none")
-        if self.times is None or self.voltages is None:
-            raise ValueError("file is missing; waveform is 'file' and needs it")
-        if len(self.times) != len(self.voltages):
-            raise ValueError(f"times are {len(self.times)} and voltages are {len(self.voltages)}; give as many of each")
-        if not 2 <= len(self.times) <= POINTS:
-            raise ValueError(f"times are {len(self.times)}; there must be from 2 to {POINTS} of them")
-        if self.times[0] != 0:
-            raise ValueError(f"times start at {show(self.times[0])} s; the first must be 0, where the load starts")
-        late = next((k for k in range(1, len(self.times)) if self.times[k] <= self.times[k - 1]), None)
-        if late is not None:
-            raise ValueError(
-                f"times are {show(self.times[late - 1])} and then {show(self.times[late])} s; each must be later than "
-                "the one before, so give a jump a short time"
-            )
-        if self.carrier is not None:
-            refuse_carrier(self)
+        if self.carrier is None:
+            return
+        if self.carrier.frequency <= self.frequency:
+            given = f"carrier.frequency is {show(self.carrier.frequency)} Hz and frequency is {show(self.frequency)} Hz"
+            raise ValueError(f"{given}; the carrier must have the higher one")
+        if (periods := self.carrier.frequency * self.period) > _MOST_CARRIED:
+            given = f"carrier.frequency is {show(self.carrier.frequency)} Hz, {periods:.4g} periods in one of the drive"
+            raise ValueError(f"{given}; there must be at most {_MOST_CARRIED:g}")
 
     # -- what it is --------------------------------------------------------------------------------------
     @property
@@ -159,9 +194,12 @@ class Waveform(Table):
     @property
     def height(self) -> float:
         """Amplitude (V), by whichever measure it is given; 0 of a file."""
-        if self.rms is not None:
-            return self.rms / math.sqrt(square_mean(self.waveform, self.carrier))
-        return self.amplitude or (self.peak_to_peak or 0.0) / 2
+        if self.rms is None:
+            return self.amplitude or (self.peak_to_peak or 0.0) / 2
+        mean = _SQUARE_MEAN[self.waveform]
+        if self.carrier is not None:
+            mean = (1 + self.carrier.depth**2 * mean) / (1 + self.carrier.depth) ** 2 / 2
+        return self.rms / math.sqrt(mean)
 
     @property
     def end(self) -> float:
@@ -178,8 +216,7 @@ class Waveform(Table):
         """Mean voltage (V) of a period; of a file over its length."""
         if self.times is None or self.voltages is None:
             return self.offset
-        pieces = zip(pairwise(self.times), pairwise(self.voltages), strict=True)
-        return sum((t1 - t0) * (u0 + u1) / 2 for (t0, t1), (u0, u1) in pieces) / self.times[-1]
+        return float(np.trapezoid(self.voltages, self.times)) / self.times[-1]
 
     def __str__(self) -> str:
         """Return the wave in words."""
@@ -192,6 +229,26 @@ class Waveform(Table):
         found = f"{self.waveform} of {getattr(self, measure):g} V{how}{offset} at {self.frequency:g} Hz"
         found += "" if self.carrier is None else f" on a carrier of {self.carrier.frequency:g} Hz"
         return found + ("" if self.burst is None else f", {self.burst.on} periods on and {self.burst.off} off")
+
+    # -- values ------------------------------------------------------------------------------------------
+    def at(self, part: ArrayLike, parts: float | None = None) -> NDArray[np.float64]:
+        """Return the voltage (V) at times from the start on, of their shape; at a jump that behind it.
+
+        Args:
+            part: times, in parts of the period; in seconds without ``parts``.
+            parts: of a period; whole numbers of both give the same values in each quarter, to the last bit.
+        """
+        parts = self.period if parts is None else parts
+        if self.times is not None and self.voltages is not None:
+            return np.asarray(np.interp(np.asarray(part) / parts * self.period, self.times, self.voltages))
+        on, periods = np.asarray(part) * round(self.period * (self.frequency or 1.0)), parts
+        found = shape(self.waveform, on, periods)
+        if self.carrier is not None:
+            carried = np.asarray(part) * round(self.carrier.frequency * self.period)
+            found = (1 + self.carrier.depth * found) / (1 + self.carrier.depth) * shape("sine", carried, parts)
+        if self.burst is not None:
+            found = np.where(on < self.burst.on * parts, found, 0.0)
+        return np.asarray(self.offset + self.height * found)
 
     # -- samples -----------------------------------------------------------------------------------------
     def count(self, seconds: float, step_scale: float) -> float:
@@ -230,7 +287,7 @@ class Waveform(Table):
         (t0, u0), (t1, u1) = before, after
         if self.waveform != "sine" or self._in_pause(time):
             return u0 + min((time - t0) / (t1 - t0), 1.0) * (u1 - u0)
-        return self._value(float(shape("sine", time * (self.frequency or 0.0))))
+        return self._wave(time * (self.frequency or 0.0))
 
     def _in_pause(self, time: float) -> bool:
         phase = time % self.period * (self.frequency or 0.0)
@@ -248,14 +305,15 @@ class Waveform(Table):
         turns = ((k + 0.5) * half for k in range(math.ceil(seconds / half)))
         return [time for time in turns if not self._in_pause(time)]
 
-    def _value(self, shape: float) -> float:
-        value = self.offset + self.height * shape
-        return 0.0 if abs(value) < _NOTHING * self.peak else value
+    def _wave(self, part: float, parts: float = 1.0) -> float:
+        """Return the voltage (V) of the wave without its carrier, at a part of its own period."""
+        value = self.offset + self.height * float(shape(self.waveform, part, parts))
+        return 0.0 if abs(value) < _ROUNDOFF * self.peak else value
 
     def _points(self, n: int) -> Iterator[tuple[float, ...]]:
         """Yield a time and the voltage there, before and after a jump, without end but for a file."""
         if self.times is not None and self.voltages is not None:
-            table = [*_refined(self.times, self.voltages, 2 * math.pi / n * self.peak, n // 2)]
+            table = [*refined(self.times, self.voltages, 2 * math.pi / n * self.peak, n // 2)]
             yield table[0]
             for period in count() if self.repeat else range(1):
                 yield from ((period * self.period + time, value) for time, value in table[1:-1])
@@ -274,7 +332,7 @@ class Waveform(Table):
 
     def _one_period(self, n: int) -> list[tuple[float, ...]]:
         """Return phases from 0 to below 1 and the voltages there."""
-        values = [self._value(float(value)) for value in shape(self.waveform, np.arange(n), n)]
+        values = [self._wave(k, n) for k in range(n)]
         if self.waveform == "square":
             return [(k / n, *([values[k - 1]] if k in (0, n // 2) else []), values[k]) for k in range(n)]
         found: list[tuple[float, ...]] = [(k / n, value) for k, value in enumerate(values)]
@@ -290,39 +348,3 @@ class Waveform(Table):
 def _per_period(step_scale: float) -> int:
     """Return the samples of a period: a multiple of 4, so that the turning points are among them."""
     return 4 * math.ceil(SAMPLES / 4 / step_scale)
-
-
-def _refined(times: tuple[float, ...], voltages: tuple[float, ...], most: float, behind: int) -> Iterator[Sample]:
-    """Yield the points of a table, the zeros between them, and more within its pieces.
-
-    Args:
-        times: of the table (s).
-        voltages: of the table (V).
-        most: change of the voltage between two samples (V).
-        behind: samples of a piece behind a sudden change, and of the first piece.
-    """
-    least = _SUDDEN * max(map(abs, voltages))
-    yield times[0], voltages[0]
-    for k in range(1, len(times)):
-        (t0, t1), (u0, u1) = times[k - 1 : k + 1], voltages[k - 1 : k + 1]
-        before = _change_before(times, voltages, k - 1, (t1 - t0) / behind)
-        even = behind if k == 1 or before > max(least, _OWN * abs(u1 - u0)) else 1
-        crosses = u0 * u1 < 0
-        ends = [(t0, u0), *([(t0 + (t1 - t0) * u0 / (u0 - u1), 0.0)] if crosses else []), (t1, u1)]
-        for (a, ua), (b, ub) in zip(ends, ends[1:], strict=False):
-            by_time = math.ceil(even * (b - a) / (t1 - t0) - _TIME_TOLERANCE)
-            by_voltage = math.ceil(abs(ub - ua) / most - _TIME_TOLERANCE) if most > 0 else 1
-            pieces = max(by_time, by_voltage, 1)
-            for j in range(1, pieces):
-                yield a + (b - a) * j / pieces, ua + (ub - ua) * j / pieces
-            yield b, ub
-
-
-def _change_before(times: tuple[float, ...], voltages: tuple[float, ...], k: int, seconds: float) -> float:
-    """Return by how much the voltage of a table changes in some seconds before its point k."""
-    first, seen = times[k] - seconds, [voltages[k]]
-    while k > 0 and times[k] > first:
-        k -= 1
-        part = min((times[k + 1] - first) / (times[k + 1] - times[k]), 1.0)
-        seen.append(voltages[k + 1] + part * (voltages[k] - voltages[k + 1]))
-    return max(seen) - min(seen)

@@ -5,8 +5,9 @@ friction over contact force by a few per cent, and by about as much at neighbour
 multiplied by the ratio r of its values on the fine and the coarse mesh. Between the forces :math:`f_k` of the states
 that are known on both, r is linear in the logarithm of the force; beyond them it is constant. Three errors are left:
 
-* of the *mesh*: that of the section on the fine one, from the two meshes (:func:`fingerpad.richardson.of_two_meshes`),
-  at the largest force that is known on both; it is carried over to the sum,
+* of the *mesh*: that of the section on the fine one, from the two meshes
+  (:func:`fingerpad.accuracy.richardson.of_two_meshes`), at the largest force that is known on both; it is carried over
+  to the sum,
 * of the *penalty*: what a rigid screen would change of that state, carried over as well,
 * of the *correction*: the largest change of the sum over the slices without one of the ratios but the last, or, with a
   single ratio, without a correction.
@@ -17,8 +18,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from fingerpad.accuracy.richardson import of_sum, of_two_meshes, rigid
 from fingerpad.results.quantities import Output
-from fingerpad.richardson import of_sum, of_two_meshes, rigid
 from fingerpad.slices.total import Profile, at_force
 from fingerpad.slices.trace import Trace, columns
 from variational.state import ContactState
@@ -90,7 +91,7 @@ def penalty_errors(
 
     Args:
         state: on the fine mesh.
-        stiffer: the same over a screen of twice the stiffness (:func:`fingerpad.richardson.rigid`).
+        stiffer: the same over a screen of twice the stiffness (:func:`fingerpad.accuracy.richardson.rigid`).
         wavelength: of a ridge (m).
         own: outputs that are summed.
     """

@@ -22,7 +22,7 @@ PER_OCTAVE = 2
 def of_points(
     scene: Scene,
     model: "Model",
-    solve: "Callable[[Scene, str], Result]",
+    solve: "Callable[[Scene], Result]",
     name: str,
     expected: float,
     top: float,
@@ -41,7 +41,7 @@ def of_points(
     """
     kind = "full_slip" if name == "full_slip" else "charged"
     scene = scene.model_copy(update={"voltage": 0.0}) if name == "uncharged" else scene
-    found = model.over_forces(scene, grid(expected, top), kind, lambda each: solve(each, name))
+    found = model.over_forces(scene, grid(expected, top), kind, solve)
     refuse_floating(found, model.name)
     return trace(found, scene.geometry.ridge_wavelength, outputs=outputs), found
 

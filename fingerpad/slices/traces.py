@@ -1,21 +1,16 @@
 """Traces of the cross-section for a force in newtons.
 
-The full model follows three histories. The finger is pressed without voltage. It is pressed lightly, charged and
-pressed on. It is pressed lightly, charged, slid to full slip and pressed on while it slides. Where full slip does not
-depend on the path, one simulation has all of them (``fingerpad.runs.newtons``). Elsewhere they are ordinary scenes,
-and every accepted step at full slip is a point of the trace. A model without a path has points at fixed forces
-(:mod:`fingerpad.slices.grid`), so that a sum over them does not depend on the way to it. A trace that ends before the
-force is reached is made again to a larger one.
+The full model follows all traces in one simulation (``fingerpad.runs.newtons``). A model without a path has points at
+fixed forces (:mod:`fingerpad.slices.grid`), so that a sum over them does not depend on the way to it. A trace that ends
+before the force is reached is made again to a larger one.
 """
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import fields, replace
-from functools import partial
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from fingerpad.results.answer import Cost
 from fingerpad.results.quantities import PENALTY, STABILITY, Output
 from fingerpad.results.result import Result
 from fingerpad.results.states import WORDS
@@ -27,15 +22,15 @@ from fingerpad.slices.finger import WholeFinger, in_order
 from fingerpad.slices.grid import LIGHT as LIGHT
 from fingerpad.slices.grid import PER_OCTAVE, of_points
 from fingerpad.slices.total import BeyondTrace, Total, at_force, profile, under_one_force
-from fingerpad.slices.trace import Trace, TraceError, trace
+from fingerpad.slices.trace import Trace
 from geometry.units import computed
 from variational.state import ContactState, Errors
 
 if TYPE_CHECKING:
     from fingerpad.reduced.model import Model
 
-Solve = Callable[[Scene, str], Result]
-"""Returns the result of a scene; takes a name for the folder of its files."""
+Solve = Callable[[Scene], Result]
+"""Returns the result of a scene."""
 NO_NEWTONS = "no newtons of the whole finger"
 """Beginning of a note that says why."""
 SMALLEST, _LARGEST = 1e-3, 5e3
@@ -59,18 +54,16 @@ class Traced(NamedTuple):
     trace: Trace
     states: list[ContactState]
     """Its points, and those that it leaves out."""
-    result: Result | None = None
-    """That ends at its largest force; None of a model without a path."""
     total: Total | None = None
     """The finger under the force, once it was found on the trace."""
     end: ContactState | None = None
-    """The section at its largest force, where it is no run's."""
+    """The section at its largest force; None of a model without discretisation errors."""
     carried: Mapping[str, dict[str, float]] = {}
-    """Relative errors of the sum by part and quantity, where they are not those of a run's section."""
+    """Relative errors of the sum by part and quantity; empty of a model without discretisation errors."""
 
 
 def whole(scene: Scene, model: "Model", solve: Solve, outputs: Sequence[Output] = ()) -> Result:
-    """Return the result of a force on the whole finger; collective.
+    """Return the whole finger under a force by a model without a path, and the section at its centre as named states.
 
     Args:
         scene: with a force.
@@ -78,31 +71,23 @@ def whole(scene: Scene, model: "Model", solve: Solve, outputs: Sequence[Output] 
         solve: solves a scene without a force on the whole finger by it.
         outputs: of one's own, that are summed.
 
-    Returns:
-        The whole finger, and the section at its centre as named states. A trace that was interrupted is returned as it
-        is, without either.
-
     Raises:
         SceneError: a profile that does not fit, or a force that no trace reached.
     """
-    make = partial(_made, scene, model, solve, outputs)
-    shared = Reach(
-        scene, make
-    )  # a trace of runs is made to the force of the one before; the others do not depend on each other
-    try:
-        found = {name: (shared if model.path else Reach(scene, make)).follow(name) for name in states(scene)}
-    except _Stopped as stopped:
-        return stopped.result
+    section = scene.replace(force=None)
+
+    def make(name: str, top: float) -> Traced:
+        return Traced(*of_points(section, model, solve, name, scene.centre_force, top, outputs))
+
+    found = {name: Reach(scene, make).follow(name) for name in states(scene)}  # none depends on the one before
     finger = summed(scene, model.traces, found)
-    if model.path:
-        return _of_path(scene, finger, found)
     centre = list(found.values())[-1].total.centre / profile(scene.slices).centre_scale  # type: ignore[union-attr]
     if centre < SMALLEST:
         raise SceneError(
             f"force is {scene.force:.4g} N, under which the centre of the finger bears {centre:.2g} N/m, and it must "
             f"bear at least {SMALLEST:g} N/m; give a larger force or a shorter finger"
         )
-    return model.of_finger(scene, solve(scene.replace(f_ext=centre), ""), finger)
+    return model.of_finger(scene, solve(scene.replace(f_ext=centre)), finger)
 
 
 def with_sum(result: Result, model: "Model", solve: Solve, outputs: Sequence[Output] = ()) -> Result:
@@ -128,39 +113,24 @@ def with_sum(result: Result, model: "Model", solve: Solve, outputs: Sequence[Out
         return replace(result, notes=(*result.notes, f"{NO_NEWTONS}: {error}"))
 
 
-def history(scene: Scene, name: str, top: float, part: float = LIGHT) -> Scene:
-    """Return the scene of a trace of the full model.
+def history(scene: Scene, top: float, part: float = LIGHT) -> Scene:
+    """Return the scene of a finger that is pressed lightly, charged, and pressed on while it slides.
 
     Args:
         scene: press, charge and slide.
-        name: ``uncharged``, ``charged`` or ``full_slip``.
         top: largest force (N/m).
         part: light force over that.
     """
-    light, far = top * part, scene.slide_length
-    loads: list[dict[str, float | str | bool]] = [{"name": "press", "f_ext": top if name == "uncharged" else light}]
-    if name != "uncharged" and scene.volts:
-        loads += [{"name": "charge", "voltage": scene.volts}]
-    if name == "charged":
-        loads += [{"name": "raise", "f_ext": top}]
-    if name == "full_slip":
-        loads += [
-            {"name": "slide", "bone_x": far / 4, "until_full_slip": True},
-            {"name": "raise", "f_ext": top, "bone_x": far},
-            {"name": "hold", "bone_x": 2 * far, "until_full_slip": True},
-        ]
+    far = scene.slide_length
+    loads: list[dict[str, float | str | bool]] = [{"name": "press", "f_ext": top * part}]
+    loads += [{"name": "charge", "voltage": scene.volts}] if scene.volts else []
+    loads += [
+        {"name": "slide", "bone_x": far / 4, "until_full_slip": True},
+        {"name": "raise", "f_ext": top, "bone_x": far},
+        {"name": "hold", "bone_x": 2 * far, "until_full_slip": True},
+    ]
     with computed():
         return scene.replace(history=loads)
-
-
-def points(result: Result, name: str) -> list[ContactState]:
-    """Return the states of a run of :func:`history` that are points of its trace."""
-    if name == "full_slip":
-        return [state for state in result.steps if state.all_slip and state.f_t > 0]
-    if name == "uncharged":
-        return [state for state in result.steps if state.load == "press"]
-    voltage = result.scene.loads()[1].voltage
-    return [state for state in result.steps if state.load in ("charge", "raise") and state.voltage == voltage]
 
 
 def states(scene: Scene) -> list[str]:
@@ -178,8 +148,7 @@ def summed(scene: Scene, words: str, found: Mapping[str, Traced]) -> WholeFinger
         found: the traces by state.
     """
     totals = {name: each.total for name, each in found.items() if each.total is not None}
-    wavelength = scene.geometry.ridge_wavelength
-    known = {name: _carried(each, name, wavelength) for name, each in found.items()}
+    known = {name: dict(each.carried) or {errors.MESH: {}} for name, each in found.items()}
     of = {name: each.trace for name, each in found.items()}
     tops = (f"{each.trace.end[1]:.4g} N/m ({name.replace('_', ' ')})" for name, each in found.items())
     if not scene.volts:  # normal contact is one state then, with two names
@@ -188,29 +157,8 @@ def summed(scene: Scene, words: str, found: Mapping[str, Traced]) -> WholeFinger
     return WholeFinger(in_order(totals), f"{words} to {', '.join(tops)}", known, of, scene.slices)
 
 
-def _of_path(scene: Scene, finger: WholeFinger, found: dict[str, Traced]) -> Result:
-    """Return the result of traces that are runs."""
-    runs = [each.result for each in found.values() if each.result is not None]
-    return replace(
-        runs[-1],
-        scene=scene,
-        record={key: value for key, value in runs[-1].record.items() if key != "steps"},
-        **sections(scene, found),
-        steps=(),
-        loads=(),
-        outputs=(),
-        drawing=None,
-        folder=None,
-        cost=_together(run.cost for run in runs),
-        failure="",
-        notes=tuple(dict.fromkeys(note for run in runs for note in run.notes)),
-        cautions=tuple(dict.fromkeys(caution for run in runs for caution in run.cautions)),
-        finger=finger,
-    )
-
-
 def sections(scene: Scene, found: Mapping[str, Traced]) -> dict[str, Any]:
-    """Return the section at the centre of the finger by state; None in states without a trace."""
+    """Return the section at the centre of the finger of a model with errors, by state; None without a trace."""
     scale, wavelength = profile(scene.slices).centre_scale, scene.geometry.ridge_wavelength
     named = {
         name: _section(each, name, each.total.delta / scale, wavelength)
@@ -220,11 +168,6 @@ def sections(scene: Scene, found: Mapping[str, Traced]) -> dict[str, Any]:
     if not scene.volts:
         named["charged"] = named["uncharged"]
     return {name: named.get(name) for name in WORDS}
-
-
-def _carried(traced: Traced, name: str, wavelength: float) -> dict[str, dict[str, float]]:
-    """Return the errors that a sum takes over: those that its trace has, else those of its end."""
-    return dict(traced.carried) or errors.of_section(_end(traced, name), wavelength, traced.trace.own)
 
 
 def _section(traced: Traced, name: str, depth: float, wavelength: float) -> ContactState:
@@ -239,7 +182,8 @@ def _section(traced: Traced, name: str, depth: float, wavelength: float) -> Cont
     at: dict[str, Any] = {key: float(values[0]) for key, values in traced.trace.at(np.array([depth])).items()}
     near = min(traced.states, key=lambda state: abs(state.bone_height + depth))
     mu_app = at["f_t"] / at["f_ext"]
-    end, own = _end(traced, name), {each.name: at.pop(each.name) for each in traced.trace.own}
+    end, own = traced.end, {each.name: at.pop(each.name) for each in traced.trace.own}
+    assert end is not None
     del at["gross_width"]
     state = ContactState(
         **at,
@@ -248,51 +192,25 @@ def _section(traced: Traced, name: str, depth: float, wavelength: float) -> Cont
         f_contact=at["f_ext"] + at["f_electrostatic"],
         bone_height=-depth,
         ridges_in_contact=near.ridges_in_contact,
-        mesh_contact=near.mesh_contact if end is None else end.mesh_contact,
-        **({} if end is None else {key: getattr(end, key) for key in STABILITY}),
+        mesh_contact=end.mesh_contact,
+        **{key: getattr(end, key) for key in STABILITY},
         all_slip=name == "full_slip",
         slip_held=name == "full_slip",
         own=own,
     )
-    carried = _carried(traced, name, wavelength)
-    mesh, penalty = (errors.on_section(state, carried.get(part, {})) for part in (errors.MESH, PENALTY))
+    mesh, penalty = (errors.on_section(state, traced.carried.get(part, {})) for part in (errors.MESH, PENALTY))
     return replace(state, error=Errors.of(errors.add(mesh, penalty)), penalty=Errors.of(penalty))
-
-
-def _end(traced: Traced, name: str) -> ContactState | None:
-    """Return the state at the largest force of a trace, None of a model without discretisation errors."""
-    if traced.end is not None:
-        return traced.end
-    named = {} if traced.result is None else traced.result.named
-    return named.get("charged" if name == "uncharged" else name)
-
-
-def _together(costs: Iterable[Cost]) -> Cost:
-    """Return what runs one after the other cost together: sums, and the largest memory and system."""
-    values, most = [*costs], ("unknowns", "memory_mb", "ranks")
-    every = {field.name: [getattr(cost, field.name) for cost in values] for field in fields(Cost)}
-    return Cost(**{name: max(each) if name in most else sum(each) for name, each in every.items()})
-
-
-class _Stopped(Exception):  # noqa: N818
-    """A trace was interrupted; its attribute ``result`` says so."""
-
-    def __init__(self, result: Result, name: str) -> None:
-        super().__init__(name)
-        stopped = result.failure.partition(";")[0]
-        failure = f"{stopped} of the trace of {WORDS[name]}; the same command goes on with it"
-        self.result = replace(result, failure=failure)
 
 
 class Reach:
     """Has traces made to forces that are large enough."""
 
-    def __init__(self, scene: Scene, make: Callable[[str, float, int], Traced]) -> None:
+    def __init__(self, scene: Scene, make: Callable[[str, float], Traced]) -> None:
         """Expect the force of the default finger at the centre.
 
         Args:
             scene: with a force.
-            make: makes the trace of a state to a largest force (N/m); takes how often it was made before, too.
+            make: makes the trace of a state to a largest force (N/m).
         """
         assert scene.force is not None
         self._force, self._count, self._make = scene.force, scene.slices.count, make
@@ -313,34 +231,14 @@ class Reach:
         """
         for tries in range(_TRIES):
             top = self.top
-            made = self._make(name, top, tries)
+            made = self._make(name, top)
             try:
                 total = at_force(self._finger, made.trace, self._force, self._count)
             except BeyondTrace as error:
-                failure = "" if made.result is None else made.result.failure
-                if failure or tries == _TRIES - 1 or top == _LARGEST:
-                    why = f": {failure}" if failure else ""
-                    raise SceneError(f"{error}{why}") from None
+                if tries == _TRIES - 1 or top == _LARGEST:
+                    raise SceneError(str(error)) from None
                 self._top *= _MORE
                 continue
             self._top = total.centre / self._scale * MARGIN  # of the next trace
             return made._replace(total=total)
         raise AssertionError("every try returns or raises")
-
-
-def _made(
-    scene: Scene, model: "Model", solve: Solve, outputs: Sequence[Output], name: str, top: float, tries: int
-) -> Traced:
-    """Return a trace as ordinary scenes have it, each try in a folder of its own; see :class:`Reach`, :func:`whole`."""
-    here = scene.replace(force=None)
-    if not model.path:
-        return Traced(*of_points(here, model, solve, name, scene.centre_force, top, outputs))
-    result = solve(history(here, name, top), f"{name}_{tries + 1}" if tries else name)
-    if result.interrupted:
-        raise _Stopped(result, name)
-    found = points(result, name)
-    try:
-        return Traced(trace(found, scene.geometry.ridge_wavelength, outputs=outputs), found, result)
-    except TraceError as error:
-        why = f": {result.failure}" if result.failure else ""
-        raise SceneError(f"the force on the finger is {scene.force:.4g} N; {error}{why}") from None

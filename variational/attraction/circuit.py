@@ -16,7 +16,7 @@ a peak.
 :math:`R_{gap}` is the one constant that no source gives. :func:`fit_leak` takes it from the frequency of that peak.
 :data:`LEAKS` has presets with the range in which each is likely.
 
-Air breaks down by the local field (:func:`variational.roughness.statistics.breakdown_voltage`).
+Air breaks down by the local field (:func:`variational.roughness.gaps.breakdown_voltage`).
 """
 
 from dataclasses import dataclass

@@ -71,6 +71,10 @@ class Tissue(ABC):
         """Refuse a frequency (Hz) at which the tissue is not known, by ``ValueError``; by default none is."""
         return
 
+    def debye(self) -> Debye | None:
+        """Return the tissue as Debye terms, for a history in time; None where it has no equations in time."""
+        return None
+
 
 @dataclass(frozen=True)
 class ColeCole(Tissue):

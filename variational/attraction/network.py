@@ -23,7 +23,7 @@ import scipy  # its parts are imported where they are used first: to read a scen
 from numpy.typing import ArrayLike, NDArray
 
 from variational.attraction.circuit import GapCircuit
-from variational.attraction.dielectric import VACUUM_PERMITTIVITY, ColeCole, Debye
+from variational.attraction.dielectric import VACUUM_PERMITTIVITY, Debye
 
 Array = NDArray[np.float64]
 _LEAST = 1e-12  # weight of a mode that is left out, of the sum of all
@@ -46,10 +46,10 @@ class Network:
         Raises:
             ValueError: the tissue is a table, which has no equations in time.
         """
-        tissue = circuit.dielectric
-        if not isinstance(tissue, ColeCole):
+        terms = circuit.dielectric.debye()
+        if terms is None:
             raise ValueError("tissue is a table, which has no equations in time; give 'lossless', 'dry' or 'moist'")
-        capacitance, conductance, inlet = _assembled(circuit, tissue.debye(), (gap, d_i / eps_i, d_sc))
+        capacitance, conductance, inlet = _assembled(circuit, terms, (gap, d_i / eps_i, d_sc))
         rate, vectors = scipy.linalg.eigh(conductance, capacitance)
         weight = (vectors[0] - vectors[1]) * (inlet * vectors[0])
         kept = np.abs(weight) > _LEAST * np.abs(weight).sum()

@@ -225,7 +225,7 @@ class Formulation(Named, ABC):
         """Return the contact over a screen of twice the stiffness; None where the screen is rigid already.
 
         With one, the effect of a rigid screen is estimated beside the error of the mesh
-        (:mod:`fingerpad.richardson`).
+        (:mod:`fingerpad.accuracy.richardson`).
         """
         return None
 

@@ -11,7 +11,7 @@ contact pressure p_c it is closed form, single valued and free of the voltage.
 """
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 import scipy  # its parts are imported where they are used first: to read a scene needs none
@@ -19,7 +19,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from variational.coefficients import OF_SCENE, Named, parameter, refuse_not_positive
 from variational.roughness.closure import PAST_THE_FOLD, AirGap, Closure, Progress
-from variational.roughness.statistics import Slopes, Statistics, breaking_gaps
+from variational.roughness.gaps import Slopes, Statistics, breaking_gaps
 
 if TYPE_CHECKING:
     from variational.roughness.topography import HeightMap
@@ -53,6 +53,8 @@ class BearingArea(Named, Closure):
     p_floor: float = parameter(1e-3, 1e9, "Pa", default=1e3)
     """Mean contact pressure (Pa) below which the air gap is held constant (*assumption*): a ridge that is let go does
     not follow d_eq to infinity. It must be below the pressure at zero separation."""
+    shared: ClassVar[tuple[str, ...]] = ("h_0", "h_rms", "wavelength", "young", "p_floor")
+    end: ClassVar[str] = "the pressure at zero separation"
 
     def __post_init__(self) -> None:
         """Refuse numbers that are no lengths and pressures.

@@ -27,6 +27,7 @@ class BoundaryElements(TabulatedClosure):
     """Name of a measured map's table, which ``topography`` computes; empty for the package's Gaussian surfaces. With
     it ``shortest_wave`` and ``hurst`` are those of the map, and the keys are not read."""
     measured: ClassVar[tuple[str, ...]] = (*TabulatedClosure.measured, "surface", "shortest_wave", "hurst")
+    shared: ClassVar[tuple[str, ...]] = (*TabulatedClosure.shared, "surface")
 
     def tables(self) -> list[tuple[float, GapTable]]:
         """Return the tables of the spectrum, or that of the measured map.

@@ -39,6 +39,18 @@ class Closure(ABC):
 
     measured: ClassVar[tuple[str, ...]] = ("h_rms", "wavelength")
     """Parameters that a measured height map has, which are not given beside it; of closures with an ``of_map``."""
+    shared: ClassVar[tuple[str, ...]] = ()
+    """Parameters of a self-affine Gaussian surface, by which other closures describe the same one; empty where it is
+    none."""
+    end: ClassVar[str] = ""
+    """What the largest of :attr:`pressures` is, in words."""
+    extrapolates: ClassVar[bool] = True
+    """Whether the air gap beyond :attr:`pressures` is an answer of the model; that of a table is held, and is none."""
+
+    @property
+    def pressures(self) -> tuple[float, float]:
+        """Range of mean contact pressures (Pa) in which the air gap follows the pressure."""
+        return 0.0, np.inf
 
     @abstractmethod
     def __call__(self, p_c: ArrayLike) -> AirGap:
@@ -51,6 +63,21 @@ class Closure(ABC):
     def state(self, p_c: float, voltage: float) -> str:
         """Return ``""`` or a note on a ridge at this pressure (Pa) and voltage (V)."""
         return ""
+
+    def spread(self, p_c: ArrayLike) -> Array:
+        """Return the standard deviation of d_eq (m) from one surface to the next, of the shape of the pressures."""
+        return np.zeros(np.shape(p_c))
+
+    def balanced(self, p_c: ArrayLike, voltage: float) -> Array:
+        """Return the part of the contact pressure that attraction balances where asperities touch, 0 or more.
+
+        A closure that takes the whole pressure as a load overestimates the attraction by more, the larger this part.
+        """
+        return np.zeros(np.shape(p_c))
+
+    def sticking_voltage(self) -> float | None:
+        """Return the voltage (V) from which a flat ridge adheres without a load; None where it is not known."""
+        return None
 
 
 def air_gaps(closure: Closure, p_c: ArrayLike) -> Array:
@@ -77,7 +104,7 @@ def check(closure: Closure) -> None:
             greater than zero; in one sentence.
     """
     name = type(closure).__name__
-    if not (callable(closure) and callable(getattr(closure, "state", None))):
+    if not isinstance(closure, Closure):
         raise ValueError(f"closure is {closure!r}; it must be a Closure, with p_c in and an AirGap out")
     try:
         with np.errstate(all="ignore"):

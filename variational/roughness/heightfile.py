@@ -7,7 +7,10 @@ A plain matrix is a text of four or more columns of numbers and nothing else, se
 spaces, with decimal points; a pixel is missing where the place is empty or holds ``nan``. It has no unit and no size,
 so that both must be given, as for NumPy's files.
 
-Maps with values that are no heights are refused (:mod:`variational.roughness.mapchecks`).
+Values that are no heights are refused. A mark of missing pixels, as -9999, is an extreme height from which the next
+one, and the others' quartiles, are more than 20 interquartile ranges away; a groove, however deep, is measured at many
+depths. A line or column of something else, or a step where parts are stitched, differs from its neighbour by more than
+three times (rms) what the next ones do; of self-affine surfaces of 16 lines the most is 2.5 times.
 """
 
 import io
@@ -20,15 +23,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from variational import files
-from variational.roughness.mapchecks import refuse_mark, refuse_numbering, refuse_uneven
 from variational.roughness.topography import HeightMap, filled
 
 Array = NDArray[np.float64]
 UNITS = {"m": 1.0, "cm": 1e-2, "mm": 1e-3, "um": 1e-6, "µm": 1e-6, "μm": 1e-6, "nm": 1e-9, "pm": 1e-12}
 """Units of length in m."""
-_HIGHEST = 1.0  # m, of what can be roughness
-_WIDEST = 0.1  # m, of a map of skin: five fingertips
+_HIGHEST, _WIDEST = 1.0, 0.1  # m: heights that can be roughness, and a map of five fingertips
 _POINTS = 3  # columns of a text of points x, y, z
+_STEP, _LINES, _FAR = 3.0, 16, 20.0  # times, least lines for a judgement, interquartile ranges
 # What separates numbers in SurfaceTopography's formats of text, whose readers skip lines that they do not understand.
 _TEXTS = {"asc": r"\s+", "xyz": r"[\s,;]+"}
 _NO_NUMBERS = {"bad", "infinite"}  # words that these readers take for missing pixels
@@ -71,8 +73,8 @@ def scan(
         size: lengths (m) along x, from the first line of a plain matrix to its last, and y, along a line; for a file
             that has no size of its own.
         pixel: lengths (m) of a pixel along x and y, in place of ``size``.
-        missing: mark of missing pixels besides empty places and ``nan``; a number, in a plain matrix also a word. Where
-            a mark is given a value far from all others is taken as measured, and with ``nan`` every line too.
+        missing: number that marks missing pixels, besides empty places and ``nan``. Where it is given a value far from
+            all others is taken as measured, and with ``"nan"`` every line too.
 
     Raises:
         ValueError: the file is no height map, holds values that are none, or has what is given too. Keys to give or to
@@ -81,11 +83,14 @@ def scan(
         OSError: the file cannot be opened.
     """
     path = Path(file)
-    found = _read(path, missing)
+    if missing is not None and not files.is_number(missing):
+        raise ValueError(f"'missing' is {missing[:30]!r}; it must be a number")
+    found = _read(path)
     heights, (nx, ny) = found.heights, found.heights.shape
-    refuse_numbering(path, heights)
     if missing is None:
-        refuse_mark(path, heights)
+        _refuse_mark(path, heights)
+    else:
+        heights[heights == float(missing)] = np.nan
     if found.has_unit and unit is not None:
         raise ValueError(f"{path} has a unit of its own; give no 'unit'")
     if not found.has_unit and unit is None:
@@ -110,7 +115,7 @@ def scan(
     except ValueError as error:
         raise ValueError(f"{path}: {error}") from None
     if missing != "nan":
-        refuse_uneven(path, whole.heights)
+        _refuse_uneven(path, whole.heights)
     return Found(whole, heights.size - known.size, found.layout)
 
 
@@ -119,7 +124,7 @@ def _square(size: tuple[float, float], shape: tuple[int, int]) -> bool:
 
 
 # -- reading -----------------------------------------------------------------------------------------------
-def _read(path: Path, missing: str | None) -> _Read:
+def _read(path: Path) -> _Read:
     """Return what is in a file, a matrix of 3 x 3 pixels or more, missing ones as NaN."""
     content = files.read(path)
     text, why = files.text(content), "it is no text"
@@ -127,7 +132,7 @@ def _read(path: Path, missing: str | None) -> _Read:
     if matrix is None and text is not None:
         if not text.strip():
             raise ValueError(f"{path} holds no heights")
-        matrix, why = _matrix(text, missing)
+        matrix, why = _matrix(text)
     if matrix is not None:
         found = _Read(matrix, f"matrix of {' x '.join(map(str, matrix.shape))} pixels")
     else:
@@ -135,10 +140,6 @@ def _read(path: Path, missing: str | None) -> _Read:
     shape = found.heights.shape
     if len(shape) != 2 or min(shape) < 3:
         raise ValueError(f"{path}: heights have shape {shape}; a height map is a matrix of at least 3 x 3")
-    if missing is not None and files.is_number(missing):
-        found.heights[found.heights == float(missing)] = np.nan
-    elif missing is not None and (matrix is None or text is None):
-        raise ValueError(f"'missing' is {missing[:30]!r}; {path} has numbers alone, so it must be one")
     return found
 
 
@@ -152,23 +153,21 @@ def _array(path: Path, content: bytes) -> Array:
     return found.astype(float)
 
 
-def _matrix(text: str, missing: str | None) -> tuple[Array | None, str]:
+def _matrix(text: str) -> tuple[Array | None, str]:
     """Return a plain matrix of numbers, or None and why it is none."""
-    lines = [(k, line.strip(" ")) for k, line in enumerate(text.splitlines(), start=1) if line.strip()]
-    separator = next((each for each in (";", "\t", ",") if each in lines[0][1]), None)
-    if separator is not None and all(line.endswith(separator) for _, line in lines):
-        lines = [(k, line[:-1]) for k, line in lines]
-    rows: list[list[float]] = []
-    for k, line in lines:
-        words = [word.strip(' \t"') for word in line.split(separator)]
-        if unknown := [word for word in words if word not in ("", missing) and not files.is_number(word)]:
+    lines = [line.strip(" ") for line in text.splitlines() if line.strip()]
+    separator = next((each for each in (";", "\t", ",") if each in lines[0]), None)
+    if separator is not None and all(line.endswith(separator) for line in lines):
+        lines = [line[:-1] for line in lines]
+    rows = [[word.strip(' \t"') for word in line.split(separator)] for line in lines]
+    for k, words in enumerate(rows, start=1):
+        if unknown := [word for word in words if word and not files.is_number(word)]:
             return None, f"line {k} has {unknown[0][:30]!r}"
-        rows.append([np.nan if word in ("", missing) else float(word) for word in words])
         if len(words) != len(rows[0]):
             return None, f"line {k} has {len(words)} numbers and the first one {len(rows[0])}"
     if len(rows[0]) <= _POINTS:
         return None, f"it has {len(rows[0])} columns"
-    return np.array(rows), ""
+    return np.array([[float(word or "nan") for word in words] for words in rows]), ""
 
 
 def _foreign(path: Path, content: bytes, text: str | None, why: str) -> _Read:
@@ -216,6 +215,7 @@ def _words(error: object) -> str:
     return "".join(filter(str.isprintable, " ".join(str(error).split())))[:120]
 
 
+# -- values that are no heights ------------------------------------------------------------------------------
 def _refuse_unread(path: Path, text: str, separator: str, has_unit: bool) -> None:
     """Refuse lines that SurfaceTopography has skipped in a text: words, or a head without a unit that it knows."""
     begun = False
@@ -223,7 +223,41 @@ def _refuse_unread(path: Path, text: str, separator: str, has_unit: bool) -> Non
         words = re.split(separator, line.strip())
         numbers = all(files.is_number(word) or word.lower() in _NO_NUMBERS for word in words)
         if not numbers and not (begun and line.startswith("#")) and (begun or not has_unit):
-            remedy = "export one map of numbers alone" if begun else "delete the lines above the numbers"
-            place = "among its numbers" if begun else "and no unit of heights that SurfaceTopography knows"
-            raise ValueError(f"{path} has {line.strip()[:40]!r} in line {k} {place}; {remedy}")
+            where = "among its numbers" if begun else "and no unit of heights that SurfaceTopography knows"
+            raise ValueError(f"{path} has {line.strip()[:40]!r} in line {k} {where}; save the heights alone")
         begun = begun or numbers
+
+
+def _refuse_mark(path: Path, heights: Array) -> None:
+    """Refuse a value far from all other heights, of which the spectrum would make roughness."""
+    known = heights[np.isfinite(heights)]
+    others = known[(known > known.min()) & (known < known.max())] if known.size else known
+    if not others.size:
+        return
+    lower, upper = np.percentile(others, [25, 75])
+    gaps = {known.min(): others.min() - known.min(), known.max(): known.max() - others.max()}
+    value = max(gaps, key=lambda height: gaps[height])
+    if gaps[value] > _FAR * ((upper - lower) or np.ptp(others)) > 0:
+        text = repr(float(value)).removesuffix(".0")
+        raise ValueError(
+            f"{path} has {text} at {np.count_nonzero(heights == value)} pixels, far from all other heights, as a mark "
+            f"of missing pixels; give 'missing'=\"{text}\", or 'missing'=\"nan\" if it was measured"
+        )
+
+
+def _refuse_uneven(path: Path, heights: Array) -> None:
+    """Refuse a line or column of heights (m) that differs from its neighbours as no other does."""
+    found = []
+    for lines, line in ((heights, "line"), (heights.T, "column")):
+        rms = np.sqrt((np.diff(lines, axis=0) ** 2).mean(axis=1))
+        beside = np.pad(rms, 1)
+        over = rms - _STEP * np.maximum(beside[:-2], beside[2:])
+        k = int(over.argmax())
+        if len(lines) >= _LINES and over[k] > 0:
+            end = "last" if k else "first"
+            at_end = k in (0, len(rms) - 1)
+            cause = f"the {end} {line} seems to hold no heights" if at_end else "two parts seem to be stitched there"
+            what = f"a step of {rms[k]:.2g} m (rms) from {line} {k + 1} to {k + 2}"
+            found.append((over[k], f"{what}, where others are {np.median(rms):.2g} m: {cause}"))
+    if found:
+        raise ValueError(f"{path} has {max(found)[1]}; give the rest alone, or 'missing'=\"nan\" if it was measured")

@@ -11,7 +11,7 @@ the many patches of a ridge; :meth:`TabulatedClosure.spread` has the scatter fro
 from abc import abstractmethod
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 import scipy  # its parts are imported where they are used first: to read a scene needs none
@@ -19,8 +19,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from variational.coefficients import OF_SCENE, Named, parameter, refuse_not_positive
 from variational.roughness.closure import PAST_THE_FOLD, AirGap, Closure, Progress
-from variational.roughness.gaps import GapTable
-from variational.roughness.statistics import Slopes, Statistics, breaking_gaps
+from variational.roughness.gaps import GapTable, Slopes, Statistics, breaking_gaps
 
 if TYPE_CHECKING:
     from variational.roughness.topography import HeightMap
@@ -74,6 +73,9 @@ class TabulatedClosure(Named, Closure):
     """Mean contact pressure (Pa) below which the air gap is held constant (*assumption*)."""
     hurst: float = parameter(0.05, 0.99, default=0.75)
     """Hurst exponent of the roughness; tables of boundary elements are for 0.6 to 0.9."""
+    shared: ClassVar[tuple[str, ...]] = ("h_0", "h_rms", "wavelength", "young", "p_floor", "shortest_wave", "hurst")
+    end: ClassVar[str] = "the end of the table of gaps"
+    extrapolates: ClassVar[bool] = False
 
     def __post_init__(self) -> None:
         """Refuse numbers that are no lengths and pressures.

@@ -10,21 +10,19 @@ import pytest
 from mpi4py import MPI
 
 import fingerpad as fp
-from fingerpad.accuracy.sharpened import Sharpened
 from fingerpad.accuracy.states import Solve
-from fingerpad.model.full_slip import Conditions, Solved
+from fingerpad.model.full_slip import Solved
 from fingerpad.results.answer import Cost
 from fingerpad.results.result import Result
-from fingerpad.runs import chain
 from fingerpad.runs import chains as of_sweep
-from fingerpad.runs.chain import Chain
+from fingerpad.runs import full_slip
 from fingerpad.runs.chains import chains
+from fingerpad.runs.full_slip import Chain, Fine
 from fingerpad.runs.sweep import _neighbours
 from fingerpad.runs.sweep_columns import OTHER
-from fingerpad.scene import from_data
+from fingerpad.scene import SceneError, from_data
 from geometry.parameters import MeshSize
 from tests.small_finger import NINE
-from variational.contact.friction import Coulomb
 from variational.solvers.continuation import StepFailed
 from variational.solvers.outcome import Counts
 from variational.state import ContactState, Errors
@@ -128,41 +126,6 @@ def test_two_states_are_found_from_both_sides(monkeypatch):
     assert results[1].record["reached"] == "full slip from voltage 100 V"
 
 
-def test_ends_are_solved_for_from_beyond(monkeypatch):
-    """From 100 V no state is lost at 70 V; beyond its end at 50 V, as far as from 70 V to 65 V, three ridges touch."""
-    results, written = followed(monkeypatch, Skin(), [100.0, 82.0, 70.0, 65.0])
-    assert [r.full_slip.ridges_in_contact for r in results] == [5, 5, 5, 5]
-    assert written == [0, 1, 2, 3, 3, 2]
-    others = [r.record.get(OTHER, {}) for r in results]
-    assert [other.get("ridges_in_contact") for other in others] == [None, None, 3, 3]
-    assert others[3]["reached"].startswith("full slip from voltage 59.58")
-
-
-def test_begin_is_solved_for_from_beyond(monkeypatch):
-    """The path ends with five ridges at 62 V, and three touch beyond."""
-    results, written = followed(monkeypatch, Skin(), [62.0, 70.0, 90.0])
-    assert written == [0, 1, 2, 0, 1]
-    assert [r.record.get(OTHER, {}).get("ridges_in_contact") for r in results] == [3, 3, None]
-
-
-@pytest.mark.parametrize(
-    ("end", "neighbour", "f_ext", "voltage"),
-    [
-        ((20.0, 100.0), (10.0, 100.0), 40.0, 100.0), ((10.0, 100.0), (20.0, 100.0), 5.0, 100.0),
-        ((10.0, 200.0), (10.0, 0.0), 10.0, 80000**0.5), ((10.0, 100.0), (10.0, 150.0), 10.0, 0.0),
-        ((10.0, -200.0), (10.0, -100.0), 10.0, -(70000**0.5)),
-    ],
-)  # fmt: skip
-def test_state_beyond_an_end_is_as_far_as_the_neighbour(end, neighbour, f_ext, voltage):
-    of = Conditions(1.0, 0.0, Coulomb(0.25), None, 1e-6)
-    a, b = (replace(of, f_ext=f, voltage=u) for f, u in (end, neighbour))
-    found = chain._beyond(a, b)
-    assert (found.f_ext, found.voltage) == (pytest.approx(f_ext), pytest.approx(voltage))
-    assert chain._beyond(a, a) is None
-    assert chain._beyond(a, replace(b, friction=Coulomb(0.3))) is None
-    assert chain._beyond(replace(of, voltage=0.0), replace(of, voltage=50.0)) is None, "at 0 V there is nothing beyond"
-
-
 def test_point_not_found_from_its_neighbour_has_a_path(monkeypatch):
     skin = Skin()
     results, _ = followed(monkeypatch, skin, [100.0, 90.0, 75.0, 70.0])
@@ -183,7 +146,7 @@ def test_point_without_full_slip_has_its_failure(monkeypatch):
 def sharp(state, **changes):
     """Return a state as on another mesh, and what it took there."""
     found = replace(state, error=Errors(f_t=0.1), **changes)
-    return Sharpened(found, Solve({}, MeshSize(), 100, 5, 1.0, 9))
+    return Fine(found, Solve({}, MeshSize(), 100, 5, 1.0, 9))
 
 
 def test_point_has_the_values_and_errors_of_the_scenes_mesh(monkeypatch):
@@ -243,14 +206,13 @@ def test_point_not_found_on_the_scenes_mesh_is_a_run(monkeypatch):
 def test_sweep_of_full_slip_is_that_of_paths(tmp_path, monkeypatch):
     """To 1e-6, with its own mesh given; a sweep with a further value starts one process, and one as before none."""
     scene, axes = from_data(SCENE), {"friction": [0.0, 0.25], "voltage": [0, 60]}
-    paths = fp.sweep(scene, tmp_path / "paths", quiet=True, **axes)
+    paths = fp.sweep(scene, tmp_path / "paths", quiet=True, voltage=[0, 60])
     direct = fp.sweep(scene, tmp_path / "direct", states="full_slip", quiet=True, **axes)
     assert [bool(r.failure) for r in direct] == [True, True, False, False]
     assert direct[0].failure.startswith("friction is 0")
     for quantity in ("f_t", "mu_app", "f_electrostatic"):
-        expected = paths.array(quantity)[1]
-        assert direct.array(quantity)[1] == pytest.approx(expected, rel=1e-6), quantity
-    assert direct.array("contact_length")[1] == pytest.approx(paths.array("contact_length")[1], rel=1e-5)
+        assert direct.array(quantity)[1] == pytest.approx(paths.array(quantity), rel=1e-6), quantity
+    assert direct.array("contact_length")[1] == pytest.approx(paths.array("contact_length"), rel=1e-5)
     assert [r.full_slip.reached for r in direct[2:]] == ["full slip from voltage 60 V", "path"]
     assert "1 of 2 states of full slip are from a neighbour, the others from paths." in str(direct)
     row = direct.rows()[2]
@@ -293,8 +255,8 @@ def test_states_with_errors_are_those_of_runs(tmp_path):
 @pytest.mark.slow
 def test_chain_that_was_stopped_goes_on(tmp_path, monkeypatch):
     """Of its points those that are missing are followed, the first of them by a path; numbers as in one go."""
-    voltages = [20.0, 40.0, 60.0, 80.0, 100.0]
-    scene, write, written = from_data(SCENE), chain.kept, []
+    voltages = [20.0, 40.0, 60.0, 80.0]
+    scene, write, written = from_data(SCENE), full_slip.kept, []
     every = scenes(voltage=voltages)
     file = tmp_path / "asked.json"
     file.write_text(json.dumps({"half_arc": None, "scenes": [each.parameters() for each in every.values()]}))
@@ -305,8 +267,8 @@ def test_chain_that_was_stopped_goes_on(tmp_path, monkeypatch):
         written.append(write(*given))
 
     with monkeypatch.context() as patch, pytest.raises(KeyboardInterrupt):
-        patch.setattr(chain, "kept", stopped)
-        chain.main(file, tmp_path / "cut" / "full_slip")
+        patch.setattr(full_slip, "kept", stopped)
+        full_slip.main(file, tmp_path / "cut" / "full_slip")
     asked, run = [], of_sweep.run
 
     def seen(module, given, *more):
@@ -318,6 +280,34 @@ def test_chain_that_was_stopped_goes_on(tmp_path, monkeypatch):
     assert [[each["voltage"] for each in given["scenes"]] for given in asked] == [voltages[2:]]
     whole = fp.sweep(scene, tmp_path / "whole", states="full_slip", quiet=True, voltage=voltages)
     reached = [r.full_slip.reached for r in cut]
-    assert reached[::2] == ["path", "path", "full slip from voltage 80 V"]
+    assert reached[::2] == ["path", "path"] and reached[3] == "full slip from voltage 60 V"
     for quantity in ("f_t", "f_electrostatic", "contact_length"):
         assert cut.array(quantity) == pytest.approx(whole.array(quantity), rel=1e-5), quantity
+
+
+@pytest.mark.parametrize(
+    ("changes", "message"),
+    [
+        ({"accuracy": {"mu_app": 0.01}}, "accuracy is given"),
+        ({"force": 0.1}, "force is 0.1"),
+        ({"history": [{"name": "press", "f_ext": 1.0}]}, "history is given"),
+        (
+            {"materials": {"dermis": {"viscosity": {"preset": "fingerpad"}}}},
+            "materials.dermis.viscosity is given, and a state needs the past of its layers; with states='full_slip' it",
+        ),
+        (
+            {"friction": {"law": "Occlusion", "mu_dry": 0.2, "mu_wet": 0.8, "time": 0.5}},
+            "friction has the law 'Occlusion', on whose memory full slip depends; with states='full_slip' it must have",
+        ),
+    ],
+)
+def test_other_scenes_are_refused(changes, message, tmp_path):
+    with pytest.raises(SceneError, match=message):
+        fp.sweep(fp.Scene(**changes), tmp_path, states="full_slip", **{"roughness.h_rms": [2e-6]})
+
+
+def test_unknown_states_and_models_without_them_are_refused(tmp_path):
+    with pytest.raises(SceneError, match="states is 'some'; it must be 'all' or 'full_slip'"):
+        fp.sweep(out=tmp_path, states="some", voltage=[0])
+    with pytest.raises(SceneError, match="full slip alone is of the model 'full'"):
+        fp.sweep(out=tmp_path, states="full_slip", model="cylinders", voltage=[0])

@@ -1,10 +1,9 @@
-r"""Drives as the full model follows them: loads whose voltage is that of Eq. 3, and the share of each ridge's gap.
+r"""The loads of drives in the full model: voltages of Eq. 3, and the factor by which a ridge's gap scales them.
 
 The full model has the law of Eq. 3 alone. A drive in a circuit with losses, on a carrier or in bursts becomes the
-voltage V of Eq. 3 that attracts as much (:mod:`fingerpad.scene.supply`), over time at a gap of
-:data:`~fingerpad.scene.supply.REFERENCE`. A ridge of another gap d_eq has another share of the voltage: V is multiplied
-by the ratio of the two root mean squares, frozen with d_eq in each solve. The phase of the drive is that at the
-reference gap on every ridge.
+voltage V of Eq. 3 that attracts as much (:mod:`fingerpad.scene.drive`), over time at a gap of
+:data:`~fingerpad.scene.drive.REFERENCE`. On a ridge of another gap d_eq, V is multiplied by the ratio of the two root
+mean squares, frozen with d_eq in each solve. The phase of the drive is that at the reference gap on every ridge.
 
 A load begins with the drive switched on across a gap without charge, by the equations of the circuit in time. Where
 these are not known, of a table of a tissue or of a carrier, it begins in the steady state.
@@ -16,50 +15,50 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from fingerpad.scene.drive import GAPS, REFERENCE, Drive, drive_of
+from fingerpad.scene.loads import ways
 from fingerpad.scene.messages import SceneError
-from fingerpad.scene.supply import GAPS, REFERENCE, Supply, supply_of
 from fingerpad.scene.wavefile import POINTS
 from fingerpad.scene.waveform import Waveform
 from geometry.units import computed
-from variational.attraction.dielectric import ColeCole
 from variational.attraction.network import Network
 
 if TYPE_CHECKING:
     from fingerpad.scene import Load, Scene
 
 Array = NDArray[np.float64]
-_FEW, _MANY = 12, 48  # points of a period of the wave
+_FEWEST, _MOST = 12, 48  # points of a period of the wave
 _JUMP = 1e-6  # of a period, which a jump takes
 
 
 @dataclass(frozen=True)
-class Share:
+class GapFactor:
     """Voltage of Eq. 3 at air gaps, over that at the reference gap: of one drive, however large it is."""
 
     ratios: tuple[float, ...]
-    """At :data:`~fingerpad.scene.supply.GAPS`; between them straight in the logarithm of the gap."""
+    """At :data:`~fingerpad.scene.drive.GAPS`; between them straight in the logarithm of the gap."""
 
     def __call__(self, gap: ArrayLike) -> Array:
-        """Return the share at air gaps (m), of their shape."""
+        """Return the factor at air gaps (m), of their shape."""
         return np.asarray(np.interp(np.log(np.asarray(gap, dtype=float)), np.log(GAPS), self.ratios))
 
-    def toward(self, other: "Share", part: float) -> "Share":
-        """Return the share at a part of the way to another one, from 0 to 1."""
-        return Share(tuple((1 - part) * a + part * b for a, b in zip(self.ratios, other.ratios, strict=True)))
+    def toward(self, other: "GapFactor", part: float) -> "GapFactor":
+        """Return the factor at a part of the way to another one, from 0 to 1."""
+        return GapFactor(tuple((1 - part) * a + part * b for a, b in zip(self.ratios, other.ratios, strict=True)))
 
 
-SAME = Share((1.0,) * len(GAPS))
-"""That of a voltage without losses: one at every gap."""
+EQUAL = GapFactor((1.0,) * len(GAPS))
+"""That of a voltage without losses: 1 at every gap."""
 
 
-def share(scene: "Scene") -> Share | None:
-    """Return the share of each gap; None where nothing depends on it.
+def gap_factor(scene: "Scene") -> GapFactor | None:
+    """Return the factor of each gap; None where the voltage does not depend on it.
 
     Raises:
         SceneError: several drives, or a drive and a constant voltage, behind a circuit with losses.
     """
     drives, d_sc = scene.drives(), scene.geometry.sc_thickness
-    if scene.electric.circuit(d_sc).lossless or not drives:
+    if not drives or scene.electric.circuit(d_sc).lossless:
         return None
     levels = [f"history[{k}].voltage" for k, load in enumerate(scene.history or ()) if load.level]
     if levels or len(set(drives.values())) > 1:
@@ -68,9 +67,9 @@ def share(scene: "Scene") -> Share | None:
             f"{one} and {other} are two voltages in a circuit with losses, where each ridge has the share of one "
             "drive; give one drive and 0 V"
         )
-    supply = supply_of(next(iter(drives.values())), scene.electric, d_sc)
-    # drives that differ in their amplitude alone have one share, but for roundoff
-    return Share(tuple(float(f"{ratio:.12g}") for ratio in supply.effective(GAPS) / supply.reference))
+    drive = drive_of(next(iter(drives.values())), scene.electric, d_sc)
+    # drives that differ in their amplitude alone have one factor, but for roundoff
+    return GapFactor(tuple(float(f"{ratio:.12g}") for ratio in drive.effective(GAPS) / drive.reference))
 
 
 def loads(scene: "Scene") -> "tuple[Load, ...]":
@@ -79,17 +78,15 @@ def loads(scene: "Scene") -> "tuple[Load, ...]":
     Raises:
         SceneError: a drive has too many periods in its load.
     """
-    from fingerpad.scene.loads import ways  # the run starts without it
-
     found = list(scene.loads())
     for k, (key, load, way) in enumerate(ways(found)):
         if load.wave is None:
             continue
-        supply, mean = supply_of(load.wave, scene.electric, scene.geometry.sc_thickness), scene.electric.follows
-        if mean == "instantaneous" and supply.circuit.lossless and load.wave.carrier is None:
+        drive, mean = drive_of(load.wave, scene.electric, scene.geometry.sc_thickness), scene.electric.follows == "mean"
+        if not mean and drive.circuit.lossless and load.wave.carrier is None:
             continue
         seconds = load.seconds(way or 0.0)
-        times, volts = constant(supply, seconds) if mean == "mean" else over_time(supply, seconds)
+        times, volts = ([0.0, seconds], 2 * [drive.reference]) if mean else _over_time(drive, seconds)
         if len(times) > POINTS:
             raise SceneError(
                 f"{key}.voltage has {seconds / load.wave.period:.4g} periods in {seconds:g} s, which need {len(times)} "
@@ -99,28 +96,25 @@ def loads(scene: "Scene") -> "tuple[Load, ...]":
     return tuple(found)
 
 
-def constant(supply: Supply, seconds: float) -> tuple[Array, Array]:
-    """Return two times (s) and the voltage (V) of Eq. 3 that attracts as the drive does on average."""
-    return np.array([0.0, seconds]), np.full(2, supply.reference)
-
-
-def over_time(supply: Supply, seconds: float) -> tuple[Array, Array]:
+def _over_time(drive: Drive, seconds: float) -> tuple[Array, Array]:
     """Return times (s) of a load and the voltage (V) of Eq. 3 at the reference gap, straight between them.
 
     Args:
-        supply: the drive.
+        drive: the drive.
         seconds: length of the load (s).
     """
-    wave, tissue = supply.wave, supply.circuit.dielectric
-    factor = (supply.h_0 + REFERENCE) / REFERENCE
-    count = int(np.clip(POINTS / max(seconds * (wave.frequency or 0.0), 1.0), _FEW, _MANY))
-    if wave.carrier is None and isinstance(tissue, ColeCole):
+    wave = drive.wave
+    factor = (drive.h_0 + REFERENCE) / REFERENCE
+    count = int(np.clip(POINTS / max(seconds * (wave.frequency or 0.0), 1.0), _FEWEST, _MOST))
+    if wave.carrier is None and drive.circuit.dielectric.debye() is not None:
         t, u = (np.array(each) for each in zip(*wave.samples(seconds, 24 / count), strict=True))
-        network = Network.of(supply.circuit, REFERENCE, *supply.behind)
+        network = Network.of(drive.circuit, REFERENCE, *drive.layers)
         return t, factor * network.response(t, u)
-    square = (factor * supply.across(REFERENCE)) ** 2
+    square = (factor * drive.across(REFERENCE)) ** 2
     if wave.carrier is not None:
-        square = _averaged(square, round(wave.carrier.frequency * wave.period))
+        carried = round(wave.carrier.frequency * wave.period)
+        spectrum = np.fft.rfft(square)  # the mean over one period of the carrier around each instant
+        square = np.fft.irfft(spectrum * np.sinc(np.arange(len(spectrum)) / carried), len(square))
     periods = round(wave.period * (wave.frequency or 1 / wave.period))
     n = min(count * periods, len(square))
     t = np.arange(int(np.ceil(seconds / wave.period * n)) + 1) / n * wave.period
@@ -130,17 +124,12 @@ def over_time(supply: Supply, seconds: float) -> tuple[Array, Array]:
     return t, np.sqrt(np.maximum(found, 0.0))
 
 
-def _averaged(square: Array, carried: int) -> Array:
-    """Return the mean of values over one period of a carrier around each, by their Fourier series."""
-    spectrum = np.fft.rfft(square)
-    return np.asarray(np.fft.irfft(spectrum * np.sinc(np.arange(len(spectrum)) / carried), len(square)))
-
-
-def _table(times: Array, volts: Array, period: float) -> Waveform:
+def _table(times: ArrayLike, volts: ArrayLike, period: float) -> Waveform:
     """Return a waveform of a table; jumps take a short time."""
-    t = [float(each) for each in times]
+    given = np.asarray(times, dtype=float)
+    t = given.tolist()
     for k in range(1, len(t)):
-        if times[k] - times[k - 1] < _JUMP * period:
+        if given[k] - given[k - 1] < _JUMP * period:
             t[k] = t[k - 1] + _JUMP * period
     with computed():
-        return Waveform(waveform="file", times=tuple(t), voltages=tuple(map(float, volts)))
+        return Waveform(waveform="file", times=tuple(t), voltages=tuple(np.asarray(volts, dtype=float).tolist()))

@@ -5,8 +5,8 @@ import pytest
 from numpy.testing import assert_allclose
 
 import fingerpad as fp
-from fingerpad.model import followed
-from fingerpad.scene.supply import REFERENCE
+from fingerpad.model import drive_loads
+from fingerpad.scene.drive import REFERENCE
 from tests.small_finger import SMALL
 
 SINE = {"waveform": "sine", "amplitude": 100.0, "frequency": 50.0}
@@ -20,13 +20,13 @@ def scene(drive, duration: float = 0.2, **electric) -> fp.Scene:
 
 def over(found: fp.Scene):
     """Return times and voltages of the load as the full model follows it."""
-    wave = followed.loads(found)[1].wave
+    wave = drive_loads.loads(found)[1].wave
     return np.array(wave.times), np.array(wave.voltages)
 
 
 def test_lossless_waveform_stays_itself():
     found = scene(SINE)
-    assert followed.loads(found) == found.history and followed.share(found) is None
+    assert drive_loads.loads(found) == found.history and drive_loads.gap_factor(found) is None
 
 
 def test_ends_in_the_steady_state():
@@ -55,7 +55,7 @@ def test_burst_has_its_pauses():
     """Two periods of 20 ms and three without a voltage, which need no table; a square jumps at both of their ends."""
     for drive, jumps in ((SINE, []), (SINE | {"waveform": "square"}, [0.01, 0.02, 0.03, 0.04, 0.1, 0.11, 0.12])):
         burst = drive | {"burst": {"on": 2, "off": 3}}
-        (wave,) = (load.wave for load in followed.loads(scene(burst, 0.125)) if load.wave is not None)
+        (wave,) = (load.wave for load in drive_loads.loads(scene(burst, 0.125)) if load.wave is not None)
         t, v = map(np.array, zip(*wave.samples(0.125, 1.0), strict=True))
         assert abs(v[(t > 0.0401) & (t < 0.0999)]).max() == 0 and v[t < 0.04].max() == pytest.approx(100.0)
         assert_allclose(t[1:][np.diff(t) == 0], jumps, rtol=1e-12)
@@ -85,7 +85,7 @@ def test_share_is_that_of_the_gap():
     """One at the reference gap."""
     found = scene(SINE, **DRY)
     gaps = np.array([1e-6, REFERENCE, 12e-6])
-    ratio = followed.share(found)(gaps)
+    ratio = drive_loads.gap_factor(found)(gaps)
     assert ratio[1] == pytest.approx(1.0) and ratio[2] < ratio[0] != 1.0
 
 
@@ -102,13 +102,13 @@ def test_share_is_that_of_the_gap():
 def test_two_voltages_are_refused(history, words):
     loads = [{"name": "press", "f_ext": 1.0}, *history, {"name": "wave", "duration": 0.1, "voltage": SINE}]
     with pytest.raises(fp.SceneError) as refused:
-        followed.share(fp.Scene(history=loads, electric=DRY))
+        drive_loads.gap_factor(fp.Scene(history=loads, electric=DRY))
     assert str(refused.value).startswith(words)
 
 
 def test_too_many_periods_are_refused():
     with pytest.raises(fp.SceneError, match="400 periods in 0.2 s, which need .* points and at most 2000"):
-        followed.loads(scene(SINE | {"frequency": 2e3}, **DRY))
+        drive_loads.loads(scene(SINE | {"frequency": 2e3}, **DRY))
 
 
 @pytest.mark.slow
@@ -120,8 +120,8 @@ def test_full_model_has_the_share_of_each_ridge():
     """
     small = fp.Scene.load(SMALL)
     drive = fp.run(small.replace(voltage=SINE | {"amplitude": 200.0}, electric=DRY))
-    ridges, supply = drive.full_slip.ridges, drive.scene.supply
-    volts = supply.effective(ridges.d_eq)
+    ridges, wave = drive.full_slip.ridges, drive.scene.drive
+    volts = wave.effective(ridges.d_eq)
     touching = int(np.argmax(ridges.f_contact))
     constant = fp.run(small.replace(voltage=float(volts[touching]))).full_slip.ridges
     ratio = ridges.f_electrostatic / constant.f_electrostatic

@@ -19,17 +19,16 @@ from numpy.typing import ArrayLike, NDArray
 
 from fingerpad.scene.electric import Electric
 from fingerpad.scene.messages import show
-from fingerpad.scene.modulation import shape
 from fingerpad.scene.waveform import Waveform
 from variational.attraction.circuit import LEAKS, GapCircuit
 from variational.attraction.dielectric import VACUUM_PERMITTIVITY
 from variational.attraction.network import Network
-from variational.roughness.statistics import BREAKDOWN_FIELD, BREAKDOWN_PLATEAU, breakdown_voltage
+from variational.roughness.gaps import BREAKDOWN_FIELD, BREAKDOWN_PLATEAU, breakdown_voltage
 
 Array = NDArray[np.float64]
 SAMPLES = 4096
 """Least number of samples of a period."""
-_MOST = 65536
+_MOST_SAMPLES = 65536
 _OF_CARRIER, _OF_WAVE, _OF_PIECE = 32, 128, 4  # samples of a period of either, and of the shortest piece of a file
 REFERENCE = 1.6e-6
 """Gap (m) for which tables print the attraction and what remains, and at which the full model has the waveform: that of
@@ -61,12 +60,12 @@ class Measures:
 
 
 @dataclass(frozen=True)
-class Supply:
+class Drive:
     """A drive and the circuit behind it."""
 
     wave: Waveform
     circuit: GapCircuit
-    behind: tuple[float, float, float]
+    layers: tuple[float, float, float]
     """d_i (m), eps_i and d_sc (m)."""
     h_0: float
     """Effective insulator thickness of Eq. 3 (m)."""
@@ -83,7 +82,7 @@ class Supply:
 
     def across(self, gap: float) -> Array:
         """Return the voltage across a gap (m) over one period, shape (samples,) (V)."""
-        return self.circuit.response(self.voltages, self.frequency, gap, *self.behind)
+        return self.circuit.response(self.voltages, self.frequency, gap, *self.layers)
 
     def attraction(self, gap: float) -> Array:
         """Return the attraction sigma_el across a gap (m) over one period, shape (samples,) (Pa)."""
@@ -140,15 +139,15 @@ class Supply:
 
 
 @cache
-def supply_of(wave: Waveform, electric: Electric, d_sc: float) -> Supply:
-    """Return the supply of a drive.
+def drive_of(wave: Waveform, electric: Electric, d_sc: float) -> Drive:
+    """Return the drive of a drive.
 
     Args:
         wave: the drive.
         electric: insulators and losses.
         d_sc: thickness of the stratum corneum (m).
     """
-    return Supply(wave, electric.circuit(d_sc), (electric.d_i, electric.eps_i, d_sc), electric.h_0(d_sc))
+    return Drive(wave, electric.circuit(d_sc), (electric.d_i, electric.eps_i, d_sc), electric.h_0(d_sc))
 
 
 def refuse_drives(drives: Mapping[str, Waveform], electric: Electric, d_sc: float) -> None:
@@ -164,14 +163,14 @@ def refuse_drives(drives: Mapping[str, Waveform], electric: Electric, d_sc: floa
     """
     electric.circuit(d_sc)
     for key, wave in drives.items():
-        supply = supply_of(wave, electric, d_sc)
-        if abs(wave.offset) > (highest := _widest(supply.h_0)):
+        drive = drive_of(wave, electric, d_sc)
+        if abs(wave.offset) > (highest := _widest(drive.h_0)):
             raise ValueError(
                 f"{key}.offset is {show(wave.offset)} V, beyond breakdown of air in a gap of any width; it must be at "
                 f"most {highest:.4g} V"
             )
         try:
-            supply.circuit.dielectric.refuse(wave.frequency or supply.frequency)
+            drive.circuit.dielectric.refuse(wave.frequency or drive.frequency)
         except ValueError as error:
             raise ValueError(f"{key}.{error}") from None
 
@@ -185,30 +184,16 @@ def _widest(h_0: float) -> float:
 def one_period(wave: Waveform) -> Array:
     """Return the voltages of a drive at equal times over the period with which it repeats itself, from its start on.
 
-    At a jump it is the voltage behind it. A sample between the two sides would attract less than either.
-
     Returns:
         A power of two of voltages (V), at least :data:`SAMPLES`.
     """
-    if wave.times is not None and wave.voltages is not None:
-        shortest = min(after - before for before, after in zip(wave.times, wave.times[1:], strict=False))
-        n = _count(_OF_PIECE * wave.period / shortest)
-        return np.asarray(np.interp(np.arange(n) / n * wave.period, wave.times, wave.voltages))
-    periods = round(wave.period * (wave.frequency or 1.0))
-    carried = 0 if wave.carrier is None else round(wave.carrier.frequency * wave.period)
-    n = _count(max(_OF_WAVE * periods, _OF_CARRIER * carried))
-    k = np.arange(n)
-    found = shape(wave.waveform, periods * k, n)
-    if wave.carrier is not None:
-        depth = 1.0 if wave.carrier.modulation is None else wave.carrier.modulation
-        found = (1 + depth * found) / (1 + depth) * shape("sine", carried * k, n)
-    if wave.burst is not None:
-        found = np.where(periods * k < wave.burst.on * n, found, 0.0)
-    return np.asarray(wave.offset + wave.height * found)
-
-
-def _count(least: float) -> int:
-    return min(max(SAMPLES, 1 << int(np.ceil(np.log2(max(least, 1))))), _MOST)
+    if wave.times is not None:
+        least = _OF_PIECE * wave.period / float(np.diff(wave.times).min())
+    else:
+        carried = 0 if wave.carrier is None else round(wave.carrier.frequency * wave.period)
+        least = max(_OF_WAVE * round(wave.period * (wave.frequency or 1.0)), _OF_CARRIER * carried)
+    n = min(max(SAMPLES, 1 << int(np.ceil(np.log2(max(least, 1))))), _MOST_SAMPLES)
+    return wave.at(np.arange(n), n)
 
 
 # -- a constant voltage ----------------------------------------------------------------------------------------
