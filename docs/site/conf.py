@@ -15,6 +15,9 @@ from pydantic import BaseModel
 
 import fingerpad.startup  # noqa: F401
 from fingerpad.calculator import page as calculator
+from fingerpad.cli import params
+from fingerpad.scene import Scene
+from fingerpad.scene.keys import every
 
 project, author = "fingerpad", "The fingerpad developers"
 version = re.search(r'^version = "(.*)"', (ROOT / "pyproject.toml").read_text(), re.MULTILINE)[1]
@@ -75,11 +78,11 @@ PLACE = re.compile(r"`((?:geometry|variational|fingerpad)[a-z_.]*):(\w+)`")
 WORDS = {
     "docs/command": {"": ["Windows", "WSL", "macOS", "Docker", "conda", "install"], "## Targets": ["target"]},
     "docs/drive": {"": ["alternating voltage", "frequency", "waveform"]},
-    "docs/feel": {"": ["nerve", "perception", "spike"]},
-    "docs/fingers": {"": ["child", "elderly", "moisture", "sweat", "callus"]},
+    "docs/measured": {"## What is felt": ["nerve", "perception", "spike"]},
+    "docs/assumptions": {"## Fingers by name": ["child", "elderly", "moisture", "sweat", "callus"]},
     "docs/newtons": {"": ["newton", "contact area"]},
-    "docs/scene": {"## `[electric]`": ["coating", "insulator", "dielectric", "permittivity"]},
-    "docs/viscosity": {"": ["viscous", "relaxation", "creep"]},
+    "docs/site/scene": {"## `[electric]`": ["coating", "insulator", "dielectric", "permittivity"]},
+    "docs/laws": {"## Viscous layers": ["viscous", "relaxation", "creep"]},
 }
 
 
@@ -124,6 +127,7 @@ def plain_types(model: type[BaseModel]) -> None:
 def setup(app: Any) -> None:
     """Register what is above."""
     reference.write(HERE / "modules")
+    (HERE / "scene.md").write_text(params.page(list(every(Scene))) + "\n", encoding="utf-8")
     plain_types(BaseModel)
     app.add_source_parser(Percent)
     app.connect("source-read", adapt)

@@ -1,4 +1,4 @@
-"""``fingerpad params``: every key of a scene, as a table, a scene file with comments or the page docs/scene.md."""
+"""``fingerpad params``: every key of a scene, as a table, a scene file with comments or the page of the scene reference."""
 
 import json
 import textwrap
@@ -14,7 +14,7 @@ _WIDTH = 120
 _EXAMPLES = """
     fingerpad params roughness
     fingerpad params --toml > scene.toml
-    fingerpad params --markdown > docs/scene.md
+    fingerpad params --markdown > scene.md
     fingerpad params --schema > scene.schema.json
 """
 _PAGE = """# Scene reference
@@ -28,11 +28,11 @@ default: the name of a load, the shape of a waveform and the file of a height ma
 - Numbers are in SI units. A number with a unit can be given as text: `"10 um"`, `"50 N/m"`.
 - Forces are per metre of finger out of the plane of the cross-section (N/m).
 - A value outside its range is refused with the key, the value, the range and, where likely, the unit that was meant.
-- Editors complete and check keys by [scene.schema.json](scene.schema.json), which `fingerpad params --schema` prints.
+- Editors complete and check keys by a JSON Schema: `fingerpad params --schema > scene.schema.json`.
   For taplo and for Even Better TOML in VS Code, the first line of a scene is `#:schema path/to/scene.schema.json`.
-- *Assumption* marks choices that the paper leaves open. [assumptions.md](assumptions.md) gives their effect.
+- *Assumption* marks choices that the paper leaves open. [Assumptions](../assumptions.md) gives their effect.
 
-This page is written by `fingerpad params --markdown` from the program's own definitions; a test compares the two."""
+`fingerpad params --markdown` writes this page from the program's own definitions."""
 
 
 def main(argv: Sequence[str]) -> int:
@@ -41,8 +41,8 @@ def main(argv: Sequence[str]) -> int:
     parser.add_argument("filter", nargs="?", default="", metavar="FILTER", help="keys with this in their name")
     form = parser.add_mutually_exclusive_group()
     form.add_argument("--toml", action="store_true", help="as a complete scene file of the defaults, with comments")
-    form.add_argument("--markdown", action="store_true", help="as a page: the scene reference, docs/scene.md")
-    form.add_argument("--schema", action="store_true", help="as a JSON Schema for editors: docs/scene.schema.json")
+    form.add_argument("--markdown", action="store_true", help="as a page: the scene reference")
+    form.add_argument("--schema", action="store_true", help="as a JSON Schema for editors")
     args = parser.read(argv)
     if args.schema:
         echo(json.dumps(schema(Scene), indent=1, ensure_ascii=False))

@@ -1,7 +1,7 @@
 """Materials, friction and roughness of a scene, with units and the ranges that make sense.
 
 A range is wider than measured values by a factor of ten or more on either side. The docstring of a key is its text in
-the scene reference, ``docs/scene.md``.
+the scene reference, ``fingerpad params``.
 """
 
 import re

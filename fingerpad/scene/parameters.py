@@ -1,7 +1,7 @@
 """The tables of a scene: accuracy, contact, output, numerics and slices, with units and the ranges that make sense.
 
 :mod:`fingerpad.scene.materials` and :mod:`fingerpad.scene.loads` have the others. The docstring of a key is its text in
-the scene reference, ``docs/scene.md``.
+the scene reference, ``fingerpad params``.
 """
 
 import hashlib
