@@ -7,7 +7,7 @@
 # make test-order  all tests with other rounding: cells numbered the other way round, other kernels of OpenBLAS
 # make fuzz   10 000 scenes and command lines and as many files, each read or refused in one sentence; an hour
 # make pages  puts the kept numbers in place in docs/ and draws the pictures; seconds, no run
-# make stale  the pages older than the code that they rest on; needs git
+# make stale  how old the numbers of each page are; needs git
 # make docs   the documentation site, in build/docs/index.html; a minute
 # make notebook  a demo as a notebook of Jupyter, in results: make notebook DEMO=own_material
 # make verify every number with a known answer, some minutes; docs/verification.md

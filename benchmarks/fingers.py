@@ -18,8 +18,8 @@ from matplotlib.figure import Figure
 
 import fingerpad as fp
 from benchmarks import harness
+from fingerpad.reduced.default_finger import Similar, similar
 from fingerpad.reduced.registry import find
-from fingerpad.reduced.similarity import Similar, similar
 from fingerpad.results import style
 from fingerpad.runs.batch import Summary
 from fingerpad.runs.context import RunContext
@@ -78,8 +78,8 @@ def _full(summary: Summary | None) -> dict[str, Any] | None:
     """Return the friction of a whole finger by a run, and its force (N)."""
     if summary is None or summary.get("full_slip") is None:
         return None
-    whole = summary["finger"]
-    return {"mu_app": whole["states"]["full_slip"]["mu_app"], "force": whole["f_ext"], "f_ext": summary["f_ext"]}
+    whole = {key: summary[f"full_slip_finger_{name}"] for key, name in (("mu_app", "mu_app"), ("force", "f_ext"))}
+    return whole | {"f_ext": summary["f_ext"]}
 
 
 # -- page ----------------------------------------------------------------------------------------------------

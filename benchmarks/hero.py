@@ -51,7 +51,7 @@ def main(folder: str, newtons_folder: str) -> None:
             outlines.append({"layer": int(tag), "points": _rows(_thinned(points))})
     skin: Any = view.skin
     ridge = {name: skin[name][skin["ridge"] == RIDGE] for name in ("x", "y", "p", "p_el", "d_eq")}
-    scenes, force = kept("models").numbers["scenes"], round(summary["finger"]["f_ext"], 4)
+    scenes, force = kept("models").numbers["scenes"], round(summary["full_slip_finger_f_ext"], 4)
     friction = {f"{each:g}": _forces(scenes, each) for each in (FORCES[0], force, FORCES[1])}
     along = {name: _rows([float(f"{v:.6g}") for v in values]) for name, values in ridge.items()}
     default = {name: summary[name] for name in ("full_slip_mu_app", "full_slip_mu_app_error", "headline")}

@@ -19,15 +19,16 @@ from matplotlib.figure import Figure
 from benchmarks import harness
 from benchmarks.models import name
 from benchmarks.runs import FORCES, VOLTAGES
-from fingerpad.reduced import uncharged
+from fingerpad.reduced import default_finger
 from fingerpad.results import style
+from fingerpad.results.quantities import RESULTS
 from fingerpad.scene import Scene
 from fingerpad.scene.parameters import Slices
 from fingerpad.slices import errors, estimate
 from fingerpad.slices.total import Profile, Total, at_force, profile
 from fingerpad.slices.trace import Trace
 from fingerpad.slices.trace import trace as trace_of
-from variational.state import RESULTS, ContactState
+from variational.state import ContactState
 
 RADII = (15e-3, 28e-3, 40e-3)  # m, R_z
 NEWTONS = (0.05, 0.1, 0.2, 0.3, 0.5, 0.75)  # N
@@ -51,7 +52,7 @@ def states(scenes: Found, model: str, voltage: float, state: str) -> list[Contac
         summary = scenes[name(f_ext, voltage)][model]["summary"]
         values = {key: summary[f"{state}_{key}"] for key in RESULTS if f"{state}_{key}" in summary}
         if model == "cylinders":
-            values["bone_height"] = -uncharged.indentation(f_ext, state)
+            values["bone_height"] = -default_finger.indentation(f_ext, state)
         found.append(ContactState(f_ext=f_ext, voltage=voltage, **values))
     return found
 

@@ -1,17 +1,20 @@
 """Finished runs as arrays, from their folders; runs that are missing are computed; scenes that several studies run."""
 
-from collections.abc import Hashable, Mapping
+from collections.abc import Hashable, Mapping, Sequence
 from functools import cached_property
 from pathlib import Path
 from typing import Any, TypeVar
 
 import numpy as np
-import pandas as pd
 from numpy.typing import NDArray
 
 from fingerpad.model.options import by_rule
+from fingerpad.results.dataset import OF_RIDGES, OF_SITES
+from fingerpad.results.fields import views_of
+from fingerpad.results.result import Result
 from fingerpad.runs import batch
 from fingerpad.scene import Scene, from_data
+from variational.state import ContactState
 
 Array = NDArray[np.float64]
 VOLTAGES = (0.0, 50.0, 100.0, 150.0, 200.0)
@@ -36,26 +39,27 @@ class Run:
             raise Unfinished(f"run {out / batch.key(scene)} did not reach its end: {why}")
         self.scene, self.folder, self.summary = scene, out / batch.key(scene), summary
 
-    def _table(self, name: str) -> dict[str, NDArray[Any]]:
-        columns = pd.read_csv(self.folder / f"{name}.csv", float_precision="round_trip")
-        return {str(column): values.to_numpy() for column, values in columns.items()}
+    @cached_property
+    def result(self) -> Result:
+        """The result of the run."""
+        return Result.load(self.folder)
 
     @cached_property
     def steps(self) -> dict[str, NDArray[Any]]:
         """Columns of the accepted steps, shape (steps,); ``load`` is the name of the load that each belongs to."""
-        return self._table("steps")
+        rows = [state.row() for state in self.result.steps]
+        return {name: np.array([row[name] for row in rows]) for name in rows[0]}
 
     @cached_property
     def ridges(self) -> dict[str, NDArray[Any]]:
         """Columns of the ridges in contact, one row a step and ridge."""
-        return self._table("ridges")
+        return _ridges(self.result.steps)
 
     @cached_property
     def receptors(self) -> dict[str, Array]:
         """Strain energy density at the receptors (J/m^3), columns of shape (steps, ridges); ``ridge`` has (ridges,)."""
-        columns = self._table("receptors")
-        count = len(np.unique(columns["ridge"]))
-        return {k: v.reshape(-1, count) if k != "ridge" else v[:count] for k, v in columns.items()}
+        columns, count = _sites(self.result.steps), len(self.result.steps)
+        return {k: v.reshape(count, -1) if k != "ridge" else v[: len(v) // count] for k, v in columns.items()}
 
     def row(self, state: str) -> int:
         """Return the row in :attr:`steps` of ``uncharged``, ``charged`` or ``full_slip``, as in ``summary.json``."""
@@ -72,23 +76,42 @@ class Run:
 
     def final(self, state: str, table: str) -> dict[str, NDArray[Any]]:
         """Return a named state's rows of ``ridges`` or ``receptors``, on the final mesh where there are two meshes."""
-        if (self.folder / f"{table}_final.csv").exists():
-            columns = self._table(f"{table}_final")
-            mine = columns["of"] == state
-        else:
-            columns = self._table(table)
-            mine = columns["step"] == self.summary[f"{state}_step"]
-        if not mine.any():
+        if state not in self.result.named:
             raise FileNotFoundError(f"run {self.folder.name} has no {table} of {state}")
-        return {name: values[mine] for name, values in columns.items()}
+        return {"ridges": _ridges, "receptors": _sites}[table]([self.result.named[state]])
 
     def arrays(self, name: str) -> dict[str, NDArray[Any]]:
-        """Return the arrays of ``surface`` or ``finger_…``; FileNotFoundError if the run did not keep them."""
-        path = self.folder / f"{name}.npz"
-        if not path.exists():
-            raise FileNotFoundError(f"run {self.folder.name} has no {path.name}: delete its folder and run it again")
-        with np.load(path) as file:
-            return dict(file)
+        """Return the arrays of ``surface``, or of ``finger_LOAD``; FileNotFoundError if the run did not keep them."""
+        loads, states = views_of(self.folder, self.result.steps, self.result.named)
+        found: dict[str, Any] = {}
+        if name == "surface":
+            for state, view in states.items():
+                found |= {f"{state}_{key}": values for key, values in dict(view.skin or {}).items()}
+        elif (end := loads.get(name.removeprefix("finger_"))) is not None and end.snapshot is not None:
+            found = vars(end.snapshot) | ({} if end.merkel is None else {"merkel": end.merkel})
+        if not found:
+            raise FileNotFoundError(f"run {self.folder.name} has no arrays of {name}: run it again in a new folder")
+        return found
+
+
+def _ridges(states: Sequence[ContactState]) -> dict[str, NDArray[Any]]:
+    """Return the columns of ridges in contact, one row a state and ridge."""
+    found: dict[str, list[Any]] = {}
+    for state in states:
+        if (each := state.ridges) is not None:
+            touches, names = each.length > 0, {name: key for name, key in OF_RIDGES.items() if name != "note"}
+            columns = {name: getattr(each, key)[touches] for name, key in names.items()}
+            columns |= {"step": np.full(touches.sum(), state.step), "ridge": each.number[touches]}
+            for name, values in columns.items():
+                found.setdefault(name, []).append(values)
+    return {name: np.concatenate(values) for name, values in found.items()}
+
+
+def _sites(states: Sequence[ContactState]) -> dict[str, NDArray[Any]]:
+    """Return the columns of receptor sites, one row a state and ridge."""
+    every = [state.sites for state in states if state.sites is not None]
+    columns = {"ridge": "number"} | OF_SITES
+    return {name: np.concatenate([getattr(each, attribute) for each in every]) for name, attribute in columns.items()}
 
 
 def known(scene: Scene, out: Path) -> bool:

@@ -5,18 +5,15 @@ python3 -m benchmarks.same COMMIT [--but WORD ...] [--within PART] [--jobs 2]   
 Both programs run the cases of benchmarks/same.toml, which between them go through every model, formulation, element and
 kind of load, laws of one's own, mesh files, folders, newtons, bodies and two ranks; most are of a small finger. A case
 agrees where all steps, loads and named states do, with their ridges, skin and counts of iterations; seconds, memory,
-versions and remarks are left out. Where all agree, the two commits go to docs/same.json. ``make stale`` takes one for
-the other: a page of the older one need not be made again because of a file that its numbers do not depend on.
+versions and remarks are left out.
 
 Runs have a folder. Programs up to fe45c88 factorise at other places without one, and reach other last digits: that one
 case is compared to 1e-6 of the largest number of a key.
 
 A change that moves numbers by roundoff alone has ``--within``: a number may then differ by this part of the largest one
-of its key, and the records of the solver's steps are left out. The pair is kept with this tolerance, and ``make stale``
-names it. Two ranks, which add in another order in each run, always have one.
-
-Numbers that a change is meant to change are left out by a word of their key, as in ``--but sed`` for full_slip_sed_0.
-Then the two commits are the same for those pages alone whose programs do not have the word.
+of its key, and the records of the solver's steps are left out. Two ranks, which add in another order in each run,
+always have a tolerance. Numbers that a change is meant to change are left out by a word of their key, as in ``--but
+sed`` for full_slip_sed_0.
 """
 
 import argparse
@@ -31,7 +28,7 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
 
-from benchmarks.pages import ROOT, SAME, git
+from benchmarks.pages import ROOT, git
 
 _SMALL = tomllib.loads((ROOT / "demos/scenes/small_finger.toml").read_text(encoding="utf-8"))
 _PROGRAM = (ROOT / "benchmarks/same_run.py").read_text(encoding="utf-8")
@@ -112,17 +109,16 @@ def _key(where: str) -> str:
 
 
 def main(given: Sequence[str] | None = None) -> int:
-    """Run all scenes by both programs and keep the two commits where all agree."""
+    """Run all scenes by both programs and compare them case by case."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("commit", metavar="COMMIT", help="the older one")
     parser.add_argument("--but", nargs="+", default=[], metavar="WORD", help="keys with this word are left out")
     parser.add_argument("--within", type=float, default=0.0, metavar="PART", help="of the largest number of a key")
     parser.add_argument("--jobs", type=int, default=2, help="runs at a time")
-    parser.add_argument("--docs", type=Path, default=ROOT / "docs", help="folder of the kept pairs of commits")
     args = parser.parse_args(given)
-    if git("status", "--porcelain", "--", "geometry", "variational", "fingerpad").strip():
+    if git("status", "--porcelain", "--", "geometry", "variational", "fingerpad"):
         parser.error("files of the packages are not in git yet; commit them, so that the two commits can be named")
-    older, present = (git("rev-parse", "--short", name).decode().strip() for name in (args.commit, "HEAD"))
+    older, present = (git("rev-parse", "--short", name) for name in (args.commit, "HEAD"))
     with tempfile.TemporaryDirectory() as folder:
         git("worktree", "add", "--detach", folder, older)
         try:
@@ -131,15 +127,8 @@ def main(given: Sequence[str] | None = None) -> int:
             git("worktree", "remove", "--force", folder)
     if not agree:
         return 1
-    path = args.docs / SAME
-    kept = json.loads(path.read_text(encoding="utf-8")) if path.exists() else []
-    looser = {name: part for name in CASES if (part := CASES[name].get("within", 0.0)) > args.within}
-    more = {"but": args.but, "within": args.within, "looser": looser}  # the last by case
-    kept = [pair for pair in kept if (pair["before"], pair.get("but", [])) != (older, args.but)]  # that said so before
-    kept.append({"before": older, "now": present, "scenes": list(CASES)} | {k: v for k, v in more.items() if v})
-    path.write_text(json.dumps(kept, indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
     exact = f"within {args.within:g}" if args.within else "to the last bit"
-    print(f"{older} and {present} compute the same numbers of {len(CASES)} scenes, {exact}; kept in {path}")
+    print(f"{older} and {present} compute the same numbers of {len(CASES)} scenes, {exact}")
     return 0
 
 

@@ -71,7 +71,10 @@ def scene(case: dict[str, Any], folder: Path) -> dict[str, Any]:
     if "force" not in case:  # with one a program has steps and states of its own choice beside the finger's slices
         found |= {"steps": result.steps, "loads": result.loads, "named": result.named}
     if result.finger is not None:
-        found["finger"] = result.finger.to_dict()
+        found["finger"] = {
+            name: total.slices() | {"values": total.values, "error": result.finger.error[name]}
+            for name, total in result.finger.states.items()
+        }
     return {name: plain(value) for name, value in found.items()}
 
 
@@ -91,9 +94,9 @@ def with_laws(given: fp.Scene, laws: dict[str, Any]) -> tuple[fp.Scene, dict[str
 def write_mesh(path: Path) -> None:
     """Write the mesh of the small finger to a file, on rank 0; collective."""
     if MPI.COMM_WORLD.rank == 0:
-        from fingerpad.cli import mesh
+        from fingerpad.model import section
 
-        mesh.main(["demos/scenes/small_finger.toml", "--set", "mesh.contact=40e-6", "--out", str(path)])
+        section.write(fp.Scene.load(Path("demos/scenes/small_finger.toml")).replace(mesh={"contact": 40e-6}), path)
     MPI.COMM_WORLD.barrier()
 
 

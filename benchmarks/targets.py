@@ -12,6 +12,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from benchmarks import errors, harness, two_meshes
 from benchmarks.paper import states
 from benchmarks.peers import compared as peers
@@ -19,9 +21,8 @@ from benchmarks.peers import compared as peers
 Numbers = Callable[[str], Any]
 """Returns the kept numbers of a page by its name."""
 PATHS = 40  # of the paper's grid
-SCENES = 20  # random ones of the stability map
-_AT_A_TIME = 2  # runs, on two cores
-_MINUTE = 60.0  # s
+SCENES = 20  # random ones of the stability page
+_AT_A_TIME, _MINUTE = 2, 60.0  # runs, on two cores; s
 
 
 @dataclass(frozen=True)
@@ -54,9 +55,7 @@ def _error(kind: str) -> Callable[[Numbers], float]:
     """Return what finds the largest error (%) of the default scene's quantities of a kind."""
 
     def found(of: Numbers) -> float:
-        numbers = of("errors")
-        ends, default = numbers["reference"], numbers["default"]
-        _ = numbers["saw"]  # older numbers are of straight facets
+        ends, default = of("errors")["reference"], of("errors")["default"]
         return max(100 * abs(default[name] / end["value"] - 1) for name, end in ends.items() if kind in name)
 
     return found
@@ -71,57 +70,29 @@ def _indented(of: Numbers) -> float:
 def _covered(of: Numbers) -> float:
     """Return the least share (%) of the kinds' known errors that the estimated ones cover."""
     known = two_meshes.cases(of("two_meshes"))
-    shares = [covered / n for n, covered in (two_meshes.coverage(known, kind) for kind in two_meshes.KINDS)]
-    return 100 * min(shares)
+    return 100 * min(covered / n for n, covered in (two_meshes.coverage(known, kind) for kind in two_meshes.KINDS))
 
 
-def _beside_script(of: Numbers) -> float:
-    """Return the least of how many times as fast one ridge is as by the plain script at equal error."""
-    return min(peers.words(of("peers")["equal"]["rows"])["reached"])
+def _minutes(name: str, seconds: str, loads: str) -> Callable[[Numbers], float]:
+    """Return what finds the minutes of the paper's grid, two loads at a time, by kept processor seconds."""
+
+    def found(of: Numbers) -> float:
+        numbers = of(name)
+        if len(numbers[loads]) < PATHS:
+            raise ValueError(f"{len(numbers[loads])} loads are kept of {PATHS}")
+        return float(np.sum(numbers[seconds])) / _AT_A_TIME / _MINUTE
+
+    return found
 
 
-def _minutes(seconds: float, loads: int) -> float:
-    """Return the minutes of the paper's grid, two at a time, by its processor seconds."""
-    if loads < PATHS:
-        raise ValueError(f"{loads} loads are kept of {PATHS}")
-    return seconds / _AT_A_TIME / _MINUTE
+def _further(key: str) -> Callable[[Numbers], float]:
+    """Return what finds the mean of a cost of the states of the sweep that no path leads to."""
+    return lambda of: float(np.mean([row[key] for row in of("paper_states")["default"] if row["reached"] != "path"]))
 
 
-def _paths(of: Numbers) -> float:
-    kept = of("paper")["seconds"]
-    return _minutes(sum(kept), len(kept))
-
-
-def _larger(of: Numbers) -> float:
-    kept = of("paper_states")["seconds_of_paths"]
-    return _minutes(sum(kept), len(kept))
-
-
-def _states(of: Numbers) -> float:
-    kept = of("paper_states")
-    return _minutes(kept["seconds_of_sweep"], len(kept["default"]))
-
-
-def _further(of: Numbers) -> list[Any]:
-    """Return the states of the sweep that no path leads to."""
-    return [row for row in of("paper_states")["default"] if row["reached"] != "path"]
-
-
-def _factorisations(of: Numbers) -> float:
-    further = _further(of)
-    return float(sum(row["factorisations"] for row in further)) / len(further)
-
-
-def _part_of_run(of: Numbers) -> float:
-    """Return the processor time of a further state over that of a whole run."""
-    further = _further(of)
-    mean = sum(row["processor_seconds"] for row in further) / len(further)
-    return float(mean / of("performance")["run"]["found"]["processor"])
-
-
-def _alike(of: Numbers) -> float:
-    """Return how many paths end in a state of the sweep, or in the other one of two."""
-    return float(sum(each.alike for each in states.compared(of("paper_states"))))
+def _processor(of: Numbers) -> float:
+    """Return the processor time (s) of a whole run."""
+    return float(of("performance")["run"]["found"]["processor"])
 
 
 def _slips(of: Numbers) -> float:
@@ -129,39 +100,35 @@ def _slips(of: Numbers) -> float:
     return float(sum(row["full_slip"] for row in runs if row["formulation"] == "penalty"))
 
 
-def _saw(of: Numbers) -> float:
-    return 100 * float(of("errors")["saw"])
-
-
-def _whole_run(of: Numbers) -> float:
-    return float(of("performance")["run"]["found"]["processor"])
-
-
-def _unknowns(of: Numbers) -> float:
-    return float(of("errors")["unknowns_path"])
-
-
 _CHART, _STATES, _RANDOM = "make chart", "python3 -m benchmarks.paper.states", "python3 -m benchmarks.stability"
 _PEERS = "python3 -m benchmarks.peers equal"
+_OF_STATES = "paper_states"
 TARGETS = (
-    Target("whole run with errors and pictures, processor s", 18, "", "make performance", _whole_run),
+    Target("whole run with errors and pictures, processor s", 18, "", "make performance", _processor),
     Target("µ_app at full slip, known error", 0.05, "%", _CHART, _error("mu_app")),
     Target("force at a given indentation, known error", 0.1, "%", _CHART, _indented),
     Target("contact lengths, largest known error", 0.25, "%", _CHART, _error("contact_length")),
     Target("highest pressure at full slip, known error", 0.5, "%", _CHART, _error("p_max")),
-    Target("saw of the pressure at full slip, rms over the peak", 0.5, "%", _CHART, _saw),
+    Target("saw of the pressure at full slip, rms over the peak", 0.5, "%", _CHART,
+           lambda of: 100 * of("errors")["saw"]),
     Target("energy densities at the sites, largest known error", 1, "%", _CHART, _error("sed_")),
-    Target("unknowns of the path", 40_000, "", _CHART, _unknowns),
+    Target("unknowns of the path", 40_000, "", _CHART, lambda of: of("errors")["unknowns_path"]),
     Target("printed errors that cover the known ones, least kind", 95, "%", "make calibration", _covered, True),
-    Target("one ridge beside plain dolfinx at equal error, times as fast", 4, "", _PEERS, _beside_script, True),
-    Target("40 paths of the paper's grid, two at a time, min", 5, "", "make paper", _paths),
-    Target("the same on elements twice as large", 5, "", _STATES, _larger),
-    Target("40 states of the paper's grid, two at a time, min", 3, "", _STATES, _states),
-    Target("factorisations of a further state of a sweep, mean", 5, "", _STATES, _factorisations),
-    Target("processor time of a further state over that of a run", 1 / 15, "", _STATES, _part_of_run),
-    Target("states equal to the path's or listed with both values", PATHS, "", _STATES, _alike, True),
+    Target("one ridge beside plain dolfinx at equal error, times as fast", 4, "", _PEERS,
+           lambda of: min(peers.words(of("peers")["equal"]["rows"])["reached"]), True),
+    Target("40 paths of the paper's grid, two at a time, min", 5, "", "make paper",
+           _minutes("paper", "seconds", "seconds")),
+    Target("the same on elements twice as large", 5, "", _STATES,
+           _minutes(_OF_STATES, "seconds_of_paths", "seconds_of_paths")),
+    Target("40 states of the paper's grid, two at a time, min", 3, "", _STATES,
+           _minutes(_OF_STATES, "seconds_of_sweep", "default")),
+    Target("factorisations of a further state of a sweep, mean", 5, "", _STATES, _further("factorisations")),
+    Target("processor time of a further state over that of a run", 1 / 15, "", _STATES,
+           lambda of: _further("processor_seconds")(of) / _processor(of)),
+    Target("states equal to the path's or listed with both values", PATHS, "", _STATES,
+           lambda of: sum(each.alike for each in states.compared(of(_OF_STATES))), True),
     Target("random scenes that reach full slip", SCENES, "", _RANDOM, _slips, True),
-)
+)  # fmt: skip
 
 
 # -- page ----------------------------------------------------------------------------------------------------

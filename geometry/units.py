@@ -193,7 +193,7 @@ Switch = Annotated[bool, Strict()]
 class Table(BaseModel):
     """A table of parameters that refuses keys it does not have, and cannot be changed."""
 
-    model_config = ConfigDict(extra="forbid", frozen=True)
+    model_config = ConfigDict(extra="forbid", frozen=True, use_attribute_docstrings=True)
 
 
 # -- ranges --------------------------------------------------------------------------------------------

@@ -1,6 +1,7 @@
 """What tests measure of a meshed body, on any number of ranks, and of a folder of results."""
 
 import csv
+from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
@@ -8,6 +9,8 @@ import ufl
 from dolfinx import fem
 from dolfinx.mesh import entities_to_geometry
 
+from fingerpad.results.dataset import OF_RIDGES, OF_SITES
+from fingerpad.results.result import Result
 from variational import compat
 from variational.state import ContactState
 
@@ -46,9 +49,25 @@ def contact_state(**values) -> ContactState:
 
 
 def rows_of(folder: Path, name: str = "steps") -> list[dict[str, str]]:
-    """Return the rows of a table of a run."""
+    """Return the rows of a table of a run; of ``ridges``, ``receptors`` and ``coupling`` those of its steps."""
+    if name in ("ridges", "receptors", "coupling"):
+        return [
+            {"step": str(state.step)} | {key: str(value) for key, value in row.items()}
+            for state in Result.load(folder).steps
+            for row in _rows(state, name)
+        ]
     with (folder / f"{name}.csv").open(encoding="utf-8", newline="") as file:
         return list(csv.DictReader(file))
+
+
+def _rows(state: ContactState, name: str) -> Iterator[dict[str, object]]:
+    if name == "coupling":
+        yield from ({"iteration": k, "change": change} for k, change in enumerate(state.changes, start=1))
+    elif (group := getattr(state, {"ridges": "ridges", "receptors": "sites"}[name])) is not None:
+        names = OF_RIDGES if name == "ridges" else OF_SITES
+        for k, number in enumerate(group.number):
+            if name == "receptors" or group.length[k] > 0:
+                yield {"ridge": number} | {key: getattr(group, each)[k] for key, each in names.items()}
 
 
 def accepted(folder: Path) -> list[dict[str, str]]:

@@ -92,13 +92,6 @@ def test_estimate_is_of_the_true_errors_size(monkeypatch):
     assert MORE * told["estimate"] * (1 - 1e-9) <= told["error"] <= ONCE * told["estimate"] * (1 + 1e-9)
 
 
-def test_only_what_costs_accuracy_is_refined(monkeypatch):
-    """Each once, for its share; then 0.08 is asked for: the contact's, twice 0.04, is more than half of it, the
-    growth's, twice 0.015, is not."""
-    found = search(monkeypatch, {"mu_app": 0.08})
-    assert found.refinements == {"contact": 2, "bulk": 1}
-
-
 def test_steps_are_halved_where_normal_contact_feels_them(monkeypatch):
     """An error of first order in the steps, a tenth with the scene's: two halvings leave 2.5 %, and 4 % are asked for.
 
@@ -184,16 +177,6 @@ def test_output_of_ones_own_has_its_error_from_the_same_two_meshes(monkeypatch):
     assert "skin" not in state.error.known(), "not of the states that are solved again"
 
 
-@pytest.mark.parametrize("formulation", ["nitsche", "augmented"])
-def test_formulations_without_a_penalty_tell_none(monkeypatch, formulation):
-    monkeypatch.setattr(solves, "solve_again", springs)
-    model = model_of({"contact": {"formulation": formulation}})
-    found = refinement(model, springs(model, {}, None))
-    found.run()
-    assert found.penalty == {}
-    assert with_errors(found, {"full_slip": contact()})["full_slip"].penalty.known() == {}
-
-
 def lost(model, states, comm, views=False, stiffer=None):
     raise StepFailed("full slip found no equilibrium")
 
@@ -232,16 +215,6 @@ def test_accuracy_out_of_reach_is_a_failure_and_an_estimate_a_note(monkeypatch, 
     last = "the effect of the penalty could not be estimated: full slip found no equilibrium"
     assert found.notes[len(found.notes) - notes :] == [last] * notes
     assert bool(found.estimates()) == (solve not in (lost,))
-
-
-def test_says_where_a_ridge_comes_or_goes(monkeypatch):
-    def fewer(model, states, comm, views=False, stiffer=None):
-        solve = known(model, states, comm)
-        change(solve, ridges_in_contact=16 if model.mesh.contact < 20e-6 else 17)
-        return solve
-
-    notes = search(monkeypatch, {"mu_app": 0.2}, fewer).notes
-    assert notes == ["halving contact: 16 ridges in contact at full slip instead of 17"]
 
 
 def test_coefficient_without_full_slip_or_without_a_force_is_refused():

@@ -17,9 +17,3 @@ def test_roots_of_forces_are_evenly_apart_and_have_those_that_are_kept():
     apart = (top**0.5 - light**0.5) / (branches.POINTS - 1)
     assert (steps > 0).all() and steps.max() < 1.5 * apart
     assert len(found) == pytest.approx(branches.POINTS, abs=2)
-
-
-def test_longer_trace_goes_on_from_its_end():
-    """What was kept below the present force is not among the forces again."""
-    found = branches._forces(80.0, 144.0, (36.0, 131.0))
-    assert found[0] > 80.0 and 36.0 not in found and 131.0 in found and found[-1] == 144.0

@@ -3,8 +3,7 @@
 import pytest
 
 from benchmarks import harness, two_meshes
-from benchmarks.accuracy import KINDS, WANTED, Case, coverage, kept
-from benchmarks.harness import ROOT
+from benchmarks.accuracy import KINDS, WANTED, coverage, kept
 from fingerpad.accuracy.richardson import SITES, TWO
 
 COVERED = 0.95  # of the known errors of each kind, by the two meshes of a run
@@ -35,14 +34,6 @@ def test_errors_from_two_meshes_need_their_factors(numbers, safety, sites):
     weaker = two_meshes.cases(numbers, safety, sites)
     counts = {kind: two_meshes.coverage(weaker, kind)[0] for kind in two_meshes.KINDS}
     assert any(whole(weaker, kind) < COVERED * n for kind, n in counts.items())
-
-
-def test_numbers_where_the_factors_are(numbers):
-    """The docstring of the factors has the kept numbers of energy densities, with and without them."""
-    n, covered = two_meshes.coverage(two_meshes.cases(numbers), "energy density")
-    _, bare = two_meshes.coverage(two_meshes.cases(numbers, 1.0, 0.0), "energy density")
-    text = " ".join((ROOT / "fingerpad/accuracy/richardson.py").read_text(encoding="utf-8").split())
-    assert f"{covered} of {n}, and in {bare} without both" in text
 
 
 def test_energy_density_counts_once():
@@ -82,13 +73,3 @@ def test_every_quantity_of_the_default_run_is_covered(cases):
     )
     assert all(case.covered(case.factor) for case in default)
     assert not all(case.covered(1.0) for case in default)
-
-
-def test_error_below_its_bar_counts_for_nothing():
-    """Three cases: one covered, one covered by its factor of 1.5, one whose error is not significant."""
-    known = [
-        Case("", "", "f_T", False, estimate, error, bar)
-        for estimate, error, bar in ((1.0, 0.9, 0.0), (1.0, 1.4, 0.1), (1.0, 2.0, 2.1))
-    ]
-    assert coverage(known, "friction") == coverage(known) == (2, 1, 2)
-    assert "| (0.50) |" in known[-1].line

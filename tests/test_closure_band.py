@@ -8,7 +8,7 @@ import pytest
 import fingerpad as fp
 from fingerpad.reduced import closure_band
 from fingerpad.report.trust import GOOD, Finding, verdict
-from fingerpad.results.closures import RECORD, in_words
+from fingerpad.results.headline import BAND, band_in_words
 from fingerpad.scene import from_data
 
 
@@ -25,7 +25,7 @@ def result():
 
 def test_band_is_that_of_runs_with_these_closures(result):
     """Each value is that of charged cylinders with that closure, to roundoff, its own among them."""
-    kept = result.record[RECORD]["mu_app"]
+    kept = result.record[BAND]["mu_app"]
     assert kept["bearing area"] == pytest.approx(result.full_slip.mu_app, rel=1e-12)
     for words, law in closure_band.closures(result.scene.roughness).items():
         other = fp.run(result.scene.replace(roughness=law), model="cylinders")
@@ -36,7 +36,7 @@ def test_band_is_that_of_runs_with_these_closures(result):
 def test_band_scales_the_result(result):
     """A result with twice the friction has twice the band."""
     twice = replace(result, full_slip=replace(result.full_slip, mu_app=2 * result.full_slip.mu_app))
-    found, kept = closure_band.band(twice)["mu_app"], result.record[RECORD]["mu_app"]
+    found, kept = closure_band.with_band(twice).record[BAND]["mu_app"], result.record[BAND]["mu_app"]
     assert found == {words: pytest.approx(2 * value) for words, value in kept.items()}
 
 
@@ -55,7 +55,7 @@ def test_own_closure_is_in_the_band():
     """With boundary elements of another shortest wave the others have it too."""
     given = {"law": "BoundaryElements", "shortest_wave": 4e-6, "field_in_contact": False}
     found = fp.run(fp.Scene(voltage=100.0, roughness=given), model="cylinders")
-    assert found.record[RECORD]["mu_app"]["boundary elements, no field in contact"] == pytest.approx(
+    assert found.record[BAND]["mu_app"]["boundary elements, no field in contact"] == pytest.approx(
         found.full_slip.mu_app
     )
 
@@ -64,11 +64,11 @@ def test_text_and_files_have_the_band(result):
     text = str(result)
     ends = "0.28 (bearing area) to 0.41 (boundary elements)"
     assert f"By models of rough contact µ_app of the middle section is {ends} at full slip. " in text
-    band = in_words(result.record[RECORD])
+    band = band_in_words(result.record[BAND])
     assert " The largest number, by boundary elements, is an upper bound: attraction balances 24 % of" in band
-    assert len(result.record[RECORD]["upper_bounds"]) == 2 and band.count("largest number") == 1
+    assert len(result.record[BAND]["upper_bounds"]) == 2 and band.count("largest number") == 1
     assert f"\n  {band}\n" in text and band.endswith("Which one holds for a finger is open (docs/microscale.md).")
-    again = fp.Result.from_dict(result.to_dict())
+    again = fp.Result.from_xarray(result.to_xarray())
     assert again.closures == result.closures != {}
 
 
@@ -86,9 +86,9 @@ def test_drive_has_the_voltage_of_each_air_gap(volts):
     if volts == 200.0:
         assert result.closures["boundary elements"] == pytest.approx(other.full_slip.mu_app, rel=1e-9)
         share = float(fp.BoundaryElements(scene.h_0).balanced(*charged(other)))
-        assert result.record[RECORD]["upper_bounds"]["boundary elements"] == pytest.approx(share, rel=1e-6)
+        assert result.record[BAND]["upper_bounds"]["boundary elements"] == pytest.approx(share, rel=1e-6)
     else:
-        assert result.record[RECORD]["no_number"]["boundary elements"] == "ridges adhere under the drive"
+        assert result.record[BAND]["no_number"]["boundary elements"] == "ridges adhere under the drive"
 
 
 def charged(result):
@@ -110,17 +110,17 @@ def test_closure_beyond_its_table_has_no_number():
     text, largest = str(found), max(filter(None, found.closures.values()))
     assert f"to {largest:.2f} (Persson's theory, no field in contact) at full slip." in text
     assert f" No number by {' and '.join(none)}: ridges adhere at 200 V. " in text
-    assert in_words({}) == ""
+    assert band_in_words({}) == ""
 
 
 def test_no_band_without_voltage_or_friction():
     for scene in (fp.Scene(voltage=0.0), fp.Scene(friction=0.0)):
-        assert RECORD not in fp.run(scene, model="cylinders").record
+        assert BAND not in fp.run(scene, model="cylinders").record
 
 
 def test_no_band_with_a_law_of_ones_own():
     scene = from_data({"roughness": {"law": f"{Held.__module__}:Held"}})
-    assert RECORD not in fp.run(scene, model="cylinders").record
+    assert BAND not in fp.run(scene, model="cylinders").record
 
 
 def test_closures_without_a_table(result):

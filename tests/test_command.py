@@ -132,7 +132,7 @@ PLAIN = {
     "run": ["run", "--model", "cylinders", "--set", 'f_ext="50 N/m"', "--out", "out"],
     "again": ["run", "out/scene.json", "--out", "again"],
     "full": ["run"],
-    "mesh": ["mesh"],
+    "mesh": ["check", "--mesh", "finger.msh"],
 }
 CODE = """
 import contextlib, io, json, sys
@@ -183,7 +183,7 @@ def test_files_of_commands_without_finite_elements(plain):
     assert json.loads((folder / "out" / "summary.json").read_text(encoding="utf-8"))["f_ext"] == 50.0
 
 
-@pytest.mark.parametrize(("name", "needed"), [("full", "run needs mpi4py"), ("mesh", "mesh needs gmsh")])
+@pytest.mark.parametrize(("name", "needed"), [("full", "run needs mpi4py"), ("mesh", "check needs gmsh")])
 def test_commands_with_finite_elements_name_what_is_missing(plain, name, needed):
     code, _, err = plain[1][name]
     assert code == 2 and err.startswith(f"fingerpad: {needed}, which is not installed;") and err.count("\n") == 1

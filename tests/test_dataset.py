@@ -2,7 +2,6 @@
 
 import errno
 import json
-import shutil
 from dataclasses import replace
 from pathlib import Path
 
@@ -13,13 +12,12 @@ from mpi4py import MPI
 
 import fingerpad as fp
 from fingerpad.report import run_page
-from fingerpad.results import dataset, files, quantities
-from fingerpad.results.netcdf import arrays
+from fingerpad.results import dataset, quantities
 from fingerpad.results.over_time import OverTime
 from fingerpad.results.result import Result
+from fingerpad.runs import sweep_results
 from fingerpad.runs.sweep_results import Sweep
 from fingerpad.scene import from_data
-from tests.commands import python
 from tests.measures import rows_of
 from tests.runs import run
 from tests.small_finger import NINE
@@ -58,30 +56,15 @@ def test_steps_are_those_of_the_table(folder, data):
             assert row[name] == str(value) if values.dtype.kind in "OUb" else float(row[name]) == value, name
 
 
-@pytest.mark.parametrize(("table", "known"), [("ridges", quantities.RIDGES), ("receptors", quantities.SITES)])
-def test_ridges_and_sites_are_those_of_the_tables(folder, data, table, known):
-    rows = rows_of(folder, table)
-    assert rows
-    for row in rows:
-        at = data.sel(step=int(row["step"]), ridge=int(row["ridge"]))
-        for name in known:
-            if name == "note":
-                assert at["ridge_note"] == row[name]
-            elif name.startswith("meissner"):
-                assert float(at["meissner_sed"].sel(side=name.removeprefix("meissner_"))) == float(row[name])
-            else:
-                assert float(at[name if table == "receptors" else f"ridge_{name}"]) == float(row[name])
-
-
-def test_states_are_those_of_the_summary(folder, data):
-    summary = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
-    for name, values in summary["states"].items():
+def test_states_are_those_of_the_result(folder, data):
+    result = Result.load(folder)
+    for name, state in result.named.items():
         for key in ("step", "mu_app", "f_t", "contact_length", "ridges_in_contact", "bone_height"):
-            assert float(data[f"state_{key}"].sel(state=name)) == values[key]
+            assert float(data[f"state_{key}"].sel(state=name)) == getattr(state, key)
     assert np.isnan(data["state_mu_app"].sel(state="full_slip"))
     missing = [int(data[f"state_{name}"].sel(state="full_slip")) for name in ("step", "ridges_in_contact", "stable")]
     assert missing == [-1] * 3, "0 ridges would be a lifted finger"
-    assert list(data["load"].values) == [load["name"] for load in summary["loads"]]
+    assert list(data["load"].values) == [load.name for load in result.loads]
 
 
 def test_loads_are_those_of_the_summary(folder, data):
@@ -137,18 +120,10 @@ def test_skin_that_was_read_back_is_that_of_the_run(folder, data):
         np.testing.assert_array_equal(state.skin.p_n, data["skin_p_n"].sel(state=name).values[known])
 
 
-@pytest.mark.parametrize("content", [None, "half"])
-def test_skin_is_left_out_where_the_dataset_is_not_whole(folder, tmp_path, content):
-    """All other numbers are those of the tables."""
-    copy = Path(shutil.copytree(folder, tmp_path / "run", ignore=shutil.ignore_patterns("*.vtu", "*.png", "*.npz")))
-    whole = (copy / "result.nc").read_bytes()
-    (copy / "result.nc").unlink()
-    if content is not None:
-        (copy / "result.nc").write_bytes(whole[: len(whole) // 2] if content == "half" else content)
-    again = Result.load(copy)
-    assert all(state.skin is None and state.ridges is None for state in again.named.values())
-    assert [state.row() for state in again.steps] == [state.row() for state in Result.load(folder).steps]
-    assert again.charged.contact_length == Result.load(folder).charged.contact_length
+def test_dataset_that_is_not_whole_is_refused(folder, tmp_path):
+    (tmp_path / "result.nc").write_bytes((folder / "result.nc").read_bytes()[:-5000])
+    with pytest.raises(fp.SceneError, match="cannot be read: result.nc is not whole, or not of a run"):
+        Result.load(tmp_path)
 
 
 # -- sweeps ----------------------------------------------------------------------------------------------
@@ -171,19 +146,8 @@ def full(file, text):
     Path(file).write_bytes(text.encode() if isinstance(text, str) else text)
 
 
-def test_full_disk_loses_the_dataset_alone(tmp_path, monkeypatch):
-    """The tables, the summary and its note stay."""
-    monkeypatch.setattr(files, "replace", full)
-    summary = run(from_data(SCENE | {"history": SCENE["history"][:1]}), tmp_path, MPI.COMM_SELF)
-    note = "result.nc was not written: No space left on device; all other files are complete"
-    assert summary["notes"] == [note]
-    assert json.loads((tmp_path / "summary.json").read_text(encoding="utf-8"))["notes"] == [note]
-    assert note in (tmp_path / "run.log").read_text(encoding="utf-8")
-    assert rows_of(tmp_path, "steps") and not (tmp_path / "result.nc").exists()
-
-
 def test_full_disk_loses_no_table_of_a_sweep(tmp_path, monkeypatch):
-    monkeypatch.setattr(files, "replace", full)
+    monkeypatch.setattr(sweep_results, "replace", full)
     found = fp.sweep(fp.Scene(), tmp_path, model="cylinders", voltage=[0, 100])
     assert found.notes[1:] == ("sweep.nc was not written: No space left on device; all other files are complete",)
     assert str(found).endswith(found.notes[1]) and len(rows_of(tmp_path, "table")) == 2
@@ -220,16 +184,3 @@ def test_report_has_the_sites_of_the_table(folder):
     for row in rows:
         assert f"<td>{1e-3 * float(row['merkel_sed']):.4g}</td>" in part
     assert "receptors" not in run_page.page(fp.run(model="cylinders")).partition("</nav>")[0]
-
-
-def test_file_is_that_of_xarray_and_is_read_as_by_xarray(folder, data):
-    """Texts, switches, numbers and what is missing, with their dimensions, units and names; and without xarray."""
-    known = arrays(folder / "result.nc")
-    assert known.keys() == set(map(str, data.variables))
-    for name, variable in data.variables.items():
-        mine = known[str(name)]
-        assert mine.shape == variable.shape and (mine.dtype.kind in "OU") == (variable.dtype.kind in "OU"), name
-        np.testing.assert_array_equal(mine, variable.values)
-    code = "import sys, fingerpad; fingerpad.Result.load(sys.argv[1]); print('xarray' in sys.modules)"
-    done = python("-c", code, str(folder))
-    assert done.stdout.strip() == "False", done.stderr

@@ -4,9 +4,8 @@ import pytest
 
 from benchmarks.errors import stiffer
 from fingerpad.accuracy import solves
-from fingerpad.accuracy.richardson import MORE, ONCE, ORDER, MeshParameter, errors, plus_minus, rigid, to_refine
+from fingerpad.accuracy.richardson import ONCE, ORDER, MeshParameter, errors, plus_minus, rigid, to_refine
 from fingerpad.scene import SceneError, from_data
-from variational.contact.penalty import Penalty
 
 
 def law(order: float, c: float = 0.1):
@@ -26,19 +25,6 @@ def parameter(q, *at: int) -> MeshParameter:
 def test_first_order_is_found_exactly(at):
     """What is left at the size in use. Roundoff of a difference of ones."""
     assert parameter(law(1.0), *at).share("q") == pytest.approx(0.1 / 2 ** (at[-1] + 1), rel=1e-12)
-
-
-def test_second_order_is_overestimated_three_times():
-    """First order is taken: the whole of the last change, of which second order leaves a third."""
-    assert parameter(law(2.0), 0, 1).share("q") == pytest.approx(3 * 0.1 / 16, rel=1e-12)
-
-
-@pytest.mark.parametrize(("degree", "left"), [(1, 0.3), (2, 0.1), (3, 0.1)])
-def test_energy_density_is_taken_for_the_order_of_strains(degree, left):
-    """Half of the last change is left at first order, a quarter at second; cubic elements have no more to show for."""
-    found = MeshParameter(degree=degree)
-    found.record({"full_slip_sed_0": 1.3}, {"full_slip_sed_0": 1.0})
-    assert found.share("full_slip_sed_0") == pytest.approx(left, rel=1e-12)
 
 
 @pytest.mark.parametrize(("name", "left"), [("full_slip_f_t", 0.1 / 4), ("full_slip_sed_0", 0.1 / 4 / 3)])
@@ -64,12 +50,6 @@ def test_errors_of_parameters_add_up_whatever_their_signs():
     assert errors(parameters, ["q"])["q"] == pytest.approx(ONCE * 0.1, rel=1e-12)
 
 
-def test_each_parameter_has_its_own_factor_of_safety():
-    """Shares of 0.05, known from one change, and 0.025, from two."""
-    parameters = {"a": parameter(law(1.0), 0), "b": parameter(law(1.0), 0, 1)}
-    assert errors(parameters, ["q"])["q"] == pytest.approx(ONCE * 0.05 + MORE * 0.025, rel=1e-12)
-
-
 def test_nothing_is_halved_within_the_tolerance():
     """The tolerance holds for the share of 0.05 with its factor of safety."""
     assert to_refine({"a": parameter(law(1.0), 0)}, {"q": ONCE * 0.0501}) == []
@@ -93,10 +73,6 @@ def test_law_is_extrapolated_exactly():
         return 1 + 0.3 * eps**-ORDER
 
     assert rigid({"q": q(4.0)}, {"q": q(8.0)})["q"] == pytest.approx(1 - q(4.0), rel=1e-12)
-
-
-def test_both_stiffnesses_are_doubled():
-    assert Penalty(3e12, 5e10).over_stiffer_screen() == Penalty(6e12, 1e11)
 
 
 @pytest.mark.parametrize("state", ["uncharged", "charged", "full_slip"])

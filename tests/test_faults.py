@@ -151,20 +151,6 @@ def test_bone_and_screen_disagree(scene, tmp_path, monkeypatch):
     ends(scene(), tmp_path, "forces are not balanced", "try", steps=0)
 
 
-def test_last_ridge_of_the_finger_touches(tmp_path):
-    """There are no more ridges to add: the run stops where contact reaches the last one, and names what to change."""
-    geometry = {"ridge_count": 3}
-    scene = from_data({"mesh": MESH, "geometry": geometry, "history": [{"name": "press", "f_ext": 8.0}]})
-    summary = run(scene, tmp_path, MPI.COMM_WORLD)
-    assert "the finger has no more ridges" in summary["failure"]
-    assert "geometry.ridge_count is 3" in summary["failure"]
-    rows = accepted(tmp_path)
-    assert (
-        [int(row["ridges_in_contact"]) for row in rows][-1] == max(int(row["ridges_in_contact"]) for row in rows) == 3
-    )
-    assert float(rows[-1]["f_ext"]) < 8.0
-
-
 # -- rejected iterates -------------------------------------------------------------------------------------
 def trajectory(chance: float, seed: int) -> tuple[list[dict[str, np.ndarray]], int]:
     """Press, charge and slide a block; after a solve, reject by chance and try the same step again."""
@@ -221,7 +207,7 @@ def undisturbed():
     return trajectory(0.0, 0)[0]
 
 
-@pytest.mark.parametrize("seed", [1, 2, 3])
+@pytest.mark.parametrize("seed", [1, pytest.param(2, marks=pytest.mark.long)])
 def test_rejections_leave_no_trace(undisturbed, seed):
     """A run with rejections at random is the undisturbed one, bit for bit."""
     disturbed, rejected = trajectory(0.3, seed)

@@ -52,15 +52,6 @@ def test_energy_densities_on_large_elements_have_no_error(monkeypatch, receptor,
     assert bool(sites) is estimated and found.estimates()["full_slip_mu_app"] > 0
 
 
-def test_signal_before_the_final_mesh_stops_the_run_and_is_no_reason_for_another_path():
-    def pause() -> None:
-        raise Interrupted(signal.SIGTERM, 12)
-
-    model = model_of({})
-    with pytest.raises(Interrupted):
-        refinement(model, known(model, {}, MPI.COMM_SELF), pause=pause).run()
-
-
 def test_length_has_the_error_of_the_facets_at_its_ends():
     """Of first order in these: one 16 times shorter leaves a fifteenth of the change. Friction is of all elements."""
     coarse = {"full_slip_contact_length": [0.9e-3], "full_slip_f_t": 39.0, "full_slip_sed_0": 100.0}

@@ -7,7 +7,7 @@ import pytest
 
 import fingerpad as fp
 from fingerpad.cli import main
-from fingerpad.reduced.similarity import similar
+from fingerpad.reduced.default_finger import similar
 from fingerpad.scene import load
 from fingerpad.scene.changes import with_presets
 from fingerpad.scene.fingers import FINGERS

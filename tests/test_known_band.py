@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 
 import fingerpad as fp
-from fingerpad.reduced.closure_band import Slip, friction, known, powers, with_band
+from fingerpad.reduced.closure_band import Slip, friction, powers, with_band
 from fingerpad.report import trust
 from fingerpad.report.known import bars
-from fingerpad.results.closures import KNOWN, known_in_words
+from fingerpad.results.headline import KNOWN, known_in_words
 from tests.test_closure_band import Held
 
 
@@ -91,7 +91,7 @@ def test_band_of_a_section_beside_a_finger_without_full_slip(result):
 
 def test_law_of_ones_own(result):
     """It has no roughness and no insulator to change, and no other closures."""
-    found = known(replace(result, scene=result.scene.replace(roughness=Held())), {})
+    found = with_band(replace(result, scene=result.scene.replace(roughness=Held()), record={})).known
     assert [part["name"] for part in found["parts"]] == ["friction law", "tips", "slices"]
 
 
@@ -183,7 +183,7 @@ def test_none_without_voltage_or_friction():
 def test_text_files_and_picture_have_it(result):
     ends = f"{result.known['low']:.2f} to {result.known['high']:.2f}"
     assert f"\n  Likely range {ends}.\n  With one assumption changed: rough contact " in str(result)
-    again = fp.Result.from_dict(result.to_dict())
+    again = fp.Result.from_xarray(result.to_xarray())
     assert again.known == result.known and KNOWN in again.record
     picture = bars(result)
     names = ("solved to", "likely range", "rough contact", "friction law", "tips")

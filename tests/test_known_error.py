@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from benchmarks import harness, models, newtons
-from fingerpad.reduced import cylinder_errors, cylinders, uncharged
+from fingerpad.reduced import cylinder_errors, cylinders, default_finger
 from fingerpad.scene import Scene, from_data, with_values
 from tests.commands import kept
 from variational.contact.friction import Derjaguin
@@ -122,9 +122,6 @@ def test_losses_of_a_drive_count_under_a_drive_alone():
 def test_other_finger_is_named_by_its_tables():
     """Not by each of its 21 sizes and moduli; two keys of a table are named."""
     (text,) = cylinder_errors.cautions(Scene(finger="woman"))
-    assert [each.key for each in cylinder_errors.in_short(cylinder_errors.outside(Scene(finger="woman")))] == [
-        "geometry", "materials"
-    ]  # fmt: skip
     assert text.endswith(
         "here: geometry is another one, and it is known for that of the default scene; "
         "materials is another one, and it is known for that of the default scene"
@@ -140,20 +137,20 @@ def test_lengths_in_the_program_are_the_runs():
     for state in ("charged", "full_slip"):
         for k, f in enumerate(models.FORCES):
             run = known[models.name(f, 0.0)]["full"]["summary"]
-            assert uncharged.LENGTHS[state][k] == pytest.approx(run[f"{state}_contact_length"], abs=0.5e-7)
-            depth = uncharged.INDENTATIONS[state][k]
+            assert default_finger.LENGTHS[state][k] == pytest.approx(run[f"{state}_contact_length"], abs=0.5e-7)
+            depth = default_finger.INDENTATIONS[state][k]
             assert depth == pytest.approx(-run[f"{state}_bone_height"], abs=0.5e-7)
-            assert uncharged.RIDGES[state][k] == run[f"{state}_ridges_in_contact"]
+            assert default_finger.RIDGES[state][k] == run[f"{state}_ridges_in_contact"]
 
 
 def test_program_of_the_page_prints_what_the_model_has():
     """So that the lengths and the known errors can be put there when the runs are made anew."""
     lines = models.in_the_program(harness.kept("models").numbers).splitlines()
     count = len(models.FORCES)
-    assert uncharged.FORCES[:count] == models.FORCES
-    for state, lengths in uncharged.LENGTHS.items():
+    assert default_finger.FORCES[:count] == models.FORCES
+    for state, lengths in default_finger.LENGTHS.items():
         assert f"LENGTHS {state}: {', '.join(f'{1e3 * each:.4f}e-3' for each in lengths[:count])}" in lines
-        assert f"RIDGES {state}: {', '.join(map(str, uncharged.RIDGES[state][:count]))}" in lines
+        assert f"RIDGES {state}: {', '.join(map(str, default_finger.RIDGES[state][:count]))}" in lines
     for state in ("full_slip", "charged"):
         bands = cylinder_errors.REGIONS[0].errors[state]
         assert all(f"KNOWN_ERROR {state}_{key}: {each:.3f}" in lines for key, each in bands.items())
@@ -161,13 +158,13 @@ def test_program_of_the_page_prints_what_the_model_has():
 
 def test_lengths_between_known_forces_are_a_power_law():
     """Halfway on logarithmic axes, between each force and the next; beyond the last as between the two before."""
-    forces = uncharged.FORCES
+    forces, known = default_finger.FORCES, default_finger.LENGTHS["charged"]
     for k, between in enumerate(np.sqrt(np.array(forces[1:]) * np.array(forces[:-1]))):
-        lengths = uncharged.LENGTHS["charged"][k : k + 2]
-        assert uncharged.interpolate(between, uncharged.LENGTHS["charged"]) == pytest.approx(np.sqrt(np.prod(lengths)))
-    ratio = uncharged.LENGTHS["charged"][1] / uncharged.LENGTHS["charged"][0]
-    below = uncharged.interpolate(forces[0] ** 2 / forces[1], uncharged.LENGTHS["charged"])
-    assert below == pytest.approx(uncharged.LENGTHS["charged"][0] / ratio)
+        lengths = known[k : k + 2]
+        assert default_finger.interpolate(between, known) == pytest.approx(np.sqrt(np.prod(lengths)))
+    ratio = known[1] / known[0]
+    below = default_finger.interpolate(forces[0] ** 2 / forces[1], known)
+    assert below == pytest.approx(known[0] / ratio)
 
 
 def test_kept_answers_are_those_of_the_program():

@@ -8,7 +8,7 @@ import pytest
 from benchmarks.loads import compared, meshes
 from benchmarks.loads.__main__ import REGIONS_FILE, far
 from benchmarks.loads.scenes import AXES, checked, section
-from fingerpad.reduced import cylinder_errors, cylinders, uncharged
+from fingerpad.reduced import cylinder_errors, cylinders, default_finger
 from fingerpad.runs.solve import run
 from fingerpad.scene import Scene, from_data
 from tests.commands import kept
@@ -110,9 +110,9 @@ def test_tables_go_on_by_the_kept_states(numbers):
     """To the four digits that they are kept with."""
     for state, each in far(numbers).items():
         count = len(each["lengths"])
-        assert uncharged.LENGTHS[state][-count:] == pytest.approx(each["lengths"], abs=0.6e-7)
-        assert uncharged.INDENTATIONS[state][-count:] == pytest.approx(each["indentations"], abs=0.6e-7)
-        assert list(uncharged.RIDGES[state][-count:]) == each["ridges"]
+        assert default_finger.LENGTHS[state][-count:] == pytest.approx(each["lengths"], abs=0.6e-7)
+        assert default_finger.INDENTATIONS[state][-count:] == pytest.approx(each["indentations"], abs=0.6e-7)
+        assert list(default_finger.RIDGES[state][-count:]) == each["ridges"]
 
 
 def test_error_of_the_mesh_is_found_between_checked_loads(mesh):

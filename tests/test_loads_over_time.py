@@ -249,7 +249,7 @@ def test_results_of_a_run(tmp_path):
     assert not list(tmp_path.glob("finger_*")) and not list(tmp_path.glob("surface_*"))
     assert (tmp_path / "time.png").is_file() and (tmp_path / "surface.png").is_file()
     again = Result.load(tmp_path)
-    assert again.loads[-1].to_dict() == wave.to_dict()
+    assert again.loads[-1].extremes == wave.extremes and again.loads[-1].over_time == wave.over_time
     assert [state.time for state in again.steps] == [state.time for state in found.steps]
     data = found.to_xarray()
     assert data.load_f_t_amplitude.sel(load="wave").values == pytest.approx(wave.over_time.f_t_amplitude)
@@ -285,7 +285,6 @@ def test_mean_from_steps_that_are_too_long_is_told(tmp_path):
     assert means[0] == pytest.approx(means[1], rel=0.1) and means[0] != pytest.approx(means[1], rel=0.05)
     assert abs(means[0] - means[1]) < long.loads[2].over_time.mean_change["f_t"]
     assert long.loads[2].extremes["f_t"].max == pytest.approx(long.loads[1].end.f_t, rel=1e-9), "where it began"
-    assert long.to_dict()["loads"][2]["over_time"]["mean_change"]["f_t"] > 0
 
 
 def test_square_of_a_file_is_the_square():

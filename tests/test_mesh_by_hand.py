@@ -10,8 +10,8 @@ import pytest
 from mpi4py import MPI
 
 import geometry
-from fingerpad.cli.mesh import section
 from fingerpad.model.options import plan
+from fingerpad.model.section import section
 from fingerpad.scene import SceneError, from_data
 from geometry.mesh import load
 from geometry.profiles import GeometryError

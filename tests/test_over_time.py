@@ -2,17 +2,14 @@
 
 import math
 from dataclasses import replace
-from functools import cache
 
 import numpy as np
 import pytest
 
-from fingerpad.reduced.cylinders import tip_radius
 from fingerpad.results.over_time import HARMONICS, over_time, spectrum
-from fingerpad.scene import Scene, from_data
+from fingerpad.scene import from_data
 from fingerpad.scene.waveform import Waveform
 from tests.measures import contact_state
-from variational.attraction.cylinder import Cylinder
 from variational.state import ContactState
 
 FREQUENCY = 60.0
@@ -30,11 +27,6 @@ def states(samples, friction) -> list[ContactState]:
     return [
         contact_state(voltage=u, f_t=friction(u), mu_app=0.5, step=k, time=7.0 + t) for k, (t, u) in enumerate(samples)
     ]
-
-
-def by_quadrature(values: np.ndarray) -> np.ndarray:
-    """Return the amplitudes of a smooth periodic curve from many samples of one period, the last left out."""
-    return 2 * np.abs(np.fft.rfft(values))[1 : HARMONICS + 1] / len(values)
 
 
 @pytest.mark.parametrize("periods", [1.0, 2.6])
@@ -61,35 +53,6 @@ def test_square_wave_and_triangle():
     assert square.mean["f_t"] == pytest.approx(50.0, rel=1e-12)
     triangle = over_time(states(wave("triangle").samples(2 * PERIOD, 1.0), lambda u: u), wave("triangle"))
     assert triangle.f_t_amplitude == pytest.approx(100 * 8 / (np.pi * k) ** 2 * (k % 2), abs=1e-5)
-
-
-@pytest.mark.parametrize("offset", [0.0, 60.0])
-def test_friction_of_a_charged_cylinder(offset):
-    """Mu_0 times the contact force of one ridge, by its closed form, from 24 samples and from 96.
-
-    Without offset there is next to nothing at the frequency of the voltage: friction has twice that frequency. What is
-    left comes from the ends of the curve, where its slope is that of one side.
-    """
-    scene = Scene()
-    horny = scene.materials.stratum_corneum
-    modulus = 2 * horny.shear_modulus / (1 - horny.poisson)
-    ridge = Cylinder(tip_radius(scene.geometry), modulus, scene.h_0, scene.closure())
-    fine = 100 * np.sin(2 * np.pi * np.arange(96) / 96) + offset
-
-    @cache
-    def of(amount: float) -> float:
-        return 0.25 * ridge.under_loads([4.0], amount)[0].f_contact
-
-    def friction(voltage: float) -> float:
-        return of(round(abs(voltage), 9))
-
-    exact = by_quadrature(np.array([friction(u) for u in fine]))
-    for scale, bound in ((1.0, 4e-3), (0.5, 6e-4)):
-        samples = wave("sine", offset).samples(PERIOD, scale)
-        found = over_time(states(samples, friction), wave("sine", offset)).f_t_amplitude
-        assert np.abs(found - exact).max() < bound * exact.max()
-        if offset == 0:
-            assert max(found[0::2]) < 4e-4 * max(found)
 
 
 def test_spectrum_of_a_file_has_its_carrier():

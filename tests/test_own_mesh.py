@@ -111,14 +111,14 @@ def write_text(path: Path, text: str) -> str:
 
 
 def test_check_reads_and_draws_the_file(place, tmp_path, capsys):
-    """Its triangles, and what is wrong with it; the command for meshes refuses it."""
+    """Its triangles, and what is wrong with it; no mesh is written of it."""
     write(place)
     words = ["--set", f"geometry.file={place}", "--set", "voltage=0", "--out", str(tmp_path / "out")]
     assert main(["check", *words]) == 0
     said = capsys.readouterr().out
     assert re.search(r"\d+ triangles of element P2", said) and "1 ridge can touch" in said
     assert (tmp_path / "out" / "mesh.png").stat().st_size > 10_000
-    assert main(["mesh", *words[:2], "--out", str(tmp_path / "other.msh")]) == 2
+    assert main(["check", *words, "--mesh", str(tmp_path / "other.msh")]) == 2
     assert "geometry.file is given, which is a mesh already" in capsys.readouterr().err
     place.write_text("no mesh", encoding="utf-8")
     assert main(["check", *words]) == 2

@@ -1,6 +1,5 @@
 """The harness of the studies: numbers that are kept, and the pages that are drawn from them."""
 
-import json
 import math
 import shutil
 
@@ -21,66 +20,6 @@ def test_pages_in_git_have_the_kept_numbers(tmp_path, capsys):
     assert len(capsys.readouterr().out.split()) == len(pages.PAGES)
     for path in tmp_path.glob("*.md"):
         assert path.read_text(encoding="utf-8") == (DOCS / path.name).read_text(encoding="utf-8"), path.name
-
-
-# -- pages older than the code -----------------------------------------------------------------------
-OLD = {"variational/x.py": b"x = 1  # once", "fingerpad/results/x.py": b"", "benchmarks/chart.py": b"x = 1"}
-NEW = {"variational/x.py": b'"""X."""\nx = 1', "fingerpad/results/x.py": b"y", "benchmarks/chart.py": b"x = 1"}
-CHANGED = {"variational/x.py": b"x = 2", "benchmarks/chart.py": b"x = 2"}
-
-
-class History:
-    """A history of commits by name with their files; ``brought`` brought the numbers into git."""
-
-    def __init__(self, **commits):
-        self.commits, self.brought = commits, next(iter(commits))
-
-    def git(self, command, *words):
-        return "\n".join({"log": [self.brought], "rev-list": self.commits}[command]).encode()
-
-    def files(self, commit, paths):
-        found = self.commits["new" if commit == "HEAD" else commit]
-        return {path: text for path, text in found.items() if path.startswith(tuple(paths))}
-
-
-@pytest.fixture
-def since(monkeypatch, tmp_path):
-    def since(page, made, pair=None, **commits):
-        history = History(**commits)
-        (tmp_path / "same.json").write_text(json.dumps([pair] if pair else []), encoding="utf-8")
-        monkeypatch.setattr(pages, "git", history.git)
-        monkeypatch.setattr(pages, "files", history.files)
-        monkeypatch.setattr(pages, "source", {"old": "01", "new": "02"}.__getitem__)
-        harness.keep(page, {}, made, tmp_path)
-        words, found = pages.stale(page, tmp_path)
-        return found if pair is None else (words.rpartition("; ")[2], found)
-
-    return since
-
-
-MADE = Made("0.1.0", "", "2026-11-22", "01")
-
-
-def test_page_is_older_where_its_code_computes_something_else(since):
-    """By packages and its own program; comments, docstrings and what writes files do not count."""
-    assert since("chart", MADE, old=OLD, new=NEW) == []
-    assert since("chart", MADE, old=OLD, new=NEW | CHANGED) == ["benchmarks/chart.py", "variational/x.py"]
-    assert since("errors", MADE, old=OLD, new=NEW | CHANGED) == ["variational/x.py"]
-    drawing = {"benchmarks/chart.py": b"x = 1\n\n\n# -- page ---\ny = 2"}
-    assert since("chart", MADE, old=OLD, new=NEW | drawing) == []
-    assert since("chart", MADE, old=OLD, new=NEW | {"variational/new.py": b"x"}) == []  # imported by none of the others
-    assert since("chart", MADE, old=OLD, new={}) == ["benchmarks/chart.py", "variational/x.py"]
-
-
-def test_page_of_code_that_computes_the_same_within_a_tolerance(since):
-    """A pair of commits is accepted and its tolerance is named; changes of other files count all the same."""
-    pair, now = {"before": "old", "now": "new", "within": 1e-12}, NEW | {"variational/x.py": b"x = 2"}
-    assert since("errors", MADE, pair, old=OLD, new=now) == (
-        "the packages compute the same within 1e-12 (same.json)", [],
-    )  # fmt: skip
-    assert since("chart", MADE, pair, old=OLD, new=NEW | CHANGED)[1] == ["benchmarks/chart.py"]
-    words, found = since("errors", MADE, pair | {"before": "new"}, old=OLD, new=now)
-    assert "within" not in words and found == ["variational/x.py"]
 
 
 def test_results_differ_by_their_numbers_alone():

@@ -25,7 +25,6 @@ PARTS = {
     "cautions": "fingerpad.model.cautions.on_states",
     "headline": "fingerpad.results.result.headline",
     "pictures": "fingerpad.results.drawing.Drawing.write",
-    "result.nc": "fingerpad.results.dataset.attributes",
     "footprint.png": "fingerpad.results.whole_picture.draw",
     "report": "fingerpad.report.run_page.page",
 }
@@ -76,7 +75,7 @@ def test_failure_has_its_whole_sentence(tmp_path, monkeypatch):
     assert f"bands of friction: RuntimeError: {sentence}" in result.notes
 
 
-@pytest.mark.parametrize("name", ["bands of friction", "result.nc", "footprint.png", "report"])
+@pytest.mark.parametrize("name", ["bands of friction", "footprint.png", "report"])
 def test_failure_of_one_costs_no_other(tmp_path, monkeypatch, name):
     """Of the closed form, with a folder."""
     monkeypatch.setattr(PARTS[name], fail)

@@ -52,9 +52,9 @@ def test_output_is_printed_in_its_unit(result):
 def test_output_is_in_the_tables_in_si(result):
     assert [float(row["p_mean"]) for row in rows_of(result.folder, "steps")] == values_of(result)
     summary = json.loads((result.folder / "summary.json").read_text(encoding="utf-8"))
-    assert summary["states"]["charged"]["p_mean"] == result.charged.p_mean
+    assert summary["charged_p_mean"] == result.charged.p_mean
     most = max(state.p_mean for state in result.steps if state.load == "nudge")
-    assert summary["loads"][2]["extremes"]["p_mean"]["max"] == most
+    assert result.loads[2].extremes["p_mean"].max == most
 
 
 def test_output_is_in_the_dataset(result):
@@ -115,6 +115,7 @@ def test_recipe_of_the_page_runs_as_written(capsys):
     [
         (P_MEAN, "it must be a list of fingerpad.Output"),
         (["p_mean"], "it must be a list of fingerpad.Output"),
+        ([fp.Output("p_mean", "Pa", max, tables={"report"})], "has the table 'report'; tables are load, result, sweep"),
         ([P_MEAN, fp.Output("p_mean", "Pa", max)], "called .*p_mean.*; it must have a name of its own"),
         ([fp.Output("f_t", "N/m", max)], "called .*f_t.*; it must have a name of its own"),
         ([fp.Output("mean p", "Pa", max)], "called .*mean p.*; it must have a name of its own"),

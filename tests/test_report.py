@@ -14,7 +14,7 @@ from matplotlib.collections import LineCollection
 from fingerpad.cli import main
 from fingerpad.reduced.registry import find
 from fingerpad.report import run_page, trust
-from fingerpad.report.write import NAME, write
+from fingerpad.report.write import NAME
 from fingerpad.results import fields
 from fingerpad.results.quantities import cell
 from fingerpad.results.result import Result
@@ -222,14 +222,6 @@ def test_full_slip_without_a_coefficient_has_its_force(folder):
 
 
 # -- folders -----------------------------------------------------------------------------------------------
-def test_half_written_run_is_reported_as_such(copy):
-    """Killed in a row of the table: the whole rows count."""
-    (copy / "summary.json").unlink()
-    rows = (copy / "steps.csv").read_text(encoding="utf-8").splitlines(keepends=True)
-    (copy / "steps.csv").write_text("".join(rows[:-1]) + rows[-1][:20], encoding="utf-8")
-    assert f"has not ended, or was killed, after step {len(rows) - 2}" in write(copy).read_text(encoding="utf-8")
-
-
 def test_ends_of_loads_are_said_to_be_of_the_path(page):
     """Their friction is not that of the key numbers, which are of the final mesh."""
     assert page.count("States at the ends of loads are of the path") == 1
@@ -245,30 +237,25 @@ def test_contact_lengths_of_the_ridges_add_up(page):
         assert sum(ridge["length"] for ridge in frame["skin"]) == pytest.approx(whole, abs=1.5e-3)
 
 
-def test_run_without_an_accepted_step_is_read_back(copy):
-    """Its first step failed: there is a failure and no table."""
-    summary = json.loads((copy / "summary.json").read_text(encoding="utf-8"))
-    known = {key: value for key, value in summary.items() if not key.startswith(("uncharged_", "charged_", "full_sl"))}
-    failed = known | {"steps": 0, "loads": [], "states": {}, "failure": "no equilibrium"}
-    (copy / "summary.json").write_text(json.dumps(failed), encoding="utf-8")
-    for file in copy.glob("*.csv"):
-        file.unlink()
-    assert Result.load(copy).failure == "no equilibrium"
+def test_run_without_an_accepted_step_is_read_back(folder):
+    """Its first step failed: there is a failure and no state."""
+    bare = replace(Result.load(folder), steps=(), loads=(), uncharged=None, charged=None, full_slip=None, finger=None)
+    failed = Result.from_xarray(replace(bare, failure="no equilibrium").to_xarray())
+    assert failed.failure == "no equilibrium" and not failed.steps and not failed.named
 
 
 @pytest.mark.parametrize(
     ("files", "words"),
     [
         ({}, "holds no results of fingerpad"),
-        ({"summary.json": '{"f_ext": 75,'}, "its files are not whole, or not of a run"),
+        ({"summary.json": '{"f_ext": 75,'}, "is not a folder of a finished run"),
+        ({"result.nc": "CDF"}, "result.nc is not whole, or not of a run"),
         ({"summary.json": '{"failure": "f_ext is too large"}'}, "was refused and has no results: f_ext is too large"),
         ({"table.csv": "voltage,full_slip_mu_app,failure\n100,0.3,\n200"}, "is cut short"),
-        ({"scene.json": "{}"}, "has no accepted step yet"),
+        ({"scene.json": "{}", "steps.csv": "step\n"}, "has not ended"),
         ({"notes.txt": "hello"}, "holds no results of fingerpad"),
-        ({"summary.json": "[1, 2]"}, "its files are not whole, or not of a run"),
         ({"table.csv": "a,b\n1,2\n"}, "is not the table of a sweep"),
-        ({"scene.json": "[" * 100_000, "steps.csv": "step\n"}, "cannot be read"),
-        ({"summary.json": "[" * 100_000}, "its files are not whole, or not of a run"),
+        ({"summary.json": "[" * 100_000}, "is not a folder of a finished run"),
         ({"full/0123/asked.json": "{}"}, "has not ended (0 runs are there)"),
     ],
 )

@@ -14,7 +14,9 @@ from fingerpad.model import report
 from fingerpad.model.checks import FullSlip
 from fingerpad.model.state import force_error
 from fingerpad.results import drawing, fields
-from fingerpad.results.states import RESULTS, named
+from fingerpad.results.quantities import RESULTS
+from fingerpad.results.result import Result
+from fingerpad.results.states import named
 from fingerpad.scene import from_data
 from tests.measures import rows_of
 from tests.runs import followed, path_of, run
@@ -68,11 +70,11 @@ def test_charged_while_it_slides(tmp_path, titles):
     assert summary["full_slip_mu_app"] == float(last["mu_app"]) > 0.5
     assert (summary["full_slip_voltage"], summary["full_slip_bone_x"]) == (100.0, pytest.approx(0.6e-3, rel=1e-12))
     assert (summary["charged_voltage"], summary["charged_load"]) == (0.0, "press")
-    press, slide, end = summary["loads"]
-    assert (press["full_slip_reached"], slide["full_slip_held"], end["full_slip_held"]) == (False, True, True)
-    assert slide["end"]["mu_app"] == pytest.approx(MU_0, rel=1e-6)
-    assert slide["stable"] is press["stable"] is True
-    assert end["extremes"]["mu_app"]["max_step"] == summary["full_slip_step"]
+    press, slide, end = Result.load(tmp_path).loads
+    assert (press.full_slip_reached, slide.full_slip_held, end.full_slip_held) == (False, True, True)
+    assert slide.end.mu_app == pytest.approx(MU_0, rel=1e-6)
+    assert slide.stable is press.stable is True
+    assert end.extremes["mu_app"].max_step == summary["full_slip_step"]
     assert "U = 100 V, bone at x = 0.6 mm" in titles["finger_charge_while_sliding"]
     assert "U = 0 V" in titles["Normal contact"] and "U = 100 V" in titles["Full slip"]
     assert "f_ext = 1 N/m, U = 0 to 100 V" in titles["history"] and "U = 0 to 100 V" in titles["surface"]
@@ -188,7 +190,8 @@ def test_state_that_is_no_equilibrium_is_neither_written_nor_kept(tmp_path, kspo
     summary = run(from_data(LEAN | {"history": [{"name": "press", "bone_height": -20e-6}]}), tmp_path, MPI.COMM_WORLD)
     assert "is left at a node; forces are not balanced to 1e-06" in summary["failure"]
     assert not (tmp_path / "steps.csv").exists() and not list(tmp_path.glob("*.png"))
-    assert summary["steps"] == 0 and summary["charged_f_contact"] is None and summary["loads"] == []
+    assert summary["steps"] == 0 and summary["charged_f_contact"] is None
+    assert Result.load(tmp_path).loads == ()
 
 
 def test_rejected_state_leaves_the_one_before(tmp_path, monkeypatch):
@@ -258,12 +261,11 @@ def test_headline_states_are_shown_on_the_final_mesh(refined):
         assert path in titles.get(name, path), name
     for name in ("finger_charged_normal_contact", "finger_full_slip", "Charged normal contact", "Full slip"):
         assert end in titles[name], name
-    ridges = [row for row in rows_of(folder, "ridges_final") if row["of"] == "full_slip"]
-    assert sum(float(row["f_friction"]) for row in ridges) == pytest.approx(
-        -summary["full_slip_f_t"], abs=summary["force_error"]
-    )
-    assert {float(row["mesh_contact"]) for row in ridges} == {final}
-    assert {row["of"] for row in rows_of(folder, "receptors_final")} == {"charged", "full_slip"}
+    result = Result.load(folder)
+    slip = result.full_slip
+    assert slip.ridges.f_friction.sum() == pytest.approx(-slip.f_t, abs=summary["force_error"])
+    assert result.charged.mesh_contact == slip.mesh_contact == final
+    assert all(state.sites is not None for state in (result.charged, slip))
     x, _, p, *_ = fields.read(folder)["states/full_slip"]["skin"]
     known = np.isfinite(x[1:] + x[:-1])
     force = float((np.diff(x) * (p[1:] + p[:-1]) / 2)[known].sum())

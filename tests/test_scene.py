@@ -11,7 +11,7 @@ from fingerpad.cli import main
 from fingerpad.model.options import check
 from fingerpad.scene import Load, Scene, SceneError, from_data
 from fingerpad.scene import scene as scenes
-from fingerpad.scene.keys import DIALECT, schema
+from fingerpad.scene.keys import DIALECT, every, schema
 from fingerpad.scene.reading import model_of
 from variational.contact.augmented import AugmentedLagrangian
 from variational.contact.nitsche import Nitsche
@@ -157,9 +157,13 @@ RIGHT = [
 ]
 
 
-def test_schema_is_printed(capsys):
+def test_command_prints_schema_and_page(capsys):
+    """The page has every key."""
     assert main(["params", "--schema"]) == 0
     assert json.loads(capsys.readouterr().out) == schema(Scene)
+    assert main(["params", "--markdown"]) == 0
+    page = capsys.readouterr().out
+    assert [key.name for key in every(Scene) if f"`{key.name.rpartition('.')[2]}`" not in page] == []
 
 
 def test_schema_is_of_its_dialect():

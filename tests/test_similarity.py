@@ -4,7 +4,7 @@ import pytest
 
 import fingerpad as fp
 from fingerpad.reduced import cylinders
-from fingerpad.reduced.similarity import Similar, similar
+from fingerpad.reduced.default_finger import Similar, similar
 from fingerpad.scene.fingers import FINGERS, SOFT
 from geometry.parameters import Fingertip
 

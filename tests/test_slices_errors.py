@@ -21,7 +21,6 @@ from fingerpad.slices.total import Profile, at_force, at_indentation, profile
 from fingerpad.slices.trace import NAMES, Trace, TraceError, trace
 from tests.measures import contact_state
 from tests.test_slices import foundation, kept, whole
-from variational.state import Errors
 
 KEPT = Path(__file__).parents[1] / "docs"
 FINGER = profile(Slices())
@@ -46,17 +45,6 @@ def test_pressure_does_not_grow_without_bound_below_the_first_point(attraction):
     assert below["contact_length"][0] == pytest.approx(first["contact_length"][0] * 100**-fall, rel=1e-9)
 
 
-def test_length_without_attraction_falls_as_the_external_force():
-    of = begun(contact_length=3.0, f_ext=1.5)
-    of.columns["f_electrostatic"][:] = 0.0
-    assert of.at(np.array([1e-6]))["contact_length"][0] == pytest.approx(1e-4 * 100**-1.5, rel=1e-9)
-
-
-def test_gross_width_is_no_less_than_the_ridges_below_the_first_point():
-    below = begun(gross_width=3.0, contact_length=1.0).at(np.geomspace(1e-7, 1e-4, 7))
-    assert np.all(below["gross_width"] >= below["contact_length"] * (1 - 1e-9))
-
-
 def test_repeated_states_are_one_point():
     """Full slip under a constant force repeats itself up to the solvers' tolerances: no slope is made from those."""
     states = [
@@ -71,12 +59,6 @@ def test_repeated_states_are_one_point():
 
 
 # -- discretisation, interpolation, estimate -------------------------------------------------------------
-def test_discretisation_is_that_of_the_section():
-    state = contact_state(f_t=40.0, error=Errors(f_t=0.4), ridges_in_contact=1, contact_length=1e-3)
-    assert errors.of_section(state, 5e-4) == {errors.MESH: {"f_t": pytest.approx(0.01)}}
-    assert errors.of_section(None, 5e-4) == {errors.MESH: {}}
-
-
 def test_power_law_has_no_error_of_interpolation():
     """Hertz's law and others are interpolated to roundoff, below the first point as well."""
     of = foundation()
@@ -128,12 +110,6 @@ def test_error_between_points_with_known_ridges_is_that_of_where_they_jump():
     assert np.all(np.array(change) < known) and np.mean(less) < 0.8 * np.mean(known)
 
 
-def test_smooth_trace_with_known_ridges_has_next_to_no_error():
-    of = replace(foundation(), ridges=np.ones(12))
-    found = errors.interpolation(FINGER, of, at_force(FINGER, of, 0.5, 24), 24)
-    assert max(found.values()) < 1e-6, "a power law is a straight line of logarithms"
-
-
 def test_error_of_a_smaller_force_covers_the_trace_of_more_points():
     """Kept runs at eight forces, and every second of them with the last: forces below and between the points."""
     of = kept(200.0)
@@ -143,16 +119,6 @@ def test_error_of_a_smaller_force_covers_the_trace_of_more_points():
         less, full = of_half.under(force), at_force(FINGER, of, force, 48)
         for key in ("f_t", "contact_area", "gross_area"):
             assert abs(less.values("full_slip")[key] - full.values[key]) <= less.error["full_slip"][key], (force, key)
-
-
-def test_errors_add_up():
-    """What is carried over stays in proportion to the values, and each force has its own error between points."""
-    carried = 0.02
-    for each in (whole(), whole().under(0.2)):
-        value = each.values("full_slip")["f_t"]
-        between = errors.interpolation(FINGER, kept(200.0), each.states["full_slip"], 8)["f_t"]
-        assert between > 1e-4
-        assert each.error["full_slip"]["f_t"] == pytest.approx(value * (carried + between), rel=1e-9)
 
 
 def test_coarser_traces_leave_points_out():
@@ -166,12 +132,6 @@ def test_coarser_traces_leave_points_out():
     two = Trace(depth[:2], {name: depth[:2] for name in NAMES})
     straight = Profile((0.0, 1.0), np.zeros_like, np.ones_like, straight=True)
     assert errors.interpolation(FINGER, two, at_force(straight, two, 1.2, 4), 4) == {}, "not known"
-
-
-def test_friction_is_exact_without_attraction():
-    """Coulomb's law over the force at hand, however few points the trace has; its areas are not."""
-    found = errors.interpolation(FINGER, kept(0.0), at_force(FINGER, kept(0.0), 0.3, 48), 48)
-    assert found["f_t"] < 1e-6 < 1e-3 < found["gross_area"] and found["indentation"] > 1e-4
 
 
 def test_estimate_of_a_run_covers_the_traces_of_the_full_model():
@@ -213,7 +173,7 @@ def test_everything_that_is_printed_and_kept_has_the_whole_error():
     words = "±: error by mesh of the cross-section, points of the traces; what the finger and"
     assert words in printed and words in drawn
     assert row(result)["full_slip_finger_gross_area_error"] == error
-    assert result.finger.to_dict()["states"]["full_slip"]["error"]["gross_area"] == error
+    assert result.to_dict()["full_slip_finger_gross_area_error"] == error
     assert float(finger(result.finger)["finger_gross_area_error"][1][STATES.index("full_slip")]) == error
 
 
@@ -245,9 +205,4 @@ def test_error_of_slices_at_the_force_at_hand():
     assert "gross area +13 to +30.1 %; friction, attraction, ridge area, indentation not known." in low
     assert middle.startswith("Error of the sum of slices at 0.5, 0.6 N, beside a finger of 20 × 14 × 28 mm in three")
     assert "friction −0.7 to +0.2 %" in middle and "not known" not in middle
-    (all_of_them,) = errors.remarks([0.6, 0.55, 0.5, 0.45])
-    assert "at 0.45 to 0.6 N" in all_of_them
     assert none.endswith(": friction, attraction, gross area, ridge area, indentation not known.")
-    (short,) = errors.remarks([0.5], {"f_t", "contact_area", "f_ext"})
-    assert short.endswith("dimensions: friction −0.7 to +0.2 %, ridge area −0.2 to +4 %.")
-    assert errors.remarks([0.5], {"mu_app"}) == []

@@ -20,7 +20,10 @@ LOADS = {
 }
 
 
-@pytest.fixture(scope="module", params=["three ridges", "one ridge", pytest.param("force", marks=pytest.mark.long)])
+@pytest.fixture(
+    scope="module",
+    params=["three ridges", *(pytest.param(name, marks=pytest.mark.long) for name in ("one ridge", "force"))],
+)
 def runs(request) -> list[fp.Result]:
     """The small finger at 100 V with three contact sizes: under 4 and 0.5 N/m, and under a force."""
     load = LOADS[request.param]

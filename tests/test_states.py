@@ -211,18 +211,18 @@ def test_each_load_has_its_summary(pressed):
     pressed.slide("slide", 0.4e-3)
     pressed.still("charge", voltage=80.0)
     pressed.slide("slide on", 0.55e-3)
-    found = [states.load_result(name, mine, None).to_dict() for name, mine in states.by_load(pressed.rows)]
-    assert [load["name"] for load in found] == ["press", "slide", "charge", "slide on"]
-    assert [(load["full_slip_reached"], load["full_slip_held"]) for load in found] == [
+    found = [states.load_result(name, mine, None) for name, mine in states.by_load(pressed.rows)]
+    assert [load.name for load in found] == ["press", "slide", "charge", "slide on"]
+    assert [(load.full_slip_reached, load.full_slip_held) for load in found] == [
         (False, False),
         (True, True),
         (False, False),
         (True, False),
     ]
     slide = found[1]
-    assert slide["end"]["f_t"] == slide["extremes"]["f_t"]["max"] == pytest.approx(MU_0 * 2.0)
-    assert slide["extremes"]["f_t"]["min_step"] == pressed.rows[2].step
-    assert slide["end"]["step"] == pressed.rows[9].step
+    assert slide.end.f_t == slide.extremes["f_t"].max == pytest.approx(MU_0 * 2.0)
+    assert slide.extremes["f_t"].min_step == pressed.rows[2].step
+    assert slide.end.step == pressed.rows[9].step
 
 
 def test_friction_without_a_force_has_no_coefficient(pressed):

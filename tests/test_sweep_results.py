@@ -15,8 +15,7 @@ import fingerpad as fp
 from fingerpad.cli import main
 from fingerpad.cli import sweep as cli_sweep
 from fingerpad.reduced import cylinder_errors
-from fingerpad.report.sweep_page import _curves
-from fingerpad.report.write import read, write
+from fingerpad.report.write import write
 from fingerpad.runs.sweep_results import Sweep, _stacked
 from fingerpad.scene.remarks import LEAKAGE
 from fingerpad.slices.finger import WholeFinger
@@ -50,13 +49,6 @@ def test_each_point_is_the_run_under_its_force(found):
     assert found.array("f_t")[1, 2] == found[5].finger.values("full_slip")["f_t"]
     with pytest.raises(ValueError, match="quantity is 'contact_length'; it must be one of f_ext, mu_app"):
         found.array("contact_length")
-
-
-def test_charged_state_at_no_voltage_is_the_uncharged_one(found):
-    """So that tables over the voltage have no hole there."""
-    areas = found.array("contact_area", "charged")
-    np.testing.assert_array_equal(areas[0], found.array("contact_area", "uncharged")[0])
-    assert np.isfinite(areas).all()
 
 
 def test_table_text_and_dataset_are_of_the_whole_finger(found):
@@ -96,27 +88,11 @@ def test_frictionless_finger_has_its_areas(tmp_path):
     assert "the ridge contact area of the whole finger goes from" in write(tmp_path).read_text(encoding="utf-8")
 
 
-def test_smaller_forces_of_one_run(found):
-    """Read from traces with other points than those of a run to the force: within 1 %, which docs/results.md says."""
-    for k in range(2):
-        under = found[3 * k + 2].finger.under(0.1).values("full_slip")
-        assert under["f_t"] == pytest.approx(found.array("f_t")[k, 0], rel=1e-2)
-
-
 def test_force_that_no_trace_reaches_fails_alone(tmp_path):
     """It says what to do; the others are there, and a chart has no point for it."""
     found = fp.sweep(fp.Scene(), tmp_path, model="cylinders", force=[0.2, 60.0])
     assert found[1].failure and found[1].finger is None and found[1].failure in str(found)
     assert found[0].failure == "" and np.isfinite(found.array("f_t")[0]) and np.isnan(found.array("f_t")[1])
-
-
-def test_charts_have_the_units_of_their_titles(found):
-    """A chart's numbers are in mm² and N, as the table below."""
-    charts = _curves(read(found.folder))
-    assert charts["charts"]["sweep_mu_app"] == "µ<sub>app</sub> of the whole finger"
-    assert charts["charts"]["sweep_contact_area"] == "ridge contact area<br>of the whole finger (mm²)"
-    drawn = charts["curves"][1]["sweep_contact_area"]
-    assert drawn == pytest.approx(1e6 * found.array("contact_area")[1])
 
 
 @pytest.mark.parametrize(

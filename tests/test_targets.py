@@ -1,5 +1,7 @@
 """What was asked of speed and accuracy, beside what kept numbers have reached."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
@@ -8,6 +10,10 @@ from benchmarks.errors import FORCE
 from benchmarks.harness import DOCS, Made, keep
 from benchmarks.limits import Limit
 from benchmarks.runs import Run
+from fingerpad.results.result import Result
+from fingerpad.scene import Scene
+from tests.measures import contact_state
+from variational.state import RidgeStates
 
 BY = Made("0.1.0", "abc1234", "2026-11-27")
 
@@ -76,15 +82,12 @@ def test_saw_of_a_dome_and_of_a_sawtooth(monkeypatch):
     assert found[1] == pytest.approx(0.02 / np.sqrt(3), rel=0.05)
 
 
-@pytest.mark.parametrize(("state", "final", "expected"), [("full_slip", True, [3.0]), ("full_slip", False, [2.0, 2.5])])
-def test_named_states_are_read_from_the_final_mesh(tmp_path, state, final, expected):
-    """Where a run has one; its table has them by name, and the path's by step."""
-    (tmp_path / "ridges.csv").write_text("step,ridge,p_c\n1,0,1.0\n2,0,2.0\n2,1,2.5\n", encoding="utf-8")
-    if final:
-        table = "of,ridge,p_c\ncharged,0,9.0\nfull_slip,0,3.0\n"
-        (tmp_path / "ridges_final.csv").write_text(table, encoding="utf-8")
+def test_ridges_of_a_named_state_are_its_own():
+    """Those in contact, on the mesh of the state."""
+    number, length = np.arange(3), np.array([1e-4, 0.0, 2e-4])
+    ridges = RidgeStates(number, length, *[np.zeros(3)] * 3, p_c=np.array([2.0, 0.0, 2.5]), d_eq=np.zeros(3))
     run = object.__new__(Run)
-    run.folder, run.summary = tmp_path, {"full_slip_step": 2, "uncharged_step": 7}
-    assert run.final(state, "ridges")["p_c"].tolist() == expected
+    run.folder, run.result = Path("run"), Result(Scene(), "full", None, None, contact_state(ridges=ridges))
+    assert run.final("full_slip", "ridges")["p_c"].tolist() == [2.0, 2.5]
     with pytest.raises(FileNotFoundError, match="has no ridges of uncharged"):
         run.final("uncharged", "ridges")

@@ -266,21 +266,10 @@ class ContactState:
         return row | record | last | dict(self.own)
 
 
-CONDITIONS = ("step", "load", "f_ext", "voltage", "bone_x")
-RESULTS = (
-    "f_t",
-    "mu_app",
-    "f_electrostatic",
-    "f_contact",
-    "bone_height",
-    "ridges_in_contact",
-    "contact_length",
-    "p_max",
-)
-EXTREMES = ("mu_app", "f_t", "contact_length", "f_electrostatic")
-"""Quantities of a load of which extremes and means are kept, beside outputs of one's own."""
 _FIELDS = fields(ContactState)[: [f.name for f in fields(ContactState)].index("record")]
-_VISCOUS = ("viscous", "viscous_dissipation", "viscous_least")  # columns of a record where layers are viscous
+_VISCOUS = tuple(
+    f.name for f in fields(StepRecord) if f.name.startswith("viscous")
+)  # columns of a record where layers are viscous
 _LAST = tuple(f for f in fields(ContactState) if f.name in ("mesh_contact", "time"))  # columns where they are known
 
 

@@ -5,9 +5,9 @@ environment/run python3 -m benchmarks.loads [--minutes 20] [--draw]     one proc
 A scene is a force on the finger, a voltage, a friction coefficient and a coating: a point of a scrambled Sobol
 sequence in these five keys. Its full slip is followed over growing forces of the section, up to that at the centre of
 the finger. So a scene has errors of the section at several forces, and one of the sum over slices. States are solved
-for from neighbours, without a path. Writes docs/loads.json, numbers of docs/closed_form.md and its picture, and the
-known errors into fingerpad/reduced/cylinder_errors.json; prints the contact lengths that fingerpad/reduced/uncharged.py
-has of them, and the number of shear of fingerpad/reduced/cylinders.py.
+for from neighbours, without a path. Writes docs/loads.json, docs/closed_form.md, its picture, and the known errors into
+fingerpad/reduced/cylinder_errors.json; prints the contact lengths that fingerpad/reduced/default_finger.py has of them,
+and the number of shear of fingerpad/reduced/cylinders.py.
 """
 
 import argparse
@@ -47,7 +47,7 @@ from benchmarks.loads.scenes import COUNT, FIRST, LOWEST, MESHES, WORK, Data, sc
 from benchmarks.loads.shear import Point, Spread, fitted, points
 from benchmarks.loads.shear import spread as errors_of
 from benchmarks.loads.states import pressed, solved
-from fingerpad.reduced import uncharged
+from fingerpad.reduced import default_finger
 from fingerpad.reduced.cylinder_errors import REGIONS, WHOLE, find
 from fingerpad.reduced.cylinders import SHEAR
 from fingerpad.results.files import replace
@@ -108,13 +108,13 @@ def far(numbers: Mapping[str, Any]) -> dict[str, dict[str, list[float]]]:
     They are the tables' last value of a full run, times the ratio of states on the coarser mesh.
     """
     found: dict[str, dict[str, list[float]]] = {}
-    k = uncharged.FORCES.index(_LAST)
-    for state, lengths in uncharged.LENGTHS.items():
+    k = default_finger.FORCES.index(_LAST)
+    for state, lengths in default_finger.LENGTHS.items():
         first, *others = numbers["far"][state]
         found[state] = {
             "lengths": [lengths[k] * each["contact_length"] / first["contact_length"] for each in others],
             "indentations": [
-                uncharged.INDENTATIONS[state][k] * each["bone_height"] / first["bone_height"] for each in others
+                default_finger.INDENTATIONS[state][k] * each["bone_height"] / first["bone_height"] for each in others
             ],
             "ridges": [each["ridges_in_contact"] for each in others],
         }
@@ -122,7 +122,7 @@ def far(numbers: Mapping[str, Any]) -> dict[str, dict[str, list[float]]]:
 
 
 def in_the_program(numbers: Mapping[str, Any]) -> str:
-    """Return what fingerpad.reduced.uncharged has of kept numbers."""
+    """Return what fingerpad.reduced.default_finger has of kept numbers."""
     lines = []
     for state, each in far(numbers).items():
         for key in ("lengths", "indentations"):
@@ -228,7 +228,7 @@ def judged(band: Band, region: Mapping[str, Any] | None, words: str, pull: float
 def most_ridges_fewer(every: Iterable[Point]) -> int:
     """Return by how many ridges at most a sheared finger has fewer in contact than the tables of the closed form."""
     states = [each.state for each in every]
-    return max(int(uncharged.ridges(state["f_ext"], "full_slip")) - state["ridges_in_contact"] for state in states)
+    return max(int(default_finger.ridges(state["f_ext"], "full_slip")) - state["ridges_in_contact"] for state in states)
 
 
 class Sheared(NamedTuple):

@@ -31,9 +31,10 @@ from benchmarks.loads.scenes import (
     tasks,
 )
 from fingerpad.results.files import replace
+from fingerpad.results.quantities import RESULTS
 from fingerpad.scene import from_data
 from variational.solvers.outcome import NotConverged
-from variational.state import RESULTS, ContactState
+from variational.state import ContactState
 
 if TYPE_CHECKING:
     from fingerpad.model.full_slip import FullSlips, Solved

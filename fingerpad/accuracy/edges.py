@@ -1,4 +1,4 @@
-"""Where the contact of a state ends, as arc lengths, about which the mesh on which it is solved again is finest.
+"""Arc lengths of contact edges, where the final mesh is refined.
 
 The pressure falls as a root where contact ends, so that a length in contact has an error of first order in the facets
 there, and hardly any from the others. On coarse facets a contact is too short: its end lies outside of where they have

@@ -1,32 +1,20 @@
 r"""Named states on a final mesh with their discretisation errors, refined until these are within what a scene asks for.
 
 **Two meshes.** Full slip does not depend on the path of the loads where the same ridges touch. So a path is followed on
-elements twice as large as those that the scene gives, and its named states, normal contact and full slip, are restored
-on the final mesh and solved for again (:mod:`variational.solvers.transfer`). That mesh has the scene's sizes, and
-facets of a sixteenth where the contact of its states ends (:mod:`fingerpad.accuracy.edges`). The difference of the two
-meshes makes the estimated error (:func:`fingerpad.accuracy.richardson.of_two_meshes`), without a further solve. Where
-other ridges touch on the final mesh, or a state is not found there, the path is followed on the scene's sizes, and
-states on elements twice as large are solved for instead.
+elements twice as large as those that the scene gives, and its named states are restored on the final mesh and solved
+for again (:mod:`variational.solvers.transfer`), with facets of a sixteenth where their contact ends
+(:mod:`fingerpad.accuracy.edges`). The difference of the two meshes makes the estimated error
+(:mod:`fingerpad.accuracy.richardson`), without a further solve. Where other ridges touch on the final mesh, or a state
+is not found there, the path is followed on the scene's sizes, and states on elements twice as large are solved for.
 
-**An accuracy** that a scene asks for is met on one mesh after the other. The path is followed once, on the mesh that
-the scene gives (a coarse one where it gives no sizes). Changing one mesh parameter at a time gives each its share of
-the error (:mod:`fingerpad.accuracy.richardson`):
+**An accuracy** is met on one mesh after the other. The path is followed once, on the mesh that the scene gives (a
+coarse one where it gives no sizes). Each mesh parameter is halved in turn, which gives its share of the error: the size
+of the facets (``contact``), of the other elements (``bulk``) and of those at Merkel sites (``receptor``), and the steps
+of the loads (``steps``), where normal contact keeps a history of friction. Then those with the largest shares are
+halved again, until the estimate is within what is allowed, or the run reports that it is not.
 
-* ``contact``: size of the facets that can touch, and of those where contact ends,
-* ``bulk``: growth of the elements, their size on the junctions, and the coarsest,
-* ``receptor``: size at the tips below the Merkel sites; left out where only other quantities are asked for,
-* ``steps``: of the loads, which matters where friction keeps a history, to normal contact; from a path with steps
-  twice as long, up to there, on the first mesh. Full slip does not depend on the path.
-
-Each parameter is halved in turn and the states go on from there; then those with the largest shares again, until the
-estimate is within what is allowed, or the run reports that it is not. A state in which another number of ridges touches
-is noted; it appears as a large share.
-
-The result is the *estimated discretisation error*: the estimate with its factors of safety, which in whole runs covers
-the known errors of nine of ten numbers (``docs/errors.md``; with an accuracy ``docs/errors.md``). It is of the
-mesh, over the screen as it is. The effect of a penalty is reported beside it (:mod:`fingerpad.accuracy.richardson`).
-
-Not estimated: the effect on normal contact of a friction history that is the first mesh's.
+The estimate has factors of safety, and is of the mesh, over the screen as it is; the effect of a penalty is reported
+beside it. Not estimated: the effect on normal contact of a friction history that is the first mesh's.
 """
 
 import math
@@ -90,8 +78,7 @@ class Refinement(Estimate):
         self._met = not self.asked
         self.stiffer = model.contact.over_stiffer_screen()
         self.to_come = 1
-        receptors = "sed" in self.asked or (not self.asked and model.options.receptors)
-        keys = [key for key in _SIZES if key != "receptor" or receptors] if self.asked else []
+        keys = [key for key in _SIZES if key != "receptor" or "sed" in self.asked] if self.asked else []
         if model.options.friction and "charged" in path.states and {"contact_length", "sed"} & set(self.asked):
             keys.append("steps")
         self.parameters = {key: MeshParameter(degree=self.degree) for key in keys}
@@ -110,7 +97,7 @@ class Refinement(Estimate):
             if self.asked:
                 self._refine()
             elif self.base.states:
-                restart = self._sharpen()
+                restart = self._solve_on_final_mesh()
                 if restart is not None:
                     return restart
                 self._report()
@@ -124,7 +111,7 @@ class Refinement(Estimate):
                 self._note(f"discretisation errors could not be estimated: {error}")
         return self.solves.restart
 
-    def _sharpen(self) -> RestartRequired | None:
+    def _solve_on_final_mesh(self) -> RestartRequired | None:
         """Solve the states again on the mesh that the scene gives, finest where their contact ends.
 
         Returns:
@@ -134,13 +121,13 @@ class Refinement(Estimate):
         final = model.mesh if model.final is None else model.final
         reason = ""
         try:
-            sharp = solves.on_mesh(final, path.states, True, self.stiffer)
-            others = [name for name in path.states if _ridges(path, name) != _ridges(sharp, name)]
+            fine = solves.on_mesh(final, path.states, True, self.stiffer)
+            others = [name for name in path.states if _ridges(path, name) != _ridges(fine, name)]
             if others:
                 name = others[0]
-                here = counted(_ridges(sharp, name), "ridge touches", "ridges touch")
+                here = counted(_ridges(fine, name), "ridge touches", "ridges touch")
                 reason = f"{here} at {WORDS[name]} on the final mesh, and on that of the path {_ridges(path, name)}"
-                reason = lost(reason, sharp.states[name].state, model.closure)
+                reason = lost(reason, fine.states[name].state, model.closure)
         except StepFailed as error:
             if model.mesh == final or isinstance(error, Interrupted):
                 raise
@@ -148,7 +135,7 @@ class Refinement(Estimate):
         if reason and model.mesh != final:
             return RestartRequired(f"{reason}; the path is followed on the final mesh", model.changed(mesh=final))
         coarser = model.coarser(final)
-        self._compare(path if path.mesh == coarser else solves.on_mesh(coarser, path.states), sharp)
+        self._compare(path if path.mesh == coarser else solves.on_mesh(coarser, path.states), fine)
         return None
 
     def _penalty(self, solve: Solve) -> None:

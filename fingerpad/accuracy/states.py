@@ -11,11 +11,12 @@ from numpy.typing import ArrayLike, NDArray
 
 from fingerpad.model.finger import both_sides
 from fingerpad.results.fields import View
+from fingerpad.results.quantities import FRICTION, RESULTS, in_table
 from fingerpad.results.states import before_sliding
 from geometry.parameters import MeshSize
 from variational.output import Receptors
 from variational.solvers.state_snapshot import StateSnapshot, take_snapshot
-from variational.state import RESULTS, ContactState
+from variational.state import ContactState
 
 if TYPE_CHECKING:
     from fingerpad.model.finger import Step
@@ -89,8 +90,7 @@ def quantities(name: str, state: State) -> dict[str, float]:
 
     Without a force that presses the finger there is no coefficient.
     """
-    friction = ("f_t", "mu_app") if name == "full_slip" else ()
-    wanted = (*friction, "f_electrostatic", "contact_length", "p_max", "bone_height")
+    wanted = (key for key in in_table("estimated") if name == "full_slip" or key not in FRICTION)
     values = {quantity: float(getattr(state.state, quantity)) for quantity in wanted}
     found = {quantity: value for quantity, value in values.items() if not math.isnan(value)}
     return found | {f"sed_{j}": value for j, value in state.sed.items()}

@@ -16,7 +16,7 @@ from numpy.polynomial.legendre import leggauss
 
 from fingerpad.calculator import presets
 from fingerpad.launcher import version
-from fingerpad.reduced import cylinder_errors, cylinders, uncharged
+from fingerpad.reduced import cylinder_errors, cylinders, default_finger
 from fingerpad.reduced.model import STATES
 from fingerpad.results.quantities import PER_LENGTH, Output
 from fingerpad.results.result import Result
@@ -109,10 +109,10 @@ def data() -> dict[str, Any]:
         "friction": scene.friction,
         "shear": cylinders.SHEAR,
         "largest_gap": LARGEST_GAP,
-        "forces": uncharged.FORCES,
-        "lengths": uncharged.LENGTHS,
-        "ridges": uncharged.RIDGES,
-        "indentations": uncharged.INDENTATIONS,
+        "forces": default_finger.FORCES,
+        "lengths": default_finger.LENGTHS,
+        "ridges": default_finger.RIDGES,
+        "indentations": default_finger.INDENTATIONS,
         "wavelength": scene.geometry.ridge_wavelength,
         "slices": {"radius": scene.slices.radius, "length": scene.slices.length, "nodes": nodes, "weights": weights},
         "traces": traces.CONSTANTS,

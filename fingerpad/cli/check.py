@@ -4,27 +4,34 @@ import importlib.util
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
-from fingerpad.cli import mesh as meshes
-from fingerpad.cli.arguments import Parser, echo, scene_of
+import numpy as np
+
+from fingerpad.cli import output
+from fingerpad.cli.arguments import Kind, Parser, echo, scene_of
 from fingerpad.model.cautions import breakdown_ahead, on_scene
 from fingerpad.model.options import COARSER, FingerModel, ModelOptions, by_rule, memory, plan, refuse_mesh, unknowns
+from fingerpad.model.section import Section, section, write
 from fingerpad.reduced import cylinders
 from fingerpad.reduced.closure_band import with_band
 from fingerpad.reduced.cylinder_errors import REGIONS, where, within
-from fingerpad.results.closures import KNOWN
 from fingerpad.results.files import check_folder
+from fingerpad.results.headline import KNOWN
 from fingerpad.results.terminal import about
 from fingerpad.scene import Load, Scene, SceneError
 from fingerpad.scene.loads import ways
 from fingerpad.scene.messages import counted
 from fingerpad.scene.remarks import finger_in_words, leakage, used
 from fingerpad.scene.viscosity import elastic, viscous_layers
+from geometry import tags
 from geometry.profiles import GeometryError
 
 _EXAMPLES = """
     fingerpad check scene.toml --out results/check
     fingerpad check --set mesh.contact=2e-6 --set f_ext="100 N/m"
+    fingerpad check scene.toml --mesh finger.msh
 """
+_FINEST_EDGES = 60_000  # triangles of the whole finger up to which their edges are drawn
+_MESH = Kind("a mesh", (".msh",), "$MeshFormat\n2.2 ")
 SLIDE_STIFFNESS = 7.0e3
 """Friction over the way until full slip and the root of the number of ridges (N/m²): within 10 % of the ways of four
 runs of the default finger, 0.5 to 1.33 mm. *Assumption*: of the default shape and skin."""
@@ -35,9 +42,12 @@ def main(argv: Sequence[str]) -> int:
     parser = Parser("check", _EXAMPLES)
     parser.add_scene()
     parser.add_out("results", "folder of the picture mesh.png")
+    parser.add_file("--mesh", _MESH, "file for gmsh of the whole unloaded finger, in m, its parts named")
     args = parser.read(argv)
     scene = scene_of(args)
     check_folder(args.out)
+    if args.mesh and scene.geometry.file is not None:
+        raise SceneError("geometry.file is given, which is a mesh already; leave --mesh out")
     needed = plan(scene)
     mesh = _mesh(scene, needed)
     for title, lines in (
@@ -50,11 +60,13 @@ def main(argv: Sequence[str]) -> int:
         shown = list(lines) or ["nothing"]
         echo("\n".join([title, *(f"  {line}" for line in shown)]))
     echo(_picture(scene, args.out, mesh))
+    if args.mesh:
+        echo(f"Mesh written: {args.mesh}, {len(write(scene, args.mesh).triangles)} triangles of the whole finger")
     echo(_verdict(scene))
     return 0
 
 
-def _mesh(scene: Scene, needed: ModelOptions) -> meshes.Section | None:
+def _mesh(scene: Scene, needed: ModelOptions) -> Section | None:
     """Return the mesh that a run would have, or that of the scene's file; None where there is no gmsh.
 
     Raises:
@@ -62,7 +74,7 @@ def _mesh(scene: Scene, needed: ModelOptions) -> meshes.Section | None:
     """
     if scene.geometry.file is None and importlib.util.find_spec("gmsh") is None:
         return None
-    found = meshes.section(scene, needed)
+    found = section(scene, needed)
     if scene.geometry.file is None:
         try:
             refuse_mesh(len(found.points), len(found.triangles), FingerModel(by_rule(scene), needed))
@@ -181,7 +193,7 @@ def _adhering(scene: Scene) -> Iterator[str]:
         )
 
 
-def _size(scene: Scene, mesh: meshes.Section | None) -> Iterator[str]:
+def _size(scene: Scene, mesh: Section | None) -> Iterator[str]:
     if mesh is None:
         yield "not made, since gmsh is not installed"
         return
@@ -208,10 +220,58 @@ def _um(length: float) -> str:
     return f"{length * 1e6:.3g} µm"
 
 
-def _picture(scene: Scene, folder: Path, mesh: meshes.Section | None) -> str:
+def _picture(scene: Scene, folder: Path, mesh: Section | None) -> str:
     """Draw the mesh; return what was drawn, or why nothing was."""
     if mesh is None or importlib.util.find_spec("matplotlib") is None:
         return f"The mesh is not drawn, since {'gmsh' if mesh is None else 'matplotlib'} is not installed."
     folder.mkdir(parents=True, exist_ok=True)
-    meshes.draw(folder / "mesh.png", mesh, by_rule(scene))
+    _draw(folder / "mesh.png", mesh, by_rule(scene))
     return f"Mesh drawn: {folder / 'mesh.png'}"
+
+
+def _draw(file: Path, found: Section, scene: Scene) -> None:
+    """Draw the mesh: the whole finger, some ridges, and one ridge's tip; layers in colour, axes in mm."""
+    from matplotlib.colors import ListedColormap
+    from matplotlib.patches import Patch
+
+    from fingerpad.results.finger_picture import LAYER_COLOURS
+
+    shape, size, x = scene.geometry, scene.mesh.contact, 0.0
+    period, deep = shape.ridge_wavelength, shape.sc_thickness + shape.ve_thickness
+    views: tuple[tuple[str, tuple[float, float] | None], ...] = (
+        ("whole finger", None),
+        (f"ridge 0, of {period * 1e3:.3g} mm", (1.5 * deep, 2 * deep)),
+        (f"tip of ridge 0: facets of {size * 1e6:.3g} µm", (20 * size, 25 * size)),
+    )
+    if shape.file is not None:
+        x, size = float(found.lowest[0]), found.shortest
+        views = (
+            ("whole mesh", None),
+            ("around the lowest point", (100 * size, 130 * size)),
+            (f"lowest point: shortest edge of {size * 1e6:.3g} µm", (20 * size, 25 * size)),
+        )
+    colours = {tag: LAYER_COLOURS[tag] for tag in tags.LAYERS.values()}
+    kinds, places = np.searchsorted(list(colours), found.layer), 1e3 * found.points
+    title = f"Mesh of the unloaded finger: {len(found.triangles)} triangles, {counted(found.ridges, 'ridge')} can touch"
+    with output.panels(file, f"{title}\n", 3) as (figure, panels):
+        for ax, (words, view) in zip(panels, views, strict=True):
+            inside = np.ones(len(kinds), bool)
+            if view is not None:
+                centre = found.points[found.triangles].mean(axis=1)
+                inside = (np.abs(centre[:, 0] - x) < 1.2 * view[0]) & (centre[:, 1] < 1.2 * view[1])
+            width = 0.25 if view is not None else 0.05 if len(kinds) < _FINEST_EDGES else 0.0
+            ax.tripcolor(
+                *places.T, found.triangles[inside], facecolors=kinds[inside].astype(float), vmin=-0.5,
+                vmax=len(colours) - 0.5, cmap=ListedColormap(list(colours.values())), linewidth=width,
+                edgecolors="k" if width else "face",
+            )  # fmt: skip
+            ax.set(xlabel="x (mm)", ylabel="height (mm)", aspect="equal", title=words)
+            ax.axhline(0, color="k", lw=2)
+            ax.locator_params(nbins=5)
+            if view is not None:
+                left = 0.0 if found.points[:, 0].min() > -1e-9 else (x - view[0]) * 1e3
+                ax.set(xlim=(left, (x + view[0]) * 1e3), ylim=(-0.03 * view[1] * 1e3, view[1] * 1e3))
+        handles = [
+            Patch(facecolor=colours[tag], edgecolor="k", lw=0.5, label=name) for name, tag in tags.LAYERS.items()
+        ]
+        figure.legend(handles=handles, loc="outside lower center", ncols=len(handles))

@@ -13,13 +13,12 @@ from fingerpad.launcher import raising_at_ctrl_c
 from fingerpad.reduced.model import STATES, Model
 from fingerpad.reduced.registry import MODELS
 from fingerpad.results.files import below, check_folder
-from fingerpad.results.quantities import QUANTITIES, Output, cell, plus_minus_of
+from fingerpad.results.quantities import QUANTITIES, RESULTS, Output, cell, plus_minus_of
 from fingerpad.results.result import Result
 from fingerpad.results.states import WORDS, called
 from fingerpad.runs.context import RunContext
 from fingerpad.runs.solve import solved
 from fingerpad.scene.messages import SceneError, clip, ends
-from variational.state import RESULTS
 
 if TYPE_CHECKING:
     import pandas as pd

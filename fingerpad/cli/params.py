@@ -1,4 +1,4 @@
-"""``fingerpad params``: every key of a scene, as a table, a scene file with comments or the page of the scene reference."""
+"""``fingerpad params``: every key of a scene, as a table, a scene file with comments or a page."""
 
 import json
 import textwrap
@@ -28,9 +28,9 @@ default: the name of a load, the shape of a waveform and the file of a height ma
 - Numbers are in SI units. A number with a unit can be given as text: `"10 um"`, `"50 N/m"`.
 - Forces are per metre of finger out of the plane of the cross-section (N/m).
 - A value outside its range is refused with the key, the value, the range and, where likely, the unit that was meant.
-- Editors complete and check keys by a JSON Schema: `fingerpad params --schema > scene.schema.json`.
+- Editors complete and check keys by [scene.schema.json](scene.schema.json), which `fingerpad params --schema` prints.
   For taplo and for Even Better TOML in VS Code, the first line of a scene is `#:schema path/to/scene.schema.json`.
-- *Assumption* marks choices that the paper leaves open. [Assumptions](../assumptions.md) gives their effect.
+- *Assumption* marks choices that the paper leaves open. [assumptions.md](assumptions.md) gives their effect.
 
 `fingerpad params --markdown` writes this page from the program's own definitions."""
 

@@ -60,17 +60,25 @@ def microscale(argv: Sequence[str]) -> int:
         raise SceneError("history is given, whose loads have their own voltages; name those wanted by --voltage")
     rows = table(scene, several(args, scene, "voltage"), _pressures(args.p))
     closure = microscopic(scene)
+    um, low, high = 1e6, *(p * 1e-3 for p in closure.pressures)
     echo(
-        f"A ridge of rms roughness {closure.h_rms * 1e6:.3g} µm, largest wavelength "
-        f"{closure.wavelength * 1e6:.3g} µm; insulators: h_0 = {scene.h_0 * 1e6:.3g} µm.\n"
+        f"A ridge of rms roughness {closure.h_rms * um:.3g} µm, largest wavelength {closure.wavelength * um:.3g} µm; "
+        f"insulators: h_0 = {scene.h_0 * um:.3g} µm.\n"
     )
     echo(output.text(_COLUMNS, rows))
-    echo("\npressure: mean contact pressure of the ridge; external: that less the attraction, what the finger presses")
-    echo("with; separation: mean, of skin and screen; air gap: equivalent one; real area: of the nominal area.")
-    low, high = (p * 1e-3 for p in closure.pressures)
     begin = "roughness.p_floor" if low == closure.p_floor * 1e-3 else "the beginning of the table of gaps"
-    echo(f"The air gap stays constant below {low:.4g} kPa ({begin}) and above {high:.4g} kPa, {closure.end}.")
-    echo("\n".join([*_scatter(closure, [row["p_c"] for row in rows]), _sticking(closure)]))
+    echo(
+        "\npressure: mean contact pressure of the ridge; external: pressure less attraction; separation: mean.\n"
+        f"The air gap stays constant below {low:.4g} kPa ({begin}) and above {high:.4g} kPa, {closure.end}."
+    )
+    pressures = [row["p_c"] for row in rows]
+    shares = 100 * closure.spread(pressures) / closure(pressures).d_eq
+    if shares.any():
+        ends = " to ".join(dict.fromkeys(f"{share:.2g}" for share in (shares.min(), shares.max())))
+        echo(f"From one surface of four by four largest waves to the next the air gap scatters by {ends} % (rms).")
+    sticking = closure.sticking_voltage()
+    least = f"From {sticking or 0:.3g} V a ridge would stick: to pull it off takes {STICKING * 1e-3:g} kPa or more."
+    echo(least if sticking else "No voltage makes a ridge stick: the insulators are thick for this roughness.")
     for text in remarks(scene):
         echo(f"{text}.")
     for text in on_closure(closure, [(row["p_c"], 1.0, row["voltage"]) for row in rows], "pressures and voltages"):
@@ -84,23 +92,6 @@ def _pressures(text: str) -> list[float]:
         return [quantity(str(value), "Pa") for value in ranges.read("--p", text)]
     except argparse.ArgumentTypeError as error:
         raise SceneError(f"--p: {error}") from None
-
-
-def _scatter(closure: BearingArea | TabulatedClosure, pressures: Sequence[float]) -> Iterator[str]:
-    """Yield how the air gap scatters from one surface to the next, in a sentence; nothing without a scatter."""
-    shares = 100 * closure.spread(pressures) / closure(pressures).d_eq
-    if shares.any():
-        ends = " to ".join(dict.fromkeys(f"{share:.2g}" for share in (shares.min(), shares.max())))
-        yield f"From one surface of four by four largest waves to the next the air gap scatters by {ends} % (rms)."
-
-
-def _sticking(closure: BearingArea | TabulatedClosure) -> str:
-    """Return from which voltage on a ridge sticks, in a sentence."""
-    voltage = closure.sticking_voltage()
-    if voltage is None:
-        return "The insulators are thick for this roughness: the model has no voltage from which a ridge would stick."
-    stress = f"{STICKING * 1e-3:g} kPa"
-    return f"From {voltage:.3g} V a ridge would stick: to pull it off takes {stress} or more (a convention)."
 
 
 def microscopic(scene: Scene) -> BearingArea | TabulatedClosure:
@@ -138,19 +129,20 @@ def draw_microscale(file: Path, rows: Sequence[dict[str, Any]]) -> None:
     voltages = list(dict.fromkeys(row["voltage"] for row in rows))
     first = [row for row in rows if row["voltage"] == voltages[0]]
     p = [row["p_c"] * 1e-3 for row in first]
-    with output.panels(file, "Microscale of a ridge", 3) as (_, (gaps, stress, area)):
+    with output.panels(file, "Microscale of a ridge", 3) as (_, axes):
         from fingerpad.results import style
 
+        gaps, stress, area = axes
         output.curve(gaps, 0, p, [row["d_eq"] * 1e6 for row in first], "equivalent air gap $d_{eq}$")
         output.curve(gaps, 1, p, [row["u_bar"] * 1e6 for row in first], r"mean separation $\bar u$")
-        gaps.set(ylabel="length (µm)", ylim=(0, None))
         for k, voltage in enumerate(voltages):
             found = [row["p_el"] * 1e-3 for row in rows if row["voltage"] == voltage]
             output.curve(stress, k, p, found, f"{voltage:g} V", style.voltage(voltage, max(voltages, key=abs)))
-        stress.set(ylabel="attraction $p_{el}$ (kPa)", ylim=(0, None))
         output.curve(area, 0, p, [100 * row["area"] for row in first], "")
+        gaps.set(ylabel="length (µm)", ylim=(0, None))
+        stress.set(ylabel="attraction $p_{el}$ (kPa)", ylim=(0, None))
         area.set(ylabel="real area of contact (% of the nominal)", yscale="log")
-        for ax in (gaps, stress, area):
+        for ax in axes:
             ax.set(xlabel="mean contact pressure $p_c$ (kPa)", xscale="log")
         for ax in (gaps, stress):
             ax.legend()
@@ -165,10 +157,8 @@ def topography(argv: Sequence[str]) -> int:
     parser.add_file("--plot", PICTURE, "picture of map, heights and spectrum")
     args = parser.read(argv)
     found = _scan(args)
-    flat = found.map.detrended("curvature")
     try:
-        table = roughness_table(found.map)
-        fit = power_spectrum(flat, window="hann").fit()
+        table, fit = roughness_table(found.map), power_spectrum(found.map.detrended("curvature"), window="hann").fit()
     except ValueError as error:
         raise SceneError(f"{clip(str(args.file), 80)}: {error}") from None
     echo("\n".join(_report(args.file, found, table, fit)))
@@ -179,7 +169,7 @@ def topography(argv: Sequence[str]) -> int:
 
 
 def _scan(args: argparse.Namespace) -> Found:
-    """Return the height map that is asked for.
+    """Return the height map of the file in the options.
 
     Raises:
         SceneError: it cannot be read.
@@ -239,24 +229,21 @@ def _hurst(fit: Fit) -> str:
 def draw_map(file: Path, name: str, found: Found, fit: Fit) -> None:
     """Draw the map without curvature, the distribution of its heights, and its spectrum with the fit."""
     flat, um = found.map.detrended("curvature"), 1e6
-    heights, spectrum = distribution(flat), power_spectrum(flat, window="hann")
+    heights, ring = distribution(flat), power_spectrum(flat, window="hann").radial()
     with output.panels(file, f"{name}: curvature removed", 3) as (figure, (area, shares, psd)):
-        limit = float(np.abs(flat.heights).max()) * um
-        ends = (0, flat.size[0] * um, 0, flat.size[1] * um)
+        limit, ends = float(np.abs(flat.heights).max()) * um, (0, flat.size[0] * um, 0, flat.size[1] * um)
         image = area.imshow(flat.heights.T * um, origin="lower", extent=ends, cmap="cividis", vmin=-limit, vmax=limit)
         figure.colorbar(image, ax=area, label="height (µm)", shrink=0.8)
-        area.set(xlabel="x (µm)", ylabel="y (µm)")
         z = np.linspace(-4, 4, 200) * heights.h_rms
         middle = (heights.edges[1:] + heights.edges[:-1]) / 2
         output.curve(shares, 0, middle * um, heights.density / um, "map")
         output.curve(shares, 1, z * um, heights.gaussian(z) / um, f"Gaussian, {heights.h_rms * um:.3g} µm rms")
-        shares.set(xlabel="height (µm)", ylabel="probability density (1/µm)")
-        shares.set_ylim(0, 1.35 * float(heights.density.max()) / um)
-        ring = spectrum.radial()
-        kept = ring.psd > 0
-        psd.loglog(ring.q[kept], ring.psd[kept], "o", ms=4, color="0.5", label="map, Hann's window")
+        psd.loglog(ring.q[ring.psd > 0], ring.psd[ring.psd > 0], "o", ms=4, color="0.5", label="map, Hann's window")
         q = np.geomspace(*fit.q_range, 100)
         output.curve(psd, 1, q, fit.psd(q), f"fit: {_hurst(fit)}")
+        area.set(xlabel="x (µm)", ylabel="y (µm)")
+        shares.set(xlabel="height (µm)", ylabel="probability density (1/µm)")
+        shares.set_ylim(0, 1.35 * float(heights.density.max()) / um)
         psd.set(xlabel="wavevector q (1/m)", ylabel="power spectrum C (m⁴)")
         for ax in (shares, psd):
             ax.legend()

@@ -161,7 +161,8 @@ class PathRecord:
         for name, state in states.named(self.states, loads).items():
             skin = self._comm.bcast(final[name].skin if name in final else self.skins.get(state.step))
             # A full slip counts because it was held; the row of its first step is of before that.
-            found[name] = replace(state, skin=skin, slip_held=state.slip_held or name == "full_slip")
+            sites = final[name].state.sites if name in final else state.sites
+            found[name] = replace(state, skin=skin, sites=sites, slip_held=state.slip_held or name == "full_slip")
             check = self._check(state)
             if check is not None:
                 found[name] = check.of(found[name])

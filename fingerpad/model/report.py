@@ -13,11 +13,12 @@ from mpi4py import MPI
 from fingerpad.model.options import Omission
 from fingerpad.model.record import PathRecord, Viewer
 from fingerpad.results import motion, states
-from fingerpad.results.answer import Cost
 from fingerpad.results.fields import View
-from fingerpad.results.quantities import Output, valued
+from fingerpad.results.outputs import valued
+from fingerpad.results.quantities import Output
+from fingerpad.results.result import Cost
 from fingerpad.results.terminal import Console
-from fingerpad.results.writing import Writer, ridge_rows, site_rows
+from fingerpad.results.writing import Writer
 from fingerpad.scene.messages import counted
 from variational.solvers.outcome import Counts, memory_mb
 from variational.state import ContactState
@@ -137,18 +138,9 @@ class Report:
                 self._log(step, state)
 
     def _show(self, state: ContactState, done: float) -> None:
-        """Write the rows of an accepted state, and print it."""
+        """Write the row of an accepted state, and print it."""
         self._writer.row("steps", state.row())
-        self._tables("", {"step": state.step}, state, state.mesh_contact)
-        for iteration, change in enumerate(state.changes):
-            self._writer.row("coupling", {"step": state.step, "iteration": iteration + 1, "change": change})
         self._console.step(state, done)
-
-    def _tables(self, end: str, first: Mapping[str, Any], state: ContactState, size: float | None) -> None:
-        """Write the rows of ridges in contact and of receptor sites of a state."""
-        for name, rows in (("ridges", ridge_rows(state)), ("receptors", site_rows(state))):
-            for row in rows:
-                self._writer.row(f"{name}{end}", {**first, **row, "mesh_contact": size})
 
     def _log(self, step: "Step", state: ContactState) -> None:
         log = self._writer.log
@@ -212,10 +204,7 @@ class Report:
         self._logged = len(self._simulation.checks)
 
     def final(self, views: Mapping[str, View]) -> None:
-        """Write the tables of states on the mesh that the run ended with, by name."""
+        """Log which states are on the mesh that the run ended with, by name."""
         if views:
             words = "; ".join(f"{states.WORDS[name]}: contact size {v.size:g} m" for name, v in views.items())
-            path = "steps.csv and history.png are of the mesh of the path; %s"
-            self._writer.log.info(path, words)
-        for state, view in views.items():
-            self._tables("_final", {"of": state}, view.state, view.size)
+            self._writer.log.info("steps.csv and history.png are of the mesh of the path; %s", words)

@@ -33,14 +33,13 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import cache
 from importlib.resources import files
-from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from fingerpad.model.cautions import BALANCED, sticking
 from fingerpad.reduced.cylinders import over_forces
-from fingerpad.results.closures import KNOWN, RECORD
+from fingerpad.results.headline import BAND, KNOWN
 from fingerpad.scene import Scene
 from fingerpad.scene.messages import SceneError
 from fingerpad.scene.remarks import coefficient
@@ -50,7 +49,6 @@ from variational.roughness.bam import BearingArea
 from variational.roughness.boundary_elements import BoundaryElements
 from variational.roughness.closure import Closure
 from variational.roughness.persson import Persson
-from variational.roughness.tabulated import TabulatedClosure
 from variational.state import ContactState
 
 if TYPE_CHECKING:
@@ -101,41 +99,6 @@ class Slip(NamedTuple):
     """Reason why it has none, else empty."""
     balanced: float = 0.0
     """Part of the pressure in contact that attraction balances, where µ_app is an upper bound by it; else 0."""
-
-
-def band(result: "Result") -> dict[str, Any]:
-    """Return µ_app at full slip by each closure, ready for JSON; empty without voltage, friction or full slip.
-
-    A closure without a number is None, and ``no_number`` has the reason. ``upper_bounds`` has what a closure balances
-    whose attraction is an upper bound (:meth:`.TabulatedClosure.balanced`). Empty too where the result's own closure
-    has no number, since there is no ratio then.
-
-    Raises:
-        SceneError: it is no scene of charged cylinders.
-    """
-    scene, slip = result.scene, result.full_slip
-    if not _has_band(result) or slip is None:
-        return {}
-    laws, here = closures(scene.closure()), _solved(scene, slip, scene.closure(), result.uncharged)
-    if not laws or here.why:
-        return {}
-    found = {words: friction(scene, slip, law, result.uncharged) for words, law in laws.items()}
-    return {
-        "mu_app": {words: _finite(slip.mu_app * each.mu_app / here.mu_app) for words, each in found.items()},
-        "no_number": {words: each.why for words, each in found.items() if each.why},
-        "upper_bounds": {words: each.balanced for words, each in found.items() if each.balanced},
-        "model": "cylinders",
-    }
-
-
-def _has_band(result: "Result") -> bool:
-    """Return whether there is friction at full slip that a voltage changes."""
-    slip = result.full_slip
-    return bool(slip is not None and slip.voltage and slip.mu_app > 0 and result.scene.friction_law() is not None)
-
-
-def _finite(value: float) -> float | None:
-    return value if np.isfinite(value) else None
 
 
 def friction(scene: Scene, slip: ContactState, law: Closure, press: ContactState | None, tips: float = 1.0) -> Slip:
@@ -189,104 +152,99 @@ def _adhere(scene: Scene, law: Closure, voltage: float) -> str:
     return f"ridges adhere {under}" if sticking(law, voltage) else ""
 
 
-# -- all assumptions ---------------------------------------------------------------------------------------
+# -- the bands ---------------------------------------------------------------------------------------------
 def with_band(result: "Result") -> "Result":
     """Return a result with its bands in its record, over closures and over all assumptions, or a note why it has none.
 
-    It has none, and no note, where no voltage changes friction.
+    It has none, and no note, where no voltage changes friction. In the record, ready for JSON, both have ``mu_app``.
+    The band over closures has it by closure, None where one has no number: ``no_number`` then has the reason, and
+    ``upper_bounds`` the part of the pressure that a closure balances whose attraction is an upper bound. It is not
+    there where the result's own closure has no number. The other one has ``low`` and ``high``, ``whole``, and its
+    ``parts``, the largest first. An upper end that is open is None: that of a part with a change that has no number,
+    and then that of the band. ``at_least`` is then the end by the changes that have one, and ``no_number`` has the
+    reasons. Both ends of the band are None where the result's own closure has no number.
     """
-    if not _has_band(result):
+    slip, scene = result.full_slip, result.scene
+    if slip is None or not slip.voltage or not slip.mu_app > 0 or scene.friction_law() is None:
         return result
     try:
-        found = band(result)
-        all_parts = known(result, found)
+        here = _solved(scene, slip, scene.closure(), result.uncharged)
+        laws = {} if here.why else closures(scene.closure())
+        found = {words: friction(scene, slip, law, result.uncharged) for words, law in laws.items()}
+        known = _known(result, slip, here, found)
     except SceneError as error:
         why, _, _ = str(error).partition(";")
         return replace(result, notes=(*result.notes, f"No likely range of µ_app is computed: {why}."))
-    more = ({RECORD: found} if found else {}) | ({KNOWN: all_parts} if all_parts else {})
+    values = {words: _finite(slip.mu_app * each.mu_app / here.mu_app) for words, each in found.items()}
+    bounds = {words: each.balanced for words, each in found.items() if each.balanced}
+    band = {"mu_app": values, "no_number": _reasons(found), "upper_bounds": bounds, "model": "cylinders"}
+    more = ({BAND: band} if found else {}) | ({KNOWN: known} if known else {})
     return replace(result, record=result.record | more)
 
 
-class Part(NamedTuple):
-    """One assumption, and µ_app over that of the result with it changed."""
-
-    name: str
-    ratios: list[float]
-    """Of the changes that have a number."""
-    no_number: Mapping[str, str] = MappingProxyType({})
-    """Reasons of those that have none, by words; the upper end is open then."""
-    upper_bounds: Mapping[str, float] = MappingProxyType({})
-    """Of the change with the largest number, see :func:`band`."""
-
-    @property
-    def ends(self) -> tuple[float, float]:
-        """The least and the largest ratio; infinite where the upper end is open."""
-        return min([1.0, *self.ratios]), np.inf if self.no_number else max([1.0, *self.ratios])
-
-    def kept(self, mu: float) -> dict[str, Any]:
-        """Return the part of a friction coefficient ``mu``, ready for JSON."""
-        low, high = (_finite(mu * end) for end in self.ends)
-        found: dict[str, Any] = {"name": self.name, "low": low, "high": high}
-        if self.no_number:
-            found |= {"at_least": mu * max([1.0, *self.ratios]), "no_number": dict(self.no_number)}
-        return found | ({"upper_bounds": dict(self.upper_bounds)} if self.upper_bounds else {})
+def _finite(value: float) -> float | None:
+    return value if np.isfinite(value) else None
 
 
-def known(result: "Result", closures: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the band of µ_app at full slip and its parts, the largest first, ready for JSON; empty without a band.
+def _reasons(found: Mapping[str, Slip]) -> dict[str, str]:
+    return {words: each.why for words, each in found.items() if each.why}
 
-    The upper end is None where it is open: of a part with a change that has no number, and then of the band. Such a
-    part has ``at_least``, its largest number, and ``no_number``, the reasons. ``at_least`` of the band is the end by
-    the parts that have one. Both ends of the band are None where the result's own closure has no number.
 
-    Args:
-        result: with full slip under a voltage.
-        closures: what :func:`band` returns for it.
-
-    Raises:
-        SceneError: it is no scene of charged cylinders.
-    """
-    slip, finger = result.full_slip, result.finger
-    if not _has_band(result) or slip is None:
-        return {}
-    whole = finger is not None and "full_slip" in finger.states
-    mu = finger.states["full_slip"].mu_app if finger is not None and whole else slip.mu_app
-    here = _solved(result.scene, slip, result.scene.closure(), result.uncharged)
-    unknown = ["slices"] if finger is not None and whole and "f_t" not in known_at(finger.f_ext) else []
-    found: dict[str, Any] = {"mu_app": mu, "low": None, "high": None, "whole": whole, "parts": [], "not_known": unknown}
+def _known(result: "Result", slip: ContactState, here: Slip, of_closures: Mapping[str, Slip]) -> dict[str, Any]:
+    """Return the band over all assumptions; empty where none changes friction."""
+    finger = result.finger if result.finger is not None and "full_slip" in result.finger.states else None
+    mu = slip.mu_app if finger is None else finger.states["full_slip"].mu_app
+    unknown = ["slices"] if finger is not None and "f_t" not in known_at(finger.f_ext) else []
+    found: dict[str, Any] = {"mu_app": mu, "low": None, "high": None, "whole": finger is not None, "parts": []}
+    found |= {"not_known": unknown}
     if here.why:
         return found | {"no_number": {OWN: here.why}}
-    parts = [_of_closures(closures, slip.mu_app), *_parts(result, slip, here.mu_app)]
-    parts = [part for part in parts if part.ratios or part.no_number]
+    parts = [part for part in _parts(result, slip, here.mu_app, mu, of_closures) if part]
     if not parts:
         return {}
-    parts.sort(key=lambda part: -np.log(part.ends[1] / part.ends[0]))
-    logs = np.log([part.ends for part in parts])
-    below, above = np.sqrt(np.sum(np.where(np.isfinite(logs), logs, 0.0) ** 2, axis=0))
-    low, at_least = mu * float(np.exp(-below)), mu * float(np.exp(above))
-    open_end = {"high": None, "at_least": at_least} if np.isinf(logs).any() else {"high": at_least}
-    return found | {"low": low} | open_end | {"parts": [part.kept(mu) for part in parts]}
+    parts.sort(key=lambda part: -np.inf if part["high"] is None else -np.log(part["high"] / part["low"]))
+    below = np.sqrt(sum(np.log(part["low"] / mu) ** 2 for part in parts))
+    above = np.sqrt(sum(np.log(part["high"] / mu) ** 2 for part in parts if part["high"] is not None))
+    found |= {"low": mu * float(np.exp(-below)), "parts": parts}
+    at_least = mu * float(np.exp(above))
+    is_open = any(part["high"] is None for part in parts)
+    return found | ({"high": None, "at_least": at_least} if is_open else {"high": at_least})
 
 
-def _of_closures(closures: Mapping[str, Any], mu: float) -> Part:
-    """Return the part of the other models of roughness, of what :func:`band` returns for a friction coefficient."""
-    values = {words: value for words, value in closures.get("mu_app", {}).items() if value is not None}
-    largest = max(values, key=lambda words: values[words], default="")
-    bounds = {words: share for words, share in closures.get("upper_bounds", {}).items() if words == largest}
-    return Part("rough contact", [value / mu for value in values.values()], closures.get("no_number", {}), bounds)
-
-
-def _parts(result: "Result", slip: ContactState, here: float) -> Iterator[Part]:
-    """Yield the other parts; ``here`` is µ_app of the charged cylinders at full slip."""
-    scene, full = result.scene, dict(powers())
-    full = full if coefficient(scene) is not None else {LAW: full[LAW]}
-    for name, changed in changes(scene, slip, result.uncharged).items():
+def _parts(
+    result: "Result", slip: ContactState, here: float, mu: float, of_closures: Mapping[str, Slip]
+) -> Iterator[dict[str, Any]]:
+    """Yield the parts of the band about µ_app, ``mu``; ``here`` is that of the charged cylinders at full slip."""
+    numbers = {words: each for words, each in of_closures.items() if not each.why}
+    largest = max(numbers, key=lambda words: numbers[words].mu_app, default="")
+    part = _part("rough contact", mu, [each.mu_app / here for each in numbers.values()], _reasons(of_closures))
+    bound = numbers[largest].balanced if largest else 0.0
+    yield part | ({"upper_bounds": {largest: bound}} if bound else {})
+    full = powers() if coefficient(result.scene) is not None else {LAW: powers()[LAW]}
+    for name, changed in changes(result.scene, slip, result.uncharged).items():
         found = [friction(each, slip, law, result.uncharged, tips) for each, law, tips in changed]
-        why = {f"changed {name}": each.why for each in found if each.why}
         pairs = zip(found, full.get(name, (1.0, 1.0)), strict=True)
-        yield Part(name, [(each.mu_app / here) ** power for each, power in pairs if not each.why], why)
+        ratios = [(each.mu_app / here) ** power for each, power in pairs if not each.why]
+        yield _part(name, mu, ratios, {f"changed {name}": each.why for each in found if each.why})
     if result.finger is not None and "f_t" in (ends := known_at(result.finger.f_ext)):
-        yield Part("slices", [1 / (1 + end) for end in ends["f_t"]])
+        yield _part("slices", mu, [1 / (1 + end) for end in ends["f_t"]], {})
+
+
+def _part(name: str, mu: float, ratios: Sequence[float], no_number: Mapping[str, str]) -> dict[str, Any]:
+    """Return a part, empty without a change.
+
+    Args:
+        name: of the assumption.
+        mu: µ_app of the result.
+        ratios: µ_app over that, of the changes that have a number.
+        no_number: reasons of those that have none, by words.
+    """
+    if not ratios and not no_number:
+        return {}
+    low, high = mu * min([1.0, *ratios]), mu * max([1.0, *ratios])
+    if no_number:
+        return {"name": name, "low": low, "high": None, "at_least": high, "no_number": dict(no_number)}
+    return {"name": name, "low": low, "high": high}
 
 
 def changes(
@@ -294,7 +252,7 @@ def changes(
 ) -> dict[str, list[tuple[Scene, Closure, float]]]:
     """Return two changes of each assumption but the closure, by part: scene, closure and radius of tips over its own.
 
-    Arguments are those of :func:`friction`, and it raises SceneError as :func:`known` does.
+    Arguments are those of :func:`friction`, and it raises SceneError of a finger that is none of cylinders.
     """
     own, still = scene.closure(), _cylinders(_at(scene, 0.0), slip, scene.closure(), press)
     laws = laws_like(scene.friction_law(), still.f_contact / still.contact_length)
@@ -328,7 +286,7 @@ def powers() -> Mapping[str, Sequence[float]]:
     return {name: (*map(float, part), float(part[0]))[:2] for name, part in found.items()}
 
 
-def _coated(scene: Scene, own: BearingArea | TabulatedClosure, factor: float) -> tuple[Scene, Closure]:
+def _coated(scene: Scene, own: Any, factor: float) -> tuple[Scene, Closure]:
     """Return a scene and its closure with a multiple of the effective insulator thickness."""
     electric = scene.electric
     changed = electric.model_copy(update={"d_i": factor * electric.d_i, "eps_sc": electric.eps_sc / factor})

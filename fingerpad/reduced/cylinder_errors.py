@@ -15,7 +15,7 @@ It vanishes without voltage. :func:`data` is the same table for the calculator, 
 import json
 import math
 from collections import Counter
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import asdict, dataclass
 from functools import cache
 from importlib.resources import files
@@ -34,6 +34,10 @@ Bands = Mapping[str, Mapping[str, float]]
 WHOLE = "finger"
 PULL = "attraction over force"
 """Key, in words, of a region's range of this ratio at full slip, which no scene gives."""
+_ROUNDOFF = 1e-12  # relative, of a value at an end
+_TINY = 1e-12  # in place of 0 in logarithms
+_LOSSES = ("electric.tissue", "electric.leak", "electric.follows")  # without effect on a constant voltage
+_TABLES = ("friction", "geometry", "materials", "contact", "electric", "roughness")
 
 
 @dataclass(frozen=True)
@@ -43,7 +47,7 @@ class Region:
     runs: int
     """States of the full model beside which it was found."""
     ranges: Mapping[str, tuple[float, float]]
-    """Range by dotted key, in SI units; both ends belong to it, and a voltage has no sign. Keys of :data:`_TABLES` that
+    """Range by dotted key, in SI units; both ends belong to it, and a voltage has no sign. Keys of scenes' tables that
     are not there have their defaults. A scene has ``force`` or ``f_ext``, and the range of the other one is not read.
     The range :data:`PULL` is one of results."""
     errors: Bands
@@ -66,8 +70,6 @@ class Outside(NamedTuple):
         return f"{self.key} is {self.value}, and it is known for {self.known}"
 
 
-_OF_DRIVES = ("tissue", "leak", "follows")  # keys of electric without effect on a constant voltage
-_TABLES = ("friction", "geometry", "materials", "contact", "electric", "roughness")
 _DEFAULT_SCREEN = Region(
     44,
     {"force": (0.05, 1.2), "f_ext": (5.0, 150.0), "voltage": (0.0, 200.0), PULL: (0.0, 5.0)},
@@ -89,20 +91,16 @@ def _regions() -> tuple[Region, ...]:
 REGIONS = _regions()
 """Errors that cover the full model's states: tests/test_known_error.py and tests/test_loads.py derive them from those
 of docs/models.json and docs/loads.json."""
-_ROUNDOFF = 1e-12  # relative, of a value at an end
-_TINY = 1e-12  # of a value, below all that a scene has but 0
 
 
 # -- where ---------------------------------------------------------------------------------------------------
 def where(region: Region) -> str:
     """Return the ranges of a region in words."""
-    units = _units()
-    return ", ".join(f"{key} {_span(ends, units[key])}" for key, ends in region.ranges.items())
+    return ", ".join(f"{key} {_span(*ends, _units()[key])}" for key, ends in region.ranges.items())
 
 
-def _span(ends: tuple[float, float], unit: str) -> str:
-    words = f"{ends[0]:g}" if ends[0] == ends[1] else f"{ends[0]:g} to {ends[1]:g}"
-    return f"{words} {unit}".strip()
+def _span(low: float, high: float, unit: str) -> str:
+    return f"{f'{low:g}' if low == high else f'{low:g} to {high:g}'} {unit}".strip()
 
 
 def within(value: float, ends: tuple[float, float]) -> bool:
@@ -118,8 +116,7 @@ def find(scene: Scene, pull: float = 0.0) -> Region | None:
         pull: attraction at full slip over that force.
     """
     given = _given(scene, pull)
-    changed = _changed(given)
-    return next((region for region in REGIONS if next(_outside(given, changed, region), None) is None), None)
+    return next((region for region in REGIONS if not any(_outside(given, region))), None)
 
 
 def outside(scene: Scene, pull: float = 0.0) -> list[Outside]:
@@ -129,83 +126,57 @@ def outside(scene: Scene, pull: float = 0.0) -> list[Outside]:
     Arguments are those of :func:`find`.
     """
     given = _given(scene, pull)
-    changed = _changed(given)
-    found = ([*_outside(given, changed, region)] for region in reversed(REGIONS))
+    found = ([*_outside(given, region)] for region in reversed(REGIONS))
     return min(found, key=lambda keys: (len(keys), sum(each.far for each in keys)))
 
 
 def cautions(scene: Scene, pull: float = 0.0) -> list[str]:
-    """Return in one sentence why the error is not known, empty where it is known; arguments of :func:`find`."""
-    keys = in_short(outside(scene, pull))
-    return [f"the error of this model is not known here: {'; '.join(map(str, keys))}"] if keys else []
+    """Return in one sentence why the error is not known, empty where it is known; arguments of :func:`find`.
 
-
-def in_short(keys: Sequence[Outside]) -> list[Outside]:
-    """Return keys for a reader: in place of more than two of one table, the table, as for another finger."""
+    In place of more than two keys of one table, as of another finger, it names the table.
+    """
+    keys = outside(scene, pull)
     tables = Counter(each.key.partition(".")[0] for each in keys)
     many = {table: Outside(table, "another one", "that of the default scene") for table in tables if tables[table] > 2}
-    return list(dict.fromkeys(many.get(each.key.partition(".")[0], each) for each in keys))
+    words = dict.fromkeys(str(many.get(each.key.partition(".")[0], each)) for each in keys)
+    return [f"the error of this model is not known here: {'; '.join(words)}"] if words else []
 
 
 def _given(scene: Scene, pull: float) -> dict[str, Any]:
-    """Return the values of a scene by dotted key; of the two forces the one that it has.
-
-    A constant voltage has no losses, so without a drive the keys of :data:`_OF_DRIVES` are those of the default scene.
-    """
-    if scene.drive is None:
-        default = Scene().electric
-        lossless = {key: getattr(default, key) for key in _OF_DRIVES}
-        scene = scene.model_copy(update={"electric": scene.electric.model_copy(update=lossless)})
+    """Return the values of a scene by dotted key: of the two forces the given one, and without a drive no losses."""
     given = flat(scene.parameters()) | {"voltage": scene.volts, PULL: pull}
     given.pop("f_ext" if scene.force is not None else "force", None)
+    if scene.drive is None:
+        given = {key: value for key, value in given.items() if not key.startswith(_LOSSES)}
+        given |= {key: value for key, value in _default().items() if key.startswith(_LOSSES)}
     return given
 
 
-def _changed(given: Mapping[str, Any]) -> dict[str, list[str]]:
-    """Return the keys of :data:`_TABLES` whose values are not the default scene's, by table."""
-    default, found = _default(), {table: list[str]() for table in _TABLES}
-    for key in sorted(given.keys() | default.keys()):
-        if given.get(key) != default.get(key) and (table := key.partition(".")[0]) in found:
-            found[table].append(key)
-    return found
-
-
-def _outside(given: Mapping[str, Any], changed: Mapping[str, Sequence[str]], region: Region) -> Iterator[Outside]:
-    """Yield the keys in which values are outside of a region; ``changed`` as of :func:`_changed`."""
-    default, units = _default(), _units()
+def _outside(given: Mapping[str, Any], region: Region) -> Iterator[Outside]:
+    """Yield the keys in which values are outside of a region."""
+    default, units, others = _default(), _units(), set[str]()
     if "force" in given and "force" not in region.ranges:
-        yield Outside("force", _span((given["force"],) * 2, units["force"]), "sections alone")
-    for key, ends in region.ranges.items():
-        value = given.get(key)
-        if key in ("force", "f_ext") and value is None:
+        yield Outside("force", _span(given["force"], given["force"], units["force"]), "sections alone")
+    tables = (key for key in {**default, **given} if key.partition(".")[0] in _TABLES)
+    for key in dict.fromkeys([*region.ranges, *tables]):
+        value, unit, table = given.get(key), units.get(key, ""), key.partition(".")[0]
+        low, high = region.ranges.get(key, (default.get(key),) * 2)
+        if value == low or (value is None and table not in _TABLES):  # the force that is not given
             continue
-        if not isinstance(value, int | float):
-            yield Outside(key, "a law", _span(ends, units[key]))
-        elif not within(value, ends):
-            yield Outside(key, _span((value, value), units[key]), _span(ends, units[key]), _far(value, ends))
-    for table, others in changed.items():
-        keys = [key for key in others if key not in region.ranges]
-        if any(given.get(key) is None or default.get(key) is None for key in keys):  # another law has other keys
-            yield Outside(table, "of another law", "that of the default scene")
-        else:
-            for key in keys:
-                value, known, unit = given[key], default[key], units.get(key, "")
-                far = _far(value, (known, known)) if _number(value) and _number(known) else 0.0
-                yield Outside(key, _shown(value, unit), _shown(known, unit), far)
-
-
-def _far(value: float, ends: tuple[float, float]) -> float:
-    """Return the logarithm of the ratio of a value, 0 as a very small one, and the nearest end of a range."""
-    end = min(max(abs(value), ends[0]), ends[1])
-    return abs(math.log(max(abs(value), _TINY) / max(end, _TINY)))
+        if value is None or low is None:
+            if table not in others:
+                others.add(table)
+                yield Outside(table, "of another law", "that of the default scene")
+        elif not (_number(value) and _number(low)):
+            yield Outside(key, show(value), show(low))
+        elif not within(value, (low, high)):
+            end = min(max(abs(value), low), high)
+            far = abs(math.log(max(abs(value), _TINY) / max(abs(end), _TINY)))
+            yield Outside(key, _span(value, value, unit), _span(low, high, unit), far)
 
 
 def _number(value: Any) -> bool:
     return isinstance(value, int | float) and not isinstance(value, bool)
-
-
-def _shown(value: Any, unit: str) -> str:
-    return _span((value, value), unit) if _number(value) else show(value)
 
 
 @cache
@@ -228,8 +199,7 @@ def errors(scene: Scene, states: Mapping[str, ContactState]) -> Bands:
     """
     attraction = states["full_slip"].f_electrostatic
     region = find(scene, attraction / scene.f_ext)
-    known = {} if region is None else region.errors
-    found = {name: known[name] for name in states if name in known}
+    found = {name: known for name, known in ({} if region is None else region.errors).items() if name in states}
     return found | ({"full_slip": at_full_slip(scene, attraction)} if found else {})
 
 
@@ -251,7 +221,7 @@ def at_full_slip(scene: Scene, f_electrostatic: float) -> dict[str, float]:
 
 
 def in_words(bands: Bands) -> str:
-    """Return what is known of the error of a result in words."""
+    """Return the known errors of a result in words."""
     if not bands:
         return "the error of this model is not known here"
     words = {state: f"in {WORDS[state]}" for state in WORDS} | {WHOLE: "of the whole finger at full slip"}

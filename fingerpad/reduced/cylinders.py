@@ -4,8 +4,8 @@ n ridges bear :math:`f = f_{ext} / n` each; :mod:`variational.attraction.cylinde
 air gap of a ridge. Friction at full slip is the limit of the friction law at the mean pressure, over the length in
 contact; Coulomb's is :math:`f_T = \mu_0 (f_{ext} + f_{el})`. The number of ridges in contact and the length of their
 contact are those of the default finger *without* voltage, or of one similar to it
-(:mod:`fingerpad.reduced.similarity`), interpolated between full runs. The modulus E* of the cylinders is then the one
-with which Hertz's law gives that length, which includes finite strain, layers and shear. The length under voltage
+(:mod:`fingerpad.reduced.default_finger`), interpolated between full runs. The modulus E* of the cylinders is then the
+one with which Hertz's law gives that length, which includes finite strain, layers and shear. The length under voltage
 follows from Maugis's equations. More shear stress stiffens the ridges, see below.
 
 **Shear.** The table's finger has a friction coefficient of 0.25. Stronger friction leans the finger and its ridges
@@ -33,12 +33,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fingerpad.model.cautions import on_scene, sticking
-from fingerpad.reduced import cylinder_errors, uncharged
+from fingerpad.reduced import cylinder_errors, default_finger
+from fingerpad.reduced.default_finger import Similar, similar
 from fingerpad.reduced.model import STATES, Model, reduced_state, refuse_others
-from fingerpad.reduced.similarity import Similar, similar
-from fingerpad.results.answer import MODEL_ERROR, Cost
 from fingerpad.results.quantities import MODEL
-from fingerpad.results.result import Result
+from fingerpad.results.result import MODEL_ERROR, Cost, Result
 from fingerpad.results.states import WORDS
 from fingerpad.scene import Scene, SceneError
 from fingerpad.scene.fingers import ADULT
@@ -76,7 +75,7 @@ def _source(scene: Scene, scaled: Similar) -> str:
     """Return in words where the contact length is from."""
     default, f_ext = _default(), scene.f_ext / scaled.force
     source = "uncharged contact length interpolated between full runs of the default finger"
-    low, high = uncharged.FORCES[0], uncharged.FORCES[-1]
+    low, high = default_finger.FORCES[0], default_finger.FORCES[-1]
     if not low <= f_ext <= high:
         source = f"uncharged contact length extrapolated from full runs at {low:g} to {high:g} N/m"
     source += f", {scaled.words}" if scaled.words else ""
@@ -94,7 +93,7 @@ def indentation(f_ext: float, state: str, scaled: Similar | None = None) -> floa
         scaled: a finger similar to the default one, which it is by default.
     """
     scaled = scaled or Similar()
-    return scaled.length * uncharged.indentation(f_ext / scaled.force, state)
+    return scaled.length * default_finger.indentation(f_ext / scaled.force, state)
 
 
 class Cylinders(Model):
@@ -212,7 +211,10 @@ def _over_forces(
     else:
         scaled = _scaled(scene)
         of_default = np.array(f_ext) / scaled.force
-        length, ridges = scaled.length * uncharged.lengths(of_default, state), uncharged.ridges(of_default, state)
+        length, ridges = (
+            scaled.length * default_finger.lengths(of_default, state),
+            default_finger.ridges(of_default, state),
+        )
     radius, closure = tips * tip_radius(scene.geometry), scene.closure()
     forces, lengths = np.array(f_ext) / ridges, tips**0.5 * length / ridges
     moduli, stiffening = hertz_modulus(radius, forces, lengths), _stiffening(scene, state, shear)

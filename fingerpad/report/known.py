@@ -4,7 +4,7 @@ import math
 from typing import TYPE_CHECKING
 
 from fingerpad.report.page import text
-from fingerpad.results.closures import KNOWN, notes, span
+from fingerpad.results.headline import KNOWN, notes, span
 from fingerpad.results.palette import BLUE, GREY, VERMILION
 
 if TYPE_CHECKING:

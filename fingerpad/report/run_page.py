@@ -13,9 +13,10 @@ from fingerpad.report.felt import felt
 from fingerpad.report.frames import conditions_of, frames, section, slider
 from fingerpad.report.trust import head
 from fingerpad.results import fields
-from fingerpad.results.closures import RECORD, in_words
+from fingerpad.results.headline import BAND, band_in_words
 from fingerpad.results.over_time import HARMONICS, NOTE
-from fingerpad.results.quantities import PER_LENGTH, STEPS, plus_minus_of
+from fingerpad.results.printing import cells
+from fingerpad.results.quantities import PER_LENGTH, STEPS, in_table, plus_minus_of
 from fingerpad.results.result import Result
 from fingerpad.results.states import WORDS, before_sliding, called
 from variational.state import ContactState, Errors
@@ -27,8 +28,7 @@ _LINKS = {
     "model": "Model", "solver": "Solver", "parameters": "Parameters", "reproduce": "Reproduce",
 }  # fmt: skip
 _SECTION = "Middle section of the finger"
-_SLIDING = ("bone_x", "f_t", "mu_app", "contact_length", "ridges_in_contact")
-_CHARTED = ("bone_x", "mu_app", "contact_length")
+_CHARTED, _WORK = in_table("chart"), in_table("work")
 _RECEPTORS = (
     "Strain energy density per reference volume (kPa) at the Merkel sites, at the tips of the intermediate ridges, and "
     "at the Meissner sites, in the dermal papillae on either side."
@@ -124,7 +124,7 @@ def _cell(reached: list[Any]) -> str:
 def _numbers(result: Result) -> str:
     if not result.named:
         return html.section("numbers", "Key numbers", html.paragraph("The run has no named state."))
-    every = [(quantity.title, *result.cells(key)) for key, quantity in result.printed.items()]
+    every = [(quantity.title, *cells(result, key)) for key, quantity in result.printed.items()]
     rows = [row for row in every if set(row[1:]) - {"–"}]
     slip = result.full_slip
     notes = []
@@ -161,7 +161,7 @@ def _trust(result: Result) -> str:
         f"{html.typeset(each.words)}</span></li>"
         for each in found
     )
-    band = in_words(result.record.get(RECORD, {}))
+    band = band_in_words(result.record.get(BAND, {}))
     note = (
         "All this is about the mathematics. The finger is less certain: its law of friction, ridge tips and roughness "
         "move µ_app by 10 % and more (docs/assumptions.md)." + (f" {band}" if band else "")
@@ -175,7 +175,7 @@ def _sliding(result: Result) -> str:
     still = len(before_sliding(result.steps))
     if still in (0, len(result.steps)):
         return ""
-    shown = [STEPS[key] for key in _SLIDING]
+    shown = list(in_table("sliding").values())
     rows = [
         (str(s.step), *(each.shown(getattr(s, each.name)) for each in shown), "jump" if trust.jumped(s) else "")
         for s in result.steps[still - 1 :]
@@ -322,8 +322,7 @@ def _columns(result: Result) -> dict[str, list[Any]]:
     steps = result.steps
     found: dict[str, list[Any]] = {key: [getattr(state, key) for state in steps] for key in ("step", "load")}
     found |= {key: [_number(key, state) for state in steps] for key in _CHARTED}
-    work = ("newton_iterations", "factorisations", "cutbacks", "jump")
-    found |= {key: [0 if s.record is None else int(getattr(s.record, key)) for s in steps] for key in work}
+    found |= {key: [0 if s.record is None else int(getattr(s.record, key)) for s in steps] for key in _WORK}
     return found | {"first": [max(len(before_sliding(steps)) - 1, 0) if steps else 0]}
 
 

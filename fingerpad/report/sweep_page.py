@@ -16,19 +16,18 @@ from fingerpad.report import page as html
 from fingerpad.report.page import BAD, CARE, GOOD
 from fingerpad.results.files import read_object, refuse_other_format
 from fingerpad.results.headline import SECTION, WHOLE
-from fingerpad.results.quantities import PER_LENGTH, Output
-from fingerpad.results.quantities import read as read_outputs
+from fingerpad.results.quantities import FINGER, PER_LENGTH, Output, in_table
 from fingerpad.results.states import WORDS
 from fingerpad.runs.sweep_columns import (
     FORCE,
     LOAD,
     described,
+    description,
     head_of,
     in_time,
     loads,
     of_finger,
     printed,
-    said_of,
     shown,
     tables,
 )
@@ -38,7 +37,7 @@ from fingerpad.scene.reading import DEFAULT_MODEL, model_name
 from fingerpad.slices.errors import remarks
 from variational.files import read
 
-_CHARTS = ("mu_app", "f_t", "contact_length", "contact_area")
+_CHARTS = dict.fromkeys((*in_table("short"), *in_table("first", FINGER)))
 _MAX_CAUTIONS = 3  # in the headline
 _MAX_VALUES = 6  # of a key in the headline
 _MAX_TITLE = 30  # characters beside an axis, beyond which they take two lines
@@ -125,7 +124,7 @@ def table_of(folder: Path) -> Table:
         refuse_other_format(asked, f"the sweep in {name}")
         more = model_name(asked["model"]), str(asked.get("version", ""))
         cautions, notes = (tuple(map(str, asked.get(name, ()))) for name in ("cautions", "notes"))
-        outputs = read_outputs(asked.get("outputs", ()))
+        outputs = tuple(Output(**each) for each in asked.get("outputs", ()))
         return Table(folder, axes, rows, dict(asked["parameters"]), *more, cautions, notes, outputs)
     except KeyError as missing:
         raise SceneError(f"sweep.json in {name} has no {missing}; give the command of the sweep again") from None
@@ -243,7 +242,7 @@ def _study(table: Table) -> str:
         '<noscript><p class="note">The charts need JavaScript; the table below has the same numbers.</p></noscript>'
     )
     charts = (html.chart(place, f"{words} at {state} over the sweep") for place, words in drawn)
-    title = f"Friction and contact of the {said_of(columns)} at {state}"
+    title = f"Friction and contact of the {description(columns)} at {state}"
     return html.section("study", title, without, *charts, html.paragraph(note, "note"))
 
 

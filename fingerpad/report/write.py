@@ -1,18 +1,14 @@
 """The report of a folder: what the folder holds, and its page; what cannot be made costs a line, not the results."""
 
-import csv
 import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from fingerpad.reduced.registry import MODELS
-from fingerpad.results.files import read_object, replace
-from fingerpad.results.result import Result, steps_of
-from fingerpad.results.states import load_results, named
-from fingerpad.scene import SceneError, as_kept
+from fingerpad.results.files import replace
+from fingerpad.results.result import Result
+from fingerpad.scene import SceneError
 from fingerpad.scene.messages import clip
-from fingerpad.scene.reading import DEFAULT_MODEL
-from fingerpad.scene.remarks import coefficient
 
 if TYPE_CHECKING:
     from fingerpad.report.sweep_page import Table
@@ -82,44 +78,16 @@ def read(folder: Path) -> "Result | Table":
     name = clip(str(folder), 80)
     if not folder.is_dir():
         raise SceneError(f"{name} is not a folder; give one that fingerpad run or fingerpad sweep wrote")
-    if (folder / "summary.json").exists():
+    if any((folder / kept).exists() for kept in ("result.nc", "summary.json")):
         return Result.load(folder)
     if (folder / "table.csv").exists():
         from fingerpad.report.sweep_page import table_of
 
         return table_of(folder)
-    if (folder / "steps.csv").exists():
-        return _unfinished(folder)
     points = [folder / name for name, model in MODELS.items() if model.meshes and (folder / name).is_dir()]
     done = sum(1 for place in points for _ in place.glob("*/summary.json"))
     if done or any(any(place.glob("*/asked.json")) for place in points):
         raise SceneError(f"the sweep in {name} has not ended ({done} runs are there); give its command again to go on")
     if (folder / "scene.json").exists():
-        raise SceneError(f"the run in {name} has no accepted step yet; make the report when it has one")
+        raise SceneError(f"the run in {name} has not ended; make the report when it has, or go on with it by --resume")
     raise SceneError(f"{name} holds no results of fingerpad; give a folder that fingerpad run or fingerpad sweep wrote")
-
-
-def _unfinished(folder: Path) -> Result:
-    """Return the steps that a run has written so far."""
-    try:
-        parameters = read_object(folder / "scene.json")
-        scene = as_kept(parameters)
-        steps = steps_of(folder)
-    except (OSError, ValueError, KeyError, TypeError, AttributeError, csv.Error) as error:
-        raise SceneError(f"the unfinished run in {clip(str(folder), 80)} cannot be read: {error}") from None
-    if not steps:
-        raise SceneError(
-            f"the run in {clip(str(folder), 80)} has no accepted step yet; make the report when it has one"
-        )
-    found = named(steps, [load.name for load in scene.loads()])
-    return Result(
-        scene,
-        DEFAULT_MODEL,
-        found.get("uncharged"),
-        found.get("charged"),
-        found.get("full_slip"),
-        steps=steps,
-        loads=tuple(load_results(steps, scene.loads(), lambda k, end: None, coefficient(scene))),
-        failure=f"the run has not ended, or was killed, after step {steps[-1].step}: these are its steps so far",
-        folder=folder,
-    )

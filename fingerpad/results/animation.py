@@ -29,7 +29,7 @@ from variational.snapshot import loops
 from variational.state import ContactState
 
 if TYPE_CHECKING:
-    from fingerpad.results.answer import Answer
+    from fingerpad.results.result import Result
 
 Array = NDArray[np.float64]
 ENDINGS = (".webp", ".gif")
@@ -64,7 +64,7 @@ class _Scene(NamedTuple):
     """Stress (kPa)."""
 
 
-def animate(result: "Answer", path: Path, on_frame: Callable[[int, int], None] = lambda done, count: None) -> Path:
+def animate(result: "Result", path: Path, on_frame: Callable[[int, int], None] = lambda done, count: None) -> Path:
     """Write the animation of a run that has a folder; return the file, which is there as a whole or not at all.
 
     Args:

@@ -1,30 +1,41 @@
-"""A result as one xarray dataset, as ``result.nc`` beside the tables, and read back from there.
+"""A result as one xarray dataset, as ``result.nc`` has it, and back: the one file that a result is read from.
 
-The dataset holds what the tables hold, with the same names, values and SI units. Its variables are those of
-:mod:`fingerpad.results.quantities`, each with ``units`` and ``long_name``. The file is NetCDF 3 with 64-bit offsets, by
-SciPy: every program for NetCDF reads it, and it loads no HDF5 beside that of dolfinx.
+Its variables are those of :mod:`fingerpad.results.quantities`, each with ``units`` and ``long_name``, in SI units. Its
+attributes are the parameters of the scene, the costs and, as JSON, all else. The file is NetCDF 3 with 64-bit offsets,
+by SciPy: every program for NetCDF reads it, and it loads no HDF5 beside that of dolfinx.
 """
 
 import json
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import fields, replace
-from pathlib import Path
+from dataclasses import asdict, fields
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from fingerpad.results import files, netcdf, quantities
-from fingerpad.results.quantities import RIDGES, SITES, SKIN, SLICES, STEPS, STIMULI, Output
+from fingerpad.results import files, quantities
+from fingerpad.results.quantities import (
+    CHANGES,
+    CONDITIONS,
+    RESULTS,
+    RIDGES,
+    SITES,
+    SKIN,
+    SLICES,
+    STABILITY,
+    STEPS,
+    STIMULI,
+    Output,
+)
 from fingerpad.results.states import STATES, UNLOADED
 from fingerpad.scene.reading import flat
-from variational.state import ContactState, Errors, RidgeStates, Sites, Skin, Stimuli
+from variational.state import PATH, ContactState, Errors, Sites
 
 if TYPE_CHECKING:
     import xarray
 
-    from fingerpad.results.answer import Answer
+    from fingerpad.results.result import Result
     from fingerpad.slices.finger import WholeFinger
 
 FILE = "result.nc"
@@ -32,12 +43,12 @@ COORDINATES = ("step", "load", "state", "ridge", "side", "iteration", "harmonic"
 Variables = dict[str, tuple[tuple[str, ...], Any, dict[str, str]]]
 """Dimensions, values, and attributes by name."""
 OF_RIDGES = {name: "length" if name == "contact_length" else name for name in RIDGES}
-OF_SITES = {"merkel_sed": "merkel", "meissner_left": "left", "meissner_right": "right"}
+OF_SITES = dict(zip(SITES, [each.name for each in fields(Sites)][1:], strict=True))
 """Attribute of :class:`RidgeStates`, and of :class:`Sites`, by quantity."""
-_CHANGED = tuple(field.name for field in fields(Errors) if field.name != "own")
+CHANGED = tuple(field.name for field in fields(Errors) if field.name != "own")
 
 
-def dataset(result: "Answer") -> "xarray.Dataset":
+def dataset(result: "Result") -> "xarray.Dataset":
     """Return a result of any model as a dataset; ``docs/results.md`` lists its dimensions.
 
     Returns:
@@ -51,7 +62,7 @@ def dataset(result: "Answer") -> "xarray.Dataset":
     return xarray.Dataset(data, coords, attributes(result))
 
 
-def variables(result: "Answer") -> Variables:
+def variables(result: "Result") -> Variables:
     """Return the variables and coordinates of a result."""
     named = [result.named.get(name) for name in STATES]
     every = [*result.steps, *filter(None, named)]
@@ -69,58 +80,23 @@ def variables(result: "Answer") -> Variables:
     return found | _skin(result.named) | _finger(result.finger)
 
 
-def save(result: "Answer") -> str:
-    """Write ``result.nc`` into the folder of a result; on one rank.
-
-    Returns:
-        Why the file was not written, in one sentence; empty where it was.
-    """
-    assert result.folder is not None
-    return write(result.folder / FILE, netcdf.encoded(variables(result), COORDINATES, attributes(result)))
+def content(data: "xarray.Dataset") -> bytes:
+    """Return the content of a file of NetCDF 3."""
+    return bytes(data.to_netcdf(engine="scipy", format="NETCDF3_64BIT"))
 
 
-def write(file: Path, content: bytes) -> str:
-    """Write a dataset; what was there stays until all of it is written.
-
-    Args:
-        file: the path.
-        content: of the file.
-
-    Returns:
-        Why the file was not written, in one sentence; empty where it was.
-    """
-    try:
-        files.replace(file, content)
-    except OSError as error:
-        return f"{file.name} was not written: {error.strerror or error}; all other files are complete"
-    return ""
-
-
-def read(folder: Path, own: Sequence[str]) -> tuple[tuple[ContactState, ...], dict[str, ContactState]] | None:
-    """Return the steps and the named states that ``result.nc`` of a folder holds; None where it cannot be read.
-
-    Args:
-        folder: of a run.
-        own: names of outputs that are computed from a state.
-    """
-    try:
-        arrays = netcdf.arrays(folder / FILE)
-        steps = tuple(_state(arrays, "", k, own) for k in range(len(arrays.get("step", ()))))
-        there = [(k, name) for k, name in enumerate(STATES) if arrays["state_step"][k] >= 0]
-        return steps, {name: _named_state(arrays, k, own) for k, name in there}
-    except (OSError, ValueError, TypeError, LookupError, EOFError, AttributeError, MemoryError):  # no whole file
-        return None
-
-
-def attributes(result: "Answer") -> dict[str, Any]:
-    """Return the attributes of a dataset: model, versions, and every parameter by its dotted key and as JSON."""
+def attributes(result: "Result") -> dict[str, Any]:
+    """Return the attributes of a dataset: model, costs, every parameter by its dotted key, and all else as JSON."""
     parameters = result.parameters
-    found: dict[str, Any] = {"title": "fingerpad: a fingertip on a touchscreen", "model": result.model}
+    found: dict[str, Any] = {"title": "fingerpad: a fingertip on a touchscreen", "format": files.FORMAT}
+    found |= {"model": result.model, **asdict(result.cost)}
     found |= {name: text for name in ("failure", "interrupted") if (text := getattr(result, name))}
     for name in ("notes", "cautions"):
         found |= {name: "\n".join(getattr(result, name))} if getattr(result, name) else {}
-    versions = result.record.get("provenance", {})
-    found |= {"provenance": json.dumps(versions, default=str)} if versions else {}
+    found |= {"record": json.dumps(result.record)} if result.record else {}
+    found |= {"outputs": json.dumps([each.to_dict() for each in result.outputs])} if result.outputs else {}
+    if result.finger is not None:
+        found |= {"finger": json.dumps({"source": result.finger.source, "carried": result.finger.carried})}
     given = {key: _attribute(value) for key, value in flat(parameters).items() if value is not None}
     return found | {"parameters": json.dumps(parameters)} | given
 
@@ -201,16 +177,18 @@ def _of_states(
 def _verdicts(named: Sequence[ContactState | None], known: Mapping[str, Output]) -> Variables:
     """Return stability, errors and changes of the named states; of outputs of one's own where they are known."""
     found: Variables = {}
-    for name, output in quantities.STABILITY.items():
+    for name, output in STABILITY.items():
         given = [None if state is None else getattr(state, name) for state in named]
         if name == "stable":
             values = np.array([-1 if each is None else each for each in given], np.int32)
         else:
             values = _column(given)
         found[f"state_{name}"] = ("state",), values, output.about()
-    for kind, words in quantities.CHANGES.items():
+    ways = np.array(["" if state is None else state.reached for state in named], object)
+    found["state_reached"] = ("state",), ways, _about("how the state was reached, by its path or from another state")
+    for kind, words in CHANGES.items():
         own = {key: None for state in named if state is not None for key in getattr(state, kind).own}
-        for key in (*_CHANGED, *own):
+        for key in (*CHANGED, *own):
             changes = [None if state is None else getattr(getattr(state, kind), key, None) for state in named]
             found[f"state_{key}_{kind}"] = ("state",), _column(changes), known[key].about(f"{words} of the ")
     return found
@@ -229,7 +207,7 @@ def _coupling(steps: Sequence[ContactState]) -> Variables:
     }
 
 
-def _loads(result: "Answer", known: Mapping[str, Output]) -> Variables:
+def _loads(result: "Result", known: Mapping[str, Output]) -> Variables:
     """Return the results of the loads along ``load``; lengths, means and spectra are NaN where a load takes no time."""
     loads, passed = result.loads, [load.over_time for load in result.loads]
     found: Variables = {}
@@ -242,6 +220,8 @@ def _loads(result: "Answer", known: Mapping[str, Output]) -> Variables:
     for word in ("reached", "held"):
         values = [getattr(load, f"full_slip_{word}") for load in loads]
         add(f"load_full_slip_{word}", values, _about(f"whether full slip was {word} in the load"))
+    stable = [-1 if load.stable is None else int(load.stable) for load in loads]
+    add("load_stable", stable, _about("whether the state at the end of the load is stable; -1 where not examined"))
     for name in dict.fromkeys(name for load in loads for name in load.extremes):
         for end, words in (("min", "least"), ("max", "largest")):
             values = [getattr(load.extremes.get(name), end, math.nan) for load in loads]
@@ -290,51 +270,46 @@ def _finger(whole: "WholeFinger | None") -> Variables:
     for name, output in (SLICES | own).items():
         along = [None if total is None else total.slices().get(name) for total in totals]
         found[f"slice_{name}"] = ("state", "slice"), _padded(along), output.about()
+    centres = [None if total is None else total.centre for total in totals]
+    words = "external normal force of the slice that is indented most per metre of finger"
+    found["finger_centre"] = ("state",), _column(centres), _about(words, "N/m")
+    return found | _traces(whole)
+
+
+def _traces(whole: "WholeFinger") -> Variables:
+    """Return the traces of the cross-section along ``state`` and ``trace``, from which other forces are read."""
+    traces = [whole.traces.get(name) for name in STATES]
+    columns = dict.fromkeys(name for trace in traces if trace is not None for name in trace.columns)
+    own = {each.name: each for trace in whole.traces.values() for each in trace.own}
+    found: Variables = {}
+    for name in ("depth", *columns, "ridges"):
+        rows = [None if t is None else t.columns.get(name, getattr(t, name, None)) for t in traces]
+        if any(row is not None for row in rows):
+            about = (SLICES | own).get(name, SLICES["indentation"] if name == "depth" else STEPS["ridges_in_contact"])
+            found[f"trace_{name}"] = ("state", "trace"), _padded(rows), about.about("of a trace: ")
     return found
 
 
-# -- reading -----------------------------------------------------------------------------------------------
-def _state(arrays: Mapping[str, NDArray[Any]], prefix: str, k: int, own: Sequence[str]) -> ContactState:
-    """Return the state at a place of the dimension whose variables begin with a prefix.
-
-    Args:
-        arrays: values by variable.
-        prefix: ``state_`` of the named states; empty of the steps.
-        k: the place.
-        own: names of outputs that are computed from a state.
-    """
-    names = {name: "load_name" if prefix + name == "load" else prefix + name for name in (*STEPS, *own)}
-    row = {name: arrays[there][k] for name, there in names.items() if there in arrays}
-    more: dict[str, Any] = {}
-    number = arrays.get("ridge", np.arange(0))
-    if f"{prefix}ridge_contact_length" in arrays:
-        columns = {OF_RIDGES[name]: arrays[f"{prefix}ridge_{name}"][k] for name in RIDGES}
-        there = np.isfinite(columns["length"])
-        values = {name: column[there] for name, column in columns.items()}
-        more["ridges"] = RidgeStates(number[there].astype(int), **values | {"note": tuple(map(str, values["note"]))})
-    if f"{prefix}merkel_sed" in arrays:
-        there = np.isfinite(arrays[f"{prefix}merkel_sed"][k])
-        left, right = arrays[f"{prefix}meissner_sed"][k][there].T
-        more["sites"] = Sites(number[there].astype(int), arrays[f"{prefix}merkel_sed"][k][there], left, right)
-    if f"{prefix}merkel_stress" in arrays:
-        there = np.isfinite(arrays[f"{prefix}merkel_stress"][k])
-        values = {name: arrays[f"{prefix}{name}"][k][there] for name in STIMULI}
-        more["stimuli"] = Stimuli(number[there].astype(int), **values) if there.any() else None
-    if not prefix and "coupling_change" in arrays:
-        more["changes"] = tuple(map(float, arrays["coupling_change"][k][np.isfinite(arrays["coupling_change"][k])]))
-    return replace(ContactState.from_row(row), **more)
+# -- one flat record --------------------------------------------------------------------------------------
+def values(result: "Result") -> dict[str, Any]:
+    """Return what is known of the named states, flat: ``full_slip_mu_app``; None where a state is missing."""
+    found: dict[str, Any] = {}
+    names = (*CONDITIONS, *RESULTS, *STABILITY, *(each.name for each in result.outputs))
+    for name in STATES:
+        state = result.named.get(name)
+        found |= {f"{name}_{key}": None if state is None else getattr(state, key) for key in names}
+        for kind in CHANGES if state is not None else ():
+            found |= {f"{name}_{key}_{kind}": value for key, value in getattr(state, kind).known().items()}
+    return {key: None if value != value else value for key, value in found.items()}
 
 
-def _named_state(arrays: Mapping[str, NDArray[Any]], k: int, own: Sequence[str]) -> ContactState:
-    """Return a named state by its place, with its stability, errors and skin."""
-    stable, least, gain = (arrays[f"state_{name}"][k] for name in quantities.STABILITY)
-    more: dict[str, Any] = {"stable": None if stable < 0 else bool(stable)}
-    more |= {name: None if np.isnan(value) else float(value) for name, value in (("lambda_min", least), ("gain", gain))}
-    for kind in quantities.CHANGES:
-        names = {key: f"state_{key}_{kind}" for key in (*_CHANGED, *own)}
-        more[kind] = Errors.of({key: float(arrays[name][k]) for key, name in names.items() if name in arrays})
-    if "skin_ridge" in arrays and (facets := np.isfinite(arrays["skin_ridge"][k])).any():
-        points = np.isfinite(arrays["skin_x"][k]).any(axis=0)
-        values = {name: arrays[f"skin_{name}"][k][facets][:, points] for name in SKIN}
-        more["skin"] = Skin(ridge=arrays["skin_ridge"][k][facets].astype(int), **values)
-    return replace(_state(arrays, "state_", k, own), **more)
+def summary(result: "Result") -> dict[str, Any]:
+    """Return a result without its headline as ``summary.json`` has it."""
+    last = result.last
+    found: dict[str, Any] = {"format": files.FORMAT, "model": result.model, "full_slip": result.full_slip is not None}
+    found |= {key: 0.0 if last is None else getattr(last, key) for key in ("f_ext", "voltage")}
+    found |= asdict(result.cost) | values(result) | ({} if result.finger is None else result.finger.flat())
+    found |= {f"{name}_reached": each.reached for name, each in result.named.items() if each.reached != PATH}
+    found |= {"parameters": result.scene.parameters()} | result.record
+    found |= {name: text for name in ("failure", "interrupted") if (text := getattr(result, name))}
+    return found | {name: list(kept) for name in ("notes", "cautions") if (kept := getattr(result, name))}

@@ -18,6 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fingerpad.results import files
+from fingerpad.results.quantities import SKIN
 from fingerpad.results.states import by_load, shown
 from variational.files import read as read_bytes
 from variational.state import ContactState, Skin
@@ -32,7 +33,7 @@ Along = Skin | Mapping[str, Array]
 """The skin of a state, or its arrays by the names of :data:`ALONG`, as a file has them."""
 Groups = Mapping[str, Mapping[str, Any]]
 FILE = "fields.npz"
-ALONG = ("x", "y", "p", "t", "p_el", "d_eq", "ridge")
+ALONG = (*(name.removesuffix("_n").removesuffix("_t") for name in SKIN), "d_eq", "ridge")
 """Arrays of the skin along a state, see :class:`fingerpad.results.curves.SurfaceProfile`."""
 _LEVEL = 1  # of compression: the next ones take longer and save little
 _TRIANGLE = 5  # VTK's number of this cell

@@ -11,22 +11,26 @@ Where the result's own closure has no number (:mod:`fingerpad.reduced.closure_ba
 """
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
-from fingerpad.results.closures import KNOWN, known_in_words, why_not_known
 from fingerpad.results.quantities import FINGER, MESH, MODEL, QUANTITIES, Output
 from fingerpad.results.states import LoadResult, called
 from fingerpad.scene.fingers import FINGERS
 
 if TYPE_CHECKING:
-    from fingerpad.results.answer import Answer
+    from fingerpad.results.result import Result
     from fingerpad.slices.finger import WholeFinger
     from variational.state import ContactState
 
+BAND, KNOWN = "closures", "known"
+"""Keys of the bands of friction in a record: over models of roughness, and over all assumptions."""
 WHOLE, SECTION = "whole finger", "middle section"
 """What a headline is of."""
+_COUNTS = ("none", "one", "two", "three")
+_VARIANT = ", "  # before what a model of roughness is computed without
+_MODELS = "rough contact"
 _DIGITS = (2, 3, 4)  # of the numbers in a sentence: as few as tell them apart
 _ROUNDOFF = 1e-9  # by which a number is raised, so that one in the middle of two rounds up on every machine
 _SMALL = 1e-3  # of the largest number in a sentence, below which another is shown without digits of its own
@@ -98,12 +102,12 @@ class Headline:
         return "\n".join([*lines, *(f"  {line}" for line in (*self.known.splitlines(), self.remark) if line)])
 
 
-def headline(result: "Answer") -> Headline:
+def headline(result: "Result") -> Headline:
     """Return the headline of a result, with the remark of its finger's name."""
     return replace(_of_result(result), remark=FINGERS[result.scene.finger].remark)
 
 
-def _of_result(result: "Answer") -> Headline:
+def _of_result(result: "Result") -> Headline:
     slip, finger = result.full_slip if result.scene.friction != 0 else None, result.finger
     if (load := _timed(result)) is not None:
         return _over_time(load, slip)
@@ -118,7 +122,7 @@ def _of_result(result: "Answer") -> Headline:
 
 
 # -- what a number is of ---------------------------------------------------------------------------------------
-def _of_finger(result: "Answer", finger: "WholeFinger") -> Headline:
+def _of_finger(result: "Result", finger: "WholeFinger") -> Headline:
     """Return the friction coefficient of the whole finger; its ridge contact area without full slip."""
     volts = result.scene.volts
     force = f"{finger.f_ext:.4g} N" if result.whole else f"{finger.f_ext * (1 + _ROUNDOFF):.2g} N"
@@ -144,7 +148,7 @@ def _of_finger(result: "Answer", finger: "WholeFinger") -> Headline:
     return Headline(_stuck(result, f"{force} and {volts:.4g} V") or sentence, WHOLE, quantity, area, at, error, parts)
 
 
-def _of_slip(result: "Answer", slip: "ContactState") -> Headline:
+def _of_slip(result: "Result", slip: "ContactState") -> Headline:
     """Return the friction coefficient of the middle section; its friction force where no force presses it."""
     force, what = f"{slip.f_ext:.4g} N/m", f"friction force of the {SECTION}"
     before = _without(result, slip.f_ext) if slip.f_ext > 0 else None
@@ -156,7 +160,7 @@ def _of_slip(result: "Answer", slip: "ContactState") -> Headline:
     return Headline(sentence, SECTION, QUANTITIES[key], getattr(slip, key), at, error, parts, known=known)
 
 
-def _of_contact(result: "Answer") -> Headline:
+def _of_contact(result: "Result") -> Headline:
     """Return the contact length of the middle section in normal contact."""
     named, quantity = result.named, QUANTITIES["contact_length"]
     if not named:
@@ -187,7 +191,7 @@ def _over_time(load: LoadResult, slip: "ContactState | None") -> Headline:
     return Headline(sentence, SECTION, QUANTITIES["mu_app"], math.nan, at, ends=(ends.min, ends.max))
 
 
-def _timed(result: "Answer") -> LoadResult | None:
+def _timed(result: "Result") -> LoadResult | None:
     """Return the last load with a waveform, where a force presses the finger all the time and it rubs."""
     least = result.record.get("force_error") or 0.0
     waves = {load.name for load in result.scene.loads() if load.wave is not None}
@@ -196,21 +200,21 @@ def _timed(result: "Answer") -> LoadResult | None:
     return whole[-1] if whole else None
 
 
-def _known(result: "Answer", of: str) -> str:
+def _known(result: "Result", of: str) -> str:
     """Return the likely range of friction, in words; empty where the band of the record is of something else."""
     kept = result.record.get(KNOWN, {})
     return known_in_words(kept) if kept and kept["whole"] == (of == WHOLE) else ""
 
 
 # -- sentences -------------------------------------------------------------------------------------------------
-def _without(result: "Answer", force: float) -> float | None:
+def _without(result: "Result", force: float) -> float | None:
     """Return the friction force without attraction under a force, in its unit; None where it is not known."""
     mu_0 = result.scene.friction
     return mu_0 * force if isinstance(mu_0, float) else None
 
 
 def _change(
-    result: "Answer", force: str, volts: float, what: str, before: float | None, after: float, unit: str
+    result: "Result", force: str, volts: float, what: str, before: float | None, after: float, unit: str
 ) -> str:
     """Return a sentence on what a voltage changes.
 
@@ -236,7 +240,7 @@ def _change(
     return f"At {force}, {subject} {verb}{ending} the {what} from {first} to {second} {unit}."
 
 
-def _stuck(result: "Answer", load: str) -> str:
+def _stuck(result: "Result", load: str) -> str:
     """Return a sentence that full slip is missing; empty where it is not."""
     how = result.missing_slip
     return f"At {load} full slip was {how}, so there is no friction force of sliding." if how else ""
@@ -255,3 +259,64 @@ def _numbers(*values: float) -> Sequence[str]:
         if len(set(found)) == len(found):
             break
     return found
+
+
+# -- bands of friction, which :mod:`fingerpad.reduced.closure_band` computes -----------------------------------
+def band_in_words(kept: Mapping[str, Any]) -> str:
+    """Return a kept band over models of roughness in sentences; empty without one."""
+    if not kept:
+        return ""
+    found = {words: value for words, value in kept["mu_app"].items() if value is not None}
+    low, high = (pick(found, key=lambda words: found[words]) for pick in (min, max))
+    bounds = {words: share for words, share in kept.get("upper_bounds", {}).items() if words == high}
+    first = (
+        f"By models of rough contact µ_app of the middle section is {found[low]:.2f} ({low}) to {found[high]:.2f} "
+        f"({high}) at full slip."
+    )
+    last = "Which one holds for a finger is open (docs/microscale.md)."
+    return " ".join([first, *notes({**kept, "upper_bounds": bounds}), last])
+
+
+def known_in_words(kept: Mapping[str, Any]) -> str:
+    """Return a kept band over all assumptions, a sentence a line, the largest part first; empty without one."""
+    if not kept or kept["low"] is None:
+        return ""
+    opened = [_opened(part) for part in kept["parts"] if part["high"] is None]
+    parts = ", ".join(f"{part['name']} {span(part)}" for part in kept["parts"])
+    bounds = [note for part in kept["parts"] for note in notes({"upper_bounds": part.get("upper_bounds", {})})]
+    lacks = [f"Not in it: {', '.join(kept['not_known'])}, whose error is not known at this force."]
+    lines = ["; ".join([f"Likely range {span(kept)}", *opened]) + ".", f"With one assumption changed: {parts}."]
+    return "\n".join([*lines, *bounds, *(lacks if kept["not_known"] else [])])
+
+
+def _opened(part: Mapping[str, Any]) -> str:
+    """Return of which changes of a part there is no upper end, and why, in words."""
+    every, why = part["no_number"], " and ".join(dict.fromkeys(part["no_number"].values()))
+    if part["name"] != _MODELS:
+        return f"no upper end with {' and '.join(every)}, where {why}"
+    count = _COUNTS[len({words.partition(_VARIANT)[0] for words in every})]
+    return f"no upper end by {count} of three models of rough contact, in which {why}"
+
+
+def why_not_known(kept: Mapping[str, Any]) -> str:
+    """Return why the result's own closure has no number, of a kept band over all assumptions; empty where it has."""
+    if not kept or kept["low"] is not None:
+        return ""
+    return "; ".join(f"by {words} {why}" for words, why in kept["no_number"].items())
+
+
+def span(part: Mapping[str, Any]) -> str:
+    """Return the ends of a band or of a part; of an open one the end that has a number."""
+    return f"{part['low']:.2f} to {part['at_least'] if part['high'] is None else part['high']:.2f}"
+
+
+def notes(part: Mapping[str, Any]) -> list[str]:
+    """Return which changes of a part, or closures of a band, have no number, and which number is an upper bound."""
+    reasons: dict[str, list[str]] = {}
+    for words, why in part.get("no_number", {}).items():
+        reasons.setdefault(why, []).append(words)
+    return [f"No number by {' and '.join(those)}: {why}." for why, those in reasons.items()] + [
+        f"The largest number, by {words}, is an upper bound: attraction balances {100 * min(share, 1.0):.0f} % of the "
+        "pressure in contact."
+        for words, share in part.get("upper_bounds", {}).items()
+    ]

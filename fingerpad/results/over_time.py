@@ -22,7 +22,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from variational.state import EXTREMES, ContactState
+from fingerpad.results.quantities import EXTREMES
+from variational.state import ContactState
 
 if TYPE_CHECKING:
     from fingerpad.scene.waveform import Waveform

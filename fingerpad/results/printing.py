@@ -1,25 +1,23 @@
 """A result as text for a console and as HTML for a notebook: headline, whole finger, named states side by side."""
 
 import math
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from fingerpad import notebook
-from fingerpad.results.closures import RECORD, in_words
-from fingerpad.results.quantities import PER_LENGTH, QUANTITIES, cell, plus_minus_of
+from fingerpad.results.headline import BAND, band_in_words
+from fingerpad.results.quantities import FRICTION, PER_LENGTH, QUANTITIES, cell, plus_minus_of
 from fingerpad.results.states import LoadResult, called
-from fingerpad.results.text_table import head_rows, side_by_side
 from fingerpad.scene.reading import DEFAULT_MODEL
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from fingerpad.results.answer import Answer
+    from fingerpad.results.result import Result
     from variational.state import ContactState
 
 _SECTION = "Middle section of the finger"
 
 
-def text(result: "Answer", headline: str) -> str:
+def text(result: "Result", headline: str) -> str:
     """Return the text *Result* at the end of a run: headline, whole finger, and named states with units and errors."""
     lines = [_title(result)]
     if result.named:
@@ -31,7 +29,7 @@ def text(result: "Answer", headline: str) -> str:
     return "\n".join([headline, *finger, *lines])
 
 
-def page(result: "Answer", headline: str) -> str:
+def page(result: "Result", headline: str) -> str:
     """Return the same for a notebook, with remarks to unfold."""
     title, *known = map(str.strip, headline.splitlines())
     parts = [] if result.finger is None else [result.finger._repr_html_()]
@@ -41,15 +39,15 @@ def page(result: "Answer", headline: str) -> str:
     return notebook.page(title, notebook.lines(known), *parts, cautions, remarks)
 
 
-def _title(result: "Answer") -> str:
+def _title(result: "Result") -> str:
     model = f" (model '{result.model}')" if result.model != DEFAULT_MODEL else ""
     return ("Result" if result.finger is None else _SECTION) + model
 
 
-def _table(result: "Answer") -> tuple[list[str], list[list[str]]]:
+def _table(result: "Result") -> tuple[list[str], list[list[str]]]:
     """Return the heads and the rows of the named states side by side, the first of which are words."""
     shown = result.named
-    values = ((quantity.title, result.cells(key)) for key, quantity in result.printed.items())
+    values = ((quantity.title, cells(result, key)) for key, quantity in result.printed.items())
     rows = [[title, *each] for title, each in values if set(each) - {"–"}]
     if any(state.stable is not None for state in shown.values()):
         verdicts = {True: "yes", False: "no", None: "–"}
@@ -57,13 +55,22 @@ def _table(result: "Answer") -> tuple[list[str], list[list[str]]]:
     return ["", *(called(name, state.voltage) for name, state in shown.items())], rows
 
 
-def _timed(result: "Answer") -> list[str]:
+def cells(result: "Result", key: str) -> list[str]:
+    """Return a printed quantity in each named state, with its error; a dash where it is not shown."""
+    of, shown = result.printed[key], []
+    for name, state in result.named.items():
+        error = getattr(state.error, key, math.nan)
+        shown.append("–" if key in FRICTION and name != "full_slip" else of.shown(getattr(state, key), error))
+    return shown
+
+
+def _timed(result: "Result") -> list[str]:
     """Return a line for each load over time."""
     least = result.record.get("force_error") or 0.0
     return [_in_time(load, least) for load in result.loads if load.over_time is not None]
 
 
-def _remarks(result: "Answer") -> list[str]:
+def _remarks(result: "Result") -> list[str]:
     """Return the lines after the table: failure, missing full slip, meaning of ± and N/m, effect of the penalty."""
     found = [f"Not finished: {result.failure}"] if result.failure else []
     if (how := result.missing_slip) and not result.failure:
@@ -77,7 +84,7 @@ def _remarks(result: "Answer") -> list[str]:
     share = math.nan if result.full_slip is None else result.full_slip.penalty.contact_length
     if not math.isnan(share):
         found.append(f"Penalty: a rigid screen would change the contact length at full slip by {1e3 * share:+.2g} mm.")
-    band = in_words(result.record.get(RECORD, {}))
+    band = band_in_words(result.record.get(BAND, {}))
     found += [band] if band else []
     return [*found, *([PER_LENGTH] if result.named else []), *result.notes]
 
@@ -100,6 +107,22 @@ def _in_time(load: LoadResult, least: float) -> str:
         most, frequency = max(zip(passed.f_t_amplitude, passed.frequency, strict=True))
         words += f"; amplitude of f_T at {frequency:.4g} Hz {cell('f_t', most)} N/m"
     return f"{words}; {load.sticking}" if rubs and load.sticking else words
+
+
+def head_rows(states: Sequence[str]) -> list[list[str]]:
+    """Return the two lines of heads of states side by side, by their words."""
+    heads = [words.split(" normal") for words in states]
+    return [["", *(head[0] for head in heads)], ["", *("normal" + head[1] if head[1:] else "" for head in heads)]]
+
+
+def side_by_side(rows: Sequence[Sequence[str]]) -> list[str]:
+    """Return the lines of a table whose first column is words and whose others are numbers."""
+    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+    lines = list[str]()
+    for first, *rest in rows:
+        cells = (cell.rjust(width) for cell, width in zip(rest, widths[1:], strict=True))
+        lines.append("   ".join(["  " + first.ljust(widths[0]), *cells]).rstrip())
+    return lines
 
 
 class StatePrinted:

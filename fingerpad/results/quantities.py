@@ -6,23 +6,24 @@ of :data:`OUTPUTS`; one of a user is the same, given to ``fingerpad.run(scene, o
 
 import math
 import re
-from collections.abc import Callable, Iterable, MutableMapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping
 from dataclasses import dataclass, fields, replace
 from typing import Any
 
 from fingerpad.accuracy.richardson import plus_minus
-from fingerpad.scene.messages import SceneError, show
+from fingerpad.scene.messages import SceneError
 from geometry.units import in_si
-from variational.state import EXTREMES as EXTREMES
-from variational.state import ContactState, StepRecord
+from variational.state import ContactState
 
 _NOTHING = 1e-6  # in the units of tables: below it all is roundoff
 _PRINTED = {
     "": ("1", 1.0), "%": ("1", 100.0), "mm": ("m", 1e3), "µm": ("m", 1e6), "mm²": ("m^2", 1e6), "kPa": ("Pa", 1e-3)
 }  # fmt: skip
 """Units of tables that are not those of files, which are SI units, and the factor from SI."""
-_SUMS = {"N/m": ("N", 1), "J/m": ("J", 2), "m": ("mm²", 1), "m^2": ("m^3", 2)}
+SUMS = {"N/m": ("N", 1), "J/m": ("J", 2), "m": ("mm²", 1), "m^2": ("m^3", 2)}
 """Of quantities per metre of finger: the unit of their sum, and :attr:`Output.power`."""
+TABLES = frozenset({"result", "load", "sweep"})
+"""Tables that outputs may stand in: the printed result, extremes and means of loads, and sweeps."""
 SYMBOL = re.compile(r"(?<![\w.-])([µdfFhLp])_(app|eq|ext|el|max|[0cRT])(?![\w(=])")
 """A symbol in words, which pages and pictures typeset: its letter and its subscript."""
 
@@ -48,6 +49,14 @@ class Output:
     """Digits after the point, where no error is estimated."""
     sum: str = ""
     """``"slices"`` to integrate a quantity per metre of finger, such as N/m, over the slices of the whole finger."""
+    error: str = ""
+    """Of a quantity of the whole finger: the quantity of the section whose relative error it has."""
+    tables: Collection[str] = TABLES
+    """Where it stands, by the names of :data:`TABLES`; an output of one's own stands everywhere."""
+
+    def __post_init__(self) -> None:
+        """Take the tables as a set, also of a file."""
+        object.__setattr__(self, "tables", frozenset(self.tables))
 
     @property
     def si(self) -> str:
@@ -62,12 +71,12 @@ class Output:
     @property
     def power(self) -> int:
         """Exponent of the width of similar slices, with which the quantity grows at equal stress."""
-        return _SUMS.get(self.si, ("", 1))[1]
+        return SUMS.get(self.si, ("", 1))[1]
 
     @property
     def whole(self) -> "Output":
         """The sum over the slices of a whole finger, of a quantity per metre of it."""
-        return replace(self, unit=_SUMS[self.si][0])
+        return replace(self, unit=SUMS[self.si][0])
 
     @property
     def symbol(self) -> str:
@@ -107,7 +116,8 @@ class Output:
 
     def to_dict(self) -> dict[str, Any]:
         """Return all but how it is computed, ready for JSON."""
-        return {f.name: getattr(self, f.name) for f in fields(self) if f.name != "compute"}
+        found = {f.name: getattr(self, f.name) for f in fields(self) if f.name != "compute"}
+        return found | {"tables": sorted(self.tables)}
 
     def of(self, state: ContactState) -> float:
         """Return the value of a state (SI).
@@ -133,9 +143,19 @@ def _of_unit(unit: str) -> tuple[str, float]:
     return in_si(unit)
 
 
-def _listed(*rows: tuple[Any, ...]) -> dict[str, Output]:
-    """Return quantities that states have, by name: of each its name, unit, meaning, and words and digits of tables."""
-    return {name: Output(name, unit, None, *more) for name, unit, *more in rows}
+def _listed(*rows: tuple[Any, ...], error: Mapping[str, str] | None = None, **tables: str) -> dict[str, Output]:
+    """Return quantities that states have, by name.
+
+    Args:
+        rows: of each its name, unit, meaning, and words and digits of tables.
+        error: the quantity of the section whose relative error each has.
+        tables: names of the quantities of a table, in one text.
+    """
+    found = {}
+    for name, unit, *more in rows:
+        mine = (table for table, names in tables.items() if name in names.split())
+        found[name] = Output(name, unit, None, *more, tables=frozenset(mine), error=(error or {}).get(name, ""))
+    return found
 
 
 STEPS = _listed(
@@ -181,6 +201,18 @@ STEPS = _listed(
     ("viscous_least", "", "least dissipation of a branch at a point over the largest in the step; < 0: energy made"),
     ("mesh_contact", "m", "contact size of the mesh"),
     ("time", "s", "time since the start of the first load over time"),
+    result="f_ext voltage bone_height mu_app f_t f_electrostatic f_contact contact_length p_max ridges_in_contact",
+    given="step load f_ext voltage bone_x",
+    found="f_t mu_app f_electrostatic f_contact bone_height ridges_in_contact contact_length p_max",
+    load="mu_app f_t contact_length f_electrostatic",
+    sweep="mu_app f_t contact_length f_electrostatic ridges_in_contact",
+    short="mu_app f_t contact_length",
+    slip="mu_app f_t",
+    sliding="bone_x f_t mu_app contact_length ridges_in_contact",
+    chart="bone_x mu_app contact_length",
+    work="newton_iterations factorisations cutbacks jump",
+    estimated="f_t mu_app f_electrostatic contact_length p_max bone_height",
+    edges="contact_length f_t mu_app f_electrostatic bone_height",
 )  # fmt: skip
 """Of a state, in the order of ``steps.csv``."""
 STABILITY = _listed(
@@ -239,6 +271,11 @@ FINGER = _listed(
         "effective_width", "mm", "external force of the finger over that of its centre, the slice that touches first",
         "F_ext over f_ext of the centre", 2,
     ),
+    error={"contact_area": "contact_length", "indentation": "bone_height"}
+          | {name: name for name in ("mu_app", "f_t", "f_electrostatic")},
+    sweep="mu_app f_t f_electrostatic gross_area contact_area",
+    file="f_ext mu_app f_t f_electrostatic gross_area contact_area indentation",
+    first="f_ext mu_app f_t contact_area",
 )  # fmt: skip
 """Of the whole finger in a named state."""
 SLICES = _listed(
@@ -251,23 +288,35 @@ SLICES = _listed(
     ("contact_length", "m", "length of the slice in contact, of the ridges"),
     ("gross_width", "m", "width between the outermost touching ridges of the slice"),
     ("pressure", "Pa", "mean contact pressure of the slice over its length in contact"),
+    trace="f_ext f_t f_electrostatic contact_length gross_width",
 )
 """Of the slices of a whole finger."""
-_OF_FINGER = {*FINGER, *SLICES, "centre", "carried", "slices", "trace"}
 OUTPUTS: tuple[Output, ...] = ()
 """Outputs of the package that are computed from a state, as those of a user are. A new one is an entry here."""
 
 _SI = {"N/m", "V", "N", "m", "Pa", "J/m", "J/m^3", "s", "Hz", "Pa/m"}
-_PRINTED_FIRST = ("f_ext", "voltage", "mu_app", "f_t", "f_electrostatic", "f_contact", "contact_length", "p_max")
-QUANTITIES = {name: STEPS[name] for name in (*_PRINTED_FIRST, "ridges_in_contact", "bone_height")}
+_ORDER = "f_ext voltage mu_app f_t f_electrostatic f_contact contact_length p_max ridges_in_contact".split()
+
+
+def in_table(table: str, of: Mapping[str, Output] = STEPS) -> dict[str, Output]:
+    """Return the quantities of a table, by default of a state, in the order in which they are printed."""
+    mine = {key: each for key, each in of.items() if table in each.tables}
+    return mine if of is not STEPS else {key: mine[key] for key in dict.fromkeys((*_ORDER, *mine)) if key in mine}
+
+
+QUANTITIES = in_table("result")
 """The quantities of a state that are printed, in this order."""
+CONDITIONS, RESULTS = in_table("given"), in_table("found")
+"""Those of a named state in ``summary.json``."""
+EXTREMES = in_table("load")
+"""Those of a load of which extremes and means are kept, beside outputs of one's own."""
+SWEPT = in_table("sweep")
+"""Those of a named state in the table of a sweep, beside outputs of one's own."""
+FRICTION = in_table("slip")
+"""Those that are printed at full slip alone."""
 CHANGES = {"error": "whole known error", "penalty": "estimated change for a rigid screen"}
 MESH, PENALTY, MODEL = "mesh", "penalty", "closed form"
 """Parts of the error of a section, in words; those of a whole finger are in :mod:`fingerpad.slices.errors`."""
-SWEPT = (*EXTREMES, "ridges_in_contact")
-"""Quantities of a named state in the table of a sweep, beside outputs of one's own."""
-FRICTION = ("mu_app", "f_t")
-"""Quantities that are printed at full slip alone."""
 PER_LENGTH = (
     "N/m: force per metre of finger out of the plane of the cross-section; 75 N/m at its centre correspond to about "
     "0.5 N on the whole default finger."
@@ -279,70 +328,6 @@ def plus_minus_of(parts: Iterable[str]) -> str:
     words = ", ".join(dict.fromkeys(parts))
     said = f"±: error by {words}; what the finger and the model assume is not in it (docs/assumptions.md)."
     return said if words else ""
-
-
-def checked(outputs: Any) -> tuple[Output, ...]:
-    """Return outputs of the package and of a user.
-
-    Args:
-        outputs: of the user.
-
-    Raises:
-        SceneError: one is no output, or has a name that a state has.
-    """
-    given = list(outputs) if isinstance(outputs, Iterable) else [outputs]
-    if isinstance(outputs, Output) or not all(isinstance(each, Output) for each in given):
-        raise SceneError(f"outputs is {show(outputs)}; it must be a list of fingerpad.Output")
-    names = {f.name for each in (ContactState, StepRecord) for f in fields(each)} | set(dir(ContactState))
-    every = tuple(dict.fromkeys((*OUTPUTS, *given)))
-    for each in every:
-        if not (isinstance(each.name, str) and each.name.isidentifier()) or each.name in names:
-            raise SceneError(f"an output is called {show(each.name)}; it must have a name of its own, such as 'p_mean'")
-        if not isinstance(each.unit, str) or not callable(each.compute):
-            raise SceneError(f"the output {each.name} must have a unit, such as 'kPa', and a function of a state")
-        if each.sum not in ("", "slices"):
-            raise SceneError(f"the output {each.name} has sum = {show(each.sum)}; it must be 'slices', or left out")
-        if each.sum and each.si not in _SUMS:
-            units = f"the unit {show(each.unit)}; it must be one per metre of finger: {', '.join(_SUMS)}"
-            raise SceneError(f"the output {each.name} has sum = 'slices' and {units}")
-        if each.sum and each.name in _OF_FINGER:
-            raise SceneError(f"an output is called {show(each.name)}, as a quantity of the whole finger; rename it")
-        names.add(each.name)
-    return every
-
-
-def valued(
-    state: ContactState, outputs: Iterable[Output], lost: MutableMapping[str, str] | None = None
-) -> ContactState:
-    """Return a state with the values of outputs.
-
-    Args:
-        state: the state.
-        outputs: what is computed from it.
-        lost: takes by name why an output has no value, which is NaN then; without it that is an error. A state
-            between those of a trace keeps the value that was interpolated.
-
-    Raises:
-        SceneError: an output cannot be computed.
-    """
-
-    def value(each: Output) -> float:
-        try:
-            return each.of(state)
-        except SceneError as error:
-            if each.sum and each.name in state.own:
-                return state.own[each.name]
-            if lost is None:
-                raise
-            lost.setdefault(each.name, str(error))
-            return math.nan
-
-    return replace(state, own={**state.own, **{each.name: value(each) for each in outputs if each.compute}})
-
-
-def read(kept: Sequence[dict[str, Any]]) -> tuple[Output, ...]:
-    """Return outputs that a file describes, see :meth:`Output.to_dict`; how they are computed is not known."""
-    return tuple(Output(**each) for each in kept)
 
 
 def cell(key: str, value: float, error: float = math.nan) -> str:

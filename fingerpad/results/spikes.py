@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from fingerpad.results import files, netcdf
-from fingerpad.results.text_table import side_by_side
+from fingerpad.results import dataset, files
+from fingerpad.results.printing import side_by_side
 
 if TYPE_CHECKING:
     import xarray
@@ -152,7 +152,7 @@ class Spikes:
 
     def to_netcdf(self, path: str | Path) -> None:
         """Write the dataset as NetCDF 3."""
-        files.replace(Path(path), netcdf.encoded(self._variables(), (), self._attributes()))
+        files.replace(Path(path), dataset.content(self.to_xarray()))
 
     def plot(self, path: str | Path | None = None) -> "Figure":
         """Draw energy densities at Merkel sites over time, and each spike unit by unit below; write a PNG if asked."""

@@ -11,13 +11,14 @@
 
 import math
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from itertools import groupby
 from operator import attrgetter
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from fingerpad.results.over_time import OverTime, over_time, without_parts_of_jumps
-from variational.state import CONDITIONS, EXTREMES, RESULTS, ContactState
+from fingerpad.results.quantities import EXTREMES
+from variational.state import ContactState
 
 if TYPE_CHECKING:
     from fingerpad.scene import Load
@@ -222,17 +223,6 @@ class LoadResult:
         """Return whether there is friction in the load, above a force (N/m) up to which it is roundoff."""
         f_t = self.extremes["f_t"]
         return max(abs(f_t.min), abs(f_t.max)) > max(least, _ROUNDOFF * abs(self.end.f_ext))
-
-    def to_dict(self) -> dict[str, Any]:
-        """Return the load's result, ready for JSON."""
-        end = {key: getattr(self.end, key) for key in (*CONDITIONS, *RESULTS, *self.end.own) if key != "load"}
-        extremes = {
-            quantity: {name: value for name, value in asdict(extreme).items() if not math.isnan(value)}  # the times
-            for quantity, extreme in self.extremes.items()
-        }
-        more = {name: getattr(self, name) for name in ("full_slip_reached", "full_slip_held", "stable")}
-        more |= {} if self.over_time is None else {"over_time": asdict(self.over_time)}
-        return {"name": self.name, "end": end, "extremes": extremes, **more}
 
 
 def load_results(

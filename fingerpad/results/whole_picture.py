@@ -10,10 +10,10 @@ from fingerpad.results.solid_picture import solid
 from geometry.profiles import Profiles
 
 if TYPE_CHECKING:
-    from fingerpad.results.answer import Answer
+    from fingerpad.results.result import Result
 
 
-def draw(result: "Answer", kind: str, path: Path | None) -> Figure:
+def draw(result: "Result", kind: str, path: Path | None) -> Figure:
     """Draw a picture of a result with a whole finger, on rank 0.
 
     Args:

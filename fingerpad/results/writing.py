@@ -3,20 +3,18 @@
 import logging
 import logging.handlers
 import sys
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from contextlib import suppress
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from fingerpad.results import dataset
-from fingerpad.results.files import Table, replace_json
+from fingerpad.results.files import Table, replace, replace_json
 from fingerpad.results.folder import Folder, Serial
-from fingerpad.results.quantities import STIMULI
-from variational.state import ContactState
 
 if TYPE_CHECKING:
     from mpi4py import MPI
+
+    from fingerpad.results.result import Result
 
 _LOG = "run.log"
 
@@ -70,10 +68,16 @@ class Writer:
                 self._tables[name] = Table(self._place.folder / f"{name}.csv", row)
             self._tables[name].write(row)
 
-    def summary(self, found: Mapping[str, Any]) -> None:
-        """Write ``summary.json``, on rank 0."""
+    def result(self, result: "Result", headline: bool) -> None:
+        """Write ``result.nc``, and what others read as ``summary.json``, on rank 0.
+
+        Args:
+            result: the result.
+            headline: whether the summary has one.
+        """
         if self._place is not None and self.comm.rank == 0:
-            replace_json(self._place.folder / "summary.json", found)
+            replace(self._place.folder / dataset.FILE, dataset.content(result.to_xarray()))
+            replace_json(self._place.folder / "summary.json", result.to_dict(headline))
 
     def lost(self, why: str, trace: str) -> None:
         """Print and log, on rank 0, what a result has to do without.
@@ -123,22 +127,3 @@ def _send(log: logging.Logger, file: logging.Handler) -> None:
             memory.setTarget(file)
             memory.flush()
     log.handlers = [file]
-
-
-def ridge_rows(state: ContactState) -> Iterator[dict[str, Any]]:
-    """Yield the row of each ridge in contact, as ``ridges.csv`` has it."""
-    if (ridges := state.ridges) is None:
-        return
-    for k in np.flatnonzero(ridges.length > 0):
-        values = {name: getattr(ridges, attribute) for name, attribute in dataset.OF_RIDGES.items()}
-        yield {"ridge": int(ridges.number[k])} | {name: each[k] if len(each) else "" for name, each in values.items()}
-
-
-def site_rows(state: ContactState) -> Iterator[dict[str, Any]]:
-    """Yield the row of each ridge's receptor sites, as ``receptors.csv`` has it."""
-    if (sites := state.sites) is None:
-        return
-    for k, number in enumerate(sites.number):
-        row = {name: getattr(sites, each)[k] for name, each in dataset.OF_SITES.items()}
-        more = {} if state.stimuli is None else {name: getattr(state.stimuli, name)[k] for name in STIMULI}
-        yield {"ridge": int(number)} | row | more

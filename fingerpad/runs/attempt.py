@@ -18,8 +18,9 @@ from fingerpad.model.state import broken, force_error
 from fingerpad.results import fields
 from fingerpad.results.folder import CheckpointError
 from fingerpad.results.interrupt import Interrupt, Interrupted
+from fingerpad.results.outputs import valued
 from fingerpad.results.provenance import provenance, refuse_unread
-from fingerpad.results.quantities import Output, valued
+from fingerpad.results.quantities import Output
 from fingerpad.results.result import Result
 from fingerpad.results.terminal import Console, in_words
 from fingerpad.results.writing import Writer

@@ -74,10 +74,7 @@ def times_left(took: Sequence[float], left: int, jobs: int) -> tuple[float, floa
 
 def _description(summary: Summary) -> str:
     """Return what became of a run that did not fail, in words; of a whole finger where the force is on it."""
-    if "force" in summary.get("parameters", {}):
-        mu_app = summary["finger"]["states"].get("full_slip", {}).get("mu_app")
-    else:
-        mu_app = summary.get("full_slip_mu_app")
+    mu_app = summary.get(f"full_slip_{'finger_' * ('force' in summary.get('parameters', {}))}mu_app")
     return "done" if mu_app is None else f"done, µ_app {mu_app:.4f}"
 
 

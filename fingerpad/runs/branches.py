@@ -94,7 +94,7 @@ class Branches:
         self._reach = Reach(scene, self._made)
         with computed():
             light = max(LIGHT, traces.SMALLEST / self._reach.top)
-            self.section = traces.history(scene.replace(force=None), self._reach.top, light)
+            self.section = _sliding(scene.replace(force=None), self._reach.top, light)
         self.kept, self.found, self.counts, self.force_error = kept, dict[str, Traced](), Counts(), 0.0
         self._solved: Solved | None = None  # the last full slip
 
@@ -186,6 +186,21 @@ class Branches:
         """Keep the present state as one to be solved for again; collective."""
         self._recorder.keep(name)
         found.anchors.append(self._recorder.states[name])
+
+
+def _sliding(scene: Scene, top: float, light: float) -> Scene:
+    """Return the scene of a finger that is pressed lightly, charged, slides, and is pressed on.
+
+    Args:
+        scene: press, charge and slide.
+        top: largest force (N/m).
+        light: first force over that.
+    """
+    far = scene.slide_length
+    loads: list[dict[str, float | str | bool]] = [{"name": "press", "f_ext": top * light}]
+    loads += [{"name": "charge", "voltage": scene.volts}] if scene.volts else []
+    loads += [{"name": "slide", "bone_x": far / 4, "until_full_slip": True}]
+    return scene.replace(history=[*loads, {"name": "raise", "f_ext": top, "bone_x": far}])
 
 
 def _forces(start: float, top: float, among: Sequence[float]) -> list[float]:

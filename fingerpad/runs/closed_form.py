@@ -10,7 +10,6 @@ from fingerpad.runs.context import RunContext
 from fingerpad.scene import Scene
 from fingerpad.scene.messages import SceneError
 from fingerpad.slices import traces
-from fingerpad.slices.grid import of_points
 from fingerpad.slices.total import Total, profile
 from variational.coefficients import LawError
 
@@ -82,7 +81,7 @@ class ClosedForm:
         section = scene.model_copy(update={"force": None})
 
         def traced(name: str, top: float) -> traces.Traced:
-            return traces.Traced(*of_points(section, self.model, self.section, name, scene.centre_force, top))
+            return traces.Traced(*traces.of_points(section, self.model, self.section, name, scene.centre_force, top))
 
         found = traces.Reach(scene, traced).follow(STATE).total
         assert found is not None

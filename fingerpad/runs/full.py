@@ -10,8 +10,8 @@ from fingerpad.model.cautions import breakdown_ahead
 from fingerpad.model.options import FingerModel, by_rule, plan
 from fingerpad.model.report import Clock
 from fingerpad.results.interrupt import Interrupt, all_together, no_room
+from fingerpad.results.outputs import checked
 from fingerpad.results.provenance import check_options
-from fingerpad.results.quantities import checked
 from fingerpad.results.result import Result
 from fingerpad.results.terminal import Console
 from fingerpad.results.writing import Writer

@@ -33,10 +33,9 @@ from fingerpad.model.options import FingerModel, by_rule, plan
 from fingerpad.model.report import Clock
 from fingerpad.model.simulation import RestartRequired, Simulation
 from fingerpad.model.state import broken
-from fingerpad.results.answer import Cost
 from fingerpad.results.files import below
 from fingerpad.results.provenance import provenance
-from fingerpad.results.result import Result
+from fingerpad.results.result import Cost, Result
 from fingerpad.runs import batch
 from fingerpad.runs.context import RunContext
 from fingerpad.runs.post import kept

@@ -14,9 +14,8 @@ from dataclasses import dataclass, replace
 
 from fingerpad.reduced.cylinders import Cylinders
 from fingerpad.reduced.registry import find
-from fingerpad.results.answer import Number
 from fingerpad.results.quantities import EXTREMES, FINGER, QUANTITIES, Output, plus_minus_of
-from fingerpad.results.result import Result
+from fingerpad.results.result import Number, Result
 from fingerpad.runs.closed_form import STATE, ClosedForm
 from fingerpad.runs.context import RunContext
 from fingerpad.runs.roots import EQUAL, Axis, Roots, axis

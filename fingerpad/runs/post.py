@@ -14,9 +14,9 @@ from dataclasses import replace
 from pkgutil import resolve_name
 from typing import NamedTuple
 
-from fingerpad.results import dataset
 from fingerpad.results.folder import Serial
-from fingerpad.results.quantities import Output, checked
+from fingerpad.results.outputs import checked
+from fingerpad.results.quantities import Output
 from fingerpad.results.result import Result
 from fingerpad.results.writing import Writer
 from fingerpad.runs.context import BEGUN, RunContext
@@ -89,11 +89,6 @@ def _words(result: Result) -> Result:
 
 
 # -- files -------------------------------------------------------------------------------------------------
-def _dataset(result: Result) -> None:
-    if missing := dataset.save(result):
-        raise SceneError(missing)
-
-
 def _picture(kind: str) -> Callable[[Result], None]:
     def draw(result: Result) -> None:
         assert result.folder is not None
@@ -127,7 +122,6 @@ POST: list[Entry] = [
     BANDS,
     cautions_on(),
     WORDS,
-    Entry("result.nc", lambda result, _: result.folder is not None, _dataset, files=True),
     Entry("footprint.png", lambda r, c: _page(r, c) and r.finger is not None, _picture("footprint"), files=True),
     Entry("solid.png", lambda r, c: _page(r, c) and r.finger is not None and r.whole, _picture("solid"), files=True),
     Entry("report", _page, "fingerpad.report.write:of_result", files=True),
@@ -178,16 +172,16 @@ def completed(result: Result, context: RunContext, writer: Writer, own: Sequence
     """Write a result, compute what follows from it, and write it again; collective; see :func:`kept`."""
     writer.take()
     written = result = replace(result, folder=writer.folder)
-    writer.summary(_unfinished(result).to_dict(headline=False))
+    writer.result(_unfinished(result), headline=False)
     in_words = True
     for entry in sorted((*own, *POST), key=lambda each: each.files):
         if entry.files and result is not written:
-            writer.summary(result.to_dict(headline=in_words))
+            writer.result(result, in_words)
             written = result
         result, done = _tried(entry, result, context, writer)
         in_words &= done or entry is not WORDS
     if result is not written:
-        writer.summary(result.to_dict(headline=in_words))
+        writer.result(result, in_words)
     if result.failure:
         writer.log.error(result.failure)
     return result

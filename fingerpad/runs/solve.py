@@ -16,8 +16,8 @@ from fingerpad.model.cautions import breakdown_ahead
 from fingerpad.reduced.registry import find
 from fingerpad.results.files import replace_json
 from fingerpad.results.folder import CheckpointError, FolderError, Serial, on_rank_0
+from fingerpad.results.outputs import checked as checked_outputs
 from fingerpad.results.quantities import Output
-from fingerpad.results.quantities import checked as checked_outputs
 from fingerpad.results.result import Result
 from fingerpad.runs.context import RunContext, finished
 from fingerpad.runs.post import Entry, kept, of_outputs
@@ -199,7 +199,7 @@ def _whole(scene: Scene, model: "Model", context: RunContext) -> Result:
     return kept(found, context, of_outputs(context.outputs))
 
 
-def gone_on(scene: Scene, model: "Model", context: RunContext) -> Result:
+def continued(scene: Scene, model: "Model", context: RunContext) -> Result:
     """Return the result of a scene that its folder may have, whole or in part; collective."""
     folder = context.folder
     if folder is None:
@@ -222,7 +222,7 @@ def main(file: Path, folder: Path, model: str) -> None:
     """
     scene, way = from_data(json.loads(file.read_text(encoding="utf-8"))), find(model)
     try:
-        gone_on(scene, way, RunContext(folder, lines=way.path, bar=way.path, report=False))
+        continued(scene, way, RunContext(folder, lines=way.path, bar=way.path, report=False))
     except FolderError as error:  # another run is at it, or the disk is full: it may be gone the next time
         print(error, file=sys.stderr)
         sys.exit(os.EX_TEMPFAIL)

@@ -11,8 +11,9 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
+from fingerpad.results import dataset
 from fingerpad.results.headline import SECTION, WHOLE
-from fingerpad.results.quantities import FINGER, FRICTION, QUANTITIES, SWEPT, Output, cell
+from fingerpad.results.quantities import FINGER, FRICTION, QUANTITIES, SWEPT, Output, cell, in_table
 from fingerpad.results.states import STATES, LoadResult
 from fingerpad.scene import Scene
 from fingerpad.scene.keys import Key, by_name
@@ -27,11 +28,7 @@ LOAD = "load"
 """Beginning of the columns of a load over time."""
 FORCE = "full_slip_finger_f_ext"
 """Column of the force on the whole finger at full slip."""
-_WHOLE = ("mu_app", "f_t", "f_electrostatic", "contact_area", "gross_area")
-_FIRST = ("f_ext", "mu_app", "f_t", "contact_area")  # of a sweep without a force in newtons
-_SECOND = ("mu_app", "f_t", "contact_length")  # of its middle section
-_NEWTONS = ("f_ext", *_WHOLE, "indentation")
-_IN_TIME = ("mu_app", "f_t", "contact_length")
+_IN_TIME = in_table("short")
 _ENDS = {"min": "least", "max": "largest", "mean": "mean"}
 
 
@@ -39,7 +36,7 @@ def row(result: "Result") -> dict[str, Any]:
     """Return the values of a point in SI units by column, and its failure."""
     if result.whole:
         return (_newtons(result.finger) if result.finger is not None else {}) | {"failure": result.failure}
-    values, keys = result.values(), (*SWEPT, *(each.name for each in result.outputs))
+    values, keys = dataset.values(result), (*SWEPT, *(each.name for each in result.outputs))
     alone = "reached" in result.record  # full slip without a path
     names = [f"{state}_{key}" for state in (STATES[-1:] if alone else STATES) for key in keys]
     cells = {key: values.get(key) for name in names for key in (name, f"{name}_error") if key in values}
@@ -58,7 +55,7 @@ def _newtons(finger: WholeFinger) -> dict[str, float]:
     for state in finger.states:
         values, error = finger.values(state), finger.error.get(state, {})
         own = (key for key in finger.quantities if key not in FINGER and key in values)
-        for key in (*_NEWTONS, *own):
+        for key in (*in_table("file", FINGER), *own):
             if key in FRICTION and state != "full_slip":
                 continue
             name = _of_finger(state, key)
@@ -97,14 +94,15 @@ def shown(columns: Iterable[str], whole: bool, outputs: Iterable[Output] = ()) -
     there = set(columns)
     if not whole:
         summed = _of_finger("full_slip", "mu_app") in there
-        finger = {_of_finger("full_slip", key): FINGER[key] for key in _FIRST} if summed else {}
-        known = {key: QUANTITIES[key] for key in SWEPT}
-        known = {key: _of_section(known[key]) for key in _SECOND} if summed else known
-        finger |= {_of_finger("full_slip", each.name): each.whole for each in outputs if each.sum} if summed else {}
-        known |= {each.name: _of_section(each) if summed and each.sum else each for each in outputs}
-        return "full_slip", finger | {f"full_slip_{key}": each for key, each in known.items()}
+        section, finger = dict(SWEPT), dict[str, Output]()
+        if summed:
+            section = {key: _of_section(each) for key, each in in_table("short").items()}
+            finger = in_table("first", FINGER) | {each.name: each.whole for each in outputs if each.sum}
+        section |= {each.name: _of_section(each) if summed and each.sum else each for each in outputs}
+        found = {_of_finger("full_slip", key): each for key, each in finger.items()}
+        return "full_slip", found | {f"full_slip_{key}": each for key, each in section.items()}
     state = next((name for name in reversed(STATES) if _of_finger(name, "contact_area") in there), "full_slip")
-    keys = [key for key in _WHOLE if state == "full_slip" or key not in FRICTION]
+    keys = [key for key in in_table("sweep", FINGER) if state == "full_slip" or key not in FRICTION]
     own = {_of_finger(state, each.name): each.whole for each in outputs if each.sum}
     return state, {_of_finger(state, key): FINGER[key] for key in keys} | own
 
@@ -114,13 +112,10 @@ def of_finger(column: str) -> bool:
     return "_finger_" in column
 
 
-def said_of(columns: Iterable[str]) -> str:
+def description(columns: Iterable[str]) -> str:
     """Return in words what the columns of a table are of."""
-    of = {WHOLE: False, SECTION: False}
-    for column in columns:
-        of[WHOLE if of_finger(column) else SECTION] = True
-    words = [words for words, there in of.items() if there]
-    return f"{WHOLE}, and {SECTION} per metre of finger" if len(words) > 1 else words[0]
+    kinds = {of_finger(column) for column in columns}
+    return f"{WHOLE}, and {SECTION} per metre of finger" if len(kinds) > 1 else WHOLE if True in kinds else SECTION
 
 
 def _of_section(quantity: Output) -> Output:
@@ -150,12 +145,12 @@ def in_time(name: str, columns: Iterable[str]) -> dict[str, str]:
     friction = "mu_app" if f"{LOAD}_{name}_mu_app_mean" in there else "f_t"
     for key in (friction, "contact_length"):
         quantity = QUANTITIES[key]
-        words |= {f"{key}_{end}": f"{said} {quantity.head}" for end, said in _ENDS.items()}
+        words |= {f"{key}_{end}": f"{word} {quantity.head}" for end, word in _ENDS.items()}
     words |= {"f_t_amplitude": "amplitude of f_T (N/m)", "f_t_frequency": "at (Hz)"}
-    return {column: said for key, said in words.items() if (column := f"{LOAD}_{name}_{key}") in there}
+    return {column: word for key, word in words.items() if (column := f"{LOAD}_{name}_{key}") in there}
 
 
-def text(column: str, value: float | None) -> str:
+def _cell(column: str, value: float | None) -> str:
     """Return a value in SI of a load's column as it is printed."""
     if value is None or math.isnan(value):
         return "–"
@@ -175,7 +170,7 @@ def tables(rows: Sequence[Mapping[str, Any]], axes: Mapping[str, str]) -> Iterat
         shown = in_time(name, columns)
         lines = [[*axes.values(), *shown.values()]]
         for each in rows:
-            values = [text(column, each.get(column)) for column in shown]
+            values = [_cell(column, each.get(column)) for column in shown]
             lines.append([*(printed(each[key]) for key in axes), *values])
         yield name, lines
 

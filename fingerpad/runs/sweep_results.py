@@ -13,17 +13,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fingerpad import notebook
-from fingerpad.results import dataset, netcdf
-from fingerpad.results.closures import KNOWN
+from fingerpad.results import dataset
 from fingerpad.results.files import replace
-from fingerpad.results.quantities import FINGER, PER_LENGTH, Output, plus_minus_of
+from fingerpad.results.headline import KNOWN
+from fingerpad.results.quantities import CONDITIONS, FINGER, PER_LENGTH, RESULTS, Output, plus_minus_of
 from fingerpad.results.states import STATES, WORDS
 from fingerpad.runs import post
-from fingerpad.runs.sweep_columns import described, head_of, of_finger, printed, row, said_of, shown, tables
+from fingerpad.runs.sweep_columns import described, description, head_of, of_finger, printed, row, shown, tables
 from fingerpad.scene.messages import alike
+from fingerpad.scene.reading import flat
 from fingerpad.scene.remarks import drive_in_short, other_under_a_drive
 from fingerpad.slices.errors import remarks
-from variational.state import CONDITIONS, RESULTS
 
 if TYPE_CHECKING:
     import xarray
@@ -104,7 +104,7 @@ class Sweep:
         if state not in STATES:
             raise ValueError(f"state is {state!r}; it must be one of {', '.join(STATES)}")
         own = (each.name for each in self.outputs)
-        known = (*(FINGER if self.whole else (*CONDITIONS[2:], *RESULTS)), *own)
+        known = (*(FINGER if self.whole else (*list(CONDITIONS)[2:], *RESULTS)), *own)
         if quantity not in known:
             raise ValueError(f"quantity is {quantity!r}; it must be one of {', '.join(known)}")
         if self.whole:
@@ -154,7 +154,11 @@ class Sweep:
     def save(self) -> str:
         """Write ``sweep.nc`` into the folder; return why not in one sentence, empty where it was written."""
         assert self.folder is not None
-        return dataset.write(self.folder / FILE, netcdf.encoded(*_variables(self)))
+        try:
+            replace(self.folder / FILE, dataset.content(self.to_xarray()))
+        except OSError as error:
+            return f"{FILE} was not written: {error.strerror or error}; all other files are complete"
+        return ""
 
     def to_csv(self, path: str | Path) -> None:
         """Write the rows as a table."""
@@ -199,7 +203,7 @@ class Sweep:
             errors = {column: each.get(f"{column}_error") for column in columns}
             cells = [of.shown(values[column], errors[column]) for column, of in columns.items()]
             table.append([*first, *cells])
-        of = said_of(columns)
+        of = description(columns)
         scenes = [result.scene for result in self.results]
         found = [(f"{of[0].upper()}{of[1:]}, at {WORDS[state]}, under {drive_in_short(scenes)}", table)]
         found += [(f"Over time, in the load {name}", over_time) for name, over_time in tables(rows, axes)]
@@ -286,9 +290,5 @@ def _shared(sweep: Sweep) -> dict[str, Any]:
     """Return the attributes that all points have in common."""
     every = [dataset.attributes(result) for result in sweep.results]
     texts = [{key: json.dumps(value) for key, value in each.items()} for each in every]
-    own = ("parameters", "provenance", "failure", "notes", "cautions")
-    return {
-        key: value
-        for key, value in every[0].items()
-        if key not in own and all(t.get(key) == texts[0][key] for t in texts)
-    }
+    keys = {"title", "model", *flat(sweep.results[0].parameters)}
+    return {k: value for k, value in every[0].items() if k in keys and all(t.get(k) == texts[0][k] for t in texts)}

@@ -1,8 +1,5 @@
 """Every key of a scene: unit, default, range and meaning, and their JSON Schema, from the models themselves.
 
-What a key means is the text under it in the source of its model, by the standard library's ``ast``: pydantic's own
-``use_attribute_docstrings`` would ask every model to be configured for it.
-
 By the JSON Schema of scenes editors complete and check TOML files. A number with a unit may also be a text such as
 ``"10 um"``. What concerns several keys at once, and whether a unit fits, is checked by the program alone.
 """
@@ -15,6 +12,7 @@ import types
 from collections.abc import Iterator
 from dataclasses import MISSING, Field, dataclass, replace
 from functools import cache
+from itertools import pairwise
 from typing import Annotated, Any, Literal, Union, get_args, get_origin
 
 from pydantic import BaseModel, WrapValidator
@@ -82,22 +80,13 @@ def by_name(scene: type[BaseModel]) -> dict[str, Key]:
     return found
 
 
-def tables(model: type[BaseModel]) -> Iterator[type[BaseModel]]:
-    """Yield the model of a table and of every table in it; one that is there twice comes twice."""
-    yield model
-    for field in model.model_fields.values():
-        for part in (*_parts(field.annotation), *field.metadata):
-            if isinstance(part, type) and issubclass(part, BaseModel):
-                yield from tables(part)
-
-
 def _of(model: type[BaseModel], table: str, instance: BaseModel | None) -> Iterator[Key]:
     inner, laws = [], list[tuple[str, LawKey, str]]()
     for name, field in model.model_fields.items():
         parts = tuple(_parts(field.annotation)) + tuple(field.metadata)
         law = next((part for part in parts if isinstance(part, LawKey)), None)
         if law is not None:
-            meaning = docstrings(model).get(name, "")
+            meaning = plain_text(field.description)
             if law.number:
                 limits = range_of(keys_of(law.default)[law.number])
                 yield Key(table + name, getattr(law.default, law.number), meaning, limits)
@@ -113,7 +102,7 @@ def _of(model: type[BaseModel], table: str, instance: BaseModel | None) -> Itera
             ):  # may be a number or a name too
                 continue
         required = instance is None and field.is_required()
-        meaning = docstrings(model).get(name, "")
+        meaning = plain_text(field.description)
         yield Key(table + name, None if required else value, meaning, *_allowed(parts), required=required)
     for where, key, meaning in laws:
         yield from _of_law(where, key, meaning)
@@ -179,30 +168,24 @@ def _allowed(parts: tuple[Any, ...]) -> tuple[Range | None, str]:
 
 
 @cache
-def docstrings(model: type) -> dict[str, str]:
-    """Return what is written under the keys of a model or a law, in one line each; empty where there is no source."""
-    found = {
-        key: words
-        for base in model.__bases__
-        if base not in (BaseModel, object)
-        for key, words in docstrings(base).items()
-    }
+def docstrings(law: type) -> dict[str, str]:
+    """Return what is written under the fields of a law and of its bases; empty where there is no source."""
+    found = {key: words for base in law.__bases__ if base is not object for key, words in docstrings(base).items()}
     try:
-        body = ast.parse(textwrap.dedent(inspect.getsource(model))).body[0]
+        body = ast.parse(textwrap.dedent(inspect.getsource(law))).body[0]
     except (OSError, TypeError):
         return found
-    lines = getattr(body, "body", [])
-    for line, after in zip(lines, lines[1:], strict=False):
+    for line, after in pairwise(getattr(body, "body", [])):
         if isinstance(line, ast.AnnAssign) and isinstance(line.target, ast.Name):
             if isinstance(after, ast.Expr) and isinstance(after.value, ast.Constant):
-                found[line.target.id] = _plain(str(after.value.value))
+                found[line.target.id] = plain_text(str(after.value.value))
     return found
 
 
-def _plain(text: str) -> str:
+def plain_text(text: str | None) -> str:
     """Return a docstring as a line of text, without the marks of reStructuredText."""
-    text = re.sub(r":\w+:`~?([^`]*)`", r"\1", " ".join(text.split()))
-    return text.replace("``", "").replace("*Assumption*", "Assumption").replace("*assumption*", "assumption")
+    text = re.sub(r":\w+:`~?([^`]*)`", r"\1", " ".join((text or "").split()))
+    return re.sub(r"\*([Aa]ssumption)\*", r"\1", text.replace("``", ""))
 
 
 # -- schema --------------------------------------------------------------------------------------------
@@ -234,25 +217,25 @@ class _Generator(GenerateJsonSchema):
 def schema(scene: type[BaseModel]) -> dict[str, Any]:
     """Return the JSON Schema of the file of a scene, ready for JSON; of the model of a scene."""
     found = scene.model_json_schema(schema_generator=_Generator, mode="validation")
-    parts = found["$defs"] | {scene.__name__: found}
-    for model in dict.fromkeys(tables(scene)):
-        _describe(parts[model.__name__], model)
-        for name, field in model.model_fields.items():
-            if flat := next((key.flat for key in field.metadata if isinstance(key, LawKey)), ""):
-                _flatten(parts[model.__name__], name, flat)
+    for part in found["$defs"].values():
+        for name, value in part["properties"].items():
+            if flat := value.pop("x-flat", ""):
+                _flatten(part, name, flat)
+                break
     found["properties"]["sweep"] = _SWEEP
-    return {"$schema": DIALECT, "title": "Scene of fingerpad"} | found
+    return {"$schema": DIALECT, **_cleaned(found), "title": "Scene of fingerpad"}
 
 
-def _describe(part: JsonSchemaValue, model: type[BaseModel]) -> JsonSchemaValue:
-    """Return the schema of a table, with the docstrings of the model and its keys put into it."""
-    part["description"] = " ".join((model.__doc__ or "").split("\n\n")[0].split())
-    part.pop("title", None)
-    for name, value in part["properties"].items():
-        value.pop("title", None)
-        if words := docstrings(model).get(name):
-            value["description"] = words
-    return part
+def _cleaned(part: Any) -> Any:
+    """Return a schema without titles, with the first paragraph of each description as plain text."""
+    if isinstance(part, list):
+        return [_cleaned(each) for each in part]
+    if not isinstance(part, dict):
+        return part
+    found = {key: _cleaned(each) for key, each in part.items() if not (key == "title" and isinstance(each, str))}
+    if isinstance(words := found.get("description"), str):
+        found["description"] = plain_text(words.split("\n\n")[0])
+    return found
 
 
 def _law(key: LawKey) -> JsonSchemaValue:
@@ -263,7 +246,7 @@ def _law(key: LawKey) -> JsonSchemaValue:
         default = law is type(key.default)
         own = {each.name: _parameter(law, each) for each in keys_of(law).values()}
         for table in key.tables(law):
-            own[table.__name__.lower()] = _describe(table.model_json_schema(schema_generator=_Generator), table)
+            own[table.__name__.lower()] = table.model_json_schema(schema_generator=_Generator)
         left = [each.name for each in keys_of(law).values() if each.default is MISSING]
         found.append(
             {
@@ -274,7 +257,8 @@ def _law(key: LawKey) -> JsonSchemaValue:
             | ({} if default else {"required": ["law", *left]})
         )
     own_law = {"type": "string", "pattern": r"^[\w.]+:[\w.]+$", "description": "module:Class on Python's path"}
-    return {"anyOf": [*found, {"type": "object", "properties": {"law": own_law}, "required": ["law"]}]}
+    other = {"type": "object", "properties": {"law": own_law}, "required": ["law"]}
+    return {"anyOf": [*found, other]} | ({"x-flat": key.flat} if key.flat else {})
 
 
 def _flatten(part: JsonSchemaValue, law: str, name: str) -> None:

@@ -19,14 +19,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from fingerpad.accuracy.richardson import of_sum, of_two_meshes, rigid
-from fingerpad.results.quantities import Output
-from fingerpad.slices.total import Profile, at_force
-from fingerpad.slices.trace import Trace, columns
+from fingerpad.results.quantities import FRICTION, Output
+from fingerpad.slices.total import AREAS, Profile, at_force
+from fingerpad.slices.trace import NAMES, Trace, columns
 from variational.state import ContactState
 
-_SCALED = ("|bone_height|", "f_electrostatic", "contact_length", "gross_width", "f_t/f_c")
-_SUMS = {"f_electrostatic": "f_electrostatic", "contact_area": "contact_length", "gross_area": "gross_width"}
-_OF_SUM = {**_SUMS, "indentation": "|bone_height|", "f_t": "f_t", "mu_app": "f_t"}
+_SUMS = {AREAS.get(name, name): name for name in NAMES if name not in ("f_ext", "f_t")}
+_SCALED = ("|bone_height|", *_SUMS.values(), "f_t/f_c")
+_OF_SUM = {**_SUMS, "indentation": "|bone_height|", **dict.fromkeys(FRICTION, "f_t")}
 """Names of a sum's quantities, and of the section's value whose relative error each has."""
 _SECTION = "section_"
 _ROUNDOFF = 1e-9  # of the contact force: sideways forces of normal contact are below

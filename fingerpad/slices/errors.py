@@ -18,18 +18,13 @@ from itertools import groupby
 
 import numpy as np
 
-from fingerpad.results.quantities import MODEL, PENALTY, Output
+from fingerpad.results.quantities import FINGER, MODEL, PENALTY, Output
 from fingerpad.slices.total import Array, Profile, Total, at_indentation
 from fingerpad.slices.trace import LEAST, Trace, gross_width
 from variational.state import ContactState
 
-_OF_SECTION = {  # whose relative error each has; the external force is prescribed
-    "mu_app": "mu_app",
-    "f_t": "f_t",
-    "f_electrostatic": "f_electrostatic",
-    "contact_area": "contact_length",
-    "indentation": "bone_height",
-}
+_OF_SECTION = {name: each.error for name, each in FINGER.items() if each.error}
+"""Quantities of the section whose relative errors they have; the external force is prescribed."""
 _AREAS = {"contact_length": "contact_area"}  # of a section and of a sum
 _FINER = 40  # times as many slices, so that there are some between any two points of a trace
 _TINY = 1e-300

@@ -3,15 +3,12 @@
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import Any
-
-import numpy as np
+from types import SimpleNamespace
 
 from fingerpad import notebook
+from fingerpad.results.printing import head_rows, side_by_side
 from fingerpad.results.quantities import FINGER, FRICTION, MODEL, Output, plus_minus_of
-from fingerpad.results.quantities import read as read_outputs
 from fingerpad.results.states import STATES, WORDS, called
-from fingerpad.results.text_table import head_rows, side_by_side
 from fingerpad.scene import Scene, SceneError
 from fingerpad.scene.parameters import Slices
 from fingerpad.slices import errors
@@ -114,43 +111,25 @@ class WholeFinger:
         """Return the quantities of a state: N, m², m, and the apparent friction coefficient."""
         return self.states[name].values
 
-    def to_dict(self) -> dict[str, Any]:
-        """Return all values, ready for JSON; SI units."""
-        about = {"source": self.source, "model_error": " ".join(errors.remarks([self.f_ext]))}
-        found: dict[str, Any] = {"f_ext": self.f_ext, **about, "states": {}}
-        own = {each.name: each.to_dict() for trace in self.traces.values() for each in trace.own}
-        found |= {"outputs": [*own.values()]} if own else {}
-        for name, total in self.states.items():
-            arrays = {key: values.tolist() for key, values in total.slices().items()}
-            known = {"error": self.error[name], "carried": self.carried.get(name, {})}
-            found["states"][name] = self.values(name) | known | {"centre": total.centre, "slices": arrays}
-            if name in self.traces:
-                made = self.traces[name]
-                points = {key: values.tolist() for key, values in made.columns.items()}
-                points |= {} if made.ridges is None else {"ridges": made.ridges.tolist()}
-                found["states"][name]["trace"] = {"indentation": made.depth.tolist()} | points
-        return found
+    def __getattr__(self, name: str) -> SimpleNamespace | None:
+        """Return a named state with its quantities as attributes, as a result has it: ``full_slip.f_t``, in N.
 
-    @classmethod
-    def from_dict(cls, data: Mapping[str, Any], shape: Slices) -> "WholeFinger":
-        """Return the finger of :meth:`to_dict`.
-
-        Args:
-            data: of the dictionary.
-            shape: the finger along its axis, which the dictionary does not have.
+        Its ``error`` has theirs. None where the finger does not have the state.
         """
-        states, traces, outputs = {}, {}, read_outputs(data.get("outputs", ()))
-        for name, state in data["states"].items():
-            arrays = {key: np.array(values) for key, values in state["slices"].items()}
-            places = arrays.pop("z"), arrays.pop("thickness"), arrays.pop("indentation")
-            del arrays["pressure"]
-            states[name] = Total(state["indentation"], *places, state["centre"], arrays)
-            points = {key: np.array(values) for key, values in state["trace"].items()}
-            ridges = points.pop("ridges", None)
-            own = tuple(each for each in outputs if each.name in points)
-            traces[name] = Trace(points.pop("indentation"), points, ridges, own)
-        carried = {name: state["carried"] for name, state in data["states"].items()}
-        return cls(states, data["source"], carried, traces, shape)
+        if name not in STATES:
+            raise AttributeError(f"a whole finger has no {name!r}")
+        if name not in self.states:
+            return None
+        return SimpleNamespace(**self.values(name), error=SimpleNamespace(**self.error[name]))
+
+    def flat(self) -> dict[str, float]:
+        """Return all quantities and their errors by name, such as ``full_slip_finger_f_t``; SI units."""
+        found = {}
+        for name in self.states:
+            start, error = f"{name}_finger_", self.error[name]
+            found |= {f"{start}{key}": value for key, value in self.values(name).items()}
+            found |= {f"{start}{key}_error": value for key, value in error.items()}
+        return found
 
     def rows(self) -> Iterator[list[str]]:
         """Yield the quantities with unit, and their values in each state with the error."""

@@ -21,7 +21,7 @@ _SEARCHED = 2001  # places along the finger between which ends of contact are lo
 _SEARCHED_FOR_DEEPEST = 4001  # places along the finger among which the first to end its trace is looked for
 _DOUBLINGS = 6  # of the depth, from the least one tried to the end of the trace
 _TINY = 1e-300  # N, of a logarithm
-_AREAS = {"contact_length": "contact_area", "gross_width": "gross_area"}
+AREAS = {"contact_length": "contact_area", "gross_width": "gross_area"}
 """Columns of a slice whose sums have names of their own."""
 
 
@@ -152,7 +152,7 @@ class Total:
     @property
     def summed(self) -> dict[str, str]:
         """Name of each sum, and of the column of a slice that it is the sum of."""
-        return {_AREAS.get(column, column): column for column in self.columns}
+        return {AREAS.get(column, column): column for column in self.columns}
 
     @cached_property
     def totals(self) -> dict[str, float]:

@@ -10,12 +10,12 @@ from numpy.typing import NDArray
 from scipy.interpolate import PchipInterpolator
 from scipy.optimize import brentq
 
-from fingerpad.results.quantities import Output
+from fingerpad.results.quantities import SLICES, Output, in_table
 from fingerpad.scene.messages import SceneError
 from variational.state import ContactState
 
 Array = NDArray[np.float64]
-NAMES = ("f_ext", "f_t", "f_electrostatic", "contact_length", "gross_width")
+NAMES = tuple(in_table("trace", SLICES))
 """Columns of every trace: N/m the forces, m the lengths. Others are of outputs with a rule of sums."""
 LEAST = 3
 """Least number of points of a trace. A power law needs two, and the error of the interpolation leaves one out."""

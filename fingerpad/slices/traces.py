@@ -1,11 +1,12 @@
 """Traces of the cross-section for a force in newtons.
 
 The full model follows all traces in one simulation (``fingerpad.runs.newtons``). A model without a path has points at
-fixed forces (:mod:`fingerpad.slices.grid`), so that a sum over them does not depend on the way to it. A trace that ends
-before the force is reached is made again to a larger one.
+fixed forces, so that a sum over them does not depend on the way to it. A trace that ends before the force is reached is
+made again to a larger one.
 """
 
-from collections.abc import Callable, Mapping, Sequence
+import math
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -19,11 +20,8 @@ from fingerpad.scene.messages import SceneError
 from fingerpad.scene.parameters import LINE, POINT, POWER
 from fingerpad.slices import errors
 from fingerpad.slices.finger import WholeFinger, in_order
-from fingerpad.slices.grid import LIGHT as LIGHT
-from fingerpad.slices.grid import PER_OCTAVE, of_points
 from fingerpad.slices.total import BeyondTrace, Total, at_force, profile, under_one_force
-from fingerpad.slices.trace import Trace
-from geometry.units import computed
+from fingerpad.slices.trace import Trace, refuse_floating, trace
 from variational.state import ContactState, Errors
 
 if TYPE_CHECKING:
@@ -33,6 +31,10 @@ Solve = Callable[[Scene], Result]
 """Returns the result of a scene."""
 NO_NEWTONS = "no newtons of the whole finger"
 """Beginning of a note that says why."""
+LIGHT = 1 / 30
+"""Force under which a finger is charged, and slid to full slip, over the largest of its trace."""
+PER_OCTAVE = 2
+"""Points of a trace of a model without a path in each doubling of the force."""
 SMALLEST, _LARGEST = 1e-3, 5e3
 """Forces (N/m) of a scene."""
 _SHORTEST = 1.01 * SMALLEST / LIGHT  # N/m, largest force of a trace whose light one a scene can have
@@ -90,6 +92,47 @@ def whole(scene: Scene, model: "Model", solve: Solve, outputs: Sequence[Output] 
     return model.of_finger(scene, solve(scene.replace(f_ext=centre)), finger)
 
 
+def of_points(
+    scene: Scene,
+    model: "Model",
+    solve: Solve,
+    name: str,
+    expected: float,
+    top: float,
+    outputs: Iterable[Output] = (),
+) -> tuple[Trace, list[ContactState]]:
+    """Return a trace of a model without a path, and its states; refuse states without a bone.
+
+    Args:
+        scene: without a force on the whole finger.
+        model: that solves.
+        solve: solves a scene by it.
+        name: of the state.
+        expected: force (N/m) at the centre of the finger, about.
+        top: force (N/m) that the trace is to reach.
+        outputs: of one's own, that are summed.
+    """
+    kind = "full_slip" if name == "full_slip" else "charged"
+    scene = scene.model_copy(update={"voltage": 0.0}) if name == "uncharged" else scene
+    found = model.over_forces(scene, grid(expected, top), kind, solve)
+    refuse_floating(found, model.name)
+    return trace(found, scene.geometry.ridge_wavelength, outputs=outputs), found
+
+
+def grid(expected: float, top: float) -> list[float]:
+    """Return the forces (N/m) of a trace: powers of two and between them, from a light one to the second beyond a top.
+
+    A monotone cubic takes its slopes from its neighbours, so that more points do not change it up to the top.
+
+    Args:
+        expected: force at the centre of the finger, about, which is :data:`LIGHT` times that at the start.
+        top: force that the trace is to reach.
+    """
+    first = round(math.log2(expected * LIGHT)) * PER_OCTAVE
+    last = max(math.ceil(math.log2(top) * PER_OCTAVE) + 1, first + 3)
+    return [2.0 ** (k / PER_OCTAVE) for k in range(first, last + 1)]
+
+
 def with_sum(result: Result, model: "Model", solve: Solve, outputs: Sequence[Output] = ()) -> Result:
     """Return the result of a section by a model without a path, with its whole finger, or with a note why it has none.
 
@@ -111,26 +154,6 @@ def with_sum(result: Result, model: "Model", solve: Solve, outputs: Sequence[Out
         return model.of_finger(scene, result, summed(scene, model.traces, found))
     except SceneError as error:
         return replace(result, notes=(*result.notes, f"{NO_NEWTONS}: {error}"))
-
-
-def history(scene: Scene, top: float, part: float = LIGHT) -> Scene:
-    """Return the scene of a finger that is pressed lightly, charged, and pressed on while it slides.
-
-    Args:
-        scene: press, charge and slide.
-        top: largest force (N/m).
-        part: light force over that.
-    """
-    far = scene.slide_length
-    loads: list[dict[str, float | str | bool]] = [{"name": "press", "f_ext": top * part}]
-    loads += [{"name": "charge", "voltage": scene.volts}] if scene.volts else []
-    loads += [
-        {"name": "slide", "bone_x": far / 4, "until_full_slip": True},
-        {"name": "raise", "f_ext": top, "bone_x": far},
-        {"name": "hold", "bone_x": 2 * far, "until_full_slip": True},
-    ]
-    with computed():
-        return scene.replace(history=loads)
 
 
 def states(scene: Scene) -> list[str]:
