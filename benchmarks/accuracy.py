@@ -8,7 +8,7 @@ factors of safety from them; tests/test_calibration.py checks the coverage.
 """
 
 import sys
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from dataclasses import asdict, dataclass
 from operator import attrgetter
 from pathlib import Path
@@ -35,7 +35,6 @@ _SHORT = {
 }
 _TEN = ({"mu_app": 0.01, "contact_length": 0.03}, {"sed": 0.05})  # requested of each scene drawn
 _DEFAULT = ({"mu_app": 0.01}, _TEN[0], {"contact_length": 0.01}, _TEN[1])  # of the default scene
-_SIZES = ("contact", "growth", "receptor")
 _LEVELS = 3  # meshes of the limits of the scenes drawn; a fourth would take twice as long as all else on the page
 SEED, COUNT = 2023, 10
 _RANGES = {"f_ext": (10.0, 120.0), "voltage": (0.0, 200.0), "friction": (0.15, 0.5)}  # N/m, V
@@ -71,25 +70,6 @@ class Case:
     kind = property(lambda self: next(k for k, words in KINDS.items() if any(w in self.quantity for w in words)))
     clear = property(lambda self: self.error > self.bar, doc="Whether the error is larger than its uncertainty.")
     factor = property(lambda self: ONCE if self.once else MORE, doc="The smallest factor of safety of its sizes.")
-    effectivity = property(lambda self: self.estimate / self.error if self.error else float("inf"))
-
-    @property
-    def met(self) -> str:
-        """Whether the error is within the request; ``likely`` if its bar leaves that open, empty without a request."""
-        if self.allowed is None:
-            return ""
-        if self.error > self.allowed:
-            return "no"
-        return "yes" if self.error + self.bar <= self.allowed else "likely"
-
-    @property
-    def line(self) -> str:
-        """Return the case as a row of a table; an effectivity in brackets is of an error that is not clear."""
-        error = f"{self.error:.2g} ± {self.bar:.1g}" if self.bar else f"{self.error:.2g}"
-        effectivity = f"{self.effectivity:.2f}" if self.clear else f"({self.effectivity:.2f})"
-        allowed = "" if self.allowed is None else f"{self.allowed:.2g}"
-        cells = (self.scene, self.quantity, allowed, f"{self.estimate:.2g}", error, effectivity, self.met)
-        return " | ".join(cells)
 
     def covered(self, factor: float) -> bool:
         """Return whether the error is at most ``factor`` times the estimate."""
@@ -169,60 +149,24 @@ def judged(scene: str, summary: Summary, ends: Mapping[str, Limit]) -> list[Case
     return [case for name, case in found.items() if "_sed_" not in name or name in worst.values()]
 
 
-def row(summary: Summary, base: float) -> dict[str, Any]:
-    """Return the mesh of a run with an accuracy, and the cost of all its solves and starts over ``base``."""
-    a, lost = summary["accuracy"], summary.get("restarts", [])
-    work = a["unknowns_times_factorisations"] + sum(s["unknowns"] * s["factorisations"] for s in lost)
-    unknowns = max(s["unknowns"] for s in a["solves"])
-    chosen = {name: a["mesh"][name] for name in _SIZES}
-    return chosen | {"solves": len(a["solves"]), "unknowns": unknowns, "cost": work / base}
-
-
 def compute(args: Any) -> None:
     """Run what is missing and keep the numbers."""
-    wanted, errors = loops(), harness.kept("errors", args.docs).numbers
+    wanted = loops()
     summaries = harness.run({name: scene for name, (scene, _) in wanted.items()}, args, _LIMIT)
     ends = limits.solve_all({"default scene": DEFAULT}, LEVELS, args) | limits.solve_all(drawn(), _LEVELS, args)
-    cases, runs = list[Case](), dict[str, Any]()
-    base = errors["default"]["unknowns"] * errors["default"]["factorisations"]
+    cases = list[Case]()
     for name, (_, plain) in wanted.items():
-        if "failure" in (summary := summaries[name]):
-            runs[name] = {"failure": summary["failure"]}
-        elif "failure" in ends[plain]:
-            runs[name] = {"unknown": "the limit of this scene is not known"}
-        else:
-            cases += judged(name, summary, limits.limits(ends[plain]))
-            runs[name] = row(summary, base)
-    numbers = {"cases": [asdict(case) for case in cases], "runs": runs}
+        if "failure" not in summaries[name] and "failure" not in ends[plain]:
+            cases += judged(name, summaries[name], limits.limits(ends[plain]))
+    numbers = {"cases": [asdict(case) for case in cases]}
     harness.keep("accuracy", numbers, harness.made(summaries.values()), args.docs)
 
 
 # -- page ----------------------------------------------------------------------------------------------------
-def _verdicts(runs: Mapping[str, Mapping[str, Any]], cases: Sequence[Case]) -> list[str]:
-    """Return how often each request was met in the scenes drawn; a run that failed did not meet it."""
-    good: dict[str, list[bool]] = {}
-    for name, each in runs.items():
-        if name.startswith("default") or "unknown" in each:
-            continue
-        mine = [case.met != "no" for case in cases if case.scene == name and case.met]
-        good.setdefault(name.split("; ")[1], []).append("failure" not in each and all(mine))
-    return [f"{request} in {sum(met)} of {len(met)} scenes" for request, met in good.items()]
-
-
 def draw(docs: Path) -> Path:
     """Draw the page from the kept numbers."""
-    cases, factors = kept(docs), {True: f"once: factor {ONCE:g}", False: f"more often: factor {MORE:g}"}
-    names: dict[str, Any] = dict(zip(("n", "bare", "safe"), coverage(cases), strict=True)) | {
-        "cases": cases,
-        "verdicts": _verdicts(harness.kept("accuracy", docs).numbers["runs"], cases),
-        "coverages": [
-            (k, words, *found)
-            for k in KINDS
-            for once, words in factors.items()
-            if (found := coverage(cases, k, once))[0]
-        ],
-    }
-    return harness.page(docs, "accuracy", "python3 -m benchmarks.accuracy", globals() | names, "errors")
+    names = dict(zip(("n", "bare", "safe"), coverage(kept(docs)), strict=True))
+    return harness.page(docs, "accuracy", "python3 -m benchmarks.accuracy", globals() | names)
 
 
 if __name__ == "__main__":

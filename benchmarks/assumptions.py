@@ -196,7 +196,7 @@ def changes_of(rows: Mapping[str, Mapping[str, float]]) -> dict[str, list[list[f
 # -- page ----------------------------------------------------------------------------------------------------
 def sentences(found: Mapping[str, Any]) -> dict[str, Any]:
     """Return what the page's sentences have of the kept numbers, by their words in the template."""
-    rows, shaped = found["full"] | found["profiles"], found["profiles"].items()
+    rows = found["full"] | found["profiles"]
 
     def change(name: str, other: str = "reference", key: str = "mu_app") -> float:
         """Return by how much a run differs from another (%)."""
@@ -214,16 +214,9 @@ def sentences(found: Mapping[str, Any]) -> dict[str, Any]:
         """Return how many air gaps are in the paper's range, how many below it, and how many there are."""
         return int(within(gaps(name)).sum()), int((gaps(name) < LEAST_GAP).sum()), len(gaps(name))
 
-    def near(row: Mapping[str, Any]) -> bool:
-        return bool(abs(row["mu_app"] / PAPER - 1) <= NEAR)
-
-    at_200 = [row for name, row in shaped if name.endswith("200 V") and "flat" not in name]
-    flattest = [(float(name.split()[-2]), row) for name, row in shaped if name.startswith(_SHOWN[-1])]
     return {
-        "rows": rows, "change": change, "growth": growth, "gaps": gaps, "counts": counts, "near": at_200,
+        "rows": rows, "change": change, "growth": growth, "gaps": gaps, "counts": counts,
         "off": lambda name: 100 * (rows[name]["mu_app"] / PAPER - 1),
-        "close": [row["d_eq"] for row in at_200 if near(row)],
-        "met": [voltage for voltage, row in flattest if row["d_eq"] >= LEAST_GAP and near(row)],
     }  # fmt: skip
 
 

@@ -183,16 +183,12 @@ def draw(docs: Path) -> Path:
         rows = numbers["studies"][name]
         return [row["quantities"][quantity] / QUANTITIES[quantity][1] for row in rows]
 
-    def rigid(quantity: str) -> float:
-        _, middle, stiff = study("penalty", quantity)
-        return 100 * (stiff / middle - 1)
-
     def worst(kind: str) -> float:
         return 100 * max(abs(whole[name] / end.value - 1) for name, end in ends.items() if kind in name)
 
     harness.picture(docs / "errors.png", (9, 3.6), lambda figure: _paint(figure, numbers, ends))
     names = {"whole": whole, "ends": ends, "again": numbers["again"], "penalty": stiffer(docs), "end": _end}
-    names |= {"study": study, "rigid": rigid, "worst": worst, "saw": numbers["saw"]}
+    names |= {"study": study, "worst": worst, "saw": numbers["saw"]}
     names["shown"] = {name: words for name, words in QUANTITIES.items() if name in whole}
     names["force"] = indented(numbers["pressed"])
     return harness.page(docs, "errors", "make chart", globals() | names)

@@ -131,11 +131,6 @@ def draw(docs: Path) -> Path:
     numbers = harness.kept("models", docs).numbers
     every = [*numbers["scenes"].values(), *numbers["held_out"].values()]
 
-    def largest(key: str) -> str:
-        """Return the largest error, rounded up to 0.1 % as the program prints it."""
-        found = [abs(each) for scene in every if (each := _error(scene, key)) is not None]
-        return f"{np.ceil(10 * max(found) - _ROUNDOFF) / 10:.1f} %"
-
     def medians(model: str) -> list[float]:
         costs = [each[model]["cost"] for each in every if "cost" in each[model]]
         return [float(np.median([cost[key] for cost in costs])) for key in _COST]
@@ -144,7 +139,7 @@ def draw(docs: Path) -> Path:
         return dict(numbers["scenes"].get(name(f_ext, voltage), {}))
 
     names = {
-        "every": every, "largest": largest, "medians": medians, "at": at, "error": _error,
+        "every": every, "medians": medians, "at": at,
         "errors": lambda key, f: [_error(at(f, u), key) for u in VOLTAGES],
         "slips": sum(bool(each["full"].get("summary", {}).get("full_slip")) for each in every),
     }  # fmt: skip

@@ -203,10 +203,10 @@ def draw(docs: Path) -> Path:
     numbers, pairs = harness.kept("newtons", docs).numbers, (("f_ext_slices", "f_ext"), ("area_slices", "area"))
     picture(numbers, docs)
     solids = [
-        (s, [100 * (s[a] / s[b] - 1) for a, b in (*pairs, ("area_slices_at_force", "area"))])
+        (s["f_ext"], [100 * (s[a] / s[b] - 1) for a, b in (*pairs, ("area_slices_at_force", "area"))])
         for s in harness.kept("solid", docs).numbers
     ]
-    above = [errors for s, errors in solids if s["f_ext"] > COARSE]
+    above = [errors for f_ext, errors in solids if f_ext > COARSE]
     friction = [
         (
             each,
@@ -217,7 +217,7 @@ def draw(docs: Path) -> Path:
     ]
     names = compared(numbers) | {
         "default": harness.kept("hero", docs).numbers["default"]["headline"],
-        "friction": friction, "least": at(numbers, RADII[1], HIGH)[0], "largest": _largest, "solids": solids,
+        "friction": friction, "largest": _largest,
         "comparisons": [
             (words, of, points) for key, words in errors.COMPARED.items() for of, known in COMPARISONS.items()
             if (points := known.get(key, ()))

@@ -122,13 +122,10 @@ def draw(docs: Path) -> Path:
     of = harness.Record({name: part["found"] for name, part in kept("performance", docs).numbers.items()})
     run, sizes = of["run"], of["operations"]
     unknowns = [size["unknowns"] for size in sizes]
-    own = next(size["processor"] for size in sizes if size["factor"] == 1.0)
     names = {
         "of": of, "run": run, "path": sum(run["path"].values()), "unit": unit(run), "times": _times,
-        "largest": max(run["path"], key=run["path"].__getitem__),
         "powers": [exponent(unknowns, seconds) for seconds in zip(*map(_times, sizes), strict=True)],
         "memory": exponent(unknowns, [size["memory"] - size["before"] for size in sizes]),
-        "saved": (own["tangent"] + own["factorisation"]) / (own["solution"] + own["residual"]),
     }  # fmt: skip
     return harness.page(docs, "performance", "make performance", globals() | names)
 

@@ -44,7 +44,6 @@ def compute(args: argparse.Namespace) -> None:
         "held": _held,
         "energy": _energy,
         "steps": _voltage_steps,
-        "coarser": _coarser,
     }.items():
         _say(name)
         numbers[name] = part()
@@ -176,12 +175,7 @@ def _voltage_steps() -> dict[str, Any]:
     return found
 
 
-def _coarser() -> dict[str, Any]:
-    """Return friction after the step at the lower speed with facets twice as large, elastic and viscous."""
-    return {preset or "elastic": _voltage_step(preset, SPEEDS[0], 2 * FACETS) for preset in (None, "fingerpad")}
-
-
-def _voltage_step(preset: str | None, speed: float, facets: float = FACETS) -> dict[str, Any]:
+def _voltage_step(preset: str | None, speed: float) -> dict[str, Any]:
     """Return friction after the step, and the sliding way (m) to full slip, which short loads resolve."""
     small = tomllib.loads((ROOT / "demos/scenes/small_finger.toml").read_text(encoding="utf-8"))
     history = [
@@ -193,7 +187,7 @@ def _voltage_step(preset: str | None, speed: float, facets: float = FACETS) -> d
         {"name": "on", "bone_x_by": LATE * speed - PIECES * PIECE, "speed": speed},
     ]
     scene = Scene(
-        geometry=small["geometry"], mesh=small["mesh"] | {"contact": facets}, output=NO_OUTPUT,
+        geometry=small["geometry"], mesh=small["mesh"] | {"contact": FACETS}, output=NO_OUTPUT,
         materials=_layers(preset), history=history, numerics={"step_scale": 0.5},
     )  # fmt: skip
     states = _states(scene)
@@ -216,21 +210,6 @@ def draw(docs: Path) -> Path:
     """Write docs/laws.md and its picture from docs/viscosity.json."""
     picture(docs / "viscosity.png", (10, 4), lambda figure: _paint(figure, kept("viscosity", docs).numbers))
     return page(docs, "viscosity", "make viscosity", globals())
-
-
-def gap(runs: Mapping[str, Any]) -> float:
-    """Return by how much the last rise of the preset for fingers differs from the elastic one, over the latter."""
-    elastic, viscous = (
-        next(each for name, each in runs.items() if name.startswith(skin)) for skin in ("elastic", "fingerpad")
-    )
-    return float((viscous["to"] - viscous["from"]) / (elastic["to"] - elastic["from"]) - 1)
-
-
-def on_two_meshes(numbers: Mapping[str, Any]) -> list[tuple[str, float, Any, Any]]:
-    """Return skin, size of facets (m), run, and the run with the smaller facets."""
-    fine = {skin: numbers["steps"][f"{skin} at {1e3 * SPEEDS[0]:g} mm/s"] for skin in numbers["coarser"]}
-    sizes = ((FACETS, fine), (2 * FACETS, numbers["coarser"]))
-    return [(skin, size, runs[skin], fine[skin]) for skin in fine for size, runs in sizes]
 
 
 def _paint(figure: Figure, numbers: Mapping[str, Any]) -> None:

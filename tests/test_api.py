@@ -10,9 +10,9 @@ from mpi4py import MPI
 
 import fingerpad as fp
 from fingerpad import runs
+from fingerpad.results.data import Cost
 from fingerpad.results.dataset import content
 from fingerpad.results.quantities import CONDITIONS, RESULTS
-from fingerpad.results.result import Cost
 from fingerpad.results.states import STATES
 from fingerpad.runs import attempt, full
 from fingerpad.runs.processes import End

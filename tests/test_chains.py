@@ -12,7 +12,8 @@ from mpi4py import MPI
 import fingerpad as fp
 from fingerpad.accuracy.states import Solve
 from fingerpad.model.full_slip import Solved
-from fingerpad.results.result import Cost, Result
+from fingerpad.results.data import Cost
+from fingerpad.results.result import Result
 from fingerpad.runs import chains as of_sweep
 from fingerpad.runs import full_slip
 from fingerpad.runs.chains import chains

@@ -8,7 +8,8 @@ import pytest
 import fingerpad as fp
 from fingerpad.reduced import closure_band
 from fingerpad.report.trust import GOOD, Finding, verdict
-from fingerpad.results.headline import BAND, band_in_words
+from fingerpad.results.headline import band_in_words
+from fingerpad.results.quantities import BAND
 from fingerpad.scene import from_data
 
 

@@ -1,7 +1,6 @@
 """A run and a sweep as NetCDF: the numbers of the tables, with units; a file that cannot be written loses nothing."""
 
 import errno
-import json
 from dataclasses import replace
 from pathlib import Path
 
@@ -11,7 +10,6 @@ import xarray
 from mpi4py import MPI
 
 import fingerpad as fp
-from fingerpad.report import run_page
 from fingerpad.results import dataset, quantities
 from fingerpad.results.over_time import OverTime
 from fingerpad.results.result import Result
@@ -99,12 +97,6 @@ def test_every_variable_has_a_unit_and_a_name(data):
     assert all(about.values()), about
 
 
-def test_parameters_are_attributes(folder, data):
-    scene = json.loads((folder / "scene.json").read_text(encoding="utf-8"))
-    assert json.loads(data.attrs["parameters"]) == scene
-    assert data.attrs["roughness.h_rms"] == scene["roughness"]["h_rms"]
-
-
 def test_dataset_of_a_result_that_was_read_back(folder):
     """The same file, to the last byte."""
     again = Result.load(folder).to_xarray()
@@ -168,19 +160,3 @@ def test_sites_of_a_sweep_are_those_of_its_states(folder, tmp_path):
         assert mine[f"state_{name}"].notnull().all()
         assert swept[f"state_{name}"].sel(state="full_slip").isnull().all()
         assert swept[f"state_{name}"].attrs == data[name].attrs
-
-
-def test_report_has_the_sites_of_the_table(folder):
-    """The largest energy density of each named state, and that of each ridge."""
-    result = Result.load(folder)
-    page = run_page.page(result)
-    assert 'href="#receptors"' in page
-    part = page[page.index('id="receptors"') :]
-    part = part[: part.index("</section>")]
-    rows = [row for row in rows_of(folder, "receptors") if int(row["step"]) == result.charged.step]
-    most = max(rows, key=lambda row: float(row["merkel_sed"]))
-    first = part[: part.index("Every ridge")]
-    assert f"<td>{1e-3 * float(most['merkel_sed']):.4g}</td>" in first and f"<td>{most['ridge']}</td>" in first
-    for row in rows:
-        assert f"<td>{1e-3 * float(row['merkel_sed']):.4g}</td>" in part
-    assert "receptors" not in run_page.page(fp.run(model="cylinders")).partition("</nav>")[0]

@@ -92,11 +92,13 @@ def test_skin_over_the_contact_is_compressed(ran):
 
 
 def test_fields_of_a_read_result_are_those_of_the_run(ran):
+    """Tensors have 32 bits in the file."""
     again = fp.Result.load(ran.folder).fields
     assert list(again) == list(ran.fields)
     for name, fields in ran.fields.items():
         for key, values in vars(fields).items():
-            np.testing.assert_array_equal(getattr(again[name], key), values)
+            exact = key not in ("stress", "strain")
+            np.testing.assert_allclose(getattr(again[name], key), values, rtol=0 if exact else 1e-7, atol=1e-30)
 
 
 def test_pyvista_has_the_fields_and_writes_them(ran, tmp_path):

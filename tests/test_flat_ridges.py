@@ -81,7 +81,7 @@ def pressed():
     for profile in (FLAT.geometry.ridge_profile, Fingertip().ridge_profile):
         finger = Fingertip(ridge_profile=profile)
         size = MeshSize(contact=15 * UM, interface=60 * UM, touching_fraction=FLAT.mesh.touching_fraction)
-        mesh = load(MPI.COMM_SELF, partial(strip.build, finger, size, 1), strip.LAYERS)
+        mesh = load(MPI.COMM_SELF, partial(strip.build, finger, size), strip.LAYERS)
         skins = {tag: solid for tag, solid in FLAT.solids().items() if tag in strip.LAYERS}
         interface = Interface(FLAT.contact.law, FLAT.friction_law(), FLAT.h_0)
         made = Body(mesh, skins, interface, FLAT.closure(), moving_sides=mesh.facets(tags.SIDES))

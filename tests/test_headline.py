@@ -9,7 +9,6 @@ import pytest
 import fingerpad as fp
 from fingerpad.report import trust
 from fingerpad.report.trust import head as page_head
-from fingerpad.results.quantities import plus_minus_of
 from fingerpad.results.result import Result
 from fingerpad.results.states import load_result
 from fingerpad.scene import from_data
@@ -66,16 +65,6 @@ def test_waveform_from_rest_has_no_digits_of_roundoff(least):
     assert "goes from 0.00 to 0.49 N/m, without full slip." in found.sentence
 
 
-def test_waveform_with_some_full_slip_says_in_how_much():
-    """Of the states after its begin; no reason for a caution, and nothing where all are of full slip."""
-    some, every = waved(True, False, True, False), waved(True, True, True, True)
-    words = "full slip in 50 % of its states; in the others part of the skin sticks"
-    assert words in head(some) and words in str(some) and "without full slip" not in head(some)
-    assert "sticks" not in head(every) + str(every)
-    for found in (some, every):
-        assert not any(each.what == "no full slip under a waveform" for each in trust.findings(found))
-
-
 # -- what ± holds ------------------------------------------------------------------------------------------
 def test_head_has_what_is_solved_and_what_was_examined(monkeypatch):
     """The error of the number is that of the solution alone; a link leads to what was examined."""
@@ -97,25 +86,7 @@ def test_unknown_error_is_not_claimed():
     assert "not in it" not in known
 
 
-def test_unknown_error_of_a_cheaper_model_is_not_claimed():
-    """The closed form is compared with the full model in a range of frictions."""
-    found = fp.run(fp.Scene(friction=0.02), model="cylinders").headline
-    assert math.isnan(found.error) and found.solved == "solved to an error that is not known here (closed form)"
-
-
-def test_plus_minus_is_explained_where_it_is_printed():
-    shown = str(Result(fp.Scene(), "full", None, None, state(error=Errors(mu_app=0.0026))))
-    words = plus_minus_of(["mesh"])
-    assert words in shown and "by mesh; what the finger and the model assume is not in it" in words
-    assert "±:" not in str(Result(fp.Scene(), "full", None, None, state()))
-
-
 # -- what a result prints --------------------------------------------------------------------------------------------
-def test_cautions_follow_the_notes_with_a_mark():
-    lines = str(fp.Result(fp.Scene(), "cylinders", None, None, state(), notes=("a note",), cautions=("mind this",)))
-    assert "\nResult (model 'cylinders')\n" in lines
-    assert lines.splitlines()[-2:] == ["  a note", "  ! mind this"]
-    assert ["friction", "force", "f_T", "(N/m)", "4.000"] in [line.split() for line in lines.splitlines()]
 
 
 def test_states_of_two_meshes_name_them():
@@ -192,11 +163,3 @@ def test_solved_has_the_penalty():
     found = fp.Result(fp.Scene(), "full", None, None, slip, finger=both).headline
     more = found.error - alone.error["full_slip"]["mu_app"]
     assert more == pytest.approx(0.006 / slip.mu_app * found.value, rel=1e-9) and "penalty" in found.parts
-
-
-def test_cheaper_models_say_what_computed_them(tmp_path):
-    """In their files and reports, as a full run does."""
-    fp.run(model="cylinders", out=tmp_path)
-    page = (tmp_path / "report.html").read_text(encoding="utf-8")
-    assert f"<blockquote>fingerpad {fp.__version__}: two-scale" in page
-    assert fp.__version__ in fp.Result.load(tmp_path).to_xarray().attrs["record"]

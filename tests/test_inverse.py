@@ -2,10 +2,7 @@
 
 import math
 import re
-from contextlib import nullcontext
-from dataclasses import replace
 
-import numpy as np
 import pytest
 
 import fingerpad as fp
@@ -196,41 +193,6 @@ def test_one_finite_number_is_a_target(target):
         fp.solve(**target)
 
 
-def test_full_model_is_beside_the_closed_form(monkeypatch):
-    """Its value, its error and the difference: of a run that has been replaced by one of the cylinders."""
-
-    def instead(scene, model, context):
-        found = fp.run(scene, model="cylinders")
-        state = found.full_slip
-        object.__setattr__(state, "error", type(state.error)(f_t=0.4))
-        assert model.name == "full" and np.isfinite(state.mu_app)
-        return found
-
-    monkeypatch.setattr("fingerpad.runs.inverse.solved", instead)
-    found = fp.solve(f_t="30 N/m", model="full")
-    assert found.roots[0].full is not None
-    assert "full model: f_T 30.00 ± 0.40 N/m (± by closed form), " in str(found) and "±: error by closed form" in str(
-        found
-    )
-    finger = str(fp.solve(f_t="0.3 N", model="full"))
-    assert re.search(
-        r"full model: F_T 0\.3000 ± 0\.\d+ N \(± by closed form, points of the traces\), \+?0\.0 % from", finger
-    )
-
-
-@pytest.mark.parametrize(("stops", "code", "count"), [("SIGINT", 130, 1), ("", 1, 2)])
-def test_confirmation_ends_with_a_run_that_is_stopped(stops, code, count, monkeypatch, capsys):
-    """Two values: each run is announced; Ctrl-C in the first one ends both, with the shell's code for it."""
-    shown = list[float]()
-
-    def instead(scene, model, context):
-        shown.append(scene.voltage)
-        return replace(fp.run(scene, model="cylinders"), failure="stopped", interrupted=stops)
-
-    monkeypatch.setattr("fingerpad.runs.inverse.solved", instead)
-    words = ["--target=mu_app=0.5", "--from=-300", "--to=300", "--model=full"]
-    assert main(["solve", *words]) == code and len(shown) == count
-    said = capsys.readouterr().out
-    assert [f"run {k} of 2 of the full model" in said for k in (1, 2)] == [True, count == 2]
-    with pytest.raises(KeyboardInterrupt) if stops else nullcontext():
+def test_full_model_is_too_slow_for_a_search():
+    with pytest.raises(SceneError, match="model is 'full', too slow for a search; run it at the scene of a value"):
         fp.solve(mu_app=0.5, model="full")

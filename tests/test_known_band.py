@@ -10,7 +10,8 @@ import fingerpad as fp
 from fingerpad.reduced.closure_band import Slip, friction, powers, with_band
 from fingerpad.report import trust
 from fingerpad.report.known import bars
-from fingerpad.results.headline import KNOWN, known_in_words
+from fingerpad.results.headline import known_in_words
+from fingerpad.results.quantities import KNOWN
 from tests.test_closure_band import Held
 
 

@@ -15,17 +15,12 @@ def read(**closures):
 def test_states_beyond_the_table_have_no_number():
     """Nor without an equilibrium: neither in a row, nor in the band, whose upper end is open."""
     found = read(soft=state(0.5), hard=state(0.7), stuck=state(0.9, beyond=1.0), lost=None)
-    assert readings.shown(list(found.values()), "rms") == "0.50 to 0.70 and more"
     assert readings.span(list(found.values()), "rms")["none"] == 2
     assert found["stuck"].cells().startswith("adheres") and not found["stuck"].friction and not found["stuck"].gaps
 
 
-def test_upper_bound_of_a_band():
-    """It is marked where the largest number is an upper bound, and not where a smaller one is."""
-    low, high = state(0.5, balanced=0.2), state(0.7)
-    assert readings.shown(list(read(a=low, b=high).values()), "rms") == "0.50 to 0.70"
-    assert readings.shown(list(read(a=state(0.4), b=low).values()), "rms") == "0.40 to ≤ 0.50"
-    assert read(a=low)["a"].cells().startswith("≤ 0.50")
+def test_upper_bound_is_marked():
+    assert read(a=state(0.5, balanced=0.2))["a"].cells().startswith("≤ 0.50")
 
 
 def test_agreement_with_published_numbers():

@@ -62,15 +62,6 @@ def test_every_door_gives_one_string(asked, key):
     assert len(set(found.values())) == 1 and "±" in found["result"], found
 
 
-def test_headline_has_the_string_of_the_tables(asked):
-    """And the whole ± has the parts that are named below them."""
-    _, result, _ = asked
-    shown = FINGER["mu_app"].shown(*result.number(SLIP, "mu_app", whole=True)[:2])
-    assert result.headline.number == f"= {shown}" and str(result).count(shown) == 2
-    parts = ", ".join(result.headline.parts)
-    assert f"±: error by {parts};" in str(result) and "closed form" in parts and "points" in parts
-
-
 def test_error_is_that_of_the_model_and_of_the_points(asked):
     """As relative errors of the attraction, times its share in the contact force; tolerance: roundoff."""
     scene, result, _ = asked

@@ -2,14 +2,12 @@
 
 import json
 import math
-from pathlib import Path
 
 import pytest
 import xarray
 from mpi4py import MPI
 
 import fingerpad as fp
-from fingerpad.report.write import write
 from fingerpad.results import quantities
 from fingerpad.scene import from_data
 from geometry.units import in_si
@@ -43,12 +41,6 @@ def test_output_is_an_attribute_of_every_state(result):
         _ = charged.p_min
 
 
-def test_output_is_printed_in_its_unit(result):
-    """14614.6 Pa are 14.61 kPa."""
-    line = next(line for line in str(result).splitlines() if "p_m (kPa)" in line)
-    assert line.split()[-1] == f"{1e-3 * result.charged.p_mean:.2f}" and "mean pressure" in line
-
-
 def test_output_is_in_the_tables_in_si(result):
     assert [float(row["p_mean"]) for row in rows_of(result.folder, "steps")] == values_of(result)
     summary = json.loads((result.folder / "summary.json").read_text(encoding="utf-8"))
@@ -76,11 +68,6 @@ def test_output_is_read_back(result):
     assert [output.name for output in more.outputs] == ["p_mean", "merkel_max", "twice"]
 
 
-def test_output_is_in_the_report(result):
-    page = write(result.folder).read_text(encoding="utf-8")
-    assert f"<td>{1e-3 * result.charged.p_mean:.2f}</td>" in page
-
-
 def test_output_of_a_sweep(tmp_path):
     found = fp.sweep(fp.Scene(), tmp_path, model="cylinders", voltage=[0, 200], outputs=[P_MEAN])
     values = [each.full_slip.f_contact / each.full_slip.contact_length for each in found]
@@ -99,15 +86,6 @@ def test_entry_of_the_package_is_everywhere(tmp_path, monkeypatch):
     assert "mean pressure p_m (kPa)" in str(found)
     assert float(xarray.load_dataset(tmp_path / "result.nc")["state_p_mean"].sel(state="full_slip")) > 1e3
     assert fp.Result.load(tmp_path).full_slip.p_mean == found.full_slip.p_mean
-
-
-def test_recipe_of_the_page_runs_as_written(capsys):
-    page = (Path(__file__).parents[1] / "docs" / "results.md").read_text(encoding="utf-8")
-    block = next(part for part in page.split("```python\n") if "fp.Output(" in part.partition("```")[0])
-    exec(block.partition("```")[0], {})
-    printed = capsys.readouterr().out.splitlines()
-    shown = next(line for line in printed if line.strip().startswith("p_mean (kPa)")).split()[-1]
-    assert float(printed[-1]) == pytest.approx(1e3 * float(shown), rel=1e-3)
 
 
 @pytest.mark.parametrize(

@@ -9,7 +9,6 @@ from benchmarks.stability import solve
 from benchmarks.stability.solve import Case
 from fingerpad.scene import Scene
 from variational.solvers.equations import Control
-from variational.solvers.newton import Solver
 
 # A press of half an newton a metre on facets of 60 um: two seconds a run.
 TINY = Case(contact_size=60e-6, force=0.5, voltage=50.0, element="P1", slide=0.0)
@@ -50,19 +49,3 @@ def test_failure_is_recorded_with_its_reason():
     found = solve.run(replace(TINY, parameter=1.5e24))
     assert found.status == "failed" and found.load == "press"
     assert found.reason.startswith("DIVERGED_") and found.reason in found.message
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("allowed", [True, False])
-def test_newton_alone_is_never_pseudo_transient(monkeypatch, allowed):
-    """Of every solve of a path with voltage, also where a later iteration of the loop finds no equilibrium."""
-    asked, newton = set(), Solver.solve
-
-    def solve_and_note(self, pseudo_transient=False, *more, **how):
-        asked.add(pseudo_transient)
-        newton(self, pseudo_transient, *more, **how)
-
-    monkeypatch.setattr(Solver, "attempt", lambda self, stop: False)
-    monkeypatch.setattr(Solver, "solve", solve_and_note)
-    solve.run(replace(TINY, pseudo_transient=allowed))
-    assert asked == {allowed, False}

@@ -240,21 +240,6 @@ class ContactState:
             return float(own[name])
         raise AttributeError(f"a state has no {name!r}")
 
-    @classmethod
-    def from_row(cls, row: Mapping[str, Any]) -> "ContactState":
-        """Return the state of a row of ``steps.csv``, of texts or values; unknown columns are outputs of one's own.
-
-        Raises:
-            ValueError: a column that must be there is not, or is no number.
-        """
-        try:
-            known = {f.name: _read(row[f.name], f.type) for f in (*_FIELDS, *_LAST) if f.name in row}
-            record = {f.name: _read(row[f.name], f.type) for f in fields(StepRecord) if f.name in row}
-            own = {name: float(row[name]) for name in row if name not in known and name not in record}
-            return cls(**known, record=StepRecord(**record) if record else None, own=own)
-        except TypeError as error:
-            raise ValueError(f"a row of steps has too few columns: {error}") from None
-
     def row(self) -> dict[str, Any]:
         """Return conditions, results and the record of the step as one flat row, as ``steps.csv`` holds it."""
         row: dict[str, Any] = {f.name: getattr(self, f.name) for f in _FIELDS}
@@ -267,14 +252,5 @@ class ContactState:
 
 
 _FIELDS = fields(ContactState)[: [f.name for f in fields(ContactState)].index("record")]
-_VISCOUS = tuple(
-    f.name for f in fields(StepRecord) if f.name.startswith("viscous")
-)  # columns of a record where layers are viscous
+_VISCOUS = tuple(f.name for f in fields(StepRecord) if f.name.startswith("viscous"))  # columns of viscous layers
 _LAST = tuple(f for f in fields(ContactState) if f.name in ("mesh_contact", "time"))  # columns where they are known
-
-
-def _read(text: Any, kind: Any) -> Any:
-    """Return a value, or that of a text, as the type of a field."""
-    if kind is bool:
-        return text in ("True", True)
-    return kind(text) if kind in (int, float) else text

@@ -14,7 +14,6 @@ import argparse
 import itertools
 import json
 import sys
-from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -26,11 +25,7 @@ from benchmarks import harness
 from benchmarks.loads import fresh
 from benchmarks.loads.compared import (
     BANDS,
-    LEAST,
-    MARGIN,
-    PART,
     PULLED,
-    WITHOUT,
     Band,
     Compared,
     Level,
@@ -43,7 +38,7 @@ from benchmarks.loads.compared import (
     sections,
 )
 from benchmarks.loads.meshes import errors, without
-from benchmarks.loads.scenes import COUNT, FIRST, LOWEST, MESHES, WORK, Data, scenes, section
+from benchmarks.loads.scenes import COUNT, MESHES, Data, scenes, section
 from benchmarks.loads.shear import Point, Spread, fitted, points
 from benchmarks.loads.shear import spread as errors_of
 from benchmarks.loads.states import pressed, solved
@@ -57,13 +52,6 @@ _SHORT = ("f_ext", "f_t", "mu_app", "f_electrostatic", "contact_length", "ridges
           "factorisations", "failure", "reached")  # fmt: skip
 REGIONS_FILE = harness.ROOT / "fingerpad" / "reduced" / "cylinder_errors.json"
 _MINUTES = 20.0
-_WHY = {
-    "too many factorisations": "needed more work",
-    "is not stable": "ended in full slip that is not stable",
-    "meshed to touch": "ended where a ridge touches that is meshed too coarsely",
-    "": "found no equilibrium on the way",
-}
-"""Parts of a failure, and what they say of a state."""
 _LAST = 150.0  # N/m, largest force of a full run in the tables of fingerpad/reduced
 
 
@@ -148,35 +136,19 @@ def draw(docs: Path) -> Path:
     every, both_have = both(compared), points(better)
     beyond = [each for each in every if not find(section(each.values, each.force), each.attraction / each.force)]
     states = [state for each in numbers["scenes"] for state in each["states"]]
-    parts = [
-        state["reached"] / each["values"]["voltage"]
-        for each in better
-        for state in each["states"]
-        if "reached" in state
-    ]
     harness.picture(docs / "loads.png", (9.5, 4.2), lambda figure: _paint(figure, every))
     names = {
-        "every": every, "beyond": beyond, "whole": whole, "states": states,
-        "mesh": [(sizes["contact"], each) for sizes, some in zip(MESHES, mesh, strict=True) for each in some],
+        "every": every, "beyond": beyond, "states": states,
         "regions": (rows := [*judged_levels(levels(compared, whole))]),
         "known_all": [each.error for each in rows if each.error is not None],
         "near": [each.error for each in rows if each.error is not None and each.pull == PULLED[0]],
         "shears": by_shear(both_have), "known_friction": Scene().friction, "kappa": fitted(both_have),
         "ridges": most_ridges_fewer(both_have),
-        "LEAST": LEAST, "MARGIN": MARGIN, "PART": PART, "MESHES": MESHES,
-        "WITHOUT": WITHOUT, "PULLED": PULLED, "LOWEST": LOWEST, "FIRST": FIRST, "WORK": WORK,
         "fresh": {key: fresh.beside(drawn["scenes"], key, mesh) for key in ("mu_app", "contact_length")},
-        "drawn": drawn,
         "known": [REGIONS[0].errors[key]["f_electrostatic"] for key in ("full_slip", WHOLE)],
-        "lost": [each for each in states if "failure" in each], "parts": parts,
+        "lost": [each for each in states if "failure" in each],
     }  # fmt: skip
     return harness.page(docs, "loads", "python3 -m benchmarks.loads", globals() | names, "models", "fresh")
-
-
-def lost_words(lost: Iterable[Data]) -> str:
-    """Return why states were not found, by :data:`_WHY`."""
-    counts = Counter(next(words for part, words in _WHY.items() if part in state["failure"]) for state in lost)
-    return ", ".join(f"{count} {words}" for words, count in counts.most_common())
 
 
 class Judged(NamedTuple):

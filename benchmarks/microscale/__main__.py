@@ -156,22 +156,14 @@ def _reaches(values: list[float | None]) -> float | None:
     return float(np.interp(PAPER, mu, u)) if mu.max() >= PAPER else None
 
 
-def _pair(found: tuple[float, float], known: tuple[float, float | None]) -> str:
-    other = f"{known[0]:g}" + (f" ± {known[1]:g}" if known[1] is not None else "")
-    return f"{found[0]:.3g} ± {found[1]:.2g} | {other}"
-
-
-def _compared(numbers: Mapping[str, Any]) -> tuple[list[tuple[str, float, str]], list[bool]]:
-    """Return the rows of independent numbers, and whether each with a scatter lies within it."""
-    rows, inside = [], []
-    for size, words in (("wide", "4, 6.25 µm"), ("narrow", "1, 1.56 µm")):
-        found, known = numbers["direct"][size], contacts.KNOWN[size]
-        for k, p in enumerate(contacts.PRESSURES):
-            rows.append((words, p, " | ".join(_pair(found[n][k], known[n][k]) for n in range(3))))
-        for one, other in zip(found, known, strict=False):
+def _inside(numbers: Mapping[str, Any]) -> list[bool]:
+    """Return whether each number of another program that has a scatter is within it here."""
+    inside = []
+    for size, found in numbers["direct"].items():
+        for one, other in zip(found, contacts.KNOWN[size], strict=False):
             pairs = zip(one, other, strict=True)
             inside += [abs(mine[0] - mean) <= scatter for mine, (mean, scatter) in pairs if scatter is not None]
-    return rows, inside
+    return inside
 
 
 def draw(docs: Path) -> Path:
@@ -180,32 +172,25 @@ def draw(docs: Path) -> Path:
     harness.picture(docs / "microscale.png", (10, 5), lambda figure: _paint(figure, numbers))
     read = readings.read(numbers)
     solved = [found for each in read if each.words != "bearing area" for found in each.states.values() if found]
-    rows, inside = _compared(numbers)
+    inside = _inside(numbers)
     needed = [_reaches(curves["75"]) for words, curves in numbers["curves"].items() if words != "bearing area"]
     deformed = [row for row in numbers["adhesive"] if row["in_contact"] and row["voltage"] >= 70]
     areas = {row["pixels"]: row["values"][2] for row in numbers["grids"] if row["p_c"] == PRESSURES[1]}
-    gaps, known = numbers["direct"]["wide"][3], [mean for mean, _ in contacts.KNOWN["wide"][3]]
     names = {
         "read": read,
-        "both": [f"{each.words} ({each.reading})" for each in read if each.friction and LOAD in each.gaps],
-        "friction_only": [f"{each.words} ({each.reading})" for each in read if each.friction and LOAD not in each.gaps],
-        "with_gaps": [each.words for each in read if each.words != "bearing area" and each.gaps],
         "exact": [found["d_eq"] * 1e6 for found in solved],
         "loads": [found["p_c"] * 1e-3 for found in solved],
         "span": lambda reading: readings.span(read, reading),
-        "shown": lambda reading: readings.shown(read, reading),
         "others": lambda reading: readings.span([each for each in read if each.words != "bearing area"], reading),
         "mu": lambda words, reading: numbers["read"][words][reading][LOAD]["mu_app"],
-        "pressed": numbers["read"]["bearing area"]["rms"][LOAD]["p_c"] * 1e-3,
         "gap": lambda found, k: _gap(found["d_eq"][k] * 1e6, found["spread"][k] * 1e6),
-        "pull": _pull, "area_scatter": [scatter / mean for mean, scatter in numbers["direct"]["wide"][2]],
-        "reaches": _reaches, "compared": rows, "inside": sum(inside), "known_pairs": inside,
+        "pull": _pull,
+        "reaches": _reaches, "inside": sum(inside), "known_pairs": inside,
         "least_voltage": min(u for u in needed if u), "most_voltage": max(u for u in needed if u),
         "tips": harness.kept("measured", docs).numbers["others"]["gap"]["numbers"],
         "flat": lambda found: Scene().friction * (1 + found["attraction"] / contacts.P_EXT),
         "broken": [part for found in numbers["closures"].values() for part in found["broken"]],
         "first_off": deformed[0], "area_error": areas[min(areas)] / areas[max(areas)],
-        "gap_span": f"{gaps[0][0]:.2f} to {gaps[-1][0]:.2f} µm; other code has {known[0]:.2f} to {known[-1]:.2f} µm",
         "kPa": 1e-3,
     }  # fmt: skip
     return harness.page(docs, "microscale", "python3 -m benchmarks.microscale", globals() | names, "measured")

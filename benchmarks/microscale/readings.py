@@ -54,13 +54,3 @@ def span(states: Sequence[Read], reading: str) -> dict[str, Any]:
     found = [each.states[LOAD] for each in states if each.reading == reading]
     values = [each["mu_app"] for each in found if each]
     return {"low": min(values), "high": max(values), "none": len(found) - len(values), "of": len(found)}
-
-
-def shown(states: Sequence[Read], reading: str) -> str:
-    """Return the span in words: the largest µ_app with ≤ where it is an upper bound, "and more" without a number."""
-    ends = span(states, reading)
-    bound = any(
-        found is not None and found["mu_app"] == ends["high"] and found["balanced"] >= BALANCED
-        for found in (each.states[LOAD] for each in states if each.reading == reading)
-    )
-    return f"{ends['low']:.2f} to {'≤ ' * bound}{ends['high']:.2f}{' and more' * bool(ends['none'])}"

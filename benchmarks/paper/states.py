@@ -149,7 +149,6 @@ def shown(docs: Path) -> dict[str, Any] | None:
         "beside": listed,
         "equal": [each for each in listed if each.apart <= EQUAL],
         "two": [each for each in listed if each.bistable or not each.alike],
-        "unlike": [each for each in listed if not each.alike],
         "count": len(numbers["default"]),
         "direct": len(direct),
         "seconds": numbers["seconds_of_sweep"],

@@ -8,7 +8,6 @@ Writes docs/stability.json, and from it docs/performance.md.
 
 import argparse
 import json
-import re
 import sys
 import tomllib
 from collections.abc import Iterable, Mapping, Sequence
@@ -19,7 +18,7 @@ from typing import Any
 import numpy as np
 
 from benchmarks.harness import keep, kept, made, page, parser, run, solve, table
-from benchmarks.stability.solve import REFERENCE_SIZE, Case
+from benchmarks.stability.solve import Case
 from fingerpad.runs.batch import Summary
 from fingerpad.scene import Scene, from_data
 
@@ -29,15 +28,15 @@ LIMIT = 180.0  # s of processor time of a run
 MESH = {"contact": 30e-6, "interface": 150e-6, "growth": 0.8}
 SYMBOLS = {"converged": "● converged", "continuation": "▲ through continuation", "failed": "✕ failed"}
 _MODULI = {"subcutis": 25e3, "dermis": 2.55e3, "viable_epidermis": 61.75e3, "stratum_corneum": 86.76e3}  # Pa
-_SHOWN = "status reason load newton factorisations cutbacks inverted penetration f_t contact_length f_ext".split()
-_REFERENCED = ("neighbours", "locking", "edge")
-"""Groups of single runs that have errors beside a reference."""
+_SHOWN = "status reason load newton factorisations cutbacks penetration f_t contact_length f_ext".split()
+_REFERENCED = "locking"
+"""Group of single runs that have errors beside a reference."""
 Row = Mapping[str, Any]
 
 
 # -- single runs of a strip ----------------------------------------------------------------------------------
 def named() -> dict[str, dict[str, Case]]:
-    """Return the default and its neighbours, and the known failures by name, with the runs that reproduce them."""
+    """Return the known failures by name, with the runs that reproduce them."""
     groups = tomllib.loads((Path(__file__).parent / "named.toml").read_text(encoding="utf-8"))
     return {
         title: {words: replace(Case(), **group.get("all", {}), **more) for words, more in group["runs"].items()}
@@ -49,7 +48,7 @@ def single(args: argparse.Namespace) -> list[dict[str, Any]]:
     """Run the strips that are missing; return the rows of all."""
     groups = named()
     every = [case for group in groups.values() for case in group.values()]
-    every += [case.reference for title in _REFERENCED for case in groups[title].values()]
+    every += [case.reference for case in groups[_REFERENCED].values()]
     cases = {json.dumps(case.changed, ensure_ascii=False): case for case in every}
     data = {name: case.changed for name, case in cases.items()}
     found = solve("benchmarks.stability.solve", data, args.out / "map", args.jobs, LIMIT)
@@ -111,19 +110,8 @@ def random(args: argparse.Namespace) -> dict[str, Any]:
 def summed(summary: Summary) -> dict[str, Any]:
     """Return what the page shows of a run; factorisations are those of restarts too."""
     again = summary.get("restarts", [])
-    finer = [restart for restart in again if restart["contact"] < MESH["contact"]]
-    return {
-        "full_slip": bool(summary.get("full_slip")),
-        "contact": summary.get("path_mesh", MESH)["contact"],
-        "factorisations": summary.get("factorisations", 0) + sum(restart["factorisations"] for restart in again),
-        "failure": reason(finer[0]["reason"] if finer else summary.get("failure", "")),
-    }
-
-
-def reason(failure: str) -> str:
-    """Return load and name of a failure, ``slide: DIVERGED_MAX_IT``; empty where there is none."""
-    load, name = re.search(r"^step \d+ \((\w+),", failure), re.search(r"\b[A-Z]{3,}(_[A-Z]+)+\b", failure)
-    return ": ".join(found for found in (load[1] if load else "", name[0] if name else failure) if found)
+    work = sum(restart["factorisations"] for restart in again)
+    return {"full_slip": bool(summary.get("full_slip")), "factorisations": summary.get("factorisations", 0) + work}
 
 
 # -- page ----------------------------------------------------------------------------------------------------
@@ -134,23 +122,26 @@ def percent(value: float | None) -> str | None:
     return "0" if abs(value) < 1e-6 else f"{100 * value:.2g}" if abs(value) < 1 else f"{100 * value:.0f}"
 
 
-_COLUMNS = ["run", "outcome", "load", "iterations", "factorisations", "cut steps", "failed solves that met J ≤ 0",
+_COLUMNS = ["run", "outcome", "load", "iterations", "factorisations", "cut steps",
             "penetration (nm)", "f_T (N/m)", "contact length (µm)"]  # fmt: skip
 _ERRORS = ["error in f_T (%)", "error in contact length (%)", "normal force (N/m)", "error in it (%)"]
 
 
-def _group(title: str, cases: Mapping[str, Case], rows: Mapping[Case, Row]) -> str:
+def _group(title: str, cases: Mapping[str, Case], rows: Mapping[str, Row]) -> str:
     """Return a group of runs as a table, one a row."""
     lines = []
-    for words, o in ((words, rows[case]) for words, case in cases.items() if case in rows):
+    for words, o in ((words, rows[_key(case.changed)]) for words, case in cases.items()):
         because = f": {o['reason']}" if o["status"] == "failed" else ""
-        inverted = ", ".join(f"{count} in {layer}" for layer, count in o.get("inverted", {}).items()) or "0"
         counts = [o.get(name) for name in ("load", "newton", "factorisations", "cutbacks")]
         sizes = [f"{o.get('penetration', 0) * 1e9:.3g}", o.get("f_t"), f"{o.get('contact_length', 0) * 1e6:.2f}"]
         f_t, length, f_ext = (percent(o.get(f"error_{name}")) for name in ("f_t", "contact_length", "f_ext"))
-        lines.append([words, SYMBOLS[o["status"]] + because, *counts, inverted, *sizes])
-        lines[-1] += [f_t, length, o.get("f_ext"), f_ext] if title in _REFERENCED else []
-    return table(_COLUMNS + _ERRORS * (title in _REFERENCED), lines)
+        lines.append([words, SYMBOLS[o["status"]] + because, *counts, *sizes])
+        lines[-1] += [f_t, length, o.get("f_ext"), f_ext] if title == _REFERENCED else []
+    return table(_COLUMNS + _ERRORS * (title == _REFERENCED), lines)
+
+
+def _key(changed: Mapping[str, Any]) -> str:
+    return json.dumps(changed, sort_keys=True)
 
 
 def _full_slips(runs: Iterable[Row], formulation: str) -> str:
@@ -166,29 +157,14 @@ def dearer(runs: Iterable[Row], formulation: str) -> float:
     return sum(work[formulation, k] for k in both) / max(sum(work["penalty", k] for k in both), 1)
 
 
-def _scene_cell(row: Row) -> str:
-    work = row["factorisations"] or "–"
-    if not row["full_slip"]:
-        return f"✕ {row['failure']}, {work}"
-    return (
-        f"▲ {1e6 * row['contact']:g} µm, {work}; {row['failure']}" if row["contact"] < MESH["contact"] else f"● {work}"
-    )
-
-
 def draw(docs: Path) -> Path:
     """Write docs/performance.md from docs/stability.json."""
-    numbers, groups = kept("stability", docs).numbers, named()
-    rows, runs = {Case(**row["case"]): row for row in numbers["runs"]}, numbers["random"]["runs"]
-    ends = {(row["number"], row["formulation"]): row for row in runs}
+    numbers = kept("stability", docs).numbers
+    rows, runs = {_key(row["case"]): row for row in numbers["runs"]}, numbers["random"]["runs"]
     names = {
-        "named": {title: _group(title, cases, rows) for title, cases in groups.items()},
-        "near": {words: rows[case] for words, case in groups["neighbours"].items()},
+        "named": {title: _group(title, cases, rows) for title, cases in named().items()},
         "slips": {name: _full_slips(runs, name) for name in FORMULATIONS},
-        "drawn": [
-            (k, drawn(k), [_scene_cell(ends[k, name]) for name in FORMULATIONS]) for k in range(COUNT)
-        ],
-        "DEFAULT": Case(), "REFERENCE_SIZE": REFERENCE_SIZE,
-    }  # fmt: skip
+    }
     return page(docs, "stability", "environment/run python3 -m benchmarks.stability", globals() | names)
 
 

@@ -6,20 +6,16 @@ CASE is JSON, and so is the outcome, the last line printed; after LIMIT seconds 
 
 The bone's rim is the strip's flat top. The lateral faces move sideways with the bone and freely up and down, as those
 of one of many equal ridges: a free stump of soft dermis under a stiff epidermis tips over before it slips, and faces
-glued to the bone would hold the epidermis up. They are free only where a ridge is to snap off, or dermis to bulge.
+glued to the bone would hold the epidermis up. They are free only where dermis is to bulge.
 """
 
 import json
 import sys
-from collections import Counter
-from dataclasses import asdict, dataclass, field, replace
+from dataclasses import asdict, dataclass, replace
 from functools import partial
 from typing import Any
 
-import basix
 import numpy as np
-import ufl
-from dolfinx import fem
 from mpi4py import MPI
 
 from benchmarks.stability import strip
@@ -27,19 +23,14 @@ from fingerpad.runs.processes import limit_processor_time
 from geometry import tags
 from geometry.mesh import load
 from geometry.parameters import Fingertip, MeshSize
-from variational import compat
 from variational.body import Body
 from variational.contact.augmented import AugmentedLagrangian
 from variational.contact.interface import Interface
 from variational.contact.nitsche import Nitsche
 from variational.contact.penalty import Penalty
-from variational.kinematics import deformation_gradient
 from variational.materials.ogden import Ogden
 from variational.roughness.bam import BearingArea
 from variational.solvers.continuation import Attempt, Continuation, StepFailed, Target
-from variational.solvers.coupling import Coupling
-from variational.solvers.iteration import EXACT, StopRule
-from variational.solvers.newton import Solver
 from variational.solvers.outcome import NotConverged
 
 FORMULATIONS = {  # by their one numerical parameter
@@ -64,15 +55,12 @@ class Case:
     force: float = 4.4  # the finger's 75 N/m over its 17 ridges in contact
     indentation: float = 0.0  # if not zero, the bone is lowered by so much instead of being pressed by the force
     voltage: float = 200.0
-    detour: float = 0.0  # if not zero, a voltage reached between the press and the final voltage
     nu: float = 0.48  # Poisson's ratio of all layers
     mu_f: float = 0.25
     step_scale: float = 1.0  # factor on the largest steps of force, voltage and sliding
     slide: float = 1e-3  # farthest the bone slides towards full slip; zero for no sliding
-    ridges: int = 1
     height: float = 1.5e-3
     sides: str = "carried"  # lateral faces: moved sideways with the bone and free up and down, or "free"
-    pseudo_transient: bool = True  # whether pseudo-transient continuation is allowed
 
     @property
     def changed(self) -> dict[str, Any]:
@@ -82,7 +70,7 @@ class Case:
     @property
     def reference(self) -> "Case":
         """The run on the finest mesh with the same physical parameters and default numerical ones."""
-        numerical = ("formulation", "parameter", "element", "step_scale", "pseudo_transient", "detour")
+        numerical = ("formulation", "parameter", "element", "step_scale")
         return replace(self, contact_size=REFERENCE_SIZE, **{name: getattr(Case(), name) for name in numerical})
 
 
@@ -98,56 +86,23 @@ class Outcome:
     newton: int = 0
     factorisations: int = 0
     cutbacks: int = 0
-    # Failed solves in which steps led to J <= 0, by the layer with the least J in the end.
-    inverted: dict[str, int] = field(default_factory=dict)
     penetration: float = 0.0
     f_ext: float = 0.0
     f_t: float = 0.0
     contact_length: float = 0.0
 
 
-class NewtonAlone(Solver):
-    """Never turns to pseudo-transient continuation, whoever asks for it."""
-
-    def solve(self, pseudo_transient: bool = False, stop: StopRule = EXACT, tried: bool = False) -> None:
-        super().solve(False, stop, tried)
-
-
-class Recorder(Coupling):
-    """Counts failed solves in which steps would have turned elements inside out, by the layer nearest to it."""
-
-    def __init__(self, body: Body, pseudo_transient: bool) -> None:
-        solver = body.solver if pseudo_transient else NewtonAlone(body.solver.equations, body.solver.force_scale)
-        super().__init__(solver, body.observer, BearingArea(_H_0))
-        points, _ = basix.make_quadrature(basix.CellType.triangle, 2)
-        self._jacobian = fem.Expression(ufl.det(deformation_gradient(ufl.grad(body.problem.u))), np.asarray(points))
-        self.inverted = Counter[str]()
-
-    def _least_j(self, layer: str) -> float:
-        problem = self.solver.problem
-        cells = problem.cell_tags.find(tags.LAYERS[layer])
-        return float(compat.evaluate_on_cells(self._jacobian, problem.mesh, cells).min())
-
-    def solve(self, pseudo_transient: bool = False) -> None:
-        try:
-            super().solve(pseudo_transient)
-        except NotConverged as failure:
-            if failure.inverted:
-                layers = [name for name, tag in tags.LAYERS.items() if tag in strip.LAYERS]
-                self.inverted[min(layers, key=self._least_j)] += 1
-            raise
-
-
 def make(case: Case) -> Body:
     """Return the strip of a case; interfaces' elements follow the contact's, between 20 and 80 um."""
     size = MeshSize(contact=case.contact_size, interface=float(np.clip(4 * case.contact_size, 20e-6, 80e-6)))
-    mesh = load(MPI.COMM_WORLD, partial(strip.build, Fingertip(), size, case.ridges, case.height), strip.LAYERS)
+    mesh = load(MPI.COMM_WORLD, partial(strip.build, Fingertip(), size, case.height), strip.LAYERS)
     return Body(
         mesh,
         {tag: Ogden(shear, _ALPHA, case.nu) for tag, shear in _SKIN.items()},
         Interface(FORMULATIONS[case.formulation](case.parameter), case.mu_f, _H_0),
+        BearingArea(_H_0),
         element=case.element,
-        force_scale=case.force * case.ridges,
+        force_scale=case.force,
         moving_sides=mesh.facets(tags.SIDES) if case.sides == "carried" else None,
     )
 
@@ -155,16 +110,15 @@ def make(case: Case) -> Body:
 def _targets(case: Case) -> list[Target]:
     """Return the loads of a case, one after the other."""
     pressed = Target("press", bone_height=-case.indentation)
-    loads = [pressed if case.indentation else Target("press", f_ext=case.force * case.ridges)]
-    loads += [Target("charge", voltage=voltage) for voltage in (case.detour, case.voltage) if voltage]
+    loads = [pressed if case.indentation else Target("press", f_ext=case.force)]
+    loads += [Target("charge", voltage=case.voltage)] if case.voltage else []
     return loads + ([Target("slide", bone_x=case.slide, until_full_slip=True)] if case.slide else [])
 
 
 def run(case: Case) -> Outcome:
     """Reach the loads of a case; a failure is an outcome like any other."""
     body, out, jumps = make(case), Outcome(), list[bool]()
-    coupling = Recorder(body, case.pseudo_transient)
-    solver = coupling.solver
+    solver = body.solver
 
     def accepted(target: Target, part: float, attempt: Attempt) -> None:
         state = walk.surface_state
@@ -177,7 +131,7 @@ def run(case: Case) -> Outcome:
         out.f_t = float((loads.f_attraction_x - loads.f_friction).sum())
         out.contact_length = float(loads.length.sum())
 
-    walk = Continuation(coupling, accepted, step_scale=case.step_scale)
+    walk = Continuation(body.coupling, accepted, step_scale=case.step_scale)
     try:
         for target in _targets(case):
             out.load = target.name
@@ -189,7 +143,7 @@ def run(case: Case) -> Outcome:
     else:
         out.status = "continuation" if any(jumps) else "converged"
     out.newton, out.factorisations = solver.counts.newton, solver.counts.factorisations
-    out.full_slip, out.inverted = walk.slip[1], dict(coupling.inverted)
+    out.full_slip = walk.slip[1]
     return out
 
 

@@ -1,9 +1,8 @@
-r"""One to three papillary ridges side by side on a flat layered strip, as a gmsh model.
+r"""A papillary ridge on a flat layered strip, as a gmsh model.
 
 The finger's junctions without its outline: with x along the strip and y upwards from the screen, each curve is
-:math:`y = \text{depth}(x)` of :class:`~geometry.profiles.Profiles`, so that ridge tips are at y = 0 and the middle
-of one ridge is at x = 0. The dermis ends in a flat top, the bone's rim; the lateral faces are in the grooves beyond the
-outer ridges.
+:math:`y = \text{depth}(x)` of :class:`~geometry.profiles.Profiles`, so that the ridge's tip is at y = 0 and its middle
+at x = 0. The dermis ends in a flat top, the bone's rim; the lateral faces are in the grooves beside the ridge.
 """
 
 import gmsh
@@ -20,22 +19,21 @@ _SAMPLES = 32  # spline points of half a period
 LAYERS = (tags.STRATUM_CORNEUM, tags.VIABLE_EPIDERMIS, tags.DERMIS)
 
 
-def build(finger: Fingertip, size: MeshSize, ridges: int = 1, height: float = 1.5e-3) -> float:
+def build(finger: Fingertip, size: MeshSize, height: float = 1.5e-3) -> float:
     """Mesh a strip in the current gmsh session, with physical groups from :mod:`geometry.tags`.
 
     Args:
         finger: its layers and ridges; outline, bone and nail are left out.
-        size: element sizes; every ridge can touch, over ``touching_fraction`` of its width.
-        ridges: how many, 1 or 3: one is at x = 0.
+        size: element sizes; the ridge can touch over ``touching_fraction`` of its width.
         height: of the flat top above the screen (m).
 
     Returns:
         The length of gmsh's unit in m.
     """
     p, geo = Profiles(finger), gmsh.model.geo
-    half = ridges * finger.ridge_wavelength / 2
+    half = finger.ridge_wavelength / 2
     # Broken at tips, grooves and papillae: facets that cut them off would move material from layer to layer.
-    stations = np.linspace(-half, half, 4 * ridges + 1)
+    stations = np.linspace(-half, half, 5)
     curves, ends = [], []
     for depth in (p.skin, p.sc_ve, p.ve_d):
         knots = [_point(x, depth(x)) for x in stations]
@@ -56,12 +54,10 @@ def build(finger: Fingertip, size: MeshSize, ridges: int = 1, height: float = 1.
     geo.synchronize()
     for tag, layer in zip(LAYERS, layers, strict=True):
         gmsh.model.addPhysicalGroup(2, [layer], tag)
-    for k in range(ridges):
-        j = k - ridges // 2
-        gmsh.model.addPhysicalGroup(1, curves[0][4 * k : 4 * k + 4], tags.ridge(j), f"ridge {j}")
+    gmsh.model.addPhysicalGroup(1, curves[0], tags.ridge(0), "ridge 0")
     gmsh.model.addPhysicalGroup(1, curves[-1], tags.BONE_RIM, "bone rim")
     gmsh.model.addPhysicalGroup(1, left + right, tags.SIDES, "sides")
-    _sizes(p, size, ridges, curves[0] + curves[1] + curves[2])
+    _sizes(p, size, curves[0] + curves[1] + curves[2])
     gmsh.model.mesh.generate(2)
     curve_edges()
     return 1 / _MM
@@ -71,11 +67,9 @@ def _point(x: float, y: float | NDArray[np.float64]) -> int:
     return int(gmsh.model.geo.addPoint(x * _MM, float(y) * _MM, 0.0))
 
 
-def _sizes(p: Profiles, size: MeshSize, ridges: int, wavy: list[int]) -> None:
+def _sizes(p: Profiles, size: MeshSize, wavy: list[int]) -> None:
     """Let the element size grow from the tips and from the junctions."""
-    wavelength = p.finger.ridge_wavelength
-    across = p.touching_arcs(size.touching_fraction, size.contact / 2)
-    x = ((np.arange(ridges) - ridges // 2)[:, None] * wavelength + across).ravel()
+    x = p.touching_arcs(size.touching_fraction, size.contact / 2)
     tips = [_point(*xy) for xy in zip(x, p.skin(x), strict=True)]
     gmsh.model.geo.synchronize()
     fields = gmsh.model.mesh.field

@@ -1,37 +1,27 @@
 r"""Discretisation error of states from their values on other meshes: on two, or one mesh parameter after the other.
 
 **Two meshes.** A run without an accuracy has its named states on two meshes, those of its path and of its results, with
-elements of 2 h and h. Their difference makes the error (:func:`of_two_meshes`). Of two whole paths it makes an error
-over time too (:func:`of_two_paths`).
+elements of 2 h and h. Their difference makes the error (:func:`of_two_meshes`), of two whole paths over time too
+(:func:`of_two_paths`).
 
 **An accuracy** is met on one mesh after the other. A mesh parameter is a set of element sizes, or the step size, that
-is halved at once. Parameters are halved one at a time and never two in one solve, so that each change of a quantity q
-belongs to one of them: :math:`\Delta_k`, from twice the size in use to the size in use. An error of
-:math:`C_k h_k^{p_k}` each gives to first order
+is halved at once, one parameter at a time, so that each change :math:`\Delta_k` of a quantity q belongs to one of them.
+An error of :math:`C_k h_k^{p_k}` each gives to first order
 
 .. math:: q - q_{exact} = \sum_k \frac{q(2 h_k) - q(h_k)}{2^{p_k} - 1}, \qquad
           E = \sum_k \frac{|\Delta_k|}{2^{p_k} - 1}
 
 (Richardson's extrapolation as an estimate; Roache 1994, doi 10.1115/1.2910291). E adds magnitudes: signs that cancel on
-one mesh need not on the next. It is the error of the finest mesh solved on: the solve that shows the error also lowers
-it.
+one mesh need not on the next. The estimated error is E with a factor of safety on the share of each parameter:
+:data:`ONCE` for one that was halved once, :data:`MORE` for others. Roache takes 3 and 1.25, for two and three meshes.
 
-The estimated error is E with a factor of safety on the share of each parameter: :data:`ONCE` for a parameter that was
-halved once, of which a single change is known, :data:`MORE` for others. Roache takes 3 and 1.25, for two meshes and for
-three. Where an accuracy is asked for, this error has to be within it, at the price of a finer mesh.
-
-The orders are those known beforehand: p = 1, that of a contact's edge on a mesh whose nodes are not at the edge, for
-forces and lengths, so that the error left is as large as the last change; for energy densities at sites deep in the
-skin, which hardly depend on the edge, that of the strains, p = 2 with quadratic elements and p = 1 with linear ones. An
-order observed from three meshes is mostly noise, since an edge moves facet by facet (``docs/errors.md``). Two meshes
-that differ in all elements leave lengths alone to the edge, whose facets are short there, and have p = 2 for all else.
+The orders are those known beforehand: p = 1 for forces and lengths, that of a contact's edge on a mesh whose nodes are
+not at the edge; for energy densities deep in the skin that of the strains, p = 2 with quadratic elements and p = 1 with
+linear ones. An order observed from three meshes is mostly noise, since an edge moves facet by facet. Two meshes that
+differ in all elements leave lengths alone to the edge, whose facets are short there, and have p = 2 for all else.
 
 For the same reason a change may come out small by accident. That of a sum over ridges counts as at least the root of
-the sum of their squared changes, what changes of random sign come to; and any as at least a quarter of the one before
-it, which is second order.
-
-(A dual-weighted residual would need the adjoint of an active set and of two scales, and does not cover a state in
-which a ridge has jumped. Another mesh covers all of these, and one re-solved state costs some ten factorisations.)
+the sum of their squared changes, and any as at least a quarter of the one before it, which is second order.
 
 Plain numbers only: no mesh, no solver.
 """
@@ -136,15 +126,15 @@ def of_two_meshes(
 
     .. math:: E = s \frac{|q(2h) - q(h)|}{r^p - 1}
 
-    Lengths in contact have the error of the facets where contact ends, of first order in these, and r is how much
-    shorter they are. All else has that of all elements, r = 2, with p = 2 (1 with linear elements), and p = 3/2 for the
-    highest pressure, which means over facets give. Where facets are not shorter where contact ends, friction,
-    attraction and the bone's height have the order and the ratio of lengths, since they depend on the edge of contact.
+    Lengths in contact are of first order in the facets where contact ends, and r is how much shorter these are. All
+    else has r = 2 and p = 2 (1 with linear elements), and p = 3/2 for the highest pressure, which means over facets
+    give. Where facets are not shorter where contact ends, friction, attraction and the bone's height have the order and
+    the ratio of lengths, since they depend on the edge of contact.
 
     The change of a single number may come out small by accident. So the relative error at a site in the skin is at
-    least a part of the median of all sites' of its state. Lengths and friction are sums over ridges, whose changes are
-    taken as independent: their root of squares counts where it is larger. Of the highest pressure the changes of all
-    ridges count that have half of it or more, by their root of mean squares.
+    least a part of the median of all sites' of its state. Changes of lengths and friction of single ridges are
+    independent: their root of squares counts where it is larger; of the highest pressure the root of mean squares of
+    the ridges that have half of it or more.
 
     Args:
         coarse: values on the mesh with elements twice as large.
@@ -186,10 +176,8 @@ def of_sum(coarse: float, fine: float, facets: tuple[float, float], degree: int,
 def of_two_paths(differences: Mapping[str, float], ratio: float) -> dict[str, float]:
     r"""Return the error over time of the finer of two paths, one with all elements twice as large, in the unit given.
 
-    .. math:: E = s \frac{\max_t |q(2h) - q(h)|}{r - 1}
-
-    It is of first order: the largest difference belongs to the time and the site at which edges between nodes matter
-    most, of contact and of skin that sticks. The factor of safety s is :data:`TWO`.
+    It is of first order, :math:`E = s \max_t |q(2h) - q(h)| / (r - 1)` with s = :data:`TWO`: the largest difference
+    belongs to the time and the site at which edges between nodes matter most, of contact and of skin that sticks.
 
     Args:
         differences: largest difference over time by quantity.
@@ -214,18 +202,14 @@ def errors(parameters: Mapping[str, MeshParameter], names: Sequence[str]) -> dic
 
 
 def to_refine(parameters: Mapping[str, MeshParameter], allowed: Mapping[str, float]) -> list[str]:
-    """Return the parameters to halve once more on the way to errors within what is allowed, by name.
+    """Return the names of the parameters to halve once more on the way to errors within what is allowed.
 
     Of each quantity that is not within it, as few as will do by their orders, those with the largest shares first, and
-    none that spends no more than its equal part. One halving at a time, since the order is that of small changes, and a
-    mesh finer than need be costs more than one more round.
+    none that spends no more than its equal part. Empty if every error is within what is allowed.
 
     Args:
         parameters: that can be halved, with what halving them changed.
         allowed: largest error of each quantity, in its unit.
-
-    Returns:
-        In the order of ``parameters``; empty if every error is within what is allowed.
     """
     found: set[str] = set()
     estimate = errors(parameters, list(allowed))
@@ -250,26 +234,21 @@ def rigid(values: Mapping[str, float], stiffer: Mapping[str, float]) -> dict[str
     r"""Return by how much a rigid screen would change each quantity, in its unit: the effect of a penalty.
 
     Springs of stiffness :math:`\epsilon` let the skin sink in by :math:`p_n / \epsilon`, which makes its contact
-    longer. For an error of :math:`C \epsilon^{-p}` of a quantity, two stiffnesses give the change by a rigid screen:
+    longer. For an error of :math:`C \epsilon^{-p}` of a quantity, two stiffnesses on one mesh give the change by a
+    rigid screen:
 
     .. math:: q_{rigid} - q(\epsilon) = \frac{q(2 \epsilon) - q(\epsilon)}{1 - 2^{-p}}
-
-    The mesh is the same, so that one more solve of some factorisations does; skin that is too low for the stiffer
-    springs comes out of the screen in a step or two, where softer ones would have to be reached point by point.
 
     The springs act over :math:`\ell = E / \epsilon` from an edge of contact, E the skin's modulus: 0.2 um by default,
     on ridges of a half-width a of some 50 um. Without attraction the length of a contact grows by some :math:`\ell
     \ln(a / \ell)`, whose order about there is :math:`1 - 1 / \ln(a / \ell) = 0.8`; of a light finger (5 N/m, 200 V,
-    facets of 2.5 um) it is 0.7 from three stiffnesses, and p is :data:`ORDER`. The share is known to a factor of two:
-    what 5000 MPa/mm change in the default scene is beside what 500 and 1500 predict in ``docs/errors.md``. Of that
-    light finger's 482 um at full slip 7.1 um are predicted to go; ten times the stiffness takes off 6.6 um, and
-    Nitsche's method tends to 6 um less than the penalty. For friction, which hardly depends on the penalty, only the
-    order of magnitude is right. On facets far longer than :math:`\ell` a much stiffer screen holds the skin at single
-    Gauss points: an error of the mesh, and not in here.
+    facets of 2.5 um) it is 0.7 from three stiffnesses, and p is :data:`ORDER`. The share is known to a factor of two
+    (``docs/errors.md``). For friction, which hardly depends on the penalty, only the order of magnitude is right. On
+    facets far longer than :math:`\ell` a much stiffer screen holds the skin at single Gauss points: an error of the
+    mesh, and not in here.
 
     Nitsche's method has no such part: its conditions are exact on any mesh. An augmented Lagrangian leaves gaps of up
-    to ``contact.tolerance``, 5 nm by default where the penalty's penetration is of the order of 100 nm: negligible
-    beside the error of the mesh.
+    to ``contact.tolerance``, negligible beside the error of the mesh.
 
     Args:
         values: at the stiffness in use.

@@ -48,13 +48,9 @@ class StateSolver(Simulation):
     def re_equilibrate(self, state: State, name: str) -> None:
         """Solve again for a state that was reached on another mesh of the same finger; collective.
 
-        Args:
-            state: as it was found there.
-            name: what it is called in a failure.
-
         Raises:
-            StepFailed: no equilibrium was found from there, or it is none (forces out of balance, skin where it was not
-                expected to touch), or full slip is no longer full or not steady. It names a ridge that adheres.
+            StepFailed: no equilibrium was found from there, or forces are out of balance, or skin touches where it was
+                not expected to, or full slip is no longer full or not steady. It names a ridge that adheres.
         """
         again = f"{name}, solved again with a contact size of {self.finger.contact_size:g} m"
         closure = self.model.closure
@@ -89,7 +85,7 @@ class StateSolver(Simulation):
         Args:
             formulation: the contact over that screen.
             name: of the state.
-            direction: 1 or -1 for a state of full slip, the way the bone slides; zero for another.
+            direction: the way the bone slides at full slip, 1 or -1; zero for another state.
 
         Raises:
             StepFailed: no equilibrium was found from there.
@@ -129,8 +125,7 @@ def follow(
     Args:
         model: the finger and its loads.
         comm: communicator of the mesh.
-        on_step: called after each accepted step with the path, the step and the part of the history that is done; may
-            raise to stop.
+        on_step: called after each accepted step with the path, the step and the part that is done; may raise to stop.
 
     Raises:
         GeometryError: the finger cannot be meshed.
@@ -230,22 +225,9 @@ class Solves:
     """
 
     def __init__(
-        self,
-        model: FingerModel,
-        path: Solve,
-        comm: MPI.Comm,
-        show: Callable[[str], None],
-        pause: Callable[[], None],
+        self, model: FingerModel, path: Solve, comm: MPI.Comm, show: Callable[[str], None], pause: Callable[[], None]
     ) -> None:
-        """Start with the path's states.
-
-        Args:
-            model: of the path.
-            path: its states.
-            comm: communicator of the meshes.
-            show: prints a line.
-            pause: called before each solve; may raise to stop.
-        """
+        """Start with the path's states; ``pause`` is called before each solve and may raise to stop."""
         self.model, self.show = model, show
         self._comm, self._pause = comm, pause
         self.found = [path]
@@ -254,13 +236,7 @@ class Solves:
     def on_mesh(
         self, mesh: MeshSize, states: Mapping[str, State], views: bool = False, stiffer: Formulation | None = None
     ) -> Solve:
-        """Return states on a mesh; collective.
-
-        Args:
-            mesh: element sizes.
-            states: as they were found on another mesh.
-            views: whether tables and pictures are to show the states.
-            stiffer: see :func:`solve_again`.
+        """Return states on a mesh of other element sizes; collective; see :func:`solve_again`.
 
         Raises:
             GeometryError: the mesh needs too much memory.
@@ -270,10 +246,7 @@ class Solves:
         return self._keep(solve_again(self.model.changed(mesh=mesh), states, self._comm, views, stiffer))
 
     def with_steps(self, step_scale: float) -> Solve:
-        """Return normal contact on the first mesh from a path with other steps; collective.
-
-        Args:
-            step_scale: factor on the largest steps.
+        """Return normal contact on the first mesh from a path whose largest steps have another scale; collective.
 
         Raises:
             StepFailed: the path was lost, or needs more of the model (:attr:`restart`).
@@ -290,12 +263,9 @@ class Solves:
         return self._keep(found)
 
     def on_coarser_path(self, on_step: Callable[["Simulation", "Step", float], None]) -> Solve:
-        """Return the named states of the whole path on elements twice as large; collective.
+        """Return the named states of the whole path on elements twice as large; collective; see :func:`follow`.
 
         The loads are gone through again where more of the model turns out to matter on that mesh.
-
-        Args:
-            on_step: see :func:`follow`.
 
         Raises:
             GeometryError: there is no such mesh.
@@ -322,9 +292,9 @@ class Solves:
         return solve
 
     def least(self) -> float:
-        """Return the processor time (s) of this rank that a solve to come takes at least, about; 0 where not known.
+        """Return the processor time (s) of this rank of the last solve on another mesh; 0 where none was made.
 
-        It is that of the last solve on another mesh than the path's, since those to come have no larger elements.
+        Those to come have no larger elements, and take as much at least, about.
         """
         return next((s.processor_seconds for s in reversed(self.found) if s.mesh != self.found[0].mesh), 0.0)
 

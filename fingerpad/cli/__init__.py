@@ -31,7 +31,7 @@ COMMANDS = {
 }
 _BESIDE = {"compare-data": "compare", "microscale": "roughness", "topography": "roughness"}
 """Modules of the commands that have none of their own name."""
-_COLLECTIVE = ("run", "compare", "solve")  # use all ranks; the others are answered by rank 0
+_COLLECTIVE = ("run", "compare")  # use all ranks; the others are answered by rank 0
 
 
 def main(argv: Sequence[str] | None = None) -> int:

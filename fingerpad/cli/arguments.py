@@ -292,6 +292,18 @@ def quantity(text: str, unit: str = "m") -> float:
     return value
 
 
+def quantities(option: str, text: str, unit: str) -> list[float]:
+    """Return the positive numbers of a range (:mod:`fingerpad.cli.ranges`) in a unit.
+
+    Raises:
+        SceneError: one of them is no such number.
+    """
+    try:
+        return [quantity(str(value), unit) for value in ranges.read(option, text)]
+    except argparse.ArgumentTypeError as error:
+        raise SceneError(f"{option}: {error}") from None
+
+
 def refuse_file(file: Path, kind: Kind) -> None:
     """Refuse a file that cannot be written, or that no command of this kind has written; nothing is made.
 

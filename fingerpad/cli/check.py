@@ -15,7 +15,7 @@ from fingerpad.reduced import cylinders
 from fingerpad.reduced.closure_band import with_band
 from fingerpad.reduced.cylinder_errors import REGIONS, where, within
 from fingerpad.results.files import check_folder
-from fingerpad.results.headline import KNOWN
+from fingerpad.results.quantities import KNOWN
 from fingerpad.results.terminal import about
 from fingerpad.scene import Load, Scene, SceneError
 from fingerpad.scene.loads import ways

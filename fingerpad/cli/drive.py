@@ -6,15 +6,14 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from fingerpad.cli import output, ranges
-from fingerpad.cli.arguments import PICTURE, Parser, changes, echo, refuse_twice, scene_of
+from fingerpad.cli import output
+from fingerpad.cli.arguments import PICTURE, Parser, changes, echo, quantities, refuse_twice, scene_of
 from fingerpad.reduced.detection import REFERENCE
 from fingerpad.results.quantities import Output
-from fingerpad.runs.drive import FREQUENCIES, DrivenFriction, drive, thresholds
+from fingerpad.runs.drive import FREQUENCIES, drive, thresholds
 from fingerpad.scene import Scene, load
 from fingerpad.scene.messages import SceneError, clip
 from fingerpad.scene.remarks import circuit_in_words, leakage
-from geometry.units import to_si
 
 _COLUMNS = (
     Output("frequency", "Hz", digits=1),
@@ -47,8 +46,11 @@ def main(argv: Sequence[str]) -> int:
         raise SceneError(
             f"--plot is given and voltage is {scene.volts:g} V; it must be a drive to be drawn over a period"
         )
-    rows = table(scene, FREQUENCIES if args.frequency is None else _frequencies(args.frequency))
-    found = _over_period(scene)
+    frequencies = FREQUENCIES if args.frequency is None else quantities("--frequency", args.frequency, "Hz")
+    rows = [vars(each) | {"square": each.sine * each.square_over_sine} for each in thresholds(scene, frequencies)]
+    found = None if scene.drive is None else drive(scene)
+    constant = f"voltage is {scene.volts:g} V and no drive: no friction over a period."
+    echo("\n".join([constant, *leakage(scene)]) if found is None else str(found))
     echo(f"\nVoltage at the threshold of detection, relative to a sine of {REFERENCE:g} Hz:\n")
     echo(output.text(_COLUMNS, rows))
     if math.isinf(max(row["square"] for row in rows)):
@@ -79,82 +81,30 @@ def _scene(args: argparse.Namespace) -> Scene:
     """Return the scene of the options, with the drive of a file."""
     refuse_twice(args, "voltage", "--file")
     if args.file is None:
-        lone = next((name for name in ("column", "probe") if getattr(args, name) is not None), None)
-        if lone is not None:
-            raise SceneError(f"--{lone} is given without --file; give the file that it is of")
+        for name in ("column", "probe"):
+            if getattr(args, name) is not None:
+                raise SceneError(f"--{name} is given without --file; give the file that it is of")
         return scene_of(args, meshed=False)
     drive = {"waveform": "file", "file": args.file, "column": args.column, "probe": args.probe}
     return load(args.scene, changes(args.set) | {"voltage": drive})
 
 
-def _over_period(scene: Scene) -> DrivenFriction | None:
-    """Print what the drive of a scene does, or what remains of a constant voltage."""
-    if scene.drive is None:
-        echo(f"voltage is {scene.volts:g} V and no drive: no friction over a period.")
-        for note in leakage(scene):
-            echo(note)
-        return None
-    found = drive(scene)
-    echo(str(found))
-    return found
-
-
-def table(scene: Scene, frequencies: Sequence[float]) -> list[dict[str, Any]]:
-    """Return a row of relative thresholds for each frequency (Hz); raises as :func:`thresholds` does."""
-    return [
-        {
-            "frequency": each.frequency,
-            "sine": each.sine,
-            "square_over_sine": each.square_over_sine,
-            "square": each.sine * each.square_over_sine,
-            "extrapolated": each.extrapolated,
-        }
-        for each in thresholds(scene, frequencies)
-    ]
-
-
 def draw(file: Path, rows: Sequence[Mapping[str, Any]]) -> None:
     """Draw relative thresholds of a sine and a square over the frequency; extrapolated ones are open circles."""
     with output.panels(file, "Voltage at the threshold of detection", 2) as (_, (ax, other)):
-        paint(ax, other, rows)
+        from fingerpad.results import style
 
-
-def paint(ax: Any, other: Any, rows: Sequence[Mapping[str, Any]]) -> None:
-    """Draw into axes the thresholds of a sine and a square, and into others their ratio."""
-    from fingerpad.results import style
-
-    f = [row["frequency"] for row in rows]
-    looks = {"sine": (style.BLUE, "o", "-"), "square": (style.VERMILION, "s", "--")}
-    for name, (colour, _, dash) in looks.items():
-        ax.loglog(f, [row[name] for row in rows], color=colour, ls=dash, label=name)
-    other.loglog(f, [row["square_over_sine"] for row in rows], color=style.BLACK)
-    for part, names in ((ax, looks), (other, ("square_over_sine",))):
-        for name in names:
-            colour, marker = looks.get(name, (style.BLACK, "D", ""))[:2]
-            for extrapolated in (False, True):
-                known = [(row["frequency"], row[name]) for row in rows if row["extrapolated"] == extrapolated]
-                if known:
-                    fill = "none" if extrapolated else colour
-                    part.plot(*zip(*known, strict=True), marker, color=colour, mfc=fill, ms=5)
-        part.set_xlabel("frequency (Hz)")
-        part.grid(alpha=0.3, which="both")
-    other.axhline(1.0, color=style.GREY, ls=":")
-    ax.set_ylabel(f"threshold over that of a sine at {REFERENCE:g} Hz (–)")
-    other.set_ylabel("threshold, square over sine (–)")
-    ax.legend(title="open: extrapolated")
-
-
-def _frequencies(text: str) -> list[float]:
-    """Return the frequencies of an option (Hz).
-
-    Raises:
-        SceneError: they are none.
-    """
-    found = []
-    for value in ranges.read("--frequency", text):
-        try:
-            number = to_si(value, "Hz") if isinstance(value, str) else float(value)
-        except ValueError as error:
-            raise SceneError(f"--frequency is {value}; {error}") from None
-        found.append(number)
-    return found
+        curves = [("sine", style.BLUE, "o-", ax), ("square", style.VERMILION, "s--", ax)]
+        for name, colour, look, part in [*curves, ("square_over_sine", style.BLACK, "D-", other)]:
+            values = [row[name] for row in rows]
+            fills = ["none" if row["extrapolated"] else colour for row in rows]
+            part.loglog([row["frequency"] for row in rows], values, look[1:], color=colour, label=name)
+            for row, fill in zip(rows, fills, strict=True):
+                part.plot(row["frequency"], row[name], look[0], color=colour, mfc=fill, ms=5)
+        other.axhline(1.0, color=style.GREY, ls=":")
+        ax.set_ylabel(f"threshold over that of a sine at {REFERENCE:g} Hz (–)")
+        other.set_ylabel("threshold, square over sine (–)")
+        ax.legend(title="open: extrapolated")
+        for part in (ax, other):
+            part.set_xlabel("frequency (Hz)")
+            part.grid(alpha=0.3, which="both")

@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 from pydantic import ValidationError
 
-from fingerpad.cli import output, ranges
-from fingerpad.cli.arguments import PICTURE, Parser, echo, path, quantity, scene_of, several
+from fingerpad.cli import output
+from fingerpad.cli.arguments import PICTURE, Parser, echo, path, quantities, scene_of, several
 from fingerpad.model.cautions import on_closure
 from fingerpad.results.quantities import QUANTITIES, Output
 from fingerpad.scene import Scene, from_data, override
@@ -58,7 +58,7 @@ def microscale(argv: Sequence[str]) -> int:
     scene = scene_of(args, meshed=False)
     if args.voltage is None and scene.history is not None:
         raise SceneError("history is given, whose loads have their own voltages; name those wanted by --voltage")
-    rows = table(scene, several(args, scene, "voltage"), _pressures(args.p))
+    rows = table(scene, several(args, scene, "voltage"), quantities("--p", args.p, "Pa"))
     closure = microscopic(scene)
     um, low, high = 1e6, *(p * 1e-3 for p in closure.pressures)
     echo(
@@ -85,13 +85,6 @@ def microscale(argv: Sequence[str]) -> int:
         echo(f"{text[0].upper()}{text[1:]}.")
     output.write_files(args, _COLUMNS, rows, draw_microscale)
     return 0
-
-
-def _pressures(text: str) -> list[float]:
-    try:
-        return [quantity(str(value), "Pa") for value in ranges.read("--p", text)]
-    except argparse.ArgumentTypeError as error:
-        raise SceneError(f"--p: {error}") from None
 
 
 def microscopic(scene: Scene) -> BearingArea | TabulatedClosure:

@@ -1,19 +1,14 @@
 """``fingerpad solve``: the value of a key at which friction, or another quantity at full slip, has a target."""
 
 from collections.abc import Sequence
-from typing import Any
 
 from fingerpad.cli.arguments import Parser, echo, scene_of
-from fingerpad.launcher import raising_at_ctrl_c
-from fingerpad.reduced.cylinders import Cylinders
-from fingerpad.reduced.registry import MODELS, find
-from fingerpad.runs.context import RunContext
 from fingerpad.runs.inverse import solve
 from fingerpad.scene.messages import SceneError, clip, show
 
 _EXAMPLES = """
     fingerpad solve --target mu_app=0.4 --over voltage
-    fingerpad solve --target "f_t=0.3 N" --set force="0.5 N" --model full
+    fingerpad solve --target "f_t=0.3 N" --set force="0.5 N"
     fingerpad solve --target mu_app=1.1 --relative --over electric.d_i --from "0.5 um" --to "5 um"
 """
 
@@ -29,8 +24,6 @@ def main(argv: Sequence[str]) -> int:
     parser.add_argument("--over", default="voltage", metavar="KEY", help="key that is varied (default: %(default)s)")
     parser.add_argument("--from", dest="low", metavar="VALUE", help="first value of the key, also with a unit")
     parser.add_argument("--to", dest="high", metavar="VALUE", help="last value of the key, also with a unit")
-    words = "full confirms each value by a run of the full model (default: %(default)s alone)"
-    parser.add_argument("--model", choices=MODELS, default=Cylinders.name, help=words)
     args = parser.read(argv)
     if len(args.target) != 1:
         given = "no --target is given" if not args.target else f"--target is given {len(args.target)} times"
@@ -40,24 +33,10 @@ def main(argv: Sequence[str]) -> int:
         raise SceneError(f"target is {show(args.target[0])}; give a quantity and its value, as --target mu_app=0.4")
     if (args.low is None) != (args.high is None):
         raise SceneError(f"one of --from and --to is given without the other; give both, or none for {clip(args.over)}")
-    model = find(args.model)
-    scene = scene_of(args, meshed=model.meshes)
     between = None if args.low is None else [_number(args.low), _number(args.high)]
-    way: dict[str, Any] = {"between": between, "model": Cylinders.name if model.path else args.model}
-    found = solve(scene, args.over, relative=args.relative, **way, **{name: _number(value)})
-    echo(str(found))
-    if not model.path:
-        return 0
-    from fingerpad.startup import start
-
-    start(args.petsc)
-    # PETSc has its options from here on.
-    from fingerpad.runs.full import exit_code
-
-    with raising_at_ctrl_c():
-        found = found.confirmed(RunContext(lines=True))
-    echo(f"\n{found}")
-    return max(exit_code(root.full) for root in found.roots if root.full is not None)
+    scene = scene_of(args, meshed=False)
+    echo(str(solve(scene, args.over, relative=args.relative, between=between, **{name: _number(value)})))
+    return 0
 
 
 def _number(text: str) -> float | str:

@@ -24,8 +24,9 @@ from collections.abc import Mapping
 from copy import copy
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
+from fingerpad.model import drive_loads
 from fingerpad.results.terminal import about
 from fingerpad.scene.messages import SceneError, qualify
 from fingerpad.scene.viscosity import viscous_layers
@@ -36,8 +37,7 @@ from variational.contact.formulation import Formulation
 from variational.materials.material import Material
 
 if TYPE_CHECKING:
-    from fingerpad.model.drive_loads import GapFactor
-    from fingerpad.scene import Load, Numerics, Scene
+    from fingerpad.scene import Numerics, Scene
 
 COARSER = 2.0
 """Sizes of the elements on which a path is followed over those with which its named states are solved again."""
@@ -48,7 +48,7 @@ PER_UNKNOWN = 6.3e3
 of a run: 0.35 GB with 27 000 unknowns, 0.56 GB with 73 000, 1.2 GB with 186 000, 5.7 GB with 873 000: the last."""
 _RIDGES, _FORCE, _FRICTION = 10, 75.0, 0.25  # on either side, at a force (N/m) and a friction coefficient
 _WIDENS, _ROLLS = 0.27, 0.3  # powers of the force and of a larger friction coefficient
-_LEAST = 2  # ridges on either side
+_FEWEST = 2  # ridges on either side
 _PRESSURE = 30e3  # Pa, mean contact pressure of ridges, at which a friction law other than Coulomb's is evaluated
 
 
@@ -156,8 +156,6 @@ class FingerModel:
             scene: a checked scene with a ``mesh.touching_half_arc``, see :func:`fingerpad.model.options.by_rule`.
             options: the parts of the model, see :func:`plan`.
         """
-        from fingerpad.model import drive_loads
-
         self.options = options
         self.geometry: Fingertip = scene.geometry
         self.mesh: MeshSize = scene.mesh
@@ -191,30 +189,12 @@ class FingerModel:
         """Return element sizes :data:`COARSER` as large, as far as ridges can have them."""
         return sizing.coarser(self.geometry, mesh, COARSER)
 
-    def changed(
-        self,
-        *,
-        options: ModelOptions | None = None,
-        mesh: MeshSize | None = None,
-        final: MeshSize | None = None,
-        edges: tuple[float, ...] | None = None,
-        contact: Formulation | None = None,
-        loads: tuple["Load", ...] | None = None,
-        numerics: "Numerics | None" = None,
-        share: "GapFactor | None" = None,
-    ) -> "FingerModel":
-        """Return a copy with some values changed, as the attributes are described; those left out stay."""
+    def changed(self, **changes: Any) -> "FingerModel":
+        """Return a copy with some attributes changed; those that are left out or None stay."""
         found = copy(self)
-        found.options = self.options if options is None else options
-        found.mesh = self.mesh if mesh is None else mesh
-        found.final = self.final if final is None else final
+        vars(found).update({name: value for name, value in changes.items() if value is not None})
         if found.final is not None:  # the same ridges can touch
             found.final = found.final.model_copy(update={"touching_half_arc": found.mesh.touching_half_arc})
-        found.edges = self.edges if edges is None else edges
-        found.contact = self.contact if contact is None else contact
-        found.loads = self.loads if loads is None else loads
-        found.numerics = self.numerics if numerics is None else numerics
-        found.share = self.share if share is None else share
         return found
 
     def with_ridges(self, last: int) -> "FingerModel":
@@ -262,7 +242,7 @@ def by_rule(scene: "Scene") -> "Scene":
     radius = finger.width**2 / (2 * finger.height)
     lowered = math.sqrt(2 * radius * max(depth, 0.0)) / finger.ridge_wavelength
     friction = 0.0 if law is None else law.coefficient(_PRESSURE)
-    last = math.ceil(max(ridges, lowered, _LEAST) * max(friction / _FRICTION, 1.0) ** _ROLLS)
+    last = math.ceil(max(ridges, lowered, _FEWEST) * max(friction / _FRICTION, 1.0) ** _ROLLS)
     half_arc = min(last, max(finger.ridge_count // 2, 1)) * finger.ridge_wavelength
     return scene.model_copy(update={"mesh": scene.mesh.model_copy(update={"touching_half_arc": half_arc})})
 

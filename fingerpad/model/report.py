@@ -13,10 +13,10 @@ from mpi4py import MPI
 from fingerpad.model.options import Omission
 from fingerpad.model.record import PathRecord, Viewer
 from fingerpad.results import motion, states
+from fingerpad.results.data import Cost
 from fingerpad.results.fields import View
 from fingerpad.results.outputs import valued
 from fingerpad.results.quantities import Output
-from fingerpad.results.result import Cost
 from fingerpad.results.terminal import Console
 from fingerpad.results.writing import Writer
 from fingerpad.scene.messages import counted

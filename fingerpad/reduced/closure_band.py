@@ -39,7 +39,7 @@ import numpy as np
 
 from fingerpad.model.cautions import BALANCED, sticking
 from fingerpad.reduced.cylinders import over_forces
-from fingerpad.results.headline import BAND, KNOWN
+from fingerpad.results.quantities import BAND, KNOWN
 from fingerpad.scene import Scene
 from fingerpad.scene.messages import SceneError
 from fingerpad.scene.remarks import coefficient

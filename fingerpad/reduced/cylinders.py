@@ -36,8 +36,9 @@ from fingerpad.model.cautions import on_scene, sticking
 from fingerpad.reduced import cylinder_errors, default_finger
 from fingerpad.reduced.default_finger import Similar, similar
 from fingerpad.reduced.model import STATES, Model, reduced_state, refuse_others
+from fingerpad.results.data import MODEL_ERROR, Cost
 from fingerpad.results.quantities import MODEL
-from fingerpad.results.result import MODEL_ERROR, Cost, Result
+from fingerpad.results.result import Result
 from fingerpad.results.states import WORDS
 from fingerpad.scene import Scene, SceneError
 from fingerpad.scene.fingers import ADULT

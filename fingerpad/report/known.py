@@ -4,8 +4,9 @@ import math
 from typing import TYPE_CHECKING
 
 from fingerpad.report.page import text
-from fingerpad.results.headline import KNOWN, notes, span
+from fingerpad.results.headline import notes, span
 from fingerpad.results.palette import BLUE, GREY, VERMILION
+from fingerpad.results.quantities import KNOWN
 
 if TYPE_CHECKING:
     from fingerpad.results.result import Result

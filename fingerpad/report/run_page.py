@@ -13,10 +13,10 @@ from fingerpad.report.felt import felt
 from fingerpad.report.frames import conditions_of, frames, section, slider
 from fingerpad.report.trust import head
 from fingerpad.results import fields
-from fingerpad.results.headline import BAND, band_in_words
+from fingerpad.results.headline import band_in_words
 from fingerpad.results.over_time import HARMONICS, NOTE
 from fingerpad.results.printing import cells
-from fingerpad.results.quantities import PER_LENGTH, STEPS, in_table, plus_minus_of
+from fingerpad.results.quantities import BAND, PER_LENGTH, STEPS, in_table, plus_minus_of
 from fingerpad.results.result import Result
 from fingerpad.results.states import WORDS, before_sliding, called
 from variational.state import ContactState, Errors

@@ -10,7 +10,8 @@ from fingerpad.reduced.registry import follows_path
 from fingerpad.report import page as html
 from fingerpad.report.known import bars
 from fingerpad.report.page import BAD, CARE, GOOD
-from fingerpad.results.headline import KNOWN, why_not_known
+from fingerpad.results.headline import why_not_known
+from fingerpad.results.quantities import KNOWN
 from fingerpad.results.states import called
 from fingerpad.scene.remarks import coefficient
 from variational.state import ContactState

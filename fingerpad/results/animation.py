@@ -8,7 +8,7 @@ import math
 from collections.abc import Callable, Sequence
 from io import BytesIO
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from fingerpad.results import motion, style
+from fingerpad.results.data import ResultData
 from fingerpad.results.files import replace
 from fingerpad.results.finger_picture import LAYER_COLOURS, curve
 from fingerpad.results.states import by_load
@@ -27,9 +28,6 @@ from fingerpad.scene.messages import SceneError, clip
 from fingerpad.scene.remarks import coefficient
 from variational.snapshot import loops
 from variational.state import ContactState
-
-if TYPE_CHECKING:
-    from fingerpad.results.result import Result
 
 Array = NDArray[np.float64]
 ENDINGS = (".webp", ".gif")
@@ -64,7 +62,7 @@ class _Scene(NamedTuple):
     """Stress (kPa)."""
 
 
-def animate(result: "Result", path: Path, on_frame: Callable[[int, int], None] = lambda done, count: None) -> Path:
+def animate(result: ResultData, path: Path, on_frame: Callable[[int, int], None] = lambda done, count: None) -> Path:
     """Write the animation of a run that has a folder; return the file, which is there as a whole or not at all.
 
     Args:

@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fingerpad.results import files, quantities
+from fingerpad.results.data import ResultData
 from fingerpad.results.quantities import (
     CHANGES,
     CONDITIONS,
@@ -35,7 +36,6 @@ from variational.state import PATH, ContactState, Errors, Sites
 if TYPE_CHECKING:
     import xarray
 
-    from fingerpad.results.result import Result
     from fingerpad.slices.finger import WholeFinger
 
 FILE = "result.nc"
@@ -48,7 +48,7 @@ OF_SITES = dict(zip(SITES, [each.name for each in fields(Sites)][1:], strict=Tru
 CHANGED = tuple(field.name for field in fields(Errors) if field.name != "own")
 
 
-def dataset(result: "Result") -> "xarray.Dataset":
+def dataset(result: ResultData) -> "xarray.Dataset":
     """Return a result of any model as a dataset; ``docs/results.md`` lists its dimensions.
 
     Returns:
@@ -62,7 +62,7 @@ def dataset(result: "Result") -> "xarray.Dataset":
     return xarray.Dataset(data, coords, attributes(result))
 
 
-def variables(result: "Result") -> Variables:
+def variables(result: ResultData) -> Variables:
     """Return the variables and coordinates of a result."""
     named = [result.named.get(name) for name in STATES]
     every = [*result.steps, *filter(None, named)]
@@ -85,7 +85,7 @@ def content(data: "xarray.Dataset") -> bytes:
     return bytes(data.to_netcdf(engine="scipy", format="NETCDF3_64BIT"))
 
 
-def attributes(result: "Result") -> dict[str, Any]:
+def attributes(result: ResultData) -> dict[str, Any]:
     """Return the attributes of a dataset: model, costs, every parameter by its dotted key, and all else as JSON."""
     parameters = result.parameters
     found: dict[str, Any] = {"title": "fingerpad: a fingertip on a touchscreen", "format": files.FORMAT}
@@ -187,7 +187,8 @@ def _verdicts(named: Sequence[ContactState | None], known: Mapping[str, Output])
     ways = np.array(["" if state is None else state.reached for state in named], object)
     found["state_reached"] = ("state",), ways, _about("how the state was reached, by its path or from another state")
     for kind, words in CHANGES.items():
-        own = {key: None for state in named if state is not None for key in getattr(state, kind).own}
+        every = (getattr(state, kind).own for state in named if state is not None)
+        own = {key: None for each in every for key in each if key in known}  # outputs come after their errors
         for key in (*CHANGED, *own):
             changes = [None if state is None else getattr(getattr(state, kind), key, None) for state in named]
             found[f"state_{key}_{kind}"] = ("state",), _column(changes), known[key].about(f"{words} of the ")
@@ -207,7 +208,7 @@ def _coupling(steps: Sequence[ContactState]) -> Variables:
     }
 
 
-def _loads(result: "Result", known: Mapping[str, Output]) -> Variables:
+def _loads(result: ResultData, known: Mapping[str, Output]) -> Variables:
     """Return the results of the loads along ``load``; lengths, means and spectra are NaN where a load takes no time."""
     loads, passed = result.loads, [load.over_time for load in result.loads]
     found: Variables = {}
@@ -291,7 +292,7 @@ def _traces(whole: "WholeFinger") -> Variables:
 
 
 # -- one flat record --------------------------------------------------------------------------------------
-def values(result: "Result") -> dict[str, Any]:
+def values(result: ResultData) -> dict[str, Any]:
     """Return what is known of the named states, flat: ``full_slip_mu_app``; None where a state is missing."""
     found: dict[str, Any] = {}
     names = (*CONDITIONS, *RESULTS, *STABILITY, *(each.name for each in result.outputs))
@@ -303,7 +304,7 @@ def values(result: "Result") -> dict[str, Any]:
     return {key: None if value != value else value for key, value in found.items()}
 
 
-def summary(result: "Result") -> dict[str, Any]:
+def summary(result: ResultData) -> dict[str, Any]:
     """Return a result without its headline as ``summary.json`` has it."""
     last = result.last
     found: dict[str, Any] = {"format": files.FORMAT, "model": result.model, "full_slip": result.full_slip is not None}

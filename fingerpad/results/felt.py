@@ -9,20 +9,17 @@ them by more than :data:`CHANGE` of its range.
 import math
 from collections.abc import Iterable, Sequence
 from itertools import groupby
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from fingerpad.afferents import DEFAULT, Afferent, History, find
+from fingerpad.results.data import ResultData
 from fingerpad.results.over_time import without_parts_of_jumps
 from fingerpad.results.spikes import Densities, Span, Spikes, Unit
 from fingerpad.results.terminal import about
 from fingerpad.scene.messages import SceneError, show
 from variational.state import ContactState
-
-if TYPE_CHECKING:
-    from fingerpad.results.result import Result
 
 Array = NDArray[np.float64]
 CHANGE = 0.01
@@ -42,7 +39,7 @@ _SIDES = ("left", "right")
 _TIME_TOLERANCE = 1e-9  # of the length of a run: two times that are one
 
 
-def afferents(result: "Result", laws: str | Afferent | Iterable[str | Afferent] | None = None) -> Spikes:
+def afferents(result: ResultData, laws: str | Afferent | Iterable[str | Afferent] | None = None) -> Spikes:
     """Return the spikes of afferents over a run; see :meth:`fingerpad.results.result.Result.afferents`."""
     given: str | Afferent | Iterable[str | Afferent] = DEFAULT if laws is None else laws
     named = [given] if isinstance(given, str | Afferent) else list(given)
@@ -81,7 +78,7 @@ def afferents(result: "Result", laws: str | Afferent | Iterable[str | Afferent] 
     return Spikes(tuple(units), tuple(trains), float(time[-1]), spans, tuple(notes), densities)
 
 
-def _states(result: "Result") -> list[ContactState]:
+def _states(result: ResultData) -> list[ContactState]:
     """Return the states of a run from time 0 on, of which two at a jump have two times.
 
     Raises:
@@ -181,7 +178,7 @@ def _spans(time: Array, loads: Sequence[str]) -> Iterable[Span]:
         yield Span(name, float(time[part[0] - 1]), float(time[part[-1]]))
 
 
-def _mesh(result: "Result", states: Sequence[ContactState]) -> str:
+def _mesh(result: ResultData, states: Sequence[ContactState]) -> str:
     """Return of which mesh the stimuli are, and what is known of its error."""
     sizes = result.record.get("path_mesh") or {}
     contact = f"{1e6 * states[-1].mesh_contact:.3g} µm in contact"

@@ -2,7 +2,7 @@
 
 The file is NumPy's: ``numpy.load("fields.npz")["loads/press/stress"]``. Its groups are ``meshes/0``, …; ``loads/NAME``,
 the end of each load; ``states/NAME``, the skin of states of the path, and fields too of named states on another mesh;
-and ``motion``, see :mod:`fingerpad.results.motion`.
+and ``motion``, see :mod:`fingerpad.results.motion`. Tensors have 32 bits there.
 """
 
 import zipfile
@@ -38,7 +38,7 @@ ALONG = (*(name.removesuffix("_n").removesuffix("_t") for name in SKIN), "d_eq",
 _LEVEL = 1  # of compression: the next ones take longer and save little
 _TRIANGLE = 5  # VTK's number of this cell
 _MESH = ("x", "triangles", "tag", "lines", "beside")  # of a snapshot, that states on one mesh share
-_STATE = ("u", "sed", "stress", "strain")
+_TENSORS = ("stress", "strain")  # of which a file has 32 bits
 
 
 @dataclass(frozen=True)
@@ -208,7 +208,8 @@ def groups_of(loads: Mapping[str, View], states: Mapping[str, View]) -> Groups:
             known = (k for k, mesh in enumerate(meshes) if all(np.array_equal(*each) for each in _pairs(mesh, shown)))
             if (number := next(known, len(meshes))) == len(meshes):
                 meshes.append(shown)
-            arrays |= {"mesh": number} | {name: getattr(shown, name) for name in _STATE}
+            arrays |= {"mesh": number, "u": shown.u, "sed": shown.sed}
+            arrays |= {name: np.asarray(getattr(shown, name), np.float32) for name in _TENSORS}
         found[group] = arrays
     return {f"meshes/{k}": {name: getattr(mesh, name) for name in _MESH} for k, mesh in enumerate(meshes)} | found
 
@@ -246,7 +247,10 @@ def _view(groups: Groups, group: str, state: ContactState) -> View | None:
         snapshot: Any = None
         if number is not None:
             mesh = groups[f"meshes/{int(number)}"]
-            snapshot = SimpleNamespace(**{k: mesh[k] for k in _MESH}, **{k: arrays[k] for k in _STATE})
+            tensors = {name: arrays[name].astype(float) for name in _TENSORS}
+            snapshot = SimpleNamespace(
+                **{name: mesh[name] for name in _MESH}, u=arrays["u"], sed=arrays["sed"], **tensors
+            )
             if not _whole(snapshot):
                 return None
         if skin is not None and (skin.ndim != 2 or len(skin) != len(ALONG) or skin.dtype.kind != "f"):
@@ -266,7 +270,7 @@ def _whole(shown: Any) -> bool:
     shapes |= {"beside": (len(shown.lines), 2)}
     if any(getattr(shown, name).shape != shape for name, shape in shapes.items()):
         return False
-    if not all(getattr(shown, name).dtype.kind == "f" for name in ("x", *_STATE)):
+    if not all(getattr(shown, name).dtype.kind == "f" for name in ("x", "u", "sed")):
         return False
     for name, least, most in (("triangles", 0, points), ("lines", 0, points), ("beside", -1, cells)):
         values = getattr(shown, name)

@@ -15,17 +15,15 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
-from fingerpad.results.quantities import FINGER, MESH, MODEL, QUANTITIES, Output
+from fingerpad.results.data import ResultData
+from fingerpad.results.quantities import FINGER, KNOWN, MESH, MODEL, QUANTITIES, Output
 from fingerpad.results.states import LoadResult, called
 from fingerpad.scene.fingers import FINGERS
+from variational.state import ContactState
 
 if TYPE_CHECKING:
-    from fingerpad.results.result import Result
     from fingerpad.slices.finger import WholeFinger
-    from variational.state import ContactState
 
-BAND, KNOWN = "closures", "known"
-"""Keys of the bands of friction in a record: over models of roughness, and over all assumptions."""
 WHOLE, SECTION = "whole finger", "middle section"
 """What a headline is of."""
 _COUNTS = ("none", "one", "two", "three")
@@ -102,12 +100,12 @@ class Headline:
         return "\n".join([*lines, *(f"  {line}" for line in (*self.known.splitlines(), self.remark) if line)])
 
 
-def headline(result: "Result") -> Headline:
+def headline(result: ResultData) -> Headline:
     """Return the headline of a result, with the remark of its finger's name."""
     return replace(_of_result(result), remark=FINGERS[result.scene.finger].remark)
 
 
-def _of_result(result: "Result") -> Headline:
+def _of_result(result: ResultData) -> Headline:
     slip, finger = result.full_slip if result.scene.friction != 0 else None, result.finger
     if (load := _timed(result)) is not None:
         return _over_time(load, slip)
@@ -122,7 +120,7 @@ def _of_result(result: "Result") -> Headline:
 
 
 # -- what a number is of ---------------------------------------------------------------------------------------
-def _of_finger(result: "Result", finger: "WholeFinger") -> Headline:
+def _of_finger(result: ResultData, finger: "WholeFinger") -> Headline:
     """Return the friction coefficient of the whole finger; its ridge contact area without full slip."""
     volts = result.scene.volts
     force = f"{finger.f_ext:.4g} N" if result.whole else f"{finger.f_ext * (1 + _ROUNDOFF):.2g} N"
@@ -148,7 +146,7 @@ def _of_finger(result: "Result", finger: "WholeFinger") -> Headline:
     return Headline(_stuck(result, f"{force} and {volts:.4g} V") or sentence, WHOLE, quantity, area, at, error, parts)
 
 
-def _of_slip(result: "Result", slip: "ContactState") -> Headline:
+def _of_slip(result: ResultData, slip: ContactState) -> Headline:
     """Return the friction coefficient of the middle section; its friction force where no force presses it."""
     force, what = f"{slip.f_ext:.4g} N/m", f"friction force of the {SECTION}"
     before = _without(result, slip.f_ext) if slip.f_ext > 0 else None
@@ -160,7 +158,7 @@ def _of_slip(result: "Result", slip: "ContactState") -> Headline:
     return Headline(sentence, SECTION, QUANTITIES[key], getattr(slip, key), at, error, parts, known=known)
 
 
-def _of_contact(result: "Result") -> Headline:
+def _of_contact(result: ResultData) -> Headline:
     """Return the contact length of the middle section in normal contact."""
     named, quantity = result.named, QUANTITIES["contact_length"]
     if not named:
@@ -177,7 +175,7 @@ def _of_contact(result: "Result") -> Headline:
     return Headline(sentence, SECTION, quantity, state.contact_length, at, error, parts)
 
 
-def _over_time(load: LoadResult, slip: "ContactState | None") -> Headline:
+def _over_time(load: LoadResult, slip: ContactState | None) -> Headline:
     """Return the range of the friction coefficient of the middle section in a load over time; at full slip second."""
     ends, force = load.extremes["mu_app"], load.extremes["f_t"]
     low, high = _numbers(force.min, force.max)
@@ -191,7 +189,7 @@ def _over_time(load: LoadResult, slip: "ContactState | None") -> Headline:
     return Headline(sentence, SECTION, QUANTITIES["mu_app"], math.nan, at, ends=(ends.min, ends.max))
 
 
-def _timed(result: "Result") -> LoadResult | None:
+def _timed(result: ResultData) -> LoadResult | None:
     """Return the last load with a waveform, where a force presses the finger all the time and it rubs."""
     least = result.record.get("force_error") or 0.0
     waves = {load.name for load in result.scene.loads() if load.wave is not None}
@@ -200,21 +198,21 @@ def _timed(result: "Result") -> LoadResult | None:
     return whole[-1] if whole else None
 
 
-def _known(result: "Result", of: str) -> str:
+def _known(result: ResultData, of: str) -> str:
     """Return the likely range of friction, in words; empty where the band of the record is of something else."""
     kept = result.record.get(KNOWN, {})
     return known_in_words(kept) if kept and kept["whole"] == (of == WHOLE) else ""
 
 
 # -- sentences -------------------------------------------------------------------------------------------------
-def _without(result: "Result", force: float) -> float | None:
+def _without(result: ResultData, force: float) -> float | None:
     """Return the friction force without attraction under a force, in its unit; None where it is not known."""
     mu_0 = result.scene.friction
     return mu_0 * force if isinstance(mu_0, float) else None
 
 
 def _change(
-    result: "Result", force: str, volts: float, what: str, before: float | None, after: float, unit: str
+    result: ResultData, force: str, volts: float, what: str, before: float | None, after: float, unit: str
 ) -> str:
     """Return a sentence on what a voltage changes.
 
@@ -240,7 +238,7 @@ def _change(
     return f"At {force}, {subject} {verb}{ending} the {what} from {first} to {second} {unit}."
 
 
-def _stuck(result: "Result", load: str) -> str:
+def _stuck(result: ResultData, load: str) -> str:
     """Return a sentence that full slip is missing; empty where it is not."""
     how = result.missing_slip
     return f"At {load} full slip was {how}, so there is no friction force of sliding." if how else ""

@@ -21,7 +21,7 @@ from fingerpad.scene.reading import model_name
 from fingerpad.scene.remarks import coefficient
 from fingerpad.scene.scene import Scene, as_kept
 from variational.files import read as read_bytes
-from variational.state import PATH, ContactState, Errors, RidgeStates, Sites, Skin, Stimuli
+from variational.state import PATH, ContactState, Errors, RidgeStates, Sites, Skin, StepRecord, Stimuli
 
 if TYPE_CHECKING:
     import xarray
@@ -137,8 +137,9 @@ def _finger(data: "xarray.Dataset", outputs: Sequence[Output], shape: "Slices") 
         columns = {key: each for key, each in columns.items() if len(each)}
         if columns:
             ridges = columns.pop("ridges", None)
+            depth = columns.pop("depth")
             own = tuple(each for each in outputs if each.name in columns)
-            traces[name] = Trace(columns.pop("depth"), columns, None if ridges is None else ridges.astype(int), own)
+            traces[name] = Trace(depth, columns, None if ridges is None else ridges.astype(int), own)
     return WholeFinger(totals, kept["source"], kept["carried"], traces, shape)
 
 
@@ -152,16 +153,17 @@ def _state(arrays: Mapping[str, NDArray[Any]], prefix: str, k: int, own: Sequenc
         own: names of outputs that are computed from a state.
     """
     names = {name: "load_name" if prefix + name == "load" else prefix + name for name in (*STEPS, *own)}
-    row = {name: arrays[there][k] for name, there in names.items() if there in arrays}
-    more: dict[str, Any] = {}
+    row = {name: _plain(arrays[there][k]) for name, there in names.items() if there in arrays}
+    record = {each.name: row.pop(each.name) for each in fields(StepRecord) if each.name in row}
+    more: dict[str, Any] = {"own": {name: row.pop(name) for name in own if name in row}}
+    more |= {"record": StepRecord(**record)} if record else {}
     number = arrays.get("ridge", np.arange(0))
     if f"{prefix}ridge_contact_length" in arrays:
         columns = {OF_RIDGES[name]: arrays[f"{prefix}ridge_{name}"][k] for name in RIDGES}
         there = np.isfinite(columns["length"])
         values = {name: column[there] for name, column in columns.items()}
         more["ridges"] = RidgeStates(number[there].astype(int), **values | {"note": tuple(map(str, values["note"]))})
-    if f"{prefix}merkel_sed" in arrays:
-        there = np.isfinite(arrays[f"{prefix}merkel_sed"][k])
+    if f"{prefix}merkel_sed" in arrays and (there := np.isfinite(arrays[f"{prefix}merkel_sed"][k])).any():
         left, right = arrays[f"{prefix}meissner_sed"][k][there].T
         more["sites"] = Sites(number[there].astype(int), arrays[f"{prefix}merkel_sed"][k][there], left, right)
     if f"{prefix}merkel_stress" in arrays:
@@ -170,7 +172,7 @@ def _state(arrays: Mapping[str, NDArray[Any]], prefix: str, k: int, own: Sequenc
         more["stimuli"] = Stimuli(number[there].astype(int), **values) if there.any() else None
     if not prefix and "coupling_change" in arrays:
         more["changes"] = tuple(map(float, arrays["coupling_change"][k][np.isfinite(arrays["coupling_change"][k])]))
-    return replace(ContactState.from_row(row), **more)
+    return ContactState(**row, **more)
 
 
 def _named_state(arrays: Mapping[str, NDArray[Any]], k: int, own: Sequence[str]) -> ContactState:
@@ -186,6 +188,11 @@ def _named_state(arrays: Mapping[str, NDArray[Any]], k: int, own: Sequence[str])
         values = {name: arrays[f"skin_{name}"][k][facets][:, points] for name in SKIN}
         more["skin"] = Skin(ridge=arrays["skin_ridge"][k][facets].astype(int), **values)
     return replace(_state(arrays, "state_", k, own), reached=str(arrays["state_reached"][k]) or PATH, **more)
+
+
+def _plain(value: Any) -> Any:
+    """Return a value of an array as Python has it."""
+    return value.item() if isinstance(value, np.generic) else value
 
 
 def _filled(row: NDArray[Any]) -> NDArray[Any]:

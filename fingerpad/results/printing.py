@@ -2,34 +2,31 @@
 
 import math
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
 from fingerpad import notebook
-from fingerpad.results.headline import BAND, band_in_words
-from fingerpad.results.quantities import FRICTION, PER_LENGTH, QUANTITIES, cell, plus_minus_of
+from fingerpad.results.data import ResultData
+from fingerpad.results.headline import band_in_words
+from fingerpad.results.quantities import BAND, FRICTION, PER_LENGTH, QUANTITIES, cell, plus_minus_of
 from fingerpad.results.states import LoadResult, called
 from fingerpad.scene.reading import DEFAULT_MODEL
-
-if TYPE_CHECKING:
-    from fingerpad.results.result import Result
-    from variational.state import ContactState
+from variational.state import ContactState
 
 _SECTION = "Middle section of the finger"
 
 
-def text(result: "Result", headline: str) -> str:
+def text(result: ResultData, headline: str) -> str:
     """Return the text *Result* at the end of a run: headline, whole finger, and named states with units and errors."""
     lines = [_title(result)]
     if result.named:
         heads, rows = _table(result)
-        lines += side_by_side([*head_rows(heads[1:]), *rows])
+        lines += notebook.side_by_side([*notebook.head_rows(heads[1:]), *rows])
     lines += [f"  {note}" for note in (*_timed(result), *_remarks(result))]
     lines += [f"  ! {caution}" for caution in result.cautions]
     finger = [f"{result.finger}"] if result.finger is not None else []
     return "\n".join([headline, *finger, *lines])
 
 
-def page(result: "Result", headline: str) -> str:
+def page(result: ResultData, headline: str) -> str:
     """Return the same for a notebook, with remarks to unfold."""
     title, *known = map(str.strip, headline.splitlines())
     parts = [] if result.finger is None else [result.finger._repr_html_()]
@@ -39,12 +36,12 @@ def page(result: "Result", headline: str) -> str:
     return notebook.page(title, notebook.lines(known), *parts, cautions, remarks)
 
 
-def _title(result: "Result") -> str:
+def _title(result: ResultData) -> str:
     model = f" (model '{result.model}')" if result.model != DEFAULT_MODEL else ""
     return ("Result" if result.finger is None else _SECTION) + model
 
 
-def _table(result: "Result") -> tuple[list[str], list[list[str]]]:
+def _table(result: ResultData) -> tuple[list[str], list[list[str]]]:
     """Return the heads and the rows of the named states side by side, the first of which are words."""
     shown = result.named
     values = ((quantity.title, cells(result, key)) for key, quantity in result.printed.items())
@@ -55,7 +52,7 @@ def _table(result: "Result") -> tuple[list[str], list[list[str]]]:
     return ["", *(called(name, state.voltage) for name, state in shown.items())], rows
 
 
-def cells(result: "Result", key: str) -> list[str]:
+def cells(result: ResultData, key: str) -> list[str]:
     """Return a printed quantity in each named state, with its error; a dash where it is not shown."""
     of, shown = result.printed[key], []
     for name, state in result.named.items():
@@ -64,13 +61,13 @@ def cells(result: "Result", key: str) -> list[str]:
     return shown
 
 
-def _timed(result: "Result") -> list[str]:
+def _timed(result: ResultData) -> list[str]:
     """Return a line for each load over time."""
     least = result.record.get("force_error") or 0.0
     return [_in_time(load, least) for load in result.loads if load.over_time is not None]
 
 
-def _remarks(result: "Result") -> list[str]:
+def _remarks(result: ResultData) -> list[str]:
     """Return the lines after the table: failure, missing full slip, meaning of ± and N/m, effect of the penalty."""
     found = [f"Not finished: {result.failure}"] if result.failure else []
     if (how := result.missing_slip) and not result.failure:
@@ -109,27 +106,11 @@ def _in_time(load: LoadResult, least: float) -> str:
     return f"{words}; {load.sticking}" if rubs and load.sticking else words
 
 
-def head_rows(states: Sequence[str]) -> list[list[str]]:
-    """Return the two lines of heads of states side by side, by their words."""
-    heads = [words.split(" normal") for words in states]
-    return [["", *(head[0] for head in heads)], ["", *("normal" + head[1] if head[1:] else "" for head in heads)]]
-
-
-def side_by_side(rows: Sequence[Sequence[str]]) -> list[str]:
-    """Return the lines of a table whose first column is words and whose others are numbers."""
-    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
-    lines = list[str]()
-    for first, *rest in rows:
-        cells = (cell.rjust(width) for cell, width in zip(rest, widths[1:], strict=True))
-        lines.append("   ".join(["  " + first.ljust(widths[0]), *cells]).rstrip())
-    return lines
-
-
 class StatePrinted:
     """A body that a console and a notebook show by its last accepted state."""
 
-    state: "ContactState"
-    states: "Sequence[ContactState]"
+    state: ContactState
+    states: Sequence[ContactState]
 
     def _rows(self) -> list[tuple[str, str]]:
         """Return quantities with their units, and their values."""
@@ -142,7 +123,7 @@ class StatePrinted:
 
     def __repr__(self) -> str:
         """Return the last accepted state."""
-        return "\n".join([self._title(), *side_by_side(self._rows())])
+        return "\n".join([self._title(), *notebook.side_by_side(self._rows())])
 
     def _repr_html_(self) -> str:
         """Return the last accepted state for a notebook."""

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from fingerpad import notebook
 from fingerpad.results import dataset, files
-from fingerpad.results.printing import side_by_side
 
 if TYPE_CHECKING:
     import xarray
@@ -191,6 +191,6 @@ class Spikes:
     def __str__(self) -> str:
         """Return a table of the classes, with the number of spikes in each load, and remarks."""
         head = f"Spikes in {self.seconds:.4g} s; the last columns have their number in each load"
-        return "\n".join([head, *side_by_side(self.table()), *(f"  {remark}" for remark in self.remarks)])
+        return "\n".join([head, *notebook.side_by_side(self.table()), *(f"  {remark}" for remark in self.remarks)])
 
     __repr__ = __str__

@@ -1,19 +1,16 @@
 """The pictures of a whole finger from its result: its footprint, and the finger in three dimensions."""
 
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from matplotlib.figure import Figure
 
+from fingerpad.results.data import ResultData
 from fingerpad.results.finger_picture import footprint
 from fingerpad.results.solid_picture import solid
 from geometry.profiles import Profiles
 
-if TYPE_CHECKING:
-    from fingerpad.results.result import Result
 
-
-def draw(result: "Result", kind: str, path: Path | None) -> Figure:
+def draw(result: ResultData, kind: str, path: Path | None) -> Figure:
     """Draw a picture of a result with a whole finger, on rank 0.
 
     Args:

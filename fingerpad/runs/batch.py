@@ -60,13 +60,7 @@ def progress(quiet: bool = False) -> "Progress":
 
 
 def times_left(took: Sequence[float], left: int, jobs: int) -> tuple[float, float]:
-    """Return the least and the longest time left (s), by the runs until now.
-
-    Args:
-        took: times of the runs until now (s), at least one.
-        left: number of runs that are left, those in hand included.
-        jobs: runs at a time.
-    """
+    """Return the least and the longest time left (s), by the times of the runs until now (s) and the number left."""
     rounds = left / min(jobs, left)
     low, high = min(took), max(took)
     return (rounds - 1) * low + low / 2, rounds * max(high, 1.25 * low)
@@ -123,7 +117,7 @@ def sweep(
         scenes: by name.
         folder: of all results.
         jobs: processes at a time, without an executor.
-        limit: seconds of processor time for one scene.
+        limit: processor time for one scene (s).
         model: a name of :data:`fingerpad.reduced.registry.MODELS`, of one that meshes.
         quiet: whether to print nothing, and show no bar.
         executor: of ``concurrent.futures``, whose workers share the folder.
@@ -144,15 +138,7 @@ def finish(
     quiet: bool = False,
     executor: Executor | None = None,
 ) -> dict[str, Summary]:
-    """Do tasks with a line for each point and a progress bar.
-
-    Args:
-        scenes: by name, those of all tasks and those that are finished already.
-        tasks: of the others.
-        folder: of all results.
-        jobs: processes at a time, without an executor.
-        quiet: whether to print nothing, and show no bar.
-        executor: of ``concurrent.futures``.
+    """Do tasks with a line for each point and a progress bar; ``scenes`` are those of all tasks and the finished ones.
 
     Returns:
         The summaries by name. That of a point that crashed, took too long, had too little memory or was asked to stop

@@ -189,13 +189,7 @@ class Branches:
 
 
 def _sliding(scene: Scene, top: float, light: float) -> Scene:
-    """Return the scene of a finger that is pressed lightly, charged, slides, and is pressed on.
-
-    Args:
-        scene: press, charge and slide.
-        top: largest force (N/m).
-        light: first force over that.
-    """
+    """Return the scene of a finger that is pressed by the light part of a force (N/m), charged, slid and pressed on."""
     far = scene.slide_length
     loads: list[dict[str, float | str | bool]] = [{"name": "press", "f_ext": top * light}]
     loads += [{"name": "charge", "voltage": scene.volts}] if scene.volts else []
@@ -204,13 +198,7 @@ def _sliding(scene: Scene, top: float, light: float) -> Scene:
 
 
 def _forces(start: float, top: float, among: Sequence[float]) -> list[float]:
-    """Return forces (N/m) up to a largest one, with roots about as far apart as :data:`POINTS` of a whole trace have.
-
-    Args:
-        start: of the present state.
-        top: the largest.
-        among: to be among them, where they are above the present one.
-    """
+    """Return forces (N/m) up to a largest one, whose roots are about as far apart as those of :data:`POINTS`."""
     ends = [start, *(force for force in among if start < force < top), top]
     apart = (1 - LIGHT**0.5) * top**0.5 / (POINTS - 1)
     found = list[float]()

@@ -48,14 +48,9 @@ def check_supported(scene: Scene) -> None:
 def sweep(
     scenes: Mapping[str, Scene], folder: Path, jobs: int, quiet: bool, executor: Executor | None = None
 ) -> dict[str, Summary]:
-    """Solve what has not been solved yet; see :func:`fingerpad.runs.batch.finish`.
+    """Solve what has not been solved yet, each scene beside the one before; see :func:`fingerpad.runs.batch.sweep`.
 
-    Args:
-        scenes: by name, each beside the one before.
-        folder: of all results.
-        jobs: processes at a time; with an executor the number of chains, at most.
-        quiet: whether to print nothing, and show no bar.
-        executor: of ``concurrent.futures``, whose workers share the folder.
+    With an executor ``jobs`` is the number of chains, at most.
     """
     folder = folder.absolute()
     folder.mkdir(parents=True, exist_ok=True)
@@ -75,13 +70,7 @@ def sweep(
 
 
 def chain(file: str, folder: str, law_folders: Sequence[str]) -> End:
-    """Follow a chain in a fresh process, which writes each point into its own folder.
-
-    Args:
-        file: of the chain's scenes.
-        folder: of all results.
-        law_folders: of laws of one's own.
-    """
+    """Follow a chain (a file of its scenes) in a fresh process, which writes each point into its own folder."""
     return run("fingerpad.runs.full_slip", [file, folder, str(_LIMIT)], _LIMIT, law_folders)
 
 

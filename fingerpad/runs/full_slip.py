@@ -33,9 +33,10 @@ from fingerpad.model.options import FingerModel, by_rule, plan
 from fingerpad.model.report import Clock
 from fingerpad.model.simulation import RestartRequired, Simulation
 from fingerpad.model.state import broken
+from fingerpad.results.data import Cost
 from fingerpad.results.files import below
 from fingerpad.results.provenance import provenance
-from fingerpad.results.result import Cost, Result
+from fingerpad.results.result import Result
 from fingerpad.runs import batch
 from fingerpad.runs.context import RunContext
 from fingerpad.runs.post import kept
@@ -207,11 +208,7 @@ class Chain:
             model = restart.model
 
     def _back(self, k: int) -> Iterator[int]:
-        """Solve for the scenes before a scene from there, where another number of ridges touches, while they differ.
-
-        Yields:
-            The number of each scene with a second state.
-        """
+        """Solve for the scenes before a scene from there, where other ridges touch; yield those with a second state."""
         start, before = self._solved[k], self._solved[k - 1] if k else None
         if start is None or before is None or start.state.ridges_in_contact == before.state.ridges_in_contact:
             return
@@ -290,14 +287,7 @@ def _of_state(
 
 
 def _of_run(scene: Scene, why: str, clock: Clock, comm: MPI.Comm) -> Result:
-    """Return full slip of a run of its own; collective.
-
-    Args:
-        scene: of the point.
-        why: it was not found on the scene's mesh.
-        clock: of the point.
-        comm: communicator of the run.
-    """
+    """Return full slip of a run of its own, which was not found on the scene's mesh, and why; collective."""
     from fingerpad.runs import full  # rarely
 
     found = full.run(scene, RunContext(comm=comm, bar=False, report=False))
@@ -329,12 +319,7 @@ def _with_other(result: Result, other: ContactState) -> Result:
 
 
 def main(file: Path, folder: Path) -> None:
-    """Solve for the full slip of a chain of scenes, each into a folder of its own.
-
-    Args:
-        file: the scenes in JSON.
-        folder: of all results.
-    """
+    """Solve for the full slip of a chain of scenes (a file of JSON), each into a folder of its own."""
     data = json.loads(file.read_text(encoding="utf-8"))
     scenes = [from_data(each) for each in data["scenes"]]
     chain = Chain(scenes, data["half_arc"], MPI.COMM_WORLD)

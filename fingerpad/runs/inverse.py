@@ -1,8 +1,8 @@
 """The values of a key at which a quantity at full slip has a target, by the closed form.
 
 The closed form is the model "cylinders" (:mod:`fingerpad.reduced.cylinders`), of one state alone. The key is varied
-over a range, and each crossing of the target is refined (:mod:`fingerpad.runs.roots`). On demand the full model
-confirms each value by one run.
+over a range, and each crossing of the target is refined (:mod:`fingerpad.runs.roots`). The full model confirms a value
+by a run of the scene there.
 
 Quantities are those of the whole finger, as in the headline of a result; those of the middle section where ``f_ext`` is
 varied, or the target has a unit per metre. A scene without a force gets the one whose centre bears its ``f_ext``.
@@ -10,16 +10,16 @@ varied, or the target has a unit per metre. A scene without a force gets the one
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 from fingerpad.reduced.cylinders import Cylinders
 from fingerpad.reduced.registry import find
+from fingerpad.results.data import Number
 from fingerpad.results.quantities import EXTREMES, FINGER, QUANTITIES, Output, plus_minus_of
-from fingerpad.results.result import Number, Result
+from fingerpad.results.result import Result
 from fingerpad.runs.closed_form import STATE, ClosedForm
-from fingerpad.runs.context import RunContext
 from fingerpad.runs.roots import EQUAL, Axis, Roots, axis
-from fingerpad.runs.solve import checked, solved, stopped
+from fingerpad.runs.solve import checked
 from fingerpad.scene import Scene, with_values
 from fingerpad.scene.messages import SceneError, clip, show
 from fingerpad.scene.remarks import drive_in_short, other_under_a_drive
@@ -96,8 +96,6 @@ class Root:
     """With the key."""
     closed: Result
     """Of the closed form: the section and, where the scene has a force, the whole finger."""
-    full: Result | None = None
-    """Of the full model, on demand."""
 
 
 @dataclass(frozen=True)
@@ -116,23 +114,6 @@ class Solution:
         """The values of the key (SI)."""
         return [root.key for root in self.roots]
 
-    def confirmed(self, context: RunContext) -> "Solution":
-        """Return the solution with a run of the full model at each value, up to one that is stopped; collective.
-
-        Args:
-            context: ranks and console.
-        """
-        model, roots = find("full"), list(self.roots)
-        for k, root in enumerate(roots):
-            if context.lines and context.ranks.rank == 0:
-                words = f"{self.axis.key} = {self.axis.shown(root.key)}, run {k + 1} of {len(roots)} of the full model"
-                print(f"\n{words}", flush=True)
-            full = solved(root.scene, model, context)
-            roots[k] = replace(root, full=full)
-            if full.interrupted:
-                break
-        return replace(self, roots=tuple(roots))
-
     def __str__(self) -> str:
         """Return each value of the key and the quantity there, with their errors."""
         quantity, axis, target = self.target.quantity, self.axis, self.target
@@ -146,19 +127,7 @@ class Solution:
             known = ", ± by the error of the closed form" * (root.margin == root.margin)
             value = axis.shown(root.key, error=root.margin)
             lines.append(f"  {axis.key} = {value}{known}: {quantity.symbol} {target.number(root.number)}")
-            if root.full is not None:
-                lines.append(f"    {self._comparison(root, root.full)}")
         return "\n".join([*lines, *other_under_a_drive(each.scene for each in self.roots), *self.notes])
-
-    def _comparison(self, root: Root, full: Result) -> str:
-        """Return the full model's value at a root, and its difference from the closed form."""
-        if self.target.whole and (full.finger is None or STATE not in full.finger.states) or full.full_slip is None:
-            return f"full model: no full slip{f': {full.failure}' if full.failure else ''}"
-        found, value = full.number(STATE, self.target.quantity.name, self.target.whole), root.number.value
-        off = round(100 * (found.value / value - 1), 1) + 0.0 if value else math.nan  # no -0.0
-        ratio = f", {off:+.1f} % from the closed form" if value else ""
-        by = f" (± by {', '.join(found.parts)})" if found.error == found.error else ""
-        return f"full model: {self.target.quantity.symbol} {self.target.number(found)}{by}{ratio}"
 
 
 def solve(
@@ -180,7 +149,7 @@ def solve(
         relative: whether the target is a multiple of the value without voltage: 2 for twice the friction.
         between: first and last value of the key, in SI or as texts with a unit; by default that of
             :data:`fingerpad.runs.roots.RANGES`, or a tenth to ten times the scene's value.
-        model: ``"cylinders"``, or ``"full"`` to confirm each value by a run of the full model.
+        model: a name of :data:`fingerpad.reduced.registry.MODELS`, of a model without a path.
         **target: one quantity and its value, in SI or as a text with a unit: ``mu_app=0.4``, ``f_t="0.3 N"``.
 
     Returns:
@@ -188,13 +157,14 @@ def solve(
 
     Raises:
         SceneError: an impossible target, key or range; or a target that is not reached in the range, with what is.
-        KeyboardInterrupt, SystemExit: a run of the full model is stopped, as by :func:`fingerpad.runs.solve.run`.
     """
     scene, way = checked(scene).resolved(), find(model)
     if len(target) != 1:
         given = f"{' and '.join(target)} are targets" if target else "no target is given"
         raise SceneError(f"{given}; give one quantity and its value, such as mu_app=0.4")
-    form = ClosedForm(Cylinders() if way.path else way)
+    if way.path:
+        raise SceneError(f"model is {model!r}, too slow for a search; run it at the scene of a value of 'cylinders'")
+    form = ClosedForm(way)
     form.model.check(scene)
     if over == "voltage" and scene.drive is not None:
         raise SceneError("voltage is a drive and over is voltage; give one of its keys, as voltage.rms")
@@ -212,12 +182,7 @@ def solve(
         scene = scene.replace(force=force)
     elif over == "f_ext" and name in FINGER:
         notes.append("The whole finger has another value; vary force for it.")
-    solution = _Problem(scene, goal, axis(scene, over, between), form).solution(notes)
-    solution = solution.confirmed(RunContext()) if way.path else solution
-    for root in solution.roots:
-        if root.full is not None and root.full.interrupted:
-            raise stopped(root.full)
-    return solution
+    return _Problem(scene, goal, axis(scene, over, between), form).solution(notes)
 
 
 @dataclass

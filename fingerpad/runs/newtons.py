@@ -169,11 +169,7 @@ class _Newtons:
 
     # -- on the scene's own mesh -----------------------------------------------------------------------
     def _corrected(self, model: FingerModel) -> tuple[Result, Entry]:
-        """Return :meth:`result` of the traces; collective.
-
-        Args:
-            model: with their mesh.
-        """
+        """Return :meth:`result` of the traces on a model's mesh; collective."""
         self.doing = "correction of the traces"
         self._console.phase("states of the traces, on the scene's own mesh")
         branches, degree = self.branches, ELEMENTS[model.numerics.element].degree
@@ -215,11 +211,7 @@ class _Newtons:
     def _total(self, each: Traced, pairs: Sequence[Pair], degree: int, stiffer: State | None) -> Traced:
         """Return a trace as on the scene's own mesh, with the finger on it and its errors.
 
-        Args:
-            each: the trace on coarser elements.
-            pairs: of its states on both meshes.
-            degree: of the elements.
-            stiffer: the last state over a screen of twice the stiffness; None where the screen is rigid.
+        ``stiffer`` is the last state over a screen of twice the stiffness, None over a rigid one.
         """
         scene = self._scene
         finger, force, count, wavelength = profile(scene.slices), scene.force, scene.slices.count, _wavelength(scene)

@@ -62,14 +62,7 @@ class Restarts:
     def record(
         self, restart: RestartRequired, states: Sequence["ContactState"], finger: "Finger", clock: "Clock"
     ) -> None:
-        """Record a restart; collective.
-
-        Args:
-            restart: what is to be added, and why.
-            states: accepted until here.
-            finger: with the model until here.
-            clock: of the run.
-        """
+        """Record a restart; states and finger are those until here; collective."""
         mesh = restart.model.mesh
         step, load = (states[-1].step, states[-1].load) if states else (0, "start")
         whole, seconds = restart.model.options.both_halves, clock.processor_seconds()
@@ -115,9 +108,7 @@ def hint(error: "StepFailed") -> str:
 def finer_mesh_may_help(error: "StepFailed", coarse_start: bool) -> bool:
     """Return whether a load that could not be reached may be with a smaller ``mesh.contact``.
 
-    Args:
-        error: of the load.
-        coarse_start: the mesh was chosen as one to start from, and not by a person.
+    A mesh that was chosen as one to start from, and not by a person, may always be too coarse.
     """
     if coarse_start:
         return not isinstance(error, Interrupted)

@@ -15,8 +15,7 @@ from numpy.typing import NDArray
 from fingerpad import notebook
 from fingerpad.results import dataset
 from fingerpad.results.files import replace
-from fingerpad.results.headline import KNOWN
-from fingerpad.results.quantities import CONDITIONS, FINGER, PER_LENGTH, RESULTS, Output, plus_minus_of
+from fingerpad.results.quantities import CONDITIONS, FINGER, KNOWN, PER_LENGTH, RESULTS, Output, plus_minus_of
 from fingerpad.results.states import STATES, WORDS
 from fingerpad.runs import post
 from fingerpad.runs.sweep_columns import described, description, head_of, of_finger, printed, row, shown, tables

@@ -4,7 +4,7 @@ import json
 import os
 import re
 import tomllib
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import is_dataclass
 from pathlib import Path
 from typing import Any
@@ -24,6 +24,7 @@ DEFAULT_MODEL = "full"
 _MAX_DEPTH = 8  # of tables in lists in tables; a scene has 3
 _DEPTH = f"a scene has at most {_MAX_DEPTH} inside one another"
 _MAX_BITS = 1000  # of a whole number; floating point has 1024
+_NEW = {int: list, str: dict}  # what a key of a place that is not there yet is put into
 _PATH = 80  # characters of a path in a message
 _AFTER_VALUE = "Expected newline or end of document after a statement"  # tomllib, of 50,0 and of 50 N/m
 _NAME = r"[A-Za-z0-9_-]+(\[[0-9]{1,6}\])?"
@@ -34,41 +35,22 @@ _QUOTED = re.compile(
 _KEY = re.compile(rf"{_NAME}(\.{_NAME})*")
 
 
-def text_of(path: Path, name: str) -> str:
-    """Return the text of a file of a user, of bounded size, without a byte order mark.
+def read_study(path: Path) -> dict[str, Any]:
+    """Return the data of a scene file that may have a table ``[sweep]``, or of ``scene.json`` of a run's folder.
 
-    Args:
-        path: of the file.
-        name: what it is, for a refusal.
+    Files of a mesh, of a height map and of voltages are looked for beside it. A byte order mark is allowed.
 
     Raises:
-        SceneError: it is no ordinary file, too large, or not in UTF-8.
+        SceneError: it is no ordinary file, too large, or neither TOML nor the scene of a run.
     """
-    try:
-        return files.read(path, files.MOST_OF_TEXT).decode("utf-8-sig")
-    except OSError as error:
-        raise SceneError(f"{name} cannot be read: {error.strerror or error}") from None
-    except UnicodeDecodeError:
-        raise SceneError(f"{name} is not text in UTF-8; save it in UTF-8") from None
-
-
-def read(path: Path) -> dict[str, Any]:
-    """Return what a TOML file holds; a byte order mark before it is allowed.
-
-    Raises:
-        SceneError: it is no ordinary file, too large, or not TOML.
-    """
-    name = f"scene file {clip(str(path), _PATH)}"
-    text = text_of(path, name)
-    try:
-        return _toml(text)
-    except SceneError:
-        raise
-    except ValueError as error:  # tomllib's, or a whole number of more digits than Python reads
-        hint = "; decimals have points, and a value with a unit has quotes" if _AFTER_VALUE in str(error) else ""
-        raise SceneError(f"{name} is not TOML: {clip(str(error), 150)}{hint}") from None
-    except RecursionError:
-        raise SceneError(f"{name} has lists or tables that are nested too deep; {_DEPTH}") from None
+    foreign(path.parent)
+    foreign(path.resolve().parent)
+    if path.suffix.lower() == ".json":
+        return {key: value for key, value in _record(path).items() if key != "model"}
+    data: dict[str, Any] = plain(_parsed(path, "TOML", _toml))
+    _beside(data, path.parent)
+    _beside(data.get("sweep"), path.parent)
+    return data
 
 
 def read_scene(path: Path) -> dict[str, Any]:
@@ -80,24 +62,6 @@ def read_scene(path: Path) -> dict[str, Any]:
     data = read_study(path)
     if "sweep" in data:
         raise SceneError(f"{path} has a table sweep, which makes it a study; run it by fingerpad sweep, or without it")
-    return data
-
-
-def read_study(path: Path) -> dict[str, Any]:
-    """Return the data of a scene file that may have a table ``[sweep]``, or of ``scene.json`` of a run's folder.
-
-    Files of a mesh, of a height map and of voltages are looked for beside it.
-
-    Raises:
-        SceneError: the file cannot be read, or is of a run that was given more than a scene.
-    """
-    foreign(path.parent)
-    foreign(path.resolve().parent)
-    if path.suffix.lower() == ".json":
-        return {key: value for key, value in _kept(path).items() if key != "model"}
-    data: dict[str, Any] = plain(read(path))
-    _beside(data, path.parent)
-    _beside(data.get("sweep"), path.parent)
     return data
 
 
@@ -120,20 +84,35 @@ def model_of(path: Path | None) -> str:
     """
     if path is None or path.suffix.lower() != ".json":
         return DEFAULT_MODEL
-    return model_name(_kept(path).get("model", DEFAULT_MODEL))
+    return model_name(_record(path).get("model", DEFAULT_MODEL))
 
 
-def _kept(path: Path) -> dict[str, Any]:
+def _record(path: Path) -> dict[str, Any]:
     """Return what a ``scene.json`` holds."""
-    name = f"scene file {clip(str(path), _PATH)}"
-    text = text_of(path, name)
-    try:
-        data = json.loads(text)
-    except (ValueError, RecursionError) as error:
-        raise SceneError(f"{name} is not JSON: {clip(str(error), 150)}") from None
+    data = _parsed(path, "JSON", json.loads)
     if not isinstance(data, dict) or "geometry" not in data:
-        raise SceneError(f"{name} is not the scene.json of a run; other scenes are in TOML")
+        raise SceneError(
+            f"scene file {clip(str(path), _PATH)} is not the scene.json of a run; other scenes are in TOML"
+        )
     return data
+
+
+def _parsed(path: Path, kind: str, parse: Callable[[str], Any]) -> Any:
+    """Return what a file of a user holds, of bounded size, in UTF-8 with or without a byte order mark."""
+    name = f"scene file {clip(str(path), _PATH)}"
+    try:
+        return parse(files.read(path, files.MOST_OF_TEXT).decode("utf-8-sig"))
+    except OSError as error:
+        raise SceneError(f"{name} cannot be read: {error.strerror or error}") from None
+    except UnicodeDecodeError:
+        raise SceneError(f"{name} is not text in UTF-8; save it in UTF-8") from None
+    except RecursionError:
+        raise SceneError(f"{name} has lists or tables that are nested too deep; {_DEPTH}") from None
+    except SceneError:
+        raise
+    except ValueError as error:  # the parser's, or a whole number of more digits than Python reads
+        hint = "; decimals have points, and a value with a unit has quotes" if _AFTER_VALUE in str(error) else ""
+        raise SceneError(f"{name} is not {kind}: {clip(str(error), 150)}{hint}") from None
 
 
 def _beside(value: Any, folder: Path, where: str = "") -> Any:
@@ -149,13 +128,7 @@ def _beside(value: Any, folder: Path, where: str = "") -> Any:
 
 
 def _toml(text: str) -> dict[str, Any]:
-    """Return what a text in TOML holds.
-
-    Raises:
-        SceneError: a dotted key has too many parts; tomllib's time is quadratic in them.
-        ValueError: it is not TOML.
-        RecursionError: a value is nested too deep.
-    """
+    """Return what a text in TOML holds; refuse dotted keys of many parts, in which tomllib's time is quadratic."""
     for part in re.split(r"[^\w\s.-]|\n", _QUOTED.sub("_", text)):  # a key or a value, with all its dots
         if part.count(".") > _MAX_DEPTH:
             raise _too_deep([name.strip() for name in part.split(".")])
@@ -248,19 +221,15 @@ def put(data: dict[str, Any], key: str, value: Any) -> None:
     here: Any = data
     for depth, part in enumerate(parts):
         name = key_of(parts[:depth])
-        if isinstance(part, int):
-            if not isinstance(here, list):
-                raise SceneError(f"{name} is {show(here)}; it must be a list")
-            if part >= len(here):
-                raise SceneError(f"{key_of(parts[: depth + 1])} is not there; {name} has {len(here)} entries")
-        elif not isinstance(here, dict):
-            raise SceneError(f"{name} is {show(here)}; it must be a table of keys")
+        kind, words = (list, "a list") if isinstance(part, int) else (dict, "a table of keys")
+        if not isinstance(here, kind):
+            raise SceneError(f"{name} is {show(here)}; it must be {words}")
+        if isinstance(part, int) and part >= len(here):
+            raise SceneError(f"{key_of(parts[: depth + 1])} is not there; {name} has {len(here)} entries")
         if depth == len(parts) - 1:
             here[part] = value
-        elif isinstance(part, int):
-            here = here[part]
         else:
-            here = here.setdefault(part, [] if isinstance(parts[depth + 1], int) else {})
+            here = here[part] if isinstance(part, int) else here.setdefault(part, _NEW[type(parts[depth + 1])]())
 
 
 def put_all(data: dict[str, Any], changes: Mapping[str, Any]) -> None:
@@ -279,12 +248,11 @@ def flat(parameters: Mapping[str, Any], where: str = "") -> dict[str, Any]:
     """
     found: dict[str, Any] = {}
     for key, value in parameters.items():
-        name = where + key
         if isinstance(value, Mapping):
-            found |= flat(value, f"{name}.")
+            found |= flat(value, f"{where}{key}.")
         elif isinstance(value, list | tuple) and value and all(isinstance(each, Mapping) for each in value):
             for k, each in enumerate(value):
-                found |= flat(each, f"{name}[{k}].")
+                found |= flat(each, f"{where}{key}[{k}].")
         else:
-            found[name] = value
+            found[where + key] = value
     return found

@@ -43,13 +43,7 @@ class Pair:
 
 
 def corrected(trace: Trace, pairs: Sequence[Pair], wavelength: float) -> Trace:
-    """Return a trace as on the fine mesh.
-
-    Args:
-        trace: on the coarse mesh.
-        pairs: states of the trace on both, at growing forces.
-        wavelength: of a ridge (m).
-    """
+    """Return a trace on the coarse mesh as on the fine one, by pairs of its states at growing forces."""
     coarse, fine = (
         _values([getattr(pair, which) for pair in pairs], wavelength, trace.own) for which in ("coarse", "fine")
     )

@@ -85,8 +85,7 @@ def lighter(carried: Mapping[str, dict[str, float]], total: Total, ratio: float)
     """Return the parts of an error under another force, which itself is exact.
 
     *Assumption*: those of the estimate, and of the coarser mesh, grow with the root of the ratio of forces, away from
-    the run's own state at the centre. ``tests/test_slices_errors.py`` compares some kept runs with it, together with
-    the error of the interpolation.
+    the run's own state at the centre. ``tests/test_slices_errors.py`` compares kept runs with it.
 
     Args:
         carried: relative errors by part and quantity.
@@ -118,15 +117,14 @@ def interpolation(finger: Profile, trace: Trace, total: Total, count: int) -> di
     r"""Return the relative errors of sums by the interpolation of a trace between its points, and below the first.
 
     The slices are compared with those of coarser traces. Changes Δq of a quantity and Δf of the external force are
-    taken to equal force, by the slope dQ/dF of the whole finger, and add up without regard to their signs:
+    taken to equal force, by the slope dQ/dF of the whole finger, and add up without regard to their signs, with the
+    thickness t of the slices:
 
     .. math:: e = \frac{1}{Q} \sum_z t(z) \left| \Delta q(z) - \frac{dQ}{dF} \Delta f(z) \right|
 
-    with the thickness t of the slices. Ridges come and go one by one, so that what a slice bears jumps between points,
-    and the interpolation is of the first order in their distance. On half of the points its error is 2 e, and the
-    change 2 e − e is the error itself: the larger one of the even and the odd points. The slices below the first point
-    are a part of the finger that grows with the first indentation. A trace from twice this indentation has at least
-    twice their error, and the change is added.
+    Ridges come and go one by one, so that the interpolation is of first order in the distance of points. On half of the
+    points its error is 2 e, and the change is the error itself: the larger one of the even and the odd points. A trace
+    from twice the first indentation has at least twice the error of the slices below that, and its change is added.
 
     Of a trace that is smooth between points with the same ridges, a slice between others may be at either point: its
     changes are half of the difference of the two. Elsewhere they are those by linear interpolation of the logarithms.
@@ -138,8 +136,7 @@ def interpolation(finger: Profile, trace: Trace, total: Total, count: int) -> di
         count: slices in each stretch of contact.
 
     Returns:
-        Of friction, attraction, areas, indentation and effective width; empty for a trace of two points, of which none
-        can be left out.
+        Of friction, attraction, areas, indentation and effective width; empty for a trace of two points.
     """
     if len(trace.depth) < LEAST:
         return {}
@@ -183,15 +180,7 @@ def _at_equal_force(
 
 
 def _between(finger: Profile, trace: Trace, total: Total, count: int, slope: Mapping[str, float]) -> dict[str, float]:
-    """Return the relative errors of sums between the points of a trace whose ridges are known.
-
-    Args:
-        finger: along its axis.
-        trace: of a slice on the scale 1.
-        total: the sum over the trace.
-        count: slices in each stretch of contact.
-        slope: of each quantity over the force.
-    """
+    """Return the relative errors of sums between the points of a trace whose ridges are known."""
     assert trace.ridges is not None
     fine = at_indentation(finger, trace, total.delta, _FINER * count)
     depth = np.divide(fine.depth, finger.width(fine.z))
@@ -277,12 +266,7 @@ def _around(points: Sequence[tuple[float, Ends]], force: float) -> list[Ends]:
 
 
 def remarks(forces: Iterable[float], names: Collection[str] = tuple(COMPARED)) -> list[str]:
-    """Return what is known of the error at forces (N), a sentence for neighbours that share it.
-
-    Args:
-        forces: on the whole finger.
-        names: of the quantities in :data:`COMPARED` that a reader has before them.
-    """
+    """Return what is known of the error of quantities at forces (N), a sentence for neighbours that share it."""
     compared = {name: text for name, text in COMPARED.items() if name in names}
     start, beside = "Error of the sum of slices at", "beside a finger of 20 × 14 × 28 mm in three dimensions"
     found = []

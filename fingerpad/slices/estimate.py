@@ -39,11 +39,7 @@ _ACCIDENT = 0.25  # of a facet of the path's mesh, in the length of a ridge
 
 
 def with_newtons(result: "Result") -> "Result":
-    """Return a result with its whole finger, or with a note why there is none.
-
-    Args:
-        result: of a scene without a history of its own.
-    """
+    """Return the result of a scene without a history with its whole finger, or a note why there is none."""
     if result.scene.history is not None or result.scene.geometry.file is not None or not result.named:
         return result
     try:
@@ -63,8 +59,8 @@ def estimate(
         scene: press, charge and slide.
         press: states of the press without voltage, at growing forces up to the scene's.
         named: states at the scene's force, by name.
-        outputs: of one's own, that are summed; in other states than the press they follow from the forces and the
-            contact length, since those of the ridges are not known away from the centre.
+        outputs: of one's own, that are summed; but for the press from the forces and the contact length, since ridges
+            away from the centre are not known.
 
     Raises:
         SceneError: the profile does not fit, or the cylinders have no equilibrium.
@@ -94,13 +90,9 @@ def estimate(
 def _on_final_mesh(press: Sequence[ContactState], end: ContactState | None) -> list[Sequence[ContactState]]:
     """Return a press as on the final mesh, and twice more, as its mesh leaves it open under less than the whole force.
 
-    Lengths and indentations are scaled to the end as it is on the final mesh. First, the facets may take the same
-    length off each ridge instead, and not the same part. Second, where contact ends between two facets is an accident:
-    the length of a ridge may be off by :data:`_ACCIDENT` of a facet, those of several by its root of squares.
-
-    Args:
-        press: on the mesh of the path.
-        end: its end on the final mesh; None of a press that has no mesh.
+    Lengths and indentations are scaled to the end on the final mesh (None without a mesh). First, the facets may take
+    the same length off each ridge instead, and not the same part. Second, where contact ends between two facets is an
+    accident: the length of a ridge may be off by :data:`_ACCIDENT` of a facet, those of several by its root of squares.
     """
     if end is None or math.isnan(press[-1].mesh_contact):
         return [press]
@@ -137,14 +129,9 @@ def _traces(
 
 
 def _away(finger: Profile, traces: Sequence[Mapping[str, Trace]], count: int) -> dict[str, dict[str, float]]:
-    """Return the relative changes of sums by other traces, added up, by state and quantity.
+    """Return the relative changes of sums by other traces than the first ones, added up, by state and quantity.
 
     The force changes as much as its ratio to that of the centre.
-
-    Args:
-        finger: along its axis.
-        traces: by state, those of the sums first.
-        count: slices in each stretch of contact.
     """
     every = {f"{name} {k}": trace for k, each in enumerate(traces) for name, trace in each.items()}
     found = {key: total.values for key, total in under_one_force(finger, every, count).items()}

@@ -6,7 +6,6 @@ from functools import cached_property
 from types import SimpleNamespace
 
 from fingerpad import notebook
-from fingerpad.results.printing import head_rows, side_by_side
 from fingerpad.results.quantities import FINGER, FRICTION, MODEL, Output, plus_minus_of
 from fingerpad.results.states import STATES, WORDS, called
 from fingerpad.scene import Scene, SceneError
@@ -161,7 +160,7 @@ class WholeFinger:
 
     def __str__(self) -> str:
         """Return the text *Whole finger* at the end of a run: the states side by side."""
-        lines = side_by_side([*head_rows(self.heads()), *self.rows()])
+        lines = notebook.side_by_side([*notebook.head_rows(self.heads()), *self.rows()])
         return "\n".join([_TITLE, *lines, *(f"  {each}" for each in self.remarks())])
 
     __repr__ = __str__

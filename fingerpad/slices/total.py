@@ -76,10 +76,7 @@ class Profile:
         return float(self.width(np.array([self._lowest[0]]))[0])
 
     def contact(self, delta: float) -> list[tuple[float, float]]:
-        """Return the stretches (m) of the finger that touch, from one end of contact to the other.
-
-        Args:
-            delta: lowering of the bone since the finger first touched (m).
+        """Return the stretches (m) that touch when the bone is lowered by delta (m) since the finger first touched.
 
         Raises:
             SceneError: the contact reaches an end of the finger, or the finger is lowest there.
@@ -227,13 +224,7 @@ _gauss = cache(np.polynomial.legendre.leggauss)
 
 
 def at_force(profile: Profile, trace: Trace, force: float, count: int) -> Total:
-    """Return the finger under a force.
-
-    Args:
-        profile: the finger along its axis.
-        trace: of a slice on the scale 1.
-        force: external force (N), greater than 0.
-        count: slices in each stretch of contact.
+    """Return the finger under an external force (N) greater than 0; other arguments as of :func:`at_indentation`.
 
     Raises:
         BeyondTrace: the trace ends before the force is reached; the message has the largest force.

@@ -156,9 +156,9 @@ def trace(
     """Return the trace of a cross-section.
 
     Args:
-        states: at growing forces, all of one kind: uncharged, charged, or at full slip. States without contact and
-            those that go back, as behind a jump, are left out; so are repetitions of one state up to the tolerances of
-            solvers, of which full slip under a constant force has several.
+        states: of one kind: uncharged, charged, or at full slip. States without contact and those that go back, as
+            behind a jump, are left out; so are repetitions up to the tolerances of solvers, of which full slip under a
+            constant force has several.
         wavelength: of a ridge (m).
         smooth: whether states with the same ridges in contact are on one smooth curve.
         outputs: of one's own; see :func:`columns`.
@@ -185,11 +185,7 @@ def trace(
 def columns(states: Sequence[ContactState], wavelength: float, outputs: Iterable[Output] = ()) -> dict[str, Array]:
     """Return the columns of a trace by name, shape (states,).
 
-    Args:
-        states: of the cross-section.
-        wavelength: of a ridge (m).
-        outputs: of one's own. Those with a rule of sums have a column, unless one of the states lacks what is needed,
-            or values have both signs.
+    Outputs with a rule of sums have a column, unless a state lacks what is needed, or values have both signs.
     """
     found = {name: [abs(getattr(state, name)) for state in states] for name in NAMES if name != "gross_width"}
     found["gross_width"] = [gross_width(state, wavelength) for state in states]
@@ -202,14 +198,9 @@ def columns(states: Sequence[ContactState], wavelength: float, outputs: Iterable
 
 
 def gross_width(state: ContactState, wavelength: float) -> float:
-    """Return the width (m) between the outer edges of the outermost touching ridges.
+    """Return the width (m) between the outer edges of the outermost touching ridges, a wavelength (m) apart.
 
-    Their middles are a wavelength apart for each ridge, and half a ridge's mean contact length lies beyond on either
-    side.
-
-    Args:
-        state: a state of the cross-section.
-        wavelength: of a ridge (m).
+    Half a ridge's mean contact length lies beyond their middles on either side.
     """
     if state.ridges_in_contact == 0:
         return 0.0

@@ -122,11 +122,8 @@ def of_points(
 def grid(expected: float, top: float) -> list[float]:
     """Return the forces (N/m) of a trace: powers of two and between them, from a light one to the second beyond a top.
 
-    A monotone cubic takes its slopes from its neighbours, so that more points do not change it up to the top.
-
-    Args:
-        expected: force at the centre of the finger, about, which is :data:`LIGHT` times that at the start.
-        top: force that the trace is to reach.
+    A monotone cubic takes its slopes from its neighbours, so that more points do not change it up to the top. The force
+    expected at the centre is :data:`LIGHT` times that at the start.
     """
     first = round(math.log2(expected * LIGHT)) * PER_OCTAVE
     last = max(math.ceil(math.log2(top) * PER_OCTAVE) + 1, first + 3)
@@ -136,13 +133,8 @@ def grid(expected: float, top: float) -> list[float]:
 def with_sum(result: Result, model: "Model", solve: Solve, outputs: Sequence[Output] = ()) -> Result:
     """Return the result of a section by a model without a path, with its whole finger, or with a note why it has none.
 
-    The centre of the finger bears the section's force in one of the named states, and less in the others.
-
-    Args:
-        result: of a scene without a force on the whole finger.
-        model: that solved it.
-        solve: solves a scene by it.
-        outputs: of one's own, that are summed.
+    The centre of the finger bears the section's force in one of the named states, and less in the others; arguments as
+    of :func:`whole`.
     """
     scene = result.scene
     try:
@@ -163,13 +155,7 @@ def states(scene: Scene) -> list[str]:
 
 
 def summed(scene: Scene, words: str, found: Mapping[str, Traced]) -> WholeFinger:
-    """Return the finger on its traces.
-
-    Args:
-        scene: of all.
-        words: what the traces are of.
-        found: the traces by state.
-    """
+    """Return the finger on its traces by state; ``words`` say what these are of."""
     totals = {name: each.total for name, each in found.items() if each.total is not None}
     known = {name: dict(each.carried) or {errors.MESH: {}} for name, each in found.items()}
     of = {name: each.trace for name, each in found.items()}
@@ -194,14 +180,7 @@ def sections(scene: Scene, found: Mapping[str, Traced]) -> dict[str, Any]:
 
 
 def _section(traced: Traced, name: str, depth: float, wavelength: float) -> ContactState:
-    """Return the section at the centre of the finger, interpolated between the points of its trace.
-
-    Args:
-        traced: the trace.
-        name: of the state.
-        depth: indentation of the section (m).
-        wavelength: of a ridge (m).
-    """
+    """Return the section at the centre of the finger at a depth (m), interpolated between the points of its trace."""
     at: dict[str, Any] = {key: float(values[0]) for key, values in traced.trace.at(np.array([depth])).items()}
     near = min(traced.states, key=lambda state: abs(state.bone_height + depth))
     mu_app = at["f_t"] / at["f_ext"]

@@ -1,0 +1,208 @@
+"""What a result holds: states by name and in order, loads, costs and remarks."""
+
+import math
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from fingerpad import launcher
+from fingerpad.results.quantities import BAND, KNOWN, MESH, MODEL, PENALTY, QUANTITIES, Output
+from fingerpad.results.states import STATES, LoadResult
+from fingerpad.scene.remarks import coefficient
+from variational.state import ContactState
+
+if TYPE_CHECKING:
+    import pyvista
+
+    from fingerpad.results.drawing import Drawing
+    from fingerpad.results.fields import StateFields
+    from fingerpad.scene import Scene
+    from fingerpad.slices.finger import WholeFinger
+
+MODEL_ERROR = "model_error"
+"""Key of a cheaper model's known errors in a result's record."""
+
+
+class Number(NamedTuple):
+    """A quantity with its whole known error; SI."""
+
+    value: float
+    error: float
+    """NaN where it is not known."""
+    parts: tuple[str, ...]
+    """What the error is made of, in words."""
+
+
+@dataclass(frozen=True)
+class Cost:
+    """Time, memory and work of a result."""
+
+    processor_seconds: float = 0.0
+    """Processor time of all ranks (s), meshes, microscale and compiled forms included."""
+    wall_seconds: float = 0.0
+    """Elapsed time (s)."""
+    newton_iterations: int = 0
+    factorisations: int = 0
+    unknowns: int = 0
+    """Unknowns of the largest linear system; with an accuracy, of the final mesh."""
+    memory_mb: float = 0.0
+    """Memory of all ranks (MB)."""
+    ranks: int = 1
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class ResultData:
+    """What a model answers to a scene; the same on every rank, except for the drawing, which rank 0 has."""
+
+    scene: "Scene"
+    model: str
+    """``full`` or ``cylinders``."""
+    uncharged: ContactState | None
+    """Uncharged normal contact; None where a history or a model does not have this state, as for the next two. All
+    three are defined in :mod:`fingerpad.results.states`."""
+    charged: ContactState | None
+    """Charged normal contact, the last state in contact before the bone moves sideways; of a run at 0 V uncharged."""
+    full_slip: ContactState | None
+    """Full slip, held over a further 0.2 mm."""
+    steps: tuple[ContactState, ...] = ()
+    """Accepted states in order; empty for a model without a loading path."""
+    loads: tuple[LoadResult, ...] = ()
+    """Each load in order, with the state at its end."""
+    cost: Cost = Cost()
+    failure: str = ""
+    """Reason why a load or an accuracy could not be reached, else empty."""
+    interrupted: str = ""
+    """Name of the signal that ended the run, else empty."""
+    notes: tuple[str, ...] = ()
+    """Remarks on the result: sources and omissions."""
+    cautions: tuple[str, ...] = ()
+    """Why the numbers may be further off than their errors say: limits of validity that the scene reaches."""
+    record: dict[str, Any] = field(default_factory=dict)
+    """All else, ready for JSON: omissions, restarts, refinement, laws, provenance."""
+    folder: Path | None = None
+    """Folder of tables, plots and fields, an absolute path; None where nothing was written."""
+    drawing: "Drawing | None" = None
+    """Data of the pictures; None for a model without them."""
+    outputs: tuple[Output, ...] = ()
+    """Outputs that are computed from a state; of a result that was read their values alone are known."""
+    finger: "WholeFinger | None" = None
+    """The whole finger in N and mm²; None where a history or a model does not give it."""
+
+    def __post_init__(self) -> None:
+        """Keep the folder where the program may go to another one, in which the same name is another run's."""
+        if self.folder is not None:
+            object.__setattr__(self, "folder", self.folder.absolute())
+
+    @property
+    def named(self) -> dict[str, ContactState]:
+        """Named states that are not None, by their names in :data:`fingerpad.results.states.STATES`."""
+        return {name: state for name in STATES if (state := getattr(self, name)) is not None}
+
+    @property
+    def missing_slip(self) -> str:
+        """That a slide did not end in full slip, in words; empty where it did, or where nothing slides."""
+        if self.full_slip is not None or not any(load.until_full_slip or load.moves for load in self.scene.loads()):
+            return ""
+        held = any(load.full_slip_reached for load in self.loads)
+        return "not held over a further 0.2 mm" if held else "not reached"
+
+    @property
+    def parameters(self) -> dict[str, Any]:
+        """Parameters of the scene, as its files have them, with names of laws that are not read."""
+        kept: dict[str, Any] = self.record.get("parameters") or self.scene.parameters()
+        return kept
+
+    @property
+    def closures(self) -> dict[str, float | None]:
+        """µ_app at full slip by each model of roughness, by the ratio of charged cylinders; None without a number.
+
+        It has none without an equilibrium, and where ridges adhere beyond its table of gaps. Empty without voltage,
+        friction or full slip, for a history, and for a closure of one's own.
+        """
+        return dict(self.record.get(BAND, {}).get("mu_app", {}))
+
+    @property
+    def known(self) -> dict[str, Any]:
+        """Band of µ_app at full slip over the scene's assumptions: ``low``, ``high`` and ``parts``, the largest first.
+
+        Each part has ``name``, ``low`` and ``high``. ``high`` is None where the upper end is open: a closure has no
+        number there; ``low`` too where it is the result's own one. Empty without friction under a voltage.
+        """
+        return dict(self.record.get(KNOWN, {}))
+
+    @property
+    def whole(self) -> bool:
+        """Whether the scene has a force on the whole finger; the named states are then those of its centre."""
+        return self.scene.force is not None
+
+    @property
+    def last(self) -> ContactState | None:
+        """The last accepted state; without a loading path the last named state."""
+        return self.steps[-1] if self.steps else (self.full_slip or self.charged or self.uncharged)
+
+    @property
+    def printed(self) -> dict[str, Output]:
+        """Quantities of a state that are printed, with outputs of one's own, by name."""
+        return QUANTITIES | {each.name: each for each in self.outputs if "result" in each.tables}
+
+    def number(self, state: str, key: str, whole: bool = False) -> Number:
+        """Return a quantity of a named state with its whole known error: the ± at every door.
+
+        Args:
+            state: a name of :data:`fingerpad.results.states.STATES`.
+            key: a quantity of a state or, of the whole finger, of :data:`fingerpad.results.quantities.FINGER`.
+            whole: whether it is of the whole finger.
+        """
+        if whole:
+            assert self.finger is not None
+            error = self.finger.error.get(state, {}).get(key, math.nan)
+            return Number(self.finger.values(state)[key], error, self.finger.parts(state))
+        section = self.named[state]
+        value, error = getattr(section, key), getattr(section.error, key, math.nan)
+        return Number(value, error, self.parts(state, key=key))
+
+    def parts(self, *states: str, key: str = "") -> tuple[str, ...]:
+        """Return what the errors of the section are made of, in words; by default of all named states and quantities.
+
+        Args:
+            states: names of states.
+            key: a quantity.
+        """
+        if MODEL_ERROR in self.record:
+            return (MODEL,)
+        named = [self.named[name] for name in states or self.named]
+        kinds = ([each.error for each in named], [each.penalty for each in named])
+        known = ({name for each in kind for name in each.known()} for kind in kinds)
+        mesh, penalty = (key in names if key else bool(names) for names in known)
+        return (*[MESH] * mesh, *[PENALTY] * (mesh and penalty))
+
+    # -- pictures and fields ---------------------------------------------------------------------------
+    def _drawn(self) -> "Drawing | None":
+        """Return what pictures are drawn from, of a result that was read from its folder; None off rank 0."""
+        if self.drawing is None and self.steps and self.folder is not None and launcher.rank() == 0:
+            from fingerpad.results.drawing import read  # Matplotlib
+
+            mu_0 = None if "laws" in self.record.get("parameters", {}) else coefficient(self.scene)
+            return read(self.folder, self.steps, self.named, mu_0)
+        return self.drawing
+
+    @property
+    def fields(self) -> "StateFields":
+        """Displacement, stress, strain and energy density inside the finger, by load or named state; on rank 0.
+
+        A load's name stands for its end. Named states are those of the mesh that their numbers are of. Empty for
+        models without a mesh, and on other ranks.
+        """
+        from fingerpad.results.fields import StateFields
+
+        drawing = self._drawn()
+        return StateFields({} if drawing is None else drawing.fields(), self.model)
+
+    def to_pyvista(self) -> "pyvista.MultiBlock":
+        """Return :attr:`fields` as blocks of PyVista, each a grid of the unloaded finger in m.
+
+        Raises:
+            ImportError: PyVista is not installed.
+            ValueError: there are no fields.
+        """
+        return self.fields.to_pyvista()
