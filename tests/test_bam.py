@@ -82,16 +82,6 @@ def test_threshold_with_thick_insulators_or_a_short_decay(h_0, h_rms, gamma):
     assert p_ext[1] < p_ext[0] and p_ext[1] < p_ext[2]
 
 
-@pytest.mark.parametrize("stress", [10.0, 1e3, 1e4])
-def test_pull_off_stress_at_the_sticking_voltage(bam, stress):
-    """It is the one given, at the fold; the default finger's is 3.46 kPa at 200 V. Without a stress it is the onset."""
-    voltage = bam.sticking_voltage(stress)
-    fold = bam.pull_off_fold(voltage)
-    assert -bam.external_pressure(fold, voltage) == pytest.approx(stress, rel=1e-9)
-    assert bam.sticking_voltage(3.46e3) == pytest.approx(200.0, rel=1e-3)
-    assert bam.threshold() < bam.sticking_voltage(1e-3) < bam.threshold() * (1 + 1e-6)
-
-
 @pytest.mark.parametrize("gamma", [0.4, 0.5])
 @pytest.mark.parametrize("key", ["h_0", "h_rms", "young"])
 def test_sticking_voltage_rises_with_insulator_roughness_and_modulus(key, gamma):
@@ -105,26 +95,6 @@ def test_sticking_voltage_rises_with_insulator_roughness_and_modulus(key, gamma)
         True
     }
     assert key == "young" or None in found
-
-
-@pytest.mark.parametrize("numbers", [{"h_0": 128e-6}, {"h_0": 22e-6}, {"h_rms": 0.1e-6}])
-def test_tail_of_the_law_is_no_sticking_voltage(numbers):
-    """Least p_ext is zero at 1e-9 V, 40 V and 0.1 V, where the surfaces are far from contact."""
-    closure = BearingArea(**{"h_0": H_0} | numbers)
-    assert closure.threshold() < 60 and closure.sticking_voltage() is None
-
-
-@pytest.mark.parametrize("h_0", [5e-3, 1.0])
-def test_fold_beyond_the_smallest_numbers(h_0):
-    """Some h_rms within h_0, where the repulsion has left e^-300 or e^-60000 of itself."""
-    fold = BearingArea(h_0).pull_off_fold(100.0)
-    assert fold is not None and 0.9 < fold / h_0 < 1
-    assert BearingArea(h_0).pull_off_fold(0.0) is None
-
-
-def test_threshold_of_the_shortest_decay():
-    """The repulsion ends before the attraction does: what is left of it is smaller than any number."""
-    assert BearingArea(H_0, gamma=0.01).threshold() == 0
 
 
 def test_no_equilibrium_is_an_error(bam):

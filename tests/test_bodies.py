@@ -48,18 +48,6 @@ def test_one_ridge():
     assert body.ridges() == [0]
 
 
-def test_ridge_with_known_ends_of_contact():
-    """Facets at the ends are a sixteenth of the others, and those farther away as long as without ends."""
-    size, end = 16 * UM, 50 * UM
-    for ends, expected in (((), size), ((-end, end), size / 16)):
-        body = load(MPI.COMM_SELF, ridge(size, ends=ends))
-        x = np.sort(vertices(body, body.facet_tags.find(tags.ridge(0)))[:, 0])
-        middles, facets = (x[1:] + x[:-1]) / 2, np.diff(x)
-        for place in (-end, end):
-            assert facets[abs(middles - place).argmin()] == pytest.approx(expected, rel=0.5)
-        assert facets[abs(middles) < 10 * UM] == pytest.approx(size, rel=0.3)
-
-
 @pytest.mark.mpi
 def test_ridges_side_by_side():
     """Each is a ridge at its place: area, top and length of skin are those of four; one alone has the nodes of a ridge.
@@ -130,16 +118,6 @@ def test_pad():
     np.testing.assert_allclose(x[np.abs(x) < 8.5 * size], size * np.arange(-8, 9), rtol=0, atol=1e-6 * size)
     assert lengths(body)[tags.BONE_RIM] == pytest.approx(span, rel=1e-12, abs=0)
     assert lengths(body)[tags.SIDES] == pytest.approx(2 * (span - span**2 / 8 / radius), rel=1e-12)
-
-
-def test_foot():
-    """Flat within its half-width, recessed by the step a facet farther out. Tolerance: roundoff."""
-    size, half_width, step, span = 10 * UM, 0.2 * MM, 2 * UM, 2 * MM
-    body = load(MPI.COMM_SELF, foot(size, half_width, step, span))
-    x, y = bottom(body).T
-    np.testing.assert_allclose(y, np.where(np.abs(x) < half_width + size / 2, 0.0, step), rtol=0, atol=1e-12 * span)
-    assert np.abs(np.abs(x[y > step / 2]).min() - half_width - size) < 1e-12 * span
-    assert lengths(body)[tags.BONE_RIM] == pytest.approx(span, rel=1e-12, abs=0)
 
 
 @pytest.mark.parametrize(

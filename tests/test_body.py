@@ -14,7 +14,6 @@ from variational import body as parts
 from variational.contact.interface import Interface
 from variational.contact.penalty import Penalty
 from variational.materials.ogden import Ogden
-from variational.materials.saint_venant import SaintVenant
 from variational.roughness.bam import BearingArea
 from variational.solvers.continuation import StepFailed, Target
 
@@ -124,25 +123,6 @@ def test_skin_runs_from_left_to_right_and_bears_the_force():
     assert skin.t_t[sliding] == pytest.approx(-MU_F * skin.p_n[sliding], rel=1e-6)
 
 
-def test_hertz():
-    """A pad without friction against Hertz, with facets of a / 8.
-
-    The half-width is located inside a facet. Pressures of a stiff penalty alternate within facets, not their means.
-    """
-    young, poisson, radius, half_width = 1e6, 0.3, 10e-3, 50e-6
-    e_star = young / (1 - poisson**2)
-    force = np.pi * e_star * half_width**2 / (4 * radius)
-    shape = geometry.pad(size=half_width / 8, facets=12, radius=radius, span=200 * half_width)
-    stiff = 100 * e_star / (half_width / 8)
-    body = Body(shape, SaintVenant(young, poisson), contact=Penalty(stiff, stiff), touch_depth=50e-9).press(force)
-    assert body.state.contact_length == pytest.approx(2 * half_width, rel=0.01)
-    weights = np.polynomial.legendre.leggauss(4)[1] / 2
-    x, p_n = body.skin.x @ weights, body.skin.p_n @ weights
-    inner = np.abs(x) < 0.8 * half_width
-    exact = 2 * force / (np.pi * half_width) * np.sqrt(1 - (x[inner] / half_width) ** 2)
-    assert p_n[inner] == pytest.approx(exact, rel=0.03)
-
-
 # -- unusual histories -------------------------------------------------------------------------------------
 @pytest.mark.mpi
 def test_there_and_back():
@@ -196,11 +176,6 @@ def test_load_is_refused(call, message):
 def test_materials_are_refused(material, message):
     with pytest.raises(ValueError, match=message):
         Body(RIDGE, material, contact=SPRINGS)
-
-
-def test_body_has_the_insulator_of_its_roughness():
-    with pytest.raises(ValueError, match="has h_0 = 5.1e-07 m, and the attraction has an effective .* of 1e-06 m"):
-        Body(RIDGE, SKIN, contact=SPRINGS, roughness=BearingArea(H_0), h_0=1e-6)
 
 
 @pytest.mark.mpi

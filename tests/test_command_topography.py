@@ -10,7 +10,6 @@ import pytest
 
 from fingerpad import launcher
 from fingerpad.cli import main
-from fingerpad.reduced import cylinders
 from fingerpad.scene import from_data, load, materials
 from fingerpad.scene.messages import SceneError
 from fingerpad.scene.remarks import remarks
@@ -87,25 +86,6 @@ def test_bad_height_map_of_a_scene(table, message):
         from_data({"roughness": {"h_rms": 3e-6, "topography": {"file": "skin.csv", "unit": "um"}}})
 
 
-# -- a map of several ridges -------------------------------------------------------------------------------
-REMARK = "m, above half of geometry.ridge_wavelength, 0.000483 m: ridges or the finger's form may count as roughness"
-
-
-@pytest.mark.slow
-def test_roughness_as_long_as_ridges_is_told(tmp_path, monkeypatch, capsys):
-    """By commands, in a sweep, and among a result's cautions."""
-    monkeypatch.setattr("fingerpad.cli.check._picture", lambda *given: "")
-    long = ("--set", "roughness.wavelength=532 um")
-    sweep = ("sweep", "--over", "voltage=0,100", "--model", "cylinders", "--out")
-    check = ("check", "--out", str(tmp_path / "b"))
-    for command in (("estimate",), ("microscale",), (*sweep, str(tmp_path / "a")), check):
-        assert main([*command, *long]) == 0
-        assert f"roughness.wavelength is 0.000532 {REMARK}" in capsys.readouterr().out
-    assert main(["estimate", "--set", "roughness.wavelength=240 um"]) == 0
-    assert REMARK not in capsys.readouterr().out
-    assert any(REMARK in text for text in cylinders.solve(load(None, {"roughness.wavelength": 532e-6})).cautions)
-
-
 # -- maps that do not show the roughness -------------------------------------------------------------------
 def printed(tmp_path, capsys, heights, size) -> str:
     np.save(tmp_path / "map.npy", heights)
@@ -139,17 +119,6 @@ def test_map_smaller_than_the_longest_waves_is_told(tmp_path, capsys, width, tol
     topography = {"file": str(tmp_path / "map.npy"), "unit": "m", "size": [width, width]}
     scene = from_data({"roughness": {"topography": topography}})
     assert any("roughness ends at waves" in text for text in remarks(scene)) == told
-
-
-def test_values_that_a_scene_refuses_are_told(tmp_path, capsys):
-    """Heights in nm that are taken for um, with the question of their unit."""
-    h = SelfAffine().surface((64, 64), (400e-6, 400e-6), 3).heights * 1e9
-    np.savetxt(tmp_path / "skin.csv", h, delimiter=";")
-    size = ("--size", "0.4 mm", "0.4 mm")
-    assert main(["topography", str(tmp_path / "skin.csv"), "--unit", "um", *size]) == 0
-    line = next(line for line in capsys.readouterr().out.splitlines() if "refuses" in line)
-    assert line.startswith("# a scene refuses these values: roughness.h_rms is 0.00")
-    assert line.endswith("e-06?); is the unit of the heights right?")
 
 
 @pytest.mark.parametrize(("terminal", "rank"), [(True, 0), (False, 0), (False, 1)])

@@ -19,8 +19,6 @@ from fingerpad.scene import Scene
 from geometry import tags
 from geometry.bodies import ridge
 from geometry.mesh import load
-from tests.runs import followed
-from tests.small_finger import small
 from variational.body import Body
 from variational.contact.interface import Interface
 from variational.contact.penalty import Penalty
@@ -181,22 +179,6 @@ def test_ridge_that_lets_go_is_given_the_free_air_gap(also_free):
     assert stub.coupling.d_eq[0] == free
     assert stub.coupling.history.jumped == {0}
     assert ("pseudo-transient" in stub.stops) == also_free
-
-
-@pytest.mark.slow
-def test_small_loads_are_as_exact_as_asked_for():
-    """Volt by volt: each load leaves the forces nearly in balance, and yet moves the air gaps by a thousand tolerances.
-
-    The loads end with a force that sets a large force scale. The attraction goes with the inverse square of d_eq.
-    """
-    volts = [{"name": f"{volt} V", "voltage": float(volt)} for volt in (100, 101, 102, 103)]
-    loads = [{"name": "press", "f_ext": 0.2}, *volts, {"name": "more", "f_ext": 4.0}]
-    pulls = []
-    for tolerance in (1e-6, 1e-4, 1e-3):
-        path = followed(small().replace(history=loads, numerics={"coupling_tolerance": tolerance}), comm=MPI.COMM_SELF)
-        pulls.append([state.f_electrostatic for state in path.states if state.load.endswith("V")])
-        assert pulls[-1] == pytest.approx(pulls[0], rel=3 * tolerance)
-    assert pulls[0][-1] > 1.05 * pulls[0][0]
 
 
 @pytest.mark.parametrize("beyond", [1.0, 10.0, 100.0])  # Pa

@@ -6,8 +6,7 @@ from numpy.testing import assert_allclose
 
 import fingerpad as fp
 from fingerpad.reduced import cylinders
-from fingerpad.results.drive_picture import Period, over_period
-from fingerpad.scene.drive import GAPS, SAMPLES, Drive, drive_of, one_period
+from fingerpad.scene.drive import GAPS, SAMPLES, Drive, one_period
 from fingerpad.scene.remarks import leakage, remarks
 from variational.attraction.circuit import GapCircuit
 
@@ -31,13 +30,6 @@ def test_every_measure_is_of_the_same_drive(kind, rms, measure):
     assert_allclose((found.amplitude, found.peak_to_peak), (120.0, 240.0), rtol=1e-12)
     assert found.rms == pytest.approx(120.0 * rms, rel=3e-4)
     assert found.mean == 0
-
-
-def test_rms_is_of_the_alternating_part():
-    """An offset adds to the square of the whole voltage; tables have that of the whole."""
-    found = driven({"waveform": "sine", "rms": 100.0, "offset": 50.0, "frequency": 50.0}).measures()
-    assert found.amplitude == pytest.approx(100 * 2**0.5) and found.mean == pytest.approx(50.0)
-    assert found.rms == pytest.approx(np.hypot(100.0, 50.0))
 
 
 def test_carrier_is_within_its_envelope():
@@ -131,12 +123,6 @@ def test_scene_of_a_drive_survives_its_files():
     assert scene.replace(voltage=100.0).drive is None
 
 
-def test_drive_is_computed_once():
-    scene = fp.Scene(voltage=SINE, electric=DRY)
-    assert scene.drive is scene.replace(f_ext=10.0).drive
-    assert drive_of(scene.voltage, scene.electric, 425e-6) is scene.drive
-
-
 @pytest.mark.parametrize(
     "drive",
     [
@@ -203,15 +189,4 @@ def test_drive_is_refused(drive, electric, words):
     assert str(refused.value).startswith(words)
 
 
-def test_a_carrier_that_a_file_resolves_is_taken():
-    assert fp.Scene(voltage=FILE | {"carrier": {"frequency": 40.0}}).drive is not None
-
-
 # -- as a picture ----------------------------------------------------------------------------------------------------
-@pytest.mark.parametrize(("unit", "symbol"), [("N", "$F_T$"), ("N/m", "$f_T$")])
-def test_picture_has_the_symbol_of_the_finger_or_of_its_section(unit, symbol):
-    """Newtons and newtons per metre are two quantities, with the symbols of the tables."""
-    times, none = np.linspace(0.0, 0.01, 3), np.array([])
-    found = Period(times, times, times, times, unit, none, none)
-    labels = [ax.get_ylabel() for ax in over_period(found, "", None).axes]
-    assert labels[2:] == [f"{symbol} ({unit})", f"amplitude of {symbol} ({unit})"]

@@ -1,7 +1,6 @@
 """Fingers by name: what they give, what wins over them, and how a scene changes from one to another."""
 
 import json
-import re
 
 import pytest
 
@@ -12,7 +11,6 @@ from fingerpad.scene import load
 from fingerpad.scene.changes import with_presets
 from fingerpad.scene.fingers import FINGERS
 from tests.commands import refused
-from tests.measures import rows_of
 
 NAMES = [name for name in FINGERS if name != "adult"]
 
@@ -97,19 +95,6 @@ def test_record_of_a_run_changes_its_name(name, tmp_path):
     assert load(file, {"finger": "child"}) == fp.Scene(finger="child", f_ext=50.0)
 
 
-def test_sweep_has_fingers_side_by_side(tmp_path, capsys):
-    """With their names in its table; the closed form gives those whose contact is that of the default finger."""
-    argv = ["sweep", "--model", "cylinders", "--over", "finger=dry,adult,moist", "--over", "voltage=0,200"]
-    assert main([*argv, "--out", str(tmp_path), "--quiet"]) == 0
-    rows = rows_of(tmp_path, "table")
-    assert [row["finger"] for row in rows] == ["dry", "dry", "adult", "adult", "moist", "moist"]
-    friction = [float(row["full_slip_mu_app"]) for row in rows]
-    assert friction[::2] == pytest.approx([0.2, 0.25, 0.32], rel=1e-12)
-    dry, adult, moist = (charged / alone for alone, charged in zip(friction[::2], friction[1::2], strict=True))
-    assert dry < adult < moist, "a softer surface closes the gap, and the attraction grows"
-    capsys.readouterr()
-
-
 def test_mesh_of_a_file_keeps_its_shape():
     """The name gives no lengths beside a mesh but the thickness that the attraction reads."""
     data = with_presets({"finger": "child", "geometry": {"file": "finger.msh"}})
@@ -135,15 +120,6 @@ def test_commands_know_the_names(tmp_path, capsys):
     assert "must be 'adult'" in refused(capsys, "check", "--set", "finger=old")
 
 
-def test_name_without_effect_is_remarked():
-    """As in a file with every key, in which the name alone is changed."""
-    from fingerpad.scene.remarks import remarks
-
-    given = fp.Scene().parameters()
-    assert "the name has no effect" in remarks(fp.Scene(**given | {"finger": "callused"}))[0]
-    assert remarks(fp.Scene(finger="callused")) == remarks(fp.Scene()) == []
-
-
 @pytest.mark.parametrize("name", FINGERS)
 def test_headline_and_check_say_that_a_finger_was_not_measured(name, tmp_path, capsys):
     """Of every name but the default finger's; where a name changes moisture, that it contradicts a measurement."""
@@ -156,10 +132,3 @@ def test_headline_and_check_say_that_a_finger_was_not_measured(name, tmp_path, c
         assert headline.remark == remark and (not remark or f"\n  {remark}" in str(headline))
     main(["check", "--set", f"finger={name}", "--set", "mesh.contact=40e-6", "--out", str(tmp_path)])
     assert not remark or remark in capsys.readouterr().out
-
-
-def test_every_value_has_a_source_or_is_an_assumption():
-    """A source is a DOI or a journal; what no source gives says so."""
-    for finger in FINGERS.values():
-        for trait in finger.traits:
-            assert trait.values and re.search(r"doi 10\.\d{4}|\b(19|20)\d\d\b|Assumption|docs/drive", trait.source)

@@ -4,13 +4,11 @@ import numpy as np
 import pytest
 
 from variational.roughness import contacts, gaps, tables
-from variational.roughness.boundary_elements import BoundaryElements
 from variational.roughness.contacts import gap_table, measured_table
 from variational.roughness.gaps import GapTable, bins
 from variational.roughness.halfspace import press
 from variational.roughness.spectrum import SelfAffine
 from variational.roughness.tables import HURSTS, ratios
-from variational.roughness.tabulated import Curve
 from variational.roughness.topography import HeightMap
 
 RATIO, WIDTH = 8.0, 8 * np.pi
@@ -50,14 +48,6 @@ def test_table_is_the_surface(surface, table, h_0):
     assert table.mean_gap()[0, k] == pytest.approx(found.gap.mean() / h_rms, rel=1e-5)
     near = np.mean((found.gap > 0) & (found.gap < 0.5 * h_rms))
     assert table.closer(0.5)[0, k] == pytest.approx(near, rel=0.02)  # bins are 20 % wide, and inside even
-
-
-def test_units_do_not_matter(surface, table):
-    """The same map in micrometres, of three times the height: one table, to the contacts' tolerance."""
-    other = HeightMap(3e-6 * surface.heights, (WIDTH * 1e-6, WIDTH * 1e-6))
-    found = gap_table([other], 2e-6 * np.pi, PRESSURES)
-    np.testing.assert_allclose(found.area, table.area, rtol=1e-2)
-    np.testing.assert_allclose(found.mean_gap(), table.mean_gap(), rtol=1e-5)
 
 
 @pytest.mark.parametrize(("hurst", "ratio"), [(hurst, ratio) for hurst in HURSTS for ratio in ratios(hurst)])
@@ -105,21 +95,6 @@ def test_between_tables_is_the_contact_itself(hurst, ratio):
                 (k,) = np.flatnonzero(np.isclose(table.pressure, pressure))
                 expected += part * getattr(table, name)(*arguments)[0, k]
             assert getattr(alone, name)(*arguments)[0, 0] == pytest.approx(expected, rel=tolerance)
-
-
-@pytest.mark.slow
-def test_between_pressures_is_the_contact_itself():
-    """Half way between nodes the curve has the air gap of that contact: to 0.3 %, without field in contact to 1.5 %."""
-    from benchmarks.gap_tables import surfaces
-
-    kept, (first,), h_0 = tables.of_spectrum(0.75, 16.0)[0][1], surfaces(16.0, 1), 0.166
-    half = np.sqrt(kept.pressure[1:] * kept.pressure[:-1])[[4, 10, 16, 22]]
-    for pressure, found in contacts.over_pressure(first, 2 * np.pi, list(half)):
-        alone = GapTable(np.array([pressure]), *(np.array(each)[None, None] for each in found))
-        for touching, tolerance in ((True, 3e-3), (False, 1.5e-2)):
-            nodes = kept.inverse_square(h_0, touching)[0] ** -0.5 - h_0
-            between = np.exp(Curve(np.log(kept.pressure), np.log(nodes))(np.log(pressure))[0])
-            assert between == pytest.approx(alone.inverse_square(h_0, touching)[0, 0] ** -0.5 - h_0, rel=tolerance)
 
 
 def test_between_ratios_and_exponents():
@@ -226,13 +201,6 @@ def test_cache_that_takes_no_files_is_refused_before_contacts_are_solved(tmp_pat
     with pytest.raises(ValueError, match=rf"table .* cannot be kept in .*{place} .{why}.; name another folder"):
         tables.keep(WAVES, lambda *each: done.append(each[0]))
     assert not done
-
-
-def test_flat_map_with_a_mean_is_flat(cache):
-    """What is left of it is roundoff, of which no table is made."""
-    with pytest.raises(ValueError, match="all heights of the map are the same"):
-        BoundaryElements.of_map(HeightMap(2e-6 + np.zeros((64, 48)), (1e-4, 0.75e-4)))
-    assert not list(cache.iterdir())
 
 
 @pytest.mark.parametrize(

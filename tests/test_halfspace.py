@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 
-from benchmarks.verification.halfspace import finer, hertz, westergaard
 from variational.roughness.halfspace import NoContactError, compliance, displacement, press
 from variational.roughness.spectrum import SelfAffine
 from variational.roughness.topography import HeightMap
@@ -16,33 +15,6 @@ def test_displacement_of_a_wave():
     wave = np.cos(2 * np.pi * (2 * x / 1.5 + 3 * y / 0.8))
     found = displacement(5.0 + wave, compliance((n, n), (1.5, 0.8), modulus))
     np.testing.assert_allclose(found, 2 / (modulus * q) * wave, atol=1e-14)
-
-
-@pytest.mark.slow
-def test_hertz():
-    """Radius and largest pressure within 1e-3 with 26 pixels to the radius, and nearer than with 6; so the profile."""
-    coarse, fine = (np.abs(np.array(hertz(n)) - [1, 1, 0]) for n in (128, 512))
-    assert fine[:2].max() < 1e-3 and (fine < coarse / 4).all()
-
-
-def test_westergaard():
-    """A wave in one direction (Johnson 1985, section 13.2): the pressure's error falls faster than the pixel.
-
-    On 512 pixels it is within 1e-3 of the mean, and the length within 1e-3 of its own, by the pressure's moment.
-    """
-    lengths, errors = zip(*(westergaard(n, 0.4) for n in (32, 128, 512)), strict=True)
-    assert errors[2] < 1e-3 and errors[2] < errors[1] / 4 < errors[0] / 16
-    assert abs(lengths[2] - 1) < 1e-3
-
-
-def test_full_contact():
-    """From the pressure of full contact on no gap is left; pressure is the mean and the wave's own, to tolerance."""
-    x = np.arange(64) / 64
-    wave = HeightMap(0.01 * np.cos(2 * np.pi * x)[:, None] * np.ones((1, 4)), (1.0, 4 / 64))
-    assert press(wave, np.pi * 0.01, 1.0, tolerance=1e-9).gap.mean() < 1e-9
-    found = press(wave, 1.5 * np.pi * 0.01, 1.0, tolerance=1e-10)
-    assert found.gap.max() < 1e-9
-    np.testing.assert_allclose(found.pressure[:, 0], np.pi * 0.01 * (1.5 + np.cos(2 * np.pi * x)), rtol=1e-8)
 
 
 @pytest.fixture(scope="module")
@@ -99,27 +71,6 @@ def test_start_does_not_matter(rough):
     again = press(rough, 0.05, 1.0, start=press(rough, 0.2, 1.0).pressure, tolerance=1e-8)
     assert again.gap.mean() == pytest.approx(first.gap.mean(), rel=1e-6)
     assert again.fraction == first.fraction
-
-
-def test_scale_does_not_matter(rough):
-    """Heights times 3, lengths times 2, modulus times 5: pressures times 5 * 3 / 2 and gaps times 3."""
-    other = HeightMap(3 * rough.heights, (2 * rough.size[0], 2 * rough.size[1]))
-    found, scaled = press(rough, 0.05, 1.0), press(other, 0.05 * 7.5, 5.0)
-    np.testing.assert_allclose(scaled.gap, 3 * found.gap, atol=1e-5)
-    assert scaled.fraction == found.fraction
-
-
-def test_two_grids_agree(rough):
-    """The same surface on twice the pixels: the mean gap within 0.5 %, the contact's part within a tenth of it.
-
-    Its edge is found to a pixel, and four pixels, as in the package's tables, are a shortest wave. The finer grid has
-    less in contact.
-    """
-    fine = finer(rough, 2)
-    np.testing.assert_allclose(fine.heights[::2, ::2], rough.heights, atol=1e-12)
-    coarse, found = press(rough, 0.05, 1.0), press(fine, 0.05, 1.0)
-    assert found.gap.mean() == pytest.approx(coarse.gap.mean(), rel=5e-3)
-    assert 0.9 * coarse.fraction < found.fraction < coarse.fraction
 
 
 def test_tail_of_the_pressure_of_a_point():

@@ -9,23 +9,10 @@ import numpy as np
 import pytest
 import scipy.io
 
-from tests.test_topography import grid, wave
+from tests.test_topography import grid
 from variational.roughness.heightfile import _refuse_mark, _refuse_uneven, scan
 from variational.roughness.spectrum import SelfAffine
 from variational.roughness.topography import filled
-
-
-@pytest.mark.parametrize("name", ["map.npy", "map.txt", "map.csv"])
-def test_plain_files(tmp_path, name):
-    """Text keeps 18 digits, so nothing is lost."""
-    m, path = wave(), tmp_path / name
-    if path.suffix == ".npy":
-        np.save(path, m.heights)
-    else:
-        np.savetxt(path, m.heights, delimiter="," if path.suffix == ".csv" else " ")
-    found = scan(path, "m", m.size).map
-    np.testing.assert_array_equal(found.heights, m.heights)
-    assert found.size == m.size
 
 
 @pytest.fixture
@@ -127,15 +114,6 @@ def test_missing_edge_of_a_curved_map():
     np.testing.assert_array_equal(found[known], curved[known])
 
 
-def test_too_much_is_missing():
-    holed = np.ones((4, 4))
-    holed[:, 0] = np.nan
-    filled(holed)
-    holed[0, 1] = np.nan
-    with pytest.raises(ValueError, match="5 of 16 heights are missing or infinite; at most a quarter may be"):
-        filled(holed)
-
-
 @pytest.mark.parametrize(
     ("text", "rows"),
     [
@@ -199,17 +177,6 @@ def test_text_with_units_in_its_header(encoding, other, tmp_path):
     assert scan(path, size=(90e-6, 100e-6)).map.pixel == pytest.approx((2.5e-6, 2.5e-6))
     with pytest.raises(ValueError, match="has no size; give 'size' or 'pixel'"):
         scan(path)
-
-
-def test_phases_have_their_factor_in_the_header(other, tmp_path):
-    """Of a holographic microscope: heights in rad with the metres of one, to the six digits of the text."""
-    h = smooth()
-    head = "h=40 w=36\npixel size=2.5e-006 m\ndata unit=rad\nheight conversion factor (-> m)=1.06e-007\n"
-    rows = "\n".join(" ".join(f"{z:.6f}" for z in row) + " " for row in h * 1e-6 / 1.06e-7)
-    (tmp_path / "map.txt").write_text(head + rows + "\n")
-    found = scan(tmp_path / "map.txt").map
-    np.testing.assert_allclose(found.heights, 1e-6 * h.T, atol=1e-13)
-    assert found.size == pytest.approx((90e-6, 100e-6))
 
 
 @pytest.mark.parametrize(

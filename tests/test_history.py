@@ -18,8 +18,7 @@ from tests.test_loads_over_time import PRESS, SLIDE, scene
 from variational import compat
 from variational.history import BodyField, SkinField
 from variational.problem import Problem
-from variational.solvers.continuation import Continuation, StepFailed, Target
-from variational.solvers.outcome import NotConverged
+from variational.solvers.continuation import Continuation, Target
 from variational.solvers.state_snapshot import take_snapshot
 from variational.solvers.transfer import restore
 
@@ -91,28 +90,6 @@ def test_accepted(body):
     assert 0 < rate < DT / _RELAXATION, "steps split the duration"
     np.testing.assert_allclose(last, (before + rate * strain.x.array) / (1 + rate), atol=1e-12)
     assert largest(last) > 1e-3
-
-
-def test_rolled_back(body):
-    """A failed attempt leaves neither field changed."""
-    path, own = prepare(body)
-    path.run(Target("press", f_ext=4.4, duration=DT))
-    path.run(Target("slide", bone_x=20e-6, duration=DT))
-    fields = [own.slip.x.array.copy(), own.strain.x.array.copy()]
-    solve = path.coupling.solve
-
-    def fail(pseudo_transient=False):
-        solve(pseudo_transient)
-        history = path.problem.history
-        history.impose(history.updated(path.observer.state().history))
-        raise NotConverged("TEST", False)
-
-    path.coupling.solve = fail
-    with pytest.raises(StepFailed):
-        path.run(Target("slide", bone_x=40e-6, duration=DT))
-    np.testing.assert_array_equal(own.slip.x.array, fields[0])
-    np.testing.assert_array_equal(own.strain.x.array, fields[1])
-    assert all(largest(values) > 0 for values in fields)
 
 
 @pytest.mark.parametrize("size", [30e-6, 15e-6])

@@ -168,7 +168,7 @@ def test_command_prints_the_key(capsys):
         (["--target=f_t=0.3 V"], "target f_t is '0.3 V'; its unit is not a unit of force"),
         (["--target=f_t=0.3 N", "--over=f_ext"], "F_T is of the whole finger and over is f_ext; give force"),
         (["--target=contact_length=1 mm", "--set=force=0.5"], "L_R is of the section and force is given; give f_ext"),
-        (["--target=mu_app=2", "--relative", "--set=friction=0"], "µ_app is 0 without voltage"),
+        (["--target=mu_app=2", "--relative", "--set=friction=0"], "the whole finger has no full slip with friction"),
         (["--target=mu_app=2", "--over=electric.di"], "electric.di is not a key of electric; did you mean"),
         (["--target=mu_app=2", "--over=contact.formulation"], "over is contact.formulation; it must be a key of one"),
         (["--target=mu_app=2", "--over=slices.count"], "over is slices.count; it must be a key of one number"),

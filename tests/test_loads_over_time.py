@@ -217,19 +217,6 @@ def test_bone_at_a_height():
     assert forces[80.0] < 0.99 * forces[0.0]
 
 
-@pytest.mark.long
-@pytest.mark.mpi
-def test_twice_the_samples():
-    """They change mean and spectrum by less than 1 % of the largest amplitude."""
-    once, twice = (
-        next(iter(result(PRESS, SLIDE, BY | {"voltage": WAVE}, numerics={"step_scale": scale}).loads[2:])).over_time
-        for scale in (1.0, 0.5)
-    )
-    largest = max(twice.f_t_amplitude)
-    assert np.abs(np.subtract(once.f_t_amplitude, twice.f_t_amplitude)).max() < 1e-2 * largest
-    assert once.mean["f_t"] == pytest.approx(twice.mean["f_t"], abs=1e-2 * largest)
-
-
 # -- results -------------------------------------------------------------------------------------------
 def result(*loads: dict, out: Path | None = None, **more) -> Result:
     return full.run(scene(*loads, **more), RunContext(out, bar=False))
@@ -285,27 +272,6 @@ def test_mean_from_steps_that_are_too_long_is_told(tmp_path):
     assert means[0] == pytest.approx(means[1], rel=0.1) and means[0] != pytest.approx(means[1], rel=0.05)
     assert abs(means[0] - means[1]) < long.loads[2].over_time.mean_change["f_t"]
     assert long.loads[2].extremes["f_t"].max == pytest.approx(long.loads[1].end.f_t, rel=1e-9), "where it began"
-
-
-def test_square_of_a_file_is_the_square():
-    """Given by its corners alone: mean and amplitudes up to the time that its jumps take."""
-    jump = 1e-6 / 60
-    table = {"waveform": "file", "times": [0.0, 0.5 / 60, 0.5 / 60 + jump, 1 / 60], "voltages": [80.0, 80.0, 0.0, 0.0]}
-    square = {"waveform": "square", "amplitude": 40.0, "offset": 40.0, "frequency": 60.0}
-    given, same_one = (
-        result(PRESS, SLIDE, BY | {"voltage": voltage}).loads[2].over_time for voltage in (table, square)
-    )
-    assert given.mean["f_t"] == pytest.approx(same_one.mean["f_t"], rel=1e-4)
-    largest = max(same_one.f_t_amplitude)
-    assert given.f_t_amplitude[:6] == pytest.approx(same_one.f_t_amplitude[:6], abs=1e-3 * largest)
-
-
-def test_first_load_over_time_begins_unloaded():
-    """As its mean does; a later one begins with the state before."""
-    press = {"name": "press", "bone_height": -20e-6, "duration": 1.0}
-    first, second = result(press, {"name": "more", "bone_height": -30e-6, "duration": 1.0}).loads
-    assert first.extremes["contact_length"].min == 0.0
-    assert second.extremes["contact_length"].min == first.end.contact_length
 
 
 def test_first_touch_has_no_estimated_errors():

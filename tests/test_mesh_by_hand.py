@@ -10,9 +10,6 @@ import pytest
 from mpi4py import MPI
 
 import geometry
-from fingerpad.model.options import plan
-from fingerpad.model.section import section
-from fingerpad.scene import SceneError, from_data
 from geometry.mesh import load
 from geometry.profiles import GeometryError
 
@@ -66,20 +63,6 @@ def test_block_by_hand_is_a_body(tmp_path):
     places, cells = block()
     made = load(MPI.COMM_WORLD, geometry.file(by_hand(tmp_path / "mine.msh", places, cells, rim_of(places))))
     assert made.mesh.topology.index_map(2).size_global == 16
-
-
-def test_corner_is_refused_by_check_and_run(tmp_path):
-    """One function makes the mesh of both."""
-    places, cells = block()
-    corner = [places.index((1.0, 0.0)) + 1, places.index((1.0, 0.25)) + 1]
-    file = by_hand(tmp_path / "mine.msh", places, cells, rim_of(places), [corner])
-    scene = from_data({"geometry": {"file": str(file), "sc_thickness": 3e-4}})
-    for error, door in (
-        (GeometryError, lambda: load(MPI.COMM_WORLD, geometry.file(file))),
-        (SceneError, lambda: section(scene, plan(scene))),
-    ):
-        with pytest.raises(error, match="has two sides on the skin that can touch, and one is allowed"):
-            door()
 
 
 @pytest.mark.parametrize(

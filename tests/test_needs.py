@@ -17,7 +17,6 @@ from geometry.mesh import load
 from tests.runs import run
 from variational.attraction.electroadhesion import ELECTROSTATIC
 from variational.body import Body
-from variational.contact.augmented import AugmentedLagrangian
 from variational.contact.interface import Interface
 from variational.contact.nitsche import Nitsche
 from variational.contact.penalty import Penalty
@@ -97,13 +96,6 @@ def test_forms_without_voltage(body, law):
     assert less.solver.counts == whole.solver.counts
     assert [a - b for a, b in zip(whole.compiled, less.compiled, strict=True)] == [2, 1]
     assert np.isnan(less.path.coupling.d_eq).all() and not np.isnan(whole.path.coupling.d_eq).any()
-
-
-def test_contact_of_an_augmented_lagrangian_is_corrected_without_voltage(body):
-    """Its coupling iterations are not those of the scales: depth and slip stay below the tolerance."""
-    law = AugmentedLagrangian(1.5e13, 5e11, 5e-9)
-    errors = Path(body, Interface(law, 0.25, H_0, None)).path.coupling.history.errors
-    assert len(errors) > 1 and errors[-1] <= law.tolerance < errors[0]
 
 
 @pytest.mark.parametrize("law", [Penalty(1.5e12, 5e10), Nitsche(10.0)], ids=["penalty", "nitsche"])

@@ -9,10 +9,9 @@ import xarray
 
 import fingerpad as fp
 from fingerpad.reduced import cylinder_errors
-from fingerpad.reduced.cylinders import Cylinders, indentation, over_forces
+from fingerpad.reduced.cylinders import indentation, over_forces
 from fingerpad.results.printing import cells
 from fingerpad.results.quantities import FINGER
-from fingerpad.runs.closed_form import ClosedForm
 from fingerpad.scene.parameters import Slices
 from fingerpad.slices.total import at_force, profile
 from fingerpad.slices.trace import trace
@@ -81,14 +80,6 @@ def test_where_the_model_is_not_known_no_error_is_claimed():
     result = fp.run(fp.Scene(friction=0.02), model="cylinders")
     assert not result.finger.error[SLIP] and not result.full_slip.error.known()
     assert "±" not in str(result.finger)
-
-
-def test_value_does_not_depend_on_the_way_to_it():
-    """One state alone, as a search has it, and after others; exactly, since a trace has points at fixed forces."""
-    scene = fp.Scene(voltage=200.0, force=0.5)
-    alone = ClosedForm(Cylinders()).values(scene, ["mu_app", "contact_area"], True)
-    total = fp.run(scene, model="cylinders").finger.values(SLIP)
-    assert alone == [total["mu_app"], total["contact_area"]]
 
 
 def test_longer_trace_has_the_same_sum():

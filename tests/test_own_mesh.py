@@ -125,15 +125,6 @@ def test_check_reads_and_draws_the_file(place, tmp_path, capsys):
     assert "is no mesh of gmsh" in capsys.readouterr().err
 
 
-def test_skin_outside_the_ridges_touches(place):
-    """With ridge 0 alone ready for contact, its neighbours come down: the run stops and says what the file lacks."""
-    with pytest.warns(UserWarning, match="outer skin"):
-        result = fp.run(scene(20.0, geometry={"file": write(place, finger(1e-6))}))
-    assert "skin of the group 'outer skin' is at a height of -" in result.failure
-    assert "mine.msh must have more ridges, or f_ext be smaller" in result.failure
-    assert len(result.steps) > 0
-
-
 @pytest.mark.mpi
 def test_bad_file_is_refused(place):
     if MPI.COMM_WORLD.rank == 0:

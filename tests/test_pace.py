@@ -12,7 +12,7 @@ from mpi4py import MPI
 from fingerpad import launcher
 from fingerpad.cli import main
 from fingerpad.results import terminal
-from fingerpad.results.terminal import Console, Pace, between
+from fingerpad.results.terminal import Console, Pace, in_words
 from fingerpad.runs.batch import times_left
 from tests.measures import contact_state
 from variational.state import StepRecord
@@ -28,21 +28,6 @@ def after(seconds, done, **more):
     pace = Pace(clock=lambda: next(times), **more)
     pace.at(done)
     return pace.left()
-
-
-def test_half_done_leaves_as_long_again():
-    """Within a factor of the root of two."""
-    assert after(50.0, 0.5) == "35 to 71 s"
-
-
-def test_time_left_is_not_known_before_a_tenth():
-    assert after(10.0, 0.09) == "not known" != after(10.0, 0.11)
-
-
-@pytest.mark.parametrize("part", [0.1, 0.3, 0.6, 0.9])
-def test_range_holds_what_is_left_of_an_even_run(part):
-    low, _, high, _ = after(50.0 * part, part).split()
-    assert float(low) < 50.0 * (1 - part) < float(high)
 
 
 def test_load_that_ends_with_full_slip_is_as_far_as_its_friction():
@@ -77,7 +62,7 @@ def test_time_left_is_not_known_before_a_waveform_has_its_pace():
     ],
 )
 def test_range_is_in_the_unit_of_the_longer_time(low, high, words):
-    assert between(low, high) == words
+    assert in_words(low, high) == words
 
 
 def test_time_left_of_a_sweep_is_by_its_runs():

@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 from benchmarks.harness import Made, keep
-from benchmarks.limits import Limit
 from benchmarks.paper import __main__ as command
 from benchmarks.paper import fields, states
 from benchmarks.paper.statement import BUILT, HOLDS, NOT
@@ -82,15 +81,6 @@ STICK = {"t": 0.01 * np.sign(RIDGES[:, None] + np.linspace(-0.3, 0.3, POINTS + 2
 )  # fmt: skip
 def test_verdict_on_a_skin(words, run, verdict):
     assert by(fields.section(run, run_of(skin(**STICK))), words).verdict == verdict
-
-
-def test_grid_beside_its_limits(monkeypatch):
-    """Friction at full slip and the contact lengths of both states at 75 N/m and 200 V, the load of the limits."""
-    limits = {"charged_contact_length": 2.0, "full_slip_f_t": 10.0, "full_slip_contact_length": 1.0}
-    monkeypatch.setattr(command, "known", lambda: {name: Limit(value, 0.0, None) for name, value in limits.items()})
-    grid = {name: np.array([[0.0, 0.0], [0.0, 1.01 * value]]) for name, value in limits.items()}
-    found = command.off(grid | {"f_ext": np.array([5.0, 75.0]), "voltage": np.array([0.0, 200.0])})
-    assert found == pytest.approx(dict.fromkeys(limits, 1.0))
 
 
 def test_states_without_paths_are_compared_with_paths(tmp_path):

@@ -28,11 +28,6 @@ def refusal(path: Path | None = None, **overrides) -> str:
     [
         ("f_ext", -3, "f_ext is -3 N/m; it must be from 0.001 to 5000 N/m"),
         ("f_ext", float("nan"), "f_ext is nan; it must be a finite number"),
-        ("f_ext", True, "f_ext is true; it must be a number"),
-        ("f_ext", [1], "f_ext is [1]; it must be a number"),
-        ("f_ext", float("inf"), "f_ext is inf; it must be a finite number"),
-        ("materials.dermis.poisson", 0.5, "materials.dermis.poisson is 0.5; it must be from -0.9 to 0.4999"),
-        ("electric.eps_i", 0.5, "electric.eps_i is 0.5; it must be from 1 to 1e+07"),
         (
             "roughness.p_floor", 1e6,
             "roughness.p_floor is 1000000; it must be below the pressure at zero separation, 2.597e+05 Pa",
@@ -46,9 +41,7 @@ def refusal(path: Path | None = None, **overrides) -> str:
         ("friction", "0.25", "friction is '0.25'; it must be a number"),
         ("friction", [0.25], "friction is [0.25]; it must be a number, a table or a Friction"),
         ("voltage", -1e9, "voltage is -1000000000 V; it must be 0 or from 0.001 to 5000 V, with either sign"),
-        ("friction", 2.1, "friction is 2.1; it must be 0 or from 1e-06 to 2"),
         ("mesh", 3, "mesh is 3; it must be a table of keys"),
-        ("mesh.growth", 1.5, "mesh.growth is 1.5; it must be from 0.0001 to 1"),
         (
             "materials.subcutis.alpha", 0,
             "materials.subcutis.alpha is 0; it must be from 0.01 to 50, with either sign",
@@ -60,14 +53,10 @@ def refusal(path: Path | None = None, **overrides) -> str:
             "larger p_floor, or a smaller gamma or h_rms",
         ),
         ("contact.eps_n", 0, "contact.eps_n is 0 Pa/m; it must be from 1e+07 to 1e+17 Pa/m"),
-        ("contact.length", "area", "contact.length is 'area'; it must be 'pressure' or 'gap'"),
-        ("numerics.coupling_cap", 1.5, "numerics.coupling_cap is 1.5; it must be a whole number"),
         (
             "numerics.quadrature_points", 2,
             "numerics.quadrature_points is 2; it must be at least 3 for numerics.element 'P2'",
         ),
-        ("numerics.tolerance", 0, "numerics.tolerance is 0; it must be from 1e-12 to 1e-07"),
-        ("numerics.coupling_cap", 0, "numerics.coupling_cap is 0; it must be at least 1"),
     ],
 )  # fmt: skip
 def test_impossible_value(key, value, message):
@@ -136,14 +125,6 @@ def test_files_that_cannot_be_read(write, tmp_path, monkeypatch):
     assert refusal(path) == f"scene file {path} is not text in UTF-8; save it in UTF-8"
 
 
-@pytest.mark.parametrize(("value", "column"), [("50,0", 11), ("50 N/m", 12)])
-def test_values_of_other_languages(write, value, column):
-    """The parser's place stays in the sentence."""
-    assert refusal(write(f"f_ext = {value}")).endswith(
-        f"after a statement (at line 1, column {column}); decimals have points, and a value with a unit has quotes"
-    )
-
-
 def test_byte_order_mark(write):
     """Windows editors write one; it is as if it were not there."""
     path = write("f_ext = 30\n")
@@ -188,12 +169,9 @@ def test_dots_that_are_no_key(write):
         ('"" = 1', "'' is not a key of a scene; keys are f_ext, force, voltage,"),
         (f"{'k' * 100_000} = 1", f"{'k' * 37}... is not a key of a scene;"),
         (f'voltage = "{"v" * 100_000}"', f"voltage is '{'v' * 55}...'; it must be a number"),
-        (f"{'k' * 100_000}", "is not TOML: Expected '=' after a key"),
         ("geometry.ridge_profile = [1, inf]", "geometry.ridge_profile[1] is inf; it must be a finite number"),
-        ("geometry.ridge_profile = []", "geometry.ridge_profile is empty; it must have at least one entry"),
         (f"geometry.ridge_profile = {[1] * 500}", "ridge_profile has too many entries; it must have at most 16"),
         ("ridge_count = 9", "ridge_count is not a key of a scene; did you mean geometry.ridge_count?"),
-        ("dermis.alpha = 9", "dermis is not a key of a scene; did you mean materials.dermis?"),
         ("until_full_slip = true", "until_full_slip is not a key of a scene; did you mean history[0].until_full_slip?"),
     ],
 )
@@ -208,12 +186,9 @@ def test_odd_text(write, text, message):
     ("key", "value", "meant"),
     [
         ("geometry.width", 16, "16 m; it must be from 0.001 to 0.1 m (lengths are in m; did you mean 0.016?)"),
-        ("geometry.sc_thickness", 425, "425 m; .*did you mean 0.000425"),
         ("roughness.h_rms", 1.97, "1.97 m; .*did you mean 1.97e-06"),
         ("materials.stratum_corneum.shear_modulus", 0.087, "0.087 Pa; .*did you mean 87000"),
-        ("contact.eps_n", 1.5, "1.5 Pa/m; .*did you mean 1.5e"),
         ("f_ext", 1e300, "1e+300 N/m; it must be from 0.001 to 5000 N/m$"),
-        ("numerics.step_scale", 1e-9, "1e-09; it must be from 0.001 to 10$"),
         ("geometry.merkel_offset", 900e-6, "0.0009 m; it must be below the thickness of the viable epidermis"),
     ],
 )
@@ -221,15 +196,6 @@ def test_value_nobody_can_mean(key, value, meant):
     """Beyond the range, whose unit is named, and what was meant where that can be told."""
     pattern = re.escape(f"{key} is ") + re.sub(r"[+()?]", r"\\\g<0>", meant)
     assert re.match(pattern, refusal(None, **{key.replace(".", "__"): value}))
-
-
-def test_sentences_are_whole_and_values_are_shortened():
-    """However long the sentence: of two findings, one after the other, the second is the remedy."""
-    long = "full slip has no answer, " * 15 + "and so the voltage must be smaller"
-    assert str(SceneError(long)) == long
-    with pytest.raises(SceneError) as error:
-        scenes.from_data({"finger": "x" * 5000})
-    assert len(str(error.value)) < 300
 
 
 # -- arguments in Python -----------------------------------------------------------------------------------------
@@ -303,9 +269,7 @@ def named(name: str) -> list[dict]:
             [{"name": "a", "voltage": 200}],
             "history[0].name is 'a', with neither f_ext nor bone_height; the first load must give one of them",
         ),
-        (named("a\x07"), "history[0].name is 'a\\x07'; it must be without '\\x07', since files are named by it"),
         (named("a/b"), "history[0].name is 'a/b'; it must be without '/', since files are named by it"),
-        (named(".a"), "history[0].name is '.a'; it must not begin with '.', since files are named by it"),
         (named(" "), "history[0].name is ' '; it must have a letter or a digit"),
         (
             named("n" * 300),

@@ -61,15 +61,6 @@ def test_file_and_overrides(write):
     assert (scene.mesh.contact, scene.mesh.receptor) == (8e-6, 30e-6)
 
 
-def test_no_force_where_the_skin_is_held(write):
-    """Attraction or a prescribed height keeps the bone in place without a force."""
-    path = write(
-        '[[history]]\nname = "on"\nf_ext = 5\nvoltage = 80\n[[history]]\nname = "unload"\nf_ext = 0\n'
-        '[[history]]\nname = "retract"\nbone_height = 1e-4\n[[history]]\nname = "off"\nvoltage = 0\n'
-    )
-    assert scenes.load(path).loads()[1] == Load(name="unload", f_ext=0.0)
-
-
 @pytest.mark.parametrize("path", sorted(SCENES.glob("*.toml")), ids=lambda path: path.stem)
 def test_scenes_that_come_along(path):
     """They can be run, and are valid by the schema."""
@@ -128,13 +119,6 @@ def test_scene_of_a_run_s_folder_is_a_scene(tmp_path):
         Scene.load(file)
     with pytest.raises(SceneError, match="cannot be read: No such file"):
         Scene.load(tmp_path / "other.json")
-
-
-def test_friendly_names(write):
-    """Spaces and letters of any alphabet."""
-    names = ["charge while sliding", "Größe – 200 V", "压", "a.b", "3"]
-    path = write("\n".join(f'[[history]]\nname = "{name}"\nf_ext = 5' for name in names))
-    assert [load.name for load in scenes.load(path).loads()] == names
 
 
 # -- the JSON Schema -------------------------------------------------------------------------------------------------

@@ -33,11 +33,8 @@ HEADS = {
     "a unit for a name": ("ticks,msecs,value 1", (10 * np.arange(41), T, U)),
     "slash": ("t/ms,U/kV", (T, U / 1e3)),
     "underscore": ("time_ms,voltage_V", (T, U)),
-    "space": ("Time ms,Voltage V", (T, U)),
-    "quoted": ('"time (s)","voltage (V)"', (T / 1e3, U)),
     "the time at the end": ("U [mV],current (mA),T [us]", (1e3 * U, 0 * U, 1e3 * T)),
     "a line of units": ("Time,Channel A\n(ms),(mV)", (T, 1e3 * U)),
-    "scientific": ("x-axis,1\nsecond,Volt", (T / 1e3, U)),
     "preamble with units": ("Model,X\nHorizontal Units,ms\nVertical Units,kV\nLabel,\nTIME,CH1", (T, U / 1e3)),
     "comments": ("#Device Name: X\n#Serial: 5, 6\nTime (s),Channel 1 (V)", (T / 1e3, U)),
 }
@@ -49,13 +46,6 @@ def test_names_and_units_decide(head, columns, tmp_path):
     found = table(written(tmp_path, head, *columns), repeat=True)
     assert_allclose(found["times"], T / 1e3, atol=1e-10)
     assert_allclose(found["voltages"], np.where(abs(U) < 1e-3, 0, U), atol=1e-6)
-
-
-def test_friction_under_a_record_is_that_of_its_sine(tmp_path):
-    """Of 100 V and 50 Hz: 70.7 V rms (0.2 % less between the points), friction 18.75 to 23.1 N/m."""
-    found = fp.drive(fp.Scene(f_ext=75.0, voltage={"waveform": "file", "file": written(tmp_path, "t/ms,U/V", T, U)}))
-    assert np.sqrt(np.mean(found.voltage**2)) == pytest.approx(70.7, rel=3e-3)
-    assert (found.f_t.min(), found.f_t.max(), found.at(100)) == pytest.approx((18.75, 23.1, 2.18), rel=7e-3)
 
 
 @pytest.mark.parametrize(
@@ -95,13 +85,9 @@ def test_what_is_not_read_is_refused(text, said, tmp_path):
     [
         ("voltage (V peak to peak)", "voltage", "V peak to peak"),
         ("friction force N/m", "friction force", "N/m"),
-        ("friction force", "friction force", ""),
         ("area_mm2", "area", "mm2"),
         ("CoF [-]", "CoF", "-"),
-        ("Channel A", "Channel A", ""),
         ("voltage_Vrms", "voltage", "Vrms"),
-        ("gap_d", "gap_d", ""),
-        ("E/V/m", "E", "V/m"),
     ],
 )
 def test_units_of_heads(head, name, unit):

@@ -9,7 +9,6 @@ from benchmarks.loads.shear import Point, differences, fitted, points, spread
 from fingerpad.reduced import cylinders
 from fingerpad.scene import Scene
 from tests.commands import kept
-from variational.contact.friction import Derjaguin
 
 STRONG = 0.8
 
@@ -46,17 +45,6 @@ def test_ridge_is_stiffer_by_the_shear_stress_at_its_own_pressure():
     )
     p_c = 75.0 / found.contact_length
     assert stiffer - own == pytest.approx(cylinders.SHEAR * (STRONG - 0.25) * p_c, rel=1e-9)
-
-
-def test_another_law_shears_by_its_own_limit():
-    """It has the state of Coulomb's law with its traction over the pressure there; 1e-9 is of the roots."""
-    law = Derjaguin(mu_f=0.4, tau_0=10e3)
-    (state,) = cylinders.over_forces(Scene(friction=law), [75.0], "full_slip")
-    p_c = state.f_contact / state.contact_length
-    assert law.coefficient(p_c) > 0.45
-    (same,) = cylinders.over_forces(Scene(friction=law.coefficient(p_c)), [75.0], "full_slip")
-    assert state.contact_length == pytest.approx(same.contact_length, rel=1e-9)
-    assert state.f_electrostatic == pytest.approx(same.f_electrostatic, rel=1e-9)
 
 
 def test_number_is_that_of_the_kept_states(reached):

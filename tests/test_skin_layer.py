@@ -8,7 +8,6 @@ from geometry.bodies import ridge
 from geometry.mesh import load
 from tests.test_contact import MU_F, make
 from tests.test_newton import walk
-from variational.solvers import skin_layer as module
 from variational.solvers.equations import OUTSIDE, Control
 
 pytestmark = pytest.mark.mpi
@@ -86,28 +85,6 @@ def test_unknowns_stay_where_the_layer_does_not_help(pressed, monkeypatch, why):
         monkeypatch.setattr(layer, "_iterate", lost)
     layer.balance(x, f, 0.0, 0.0 if why == "too far" else np.inf)
     assert np.array_equal(x.array_r, before)
-
-
-def test_layer_that_cannot_be_factorised_is_given_up(pressed, monkeypatch):
-    """And factorised again when the tangent is a number again, which MUMPS alone would not do."""
-    solver, layer, x = pressed
-    before, f = x.array_r.copy(), x.duplicate()
-    assemble = module.fem_petsc.assemble_matrix
-
-    def broken(K, form):
-        assemble(K, form)
-        K.assemble()
-        K.scale(np.nan)
-
-    monkeypatch.setattr(module.fem_petsc, "assemble_matrix", broken)
-    layer.balance(x, f, 0.0, np.inf)
-    assert np.array_equal(x.array_r, before)
-    monkeypatch.undo()
-    solver.equations.residual(x, f)
-    first = total(f.array_r[layer._rows])
-    layer.balance(x, f, 1e-9 * first, np.inf)
-    solver.equations.residual(x, f)
-    assert total(f.array_r[layer._rows]) <= 1e-9 * first
 
 
 @pytest.mark.slow

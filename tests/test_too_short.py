@@ -8,7 +8,6 @@ import fingerpad as fp
 from fingerpad.cli import main
 from fingerpad.cli.check import SLIDE_STIFFNESS, too_short
 from fingerpad.results.states import load_result
-from fingerpad.results.terminal import in_words
 from fingerpad.scene import Scene
 from variational.state import ContactState
 
@@ -57,11 +56,6 @@ def test_way_is_not_known(rows, mu_0):
     assert math.isnan(found.needs) and found.sticking.endswith("below that of sliding")
 
 
-def test_full_slip_needs_no_more():
-    found = result(states(slips=True))
-    assert math.isnan(found.needs) and found.sticking == ""
-
-
 @pytest.mark.slow
 @pytest.mark.parametrize(("force", "voltage"), [(75.0, 200.0), (10.0, 200.0)])
 def test_rule_of_thumb(force, voltage):
@@ -107,12 +101,3 @@ def test_slide_until_full_slip_that_is_too_short(length, reported):
     said = list(too_short(Scene(slide_length=length)))
     assert len(said) == reported
     assert not said or said[0].endswith(f"by a rule of thumb, and the bone goes {1e3 * length:.2g} mm")
-
-
-def test_way_is_that_of_the_voltage_of_the_slide():
-    """Without voltage a third of the friction: 0.5 mm are enough, of which 200 V need more."""
-    assert list(too_short(Scene(slide_length=0.8e-3, voltage=0.0))) == []
-
-
-def test_short_times_in_words():
-    assert in_words(9e-10) == "less than 1 s" and in_words(3.0) == "3 s"

@@ -141,41 +141,6 @@ def test_full_slip_from_a_coarse_mesh_is_that_of_the_path(bodies, reached):
     assert -path.solver.reaction[0] == pytest.approx(f_t, rel=1e-6), "the run's own criterion of steady slip"
 
 
-@pytest.mark.slow
-def test_pressure_of_the_mixed_element_follows_from_the_displacement(bodies):
-    """A state of P2-P1 returns on its own mesh, and full slip from 30 um is that of the path at 15 um.
-
-    Tolerance: of the pressure, the imbalance of volume that a solve leaves; of f_T, as above.
-    """
-    found = states(bodies, "P2-P1")
-    path = prepare(bodies[FINE], "P2-P1")
-    restore(found[FINE][1], path.coupling)
-    pressure = path.problem.pressure.unknown.x.array.copy()
-    path.re_equilibrate("full slip")
-    after = path.problem.pressure.unknown.x.array
-    np.testing.assert_allclose(pressure, after, rtol=0, atol=1e-6 * np.abs(after).max())
-    path = prepare(bodies[FINE], "P2-P1")
-    restore(found[COARSE][1], path.coupling, SLIDE)
-    path.re_equilibrate("full slip")
-    assert path.slip == (1.0, True)
-    assert -path.solver.reaction[0] == pytest.approx(found[FINE][2], rel=2e-6)
-    assert abs(found[COARSE][2] / found[FINE][2] - 1) > 2e-5
-
-
-def test_forces_held_balance_any_state(bodies, reached):
-    """As put in, a state is an equilibrium under them, and none when half of them are let go. Tolerance: roundoff."""
-    path = prepare(bodies[FINE])
-    restore(reached[COARSE][1], path.coupling, SLIDE)
-    solver = path.solver
-    solver.equations.hold(solver.x)
-    before = solver.x.array_r.copy()
-    solver.solve()
-    np.testing.assert_array_equal(solver.x.array_r, before)
-    solver.equations.load_part = 0.5
-    solver.solve()
-    assert MPI.COMM_WORLD.allreduce(float(np.abs(solver.x.array_r - before).max()), op=MPI.MAX) > 1e-9
-
-
 def test_body_comes_into_balance_under_skin_that_is_held(bodies, reached):
     """The skin stays where it is and all else is in balance, until it is released.
 

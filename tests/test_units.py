@@ -135,12 +135,6 @@ def test_required_key_takes_no_other_key_s_default():
             Own(**{"length": 1.0, "off": False} | wrong)
 
 
-def test_zero_has_no_sign():
-    """Else a sweep over 0 V and -0 V runs the same scene twice, in two folders."""
-    for voltage in (-0.0, "-0 V"):
-        assert math.copysign(1.0, Scene(voltage=voltage).voltage) == 1.0
-
-
 # -- what a program computes from numbers within the ranges ----------------------------------------------------------
 SLICES = {"radius": 6e-3, "length": 8e-3}
 

@@ -9,7 +9,7 @@ from numpy.testing import assert_allclose
 import fingerpad as fp
 from fingerpad.cli import main
 from fingerpad.model import drive_loads
-from fingerpad.scene.wavefile import POINTS, table
+from fingerpad.scene.wavefile import table
 from fingerpad.scene.waveform import Waveform
 
 T = np.linspace(-0.01, 0.01, 41)
@@ -71,31 +71,6 @@ def test_columns_are_named_as_written_with_their_units(column, factor, tmp_path,
     assert main(["drive", "--file", str(file), "--column", column, "--frequency", "60"]) == 0
 
 
-def test_columns_are_chosen_by_name(tmp_path):
-    """Without regard to capitals; one of two must be named."""
-    file = write(tmp_path, "TIME,CH1,CH2\n" + TWO)
-    for column, factor in (("CH1", 1.0), ("ch2", -0.5)):
-        wave = fp.Scene(voltage={"waveform": "file", "file": file, "column": column}).voltage
-        assert wave.voltages[5] == pytest.approx(factor * U[5], rel=1e-5)
-        assert wave.column is None, "a scene keeps the points alone"
-    for column, given in ((None, "is not given"), ("CH3", "is 'CH3'")):
-        with pytest.raises(fp.SceneError, match=f"'CH2', and voltage.column {given}; it must be one of"):
-            fp.Scene(voltage={"waveform": "file", "file": file, "column": column})
-
-
-def test_many_samples_are_averaged(tmp_path):
-    """To fewer than a waveform may have; ends, mean and mean square stay, and noise falls."""
-    t = np.linspace(0, 0.02, 20001)
-    u = 150 * np.sin(2 * np.pi * 100 * t) + np.random.default_rng(1).normal(size=len(t))
-    text = "Second,Volt\n" + "".join(f"{a:.8e},{b:.6e}\n" for a, b in zip(t, u, strict=True))
-    found = table(write(tmp_path, text))
-    v = np.array(found["voltages"])
-    assert POINTS / 2 < len(v) <= POINTS
-    assert (found["times"][-1], v[-1]) == pytest.approx((0.02, u[-1]))
-    assert np.mean(v**2) == pytest.approx(np.mean(u**2), rel=2e-3)
-    assert np.std(v - 150 * np.sin(2 * np.pi * 100 * np.array(found["times"]))) < 0.5
-
-
 @pytest.mark.parametrize(
     ("text", "message"),
     [
@@ -132,14 +107,6 @@ def test_keys_of_files_are_refused(wave, words):
     with pytest.raises(fp.SceneError) as refused:
         fp.Scene(voltage=wave)
     assert str(refused.value).startswith(words)
-
-
-def test_file_of_the_voltage_is_beside_the_scene(tmp_path):
-    """As that of a load."""
-    write(tmp_path, FILES["units in brackets"])
-    scene = tmp_path / "scene.toml"
-    scene.write_text('voltage = {waveform = "file", file = "scope.csv", probe = 100}\n', encoding="utf-8")
-    assert fp.Scene.load(scene).voltage.peak == pytest.approx(150.0)
 
 
 # -- repeated ----------------------------------------------------------------------------------------------------

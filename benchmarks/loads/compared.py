@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from benchmarks.loads.scenes import AXES, COUNT, Data, section
 from fingerpad.reduced.cylinder_errors import PULL, WHOLE
 from fingerpad.reduced.cylinders import Cylinders
-from fingerpad.runs.closed_form import ClosedForm
+from fingerpad.runs.context import RunContext
 from fingerpad.scene import Scene, SceneError
 from fingerpad.scene.parameters import Slices
 from fingerpad.slices.total import at_force, at_indentation, deepest, profile
@@ -87,7 +87,9 @@ def _closed(data: Data, under: Sequence[float]) -> list[ContactState]:
     """Return full slip of the closed form under forces (N/m), with indentations; empty where it is refused."""
     model = Cylinders()
     try:
-        return model.over_forces(section(data, under[0]), under, "full_slip", ClosedForm(model).section)
+        return model.over_forces(
+            section(data, under[0]), under, "full_slip", lambda each: model.solve(each, RunContext())
+        )
     except SceneError:
         return []
 

@@ -32,6 +32,8 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import ArrayLike
 
+from fingerpad.results.quantities import in_table
+
 Parts = Mapping[str, ArrayLike]  # a number, or the parts of a sum, shape (ridges,)
 
 ONCE, MORE = 2.0, 1.5
@@ -145,7 +147,7 @@ def of_two_meshes(
         sites: that part of the median.
         short: whether facets are shorter where contact ends than elsewhere.
     """
-    found, first_order = {}, ("contact_length", *(() if short else ("f_t", "mu_app", "f_electrostatic", "bone_height")))
+    found, first_order = {}, ("contact_length",) if short else tuple(in_table("edges"))
     for name in (name for name in fine if name in coarse):
         of_ends = name.endswith(first_order)
         state = next((prefix for prefix in facets if name.startswith(f"{prefix}_")), None)
@@ -222,12 +224,6 @@ def to_refine(parameters: Mapping[str, MeshParameter], allowed: Mapping[str, flo
             left -= shares[key] * (1 - 2 ** -parameters[key].order(name))
             found.add(key)
     return [key for key in parameters if key in found]
-
-
-def plus_minus(value: float, error: float) -> str:
-    """Return a value with its error, which is given to two digits: ``0.4750 ± 0.0041``."""
-    digits = int(max(0, 1 - np.floor(np.log10(error)))) if error > 0 else 6
-    return f"{value:z.{digits}f} ± {error:.{digits}f}"
 
 
 def rigid(values: Mapping[str, float], stiffer: Mapping[str, float]) -> dict[str, float]:

@@ -8,6 +8,7 @@ import shlex
 import sys
 from collections.abc import Iterable, Sequence
 from difflib import get_close_matches
+from itertools import combinations
 from pathlib import Path
 from typing import Any, NamedTuple, NoReturn
 
@@ -181,15 +182,13 @@ def changes(given: Sequence[str]) -> dict[str, Any]:
     Raises:
         SceneError: a key is given twice, by itself or in a table.
     """
-    found: dict[str, Any] = {}
-    for key, value in map(override, given):
-        for other in found:
-            short, long = sorted((key, other), key=len)
-            if long == short or long.startswith((f"{short}.", f"{short}[")):
-                twice = "twice" if long == short else f"and {clip(long)} in it too"
-                raise SceneError(f"--set {clip(short)} is given {twice}; give one value")
-        found[key] = value
-    return found
+    pairs = [override(text) for text in given]
+    for (one, _), (other, _) in combinations(pairs, 2):
+        short, long = sorted((one, other), key=len)
+        if long == short or long.startswith((f"{short}.", f"{short}[")):
+            twice = "twice" if long == short else f"and {clip(long)} in it too"
+            raise SceneError(f"--set {clip(short)} is given {twice}; give one value")
+    return dict(pairs)
 
 
 def several(args: argparse.Namespace, scene: Scene, key: str) -> list[float]:
@@ -221,20 +220,13 @@ def separate(argv: Sequence[str]) -> tuple[list[str], list[str]]:
 
     A word after an option of PETSc's is its value, unless it is an option itself or the name of a TOML file.
     """
-    own: list[str] = []
-    petsc: list[str] = []
-    value_allowed = False
+    own, petsc = list[str](), list[str]()
+    before = False  # whether the word before is an option of PETSc's
     for word in argv:
-        is_option = re.match(r"-[A-Za-z-]", word)
-        if re.fullmatch(_PETSC + r"[A-Za-z][A-Za-z0-9_]*", word):
-            petsc.append(word)
-            value_allowed = True
-        elif value_allowed and word and not is_option and not word.endswith(".toml"):
-            petsc.append(word)
-            value_allowed = False
-        else:
-            own.append(word)
-            value_allowed = False
+        option = re.fullmatch(_PETSC + r"[A-Za-z][A-Za-z0-9_]*", word) is not None
+        value = before and word and not re.match(r"-[A-Za-z-]", word) and not word.endswith(".toml")
+        (petsc if option or value else own).append(word)
+        before = option
     return own, petsc
 
 
@@ -278,30 +270,20 @@ def positive(text: str) -> int:
     return int(text)
 
 
-def quantity(text: str, unit: str = "m") -> float:
-    """Return a positive number in a unit, of a text with a unit or without."""
-    try:
-        value = float(text)
-    except ValueError:
-        try:
-            value = to_si(text, unit)
-        except ValueError as error:
-            raise argparse.ArgumentTypeError(f"{clip(text)} is not allowed; {error}") from None
-    if not 0 < value < math.inf:
-        raise argparse.ArgumentTypeError(f"{clip(text)} is not allowed; it must be greater than 0")
-    return value
-
-
 def quantities(option: str, text: str, unit: str) -> list[float]:
     """Return the positive numbers of a range (:mod:`fingerpad.cli.ranges`) in a unit.
 
     Raises:
         SceneError: one of them is no such number.
     """
+    given = ranges.read(option, text)
     try:
-        return [quantity(str(value), unit) for value in ranges.read(option, text)]
-    except argparse.ArgumentTypeError as error:
-        raise SceneError(f"{option}: {error}") from None
+        found = [to_si(each, unit) if isinstance(each, str) else float(each) for each in given]
+    except ValueError as error:
+        raise SceneError(f"{option} is {clip(text)}; {error}") from None
+    if not all(0 < value < math.inf for value in found):
+        raise SceneError(f"{option} is {clip(text)}; it must be greater than 0")
+    return found
 
 
 def refuse_file(file: Path, kind: Kind) -> None:
@@ -314,16 +296,15 @@ def refuse_file(file: Path, kind: Kind) -> None:
     Raises:
         SceneError: its folder is not there or read-only, it is no ordinary file, read-only, or of another kind.
     """
-    name = ends(file)
-    if file.is_dir():
-        raise SceneError(f"{name} is a folder; give a name of a file")
-    if not file.absolute().parent.is_dir():
-        raise SceneError(f"{name} cannot be written, since its folder is not there; make it first")
-    there = os.path.lexists(file)
-    if there and (file.is_symlink() or not file.is_file()):
-        raise SceneError(f"{name} cannot be written, since it is no ordinary file; give another one")
-    if not os.access(file if there else file.absolute().parent, os.W_OK):
-        raise SceneError(f"{name} cannot be written, since it is read-only; give another one")
+    name, folder, there = ends(file), file.absolute().parent, os.path.lexists(file)
+    why = (
+        "its folder is not there" if not folder.is_dir()
+        else "it is no ordinary file" if there and (file.is_symlink() or not file.is_file())
+        else "it is read-only" if not os.access(file if there else folder, os.W_OK)
+        else ""
+    )  # fmt: skip
+    if why:
+        raise SceneError(f"{name} cannot be written, since {why}; give another one")
     if file.suffix.lower() not in kind.endings:
         several = "one of " if len(kind.endings) > 1 else ""
         raise SceneError(f"{name} cannot be {kind.words}; its name must end with {several}{', '.join(kind.endings)}")

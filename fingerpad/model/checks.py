@@ -11,11 +11,13 @@ since the screen is uniform.
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from dolfinx import fem
 
+from fingerpad.model.finger import Finger
+from fingerpad.model.options import FingerModel
 from fingerpad.model.state import steady
 from fingerpad.results.states import SLIDE_ON, full_slip
 from geometry import tags
@@ -25,10 +27,6 @@ from variational.solvers.outcome import NotConverged
 from variational.solvers.stability import Stability, StabilityCheck
 from variational.solvers.target import Target
 from variational.state import ContactState
-
-if TYPE_CHECKING:
-    from fingerpad.model.finger import Finger
-    from fingerpad.model.options import FingerModel
 
 _MIN_CLEARANCE = 10e-6  # m, height of the skin at which an attraction of 200 V comes to 1 kPa
 _MORE = 2  # ridges on either side that are added at least, or
@@ -42,7 +40,7 @@ class FingerExceeded(RuntimeError):
 class ContactZone:
     """Checks the skin of a finger."""
 
-    def __init__(self, finger: "Finger", model: "FingerModel") -> None:
+    def __init__(self, finger: Finger, model: FingerModel) -> None:
         """Find the skin that cannot touch; a mesh of a file has all the ridges there are."""
         self._problem, self._ridges = finger.problem, finger.ridges
         self._count, self._file = model.geometry.ridge_count, model.mesh_file
@@ -127,7 +125,7 @@ class Checked:
 class StabilityChecks(dict[int, Checked]):
     """Stability by step."""
 
-    def __init__(self, finger: "Finger") -> None:
+    def __init__(self, finger: Finger) -> None:
         """Take the finger."""
         super().__init__()
         self._finger, self._check = finger, StabilityCheck(finger.solver)
@@ -160,7 +158,7 @@ class StabilityChecks(dict[int, Checked]):
 class FullSlip:
     """Slides a finger on at full slip and compares the forces."""
 
-    def __init__(self, finger: "Finger") -> None:
+    def __init__(self, finger: Finger) -> None:
         """Take the finger."""
         self._finger = finger
 

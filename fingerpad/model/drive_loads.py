@@ -10,11 +10,11 @@ these are not known, of a table of a tissue or of a carrier, it begins in the st
 """
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from fingerpad.scene import Load, Scene
 from fingerpad.scene.drive import GAPS, REFERENCE, Drive, drive_of
 from fingerpad.scene.loads import ways
 from fingerpad.scene.messages import SceneError
@@ -22,9 +22,6 @@ from fingerpad.scene.wavefile import POINTS
 from fingerpad.scene.waveform import Waveform
 from geometry.units import computed
 from variational.attraction.network import Network
-
-if TYPE_CHECKING:
-    from fingerpad.scene import Load, Scene
 
 Array = NDArray[np.float64]
 _FEWEST, _MOST = 12, 48  # points of a period of the wave
@@ -51,7 +48,7 @@ EQUAL = GapFactor((1.0,) * len(GAPS))
 """That of a voltage without losses: 1 at every gap."""
 
 
-def gap_factor(scene: "Scene") -> GapFactor | None:
+def gap_factor(scene: Scene) -> GapFactor | None:
     """Return the factor of each gap; None where the voltage does not depend on it.
 
     Raises:
@@ -72,7 +69,7 @@ def gap_factor(scene: "Scene") -> GapFactor | None:
     return GapFactor(tuple(float(f"{ratio:.12g}") for ratio in drive.effective(GAPS) / drive.reference))
 
 
-def loads(scene: "Scene") -> "tuple[Load, ...]":
+def loads(scene: Scene) -> "tuple[Load, ...]":
     """Return the loads of a scene with the voltages that the full model follows.
 
     Raises:

@@ -3,14 +3,13 @@
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import partial
-from typing import TYPE_CHECKING
 
 import numpy as np
 from mpi4py import MPI
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
-from fingerpad.model.options import refuse_mesh, refuse_sizes
+from fingerpad.model.options import FingerModel, refuse_mesh, refuse_sizes
 from fingerpad.model.state import contact_state, force_error, refuse_unbalanced
 from geometry import fingertip, mesh, meshfile, tags
 from geometry.profiles import Profiles
@@ -24,9 +23,6 @@ from variational.resultants import RidgeLoads
 from variational.solvers.continuation import Attempt, Continuation
 from variational.solvers.target import Target
 from variational.state import ContactState
-
-if TYPE_CHECKING:
-    from fingerpad.model.options import FingerModel
 
 Array = NDArray[np.float64]
 _MAX_DISTANCE = 1e-9  # m, within which two nodes are one
@@ -55,9 +51,7 @@ class Finger:
         contact_size: size of the facets that can touch (m).
     """
 
-    def __init__(
-        self, model: "FingerModel", comm: MPI.Comm, on_accept: Callable[[Target, float, Attempt], bool]
-    ) -> None:
+    def __init__(self, model: FingerModel, comm: MPI.Comm, on_accept: Callable[[Target, float, Attempt], bool]) -> None:
         """Mesh the finger and set the solver up; collective.
 
         Args:
@@ -134,8 +128,10 @@ class Finger:
             d_eq = both_sides(d_eq)
         p_c = self.ridge_loads(by_gap=True).p_c if self.coupling.by_gap else loads.p_c  # the closure's own
         notes = [self.closure.state(float(p), self.voltage) if self.closure else "" for p in p_c]
-        more = {"load": load, "load_number": number, "mesh_contact": self.contact_size}
-        state = contact_state(self.continuation, loads, self.ridges, d_eq, notes, **more)
+        state = contact_state(
+            self.continuation, loads, self.ridges, d_eq, notes,
+            load=load, load_number=number, mesh_contact=self.contact_size,
+        )  # fmt: skip
         return Step(state, attempt or Attempt())
 
 
@@ -150,7 +146,7 @@ def both_sides(half: Array) -> Array:
 
 
 def assembled(
-    model: "FingerModel", comm: MPI.Comm, on_accept: Callable[[Target, float, Attempt], bool], half: bool
+    model: FingerModel, comm: MPI.Comm, on_accept: Callable[[Target, float, Attempt], bool], half: bool
 ) -> tuple[mesh.TaggedMesh, Body]:
     """Return a finger's mesh, and its solver in the unloaded state; collective.
 
@@ -182,7 +178,7 @@ def assembled(
     return tagged, body
 
 
-def meshed(model: "FingerModel", comm: MPI.Comm, half: bool | None = None) -> mesh.TaggedMesh:
+def meshed(model: FingerModel, comm: MPI.Comm, half: bool | None = None) -> mesh.TaggedMesh:
     """Return a finger's mesh; collective.
 
     Args:
@@ -213,7 +209,7 @@ class HalfFinger:
     """
 
     def __init__(
-        self, model: "FingerModel", finger: Finger, comm: MPI.Comm, on_accept: Callable[[Target, float, Attempt], bool]
+        self, model: FingerModel, finger: Finger, comm: MPI.Comm, on_accept: Callable[[Target, float, Attempt], bool]
     ) -> None:
         """Mesh the half and set its solver up; collective.
 

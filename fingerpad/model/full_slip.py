@@ -11,9 +11,9 @@ down yet. Then the state depends on the side from which it is reached.
 """
 
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 from fingerpad.model.drive_loads import GapFactor
+from fingerpad.model.options import FingerModel
 from fingerpad.model.simulation import Simulation
 from variational.coefficients import between
 from variational.contact.friction import Friction
@@ -22,9 +22,6 @@ from variational.solvers.accepted import Place
 from variational.solvers.continuation import StepFailed
 from variational.solvers.target import Target
 from variational.state import ContactState
-
-if TYPE_CHECKING:
-    from fingerpad.model.options import FingerModel
 
 _FIELDS = {"anchor", "pressure", "x"}  # of history, that full slip does not depend on
 
@@ -45,7 +42,7 @@ class Conditions:
     """Of each air gap in a drive; None where no drive of the model has losses."""
 
     @classmethod
-    def of(cls, model: "FingerModel") -> "Conditions":
+    def of(cls, model: FingerModel) -> "Conditions":
         """Return those at the end of a model's loads."""
         force = [load.f_ext for load in model.loads if load.f_ext is not None]
         voltage = [load.level for load in model.loads if load.level is not None]

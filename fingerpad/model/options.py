@@ -24,10 +24,11 @@ from collections.abc import Mapping
 from copy import copy
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from fingerpad.model import drive_loads
 from fingerpad.results.terminal import about
+from fingerpad.scene import Numerics, Scene
 from fingerpad.scene.messages import SceneError, qualify
 from fingerpad.scene.viscosity import viscous_layers
 from geometry import sizing
@@ -35,9 +36,6 @@ from geometry.parameters import Fingertip, MeshSize
 from geometry.profiles import GeometryError
 from variational.contact.formulation import Formulation
 from variational.materials.material import Material
-
-if TYPE_CHECKING:
-    from fingerpad.scene import Numerics, Scene
 
 COARSER = 2.0
 """Sizes of the elements on which a path is followed over those with which its named states are solved again."""
@@ -97,7 +95,7 @@ _HALF = Omission(
 )
 
 
-def plan(scene: "Scene") -> ModelOptions:
+def plan(scene: Scene) -> ModelOptions:
     """Return what a scene needs; a pure function of it."""
     voltage = any(load.voltage for load in scene.loads())
     friction, receptors = scene.friction_law() is not None, scene.output.receptors
@@ -149,7 +147,7 @@ class FingerModel:
         asked: largest relative errors allowed, by quantity; empty where no accuracy is asked for.
     """
 
-    def __init__(self, scene: "Scene", options: ModelOptions) -> None:
+    def __init__(self, scene: Scene, options: ModelOptions) -> None:
         """Read a scene.
 
         Args:
@@ -214,7 +212,7 @@ class FingerModel:
         return (*self.options.omitted, Omission(f"contact of the ridges beyond ±{last}", reason))
 
 
-def check(scene: "Scene") -> None:
+def check(scene: Scene) -> None:
     """Refuse a scene whose finger cannot be built or meshed.
 
     Raises:
@@ -231,7 +229,7 @@ def check(scene: "Scene") -> None:
         raise SceneError(qualify(message, "geometry.", Fingertip.model_fields)) from None
 
 
-def by_rule(scene: "Scene") -> "Scene":
+def by_rule(scene: Scene) -> Scene:
     """Return the scene with a ``mesh.touching_half_arc``, by the rule of thumb where it gives none."""
     if scene.mesh.touching_half_arc is not None:
         return scene
@@ -285,7 +283,7 @@ def refuse_mesh(points: int, triangles: int, model: FingerModel) -> None:
             model.mesh)  # fmt: skip
 
 
-def refuse_sizes(finger: Fingertip, size: MeshSize, numerics: "Numerics", needed: ModelOptions) -> None:
+def refuse_sizes(finger: Fingertip, size: MeshSize, numerics: Numerics, needed: ModelOptions) -> None:
     """Refuse element sizes whose mesh would need more memory than is allowed, by a lower bound, before it is made.
 
     Args:
@@ -302,7 +300,7 @@ def refuse_sizes(finger: Fingertip, size: MeshSize, numerics: "Numerics", needed
             size)  # fmt: skip
 
 
-def _refuse(has: str, triangles: int, number: int, numerics: "Numerics", finger: Fingertip, size: MeshSize) -> None:
+def _refuse(has: str, triangles: int, number: int, numerics: Numerics, finger: Fingertip, size: MeshSize) -> None:
     allowed = f"numerics.memory allows {numerics.memory / 1e9:g} GB"
     if numerics.memory <= PROGRAM:
         raise GeometryError(f"{allowed}, and the program takes {PROGRAM / 1e9:g} GB without a mesh; raise it")

@@ -6,34 +6,33 @@ The whole finger is shown whatever mesh and half of it the model has.
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from mpi4py import MPI
 from numpy.typing import NDArray
 
+from fingerpad.model.checks import Checked
+from fingerpad.model.finger import Finger, Step
 from fingerpad.model.stimuli import SiteStimuli
 from fingerpad.results import motion, states
 from fingerpad.results.drawing import Drawing
 from fingerpad.results.fields import View, sorted_along
+from fingerpad.results.quantities import SKIN, in_table
 from fingerpad.scene import Load
 from variational.output import Lines, Receptors
 from variational.snapshot import Snapshot
 from variational.state import ContactState, Sites, Skin, StepRecord, Stimuli
 
-if TYPE_CHECKING:
-    from fingerpad.model.checks import Checked
-    from fingerpad.model.finger import Finger, Step
-
 Array = NDArray[np.float64]
-_PROFILE = ("x", "y", "p_n", "t_t", "p_el", "area_x", "area_y")
+_PROFILE = (*SKIN, "area_x", "area_y")
 _HORIZONTAL = ("x", "t_t", "area_x")  # the other way round in the mirror
 
 
 class Viewer:
     """Collects the states of a finger for tables and pictures."""
 
-    def __init__(self, finger: "Finger") -> None:
+    def __init__(self, finger: Finger) -> None:
         """Find the receptor sites, if they are part of the model."""
         self._finger = finger
         profiles = finger.profiles
@@ -44,12 +43,12 @@ class Viewer:
         self._stimuli: SiteStimuli | None = None
         self._lines = Lines(finger.problem)
 
-    def view(self, step: "Step") -> View:
+    def view(self, step: Step) -> View:
         """Return all that is shown of the present state, that of the step; collective."""
         state, skin = replace(step.state, sites=self.sites()), self.skin(step)
         return View(state, self._finger.size.contact, skin, *self.picture())
 
-    def skin(self, step: "Step") -> Skin | None:
+    def skin(self, step: Step) -> Skin | None:
         """Return the skin of a step, the present one, on rank 0, None elsewhere; collective."""
         surface, skin = self._finger.problem.surface, self._finger.continuation.surface_state
         values = surface.gather(np.stack([getattr(skin, name) for name in _PROFILE]))
@@ -89,7 +88,7 @@ class Viewer:
         left, right = sed[len(names) :].reshape(-1, 2).T
         return Sites(np.array(names), sed[: len(names)], left, right)
 
-    def stimuli(self, step: "Step") -> Stimuli | None:
+    def stimuli(self, step: Step) -> Stimuli | None:
         """Return what mechanoreceptors are given in the present state of a run over time, else None; collective."""
         if self._sites is None or math.isnan(step.state.time):
             return None
@@ -119,7 +118,7 @@ class PathRecord:
         ends: the finger at the end of each load, by load, on rank 0.
     """
 
-    def __init__(self, comm: MPI.Comm, checks: Mapping[int, "Checked"]) -> None:
+    def __init__(self, comm: MPI.Comm, checks: Mapping[int, Checked]) -> None:
         """Keep nothing yet.
 
         Args:
@@ -168,7 +167,7 @@ class PathRecord:
                 found[name] = check.of(found[name])
         return found
 
-    def _check(self, state: ContactState) -> "Checked | None":
+    def _check(self, state: ContactState) -> Checked | None:
         """Return the stability of a state, or of another one of the same full slip; None where none was examined."""
         same = [other.step for other in self.states if other.slip_began == state.slip_began > 0]
         return next((self._checks[k] for k in (state.step, *same) if k in self._checks), None)
@@ -203,18 +202,12 @@ class PathRecord:
         """Return sums and largest values over all states, ready for JSON."""
         records = [s.record for s in self.states if s.record is not None]
         jumps = [r for r in records if r.jump]
-        return {
-            "steps": len(self.states),
-            "jumps": len(jumps),
-            "cutbacks": sum(r.cutbacks for r in records),
-            "penetration": max((r.penetration for r in records), default=0.0),
-            "imbalance": max((r.imbalance for r in records), default=0.0),
-            "energy_released": sum(r.energy_released for r in jumps),
-            "energy_released_error": sum(r.released_error for r in jumps),
-            "dissipation": sum(r.dissipation for r in records),
-            "floor": max((r.floor for r in records), default=0.0),
-            **_of_viscous([r for r in records if not math.isnan(r.viscous)]),
-        }
+        released = {"energy_released": sum(r.energy_released for r in jumps)}
+        released["energy_released_error"] = sum(r.released_error for r in jumps)
+        sums = {name: sum(getattr(r, name) for r in records) for name in in_table("summed")}
+        largest = {name: max((getattr(r, name) for r in records), default=0.0) for name in in_table("largest")}
+        viscous = _of_viscous([r for r in records if not math.isnan(r.viscous)])
+        return {"steps": len(self.states), "jumps": len(jumps)} | released | sums | largest | viscous
 
 
 def _of_viscous(records: Sequence[StepRecord]) -> dict[str, float]:

@@ -6,12 +6,14 @@ import time
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from mpi4py import MPI
 
+from fingerpad.model.finger import Step
 from fingerpad.model.options import Omission
 from fingerpad.model.record import PathRecord, Viewer
+from fingerpad.model.simulation import Simulation
 from fingerpad.results import motion, states
 from fingerpad.results.data import Cost
 from fingerpad.results.fields import View
@@ -22,10 +24,6 @@ from fingerpad.results.writing import Writer
 from fingerpad.scene.messages import counted
 from variational.solvers.outcome import Counts, memory_mb
 from variational.state import ContactState
-
-if TYPE_CHECKING:
-    from fingerpad.model.finger import Step
-    from fingerpad.model.simulation import Simulation
 
 
 class Clock:
@@ -83,7 +81,7 @@ class Report:
 
     def __init__(
         self,
-        simulation: "Simulation",
+        simulation: Simulation,
         omitted: Sequence[Omission],
         loads: Sequence[str],
         writer: Writer,
@@ -115,7 +113,7 @@ class Report:
         console.show(f"{finger.unknowns} unknowns, {counted(len(finger.ridges), 'ridge')} that can touch")
         console.head()
 
-    def step(self, step: "Step", done: float) -> None:
+    def step(self, step: Step, done: float) -> None:
         """Report an accepted step; collective.
 
         Args:
@@ -142,7 +140,7 @@ class Report:
         self._writer.row("steps", state.row())
         self._console.step(state, done)
 
-    def _log(self, step: "Step", state: ContactState) -> None:
+    def _log(self, step: Step, state: ContactState) -> None:
         log = self._writer.log
         log.info("step %s coupling iterations %s", json.dumps(state.row()), step.attempt.changes)
         for cut in step.attempt.cutbacks:

@@ -3,18 +3,15 @@
 from dataclasses import replace
 from functools import partial
 from itertools import pairwise
-from typing import TYPE_CHECKING
 
+from fingerpad.scene import Load
 from fingerpad.scene.waveform import Sample, Waveform
 from variational.solvers.target import Target
-
-if TYPE_CHECKING:
-    from fingerpad.scene import Load
 
 _BEGIN = 60e-6  # m, with which a slide begins
 
 
-def targets(load: "Load", x: float, step_scale: float) -> list[Target]:
+def targets(load: Load, x: float, step_scale: float) -> list[Target]:
     """Return what to reach for a load, one after the other.
 
     Args:
@@ -48,7 +45,7 @@ def _voltage(wave: Waveform, before: Sample, after: Sample, part: float) -> floa
     return wave.between(before, after, before[0] + part * (after[0] - before[0]))
 
 
-def loads_to_normal_contact(loads: tuple["Load", ...]) -> tuple["Load", ...]:
+def loads_to_normal_contact(loads: tuple[Load, ...]) -> tuple[Load, ...]:
     """Return the loads before the bone first moves sideways with the finger pressed."""
     pressed, place = False, 0.0
     for k, load in enumerate(loads):

@@ -4,13 +4,14 @@ import math
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from mpi4py import MPI
 
 from fingerpad.model.checks import Checked, ContactZone, FingerExceeded, FullSlip, StabilityChecks
 from fingerpad.model.finger import Finger, HalfFinger, Step
+from fingerpad.model.options import FingerModel
 from fingerpad.model.schedule import targets
 from fingerpad.model.state import refuse_strained, step_record
 from fingerpad.results.states import FIRST_TOUCH
@@ -22,16 +23,13 @@ from variational.solvers.stability import Stability
 from variational.solvers.target import Target
 from variational.state import ContactState
 
-if TYPE_CHECKING:
-    from fingerpad.model.options import FingerModel
-
 
 @dataclass(frozen=True)
 class RestartRequired:
     """The loads must be gone through again, since an omitted part of the model turned out to matter."""
 
     reason: str
-    model: "FingerModel"
+    model: FingerModel
     """With more ridges that can touch, a finer mesh, or more parts."""
 
 
@@ -47,7 +45,7 @@ class Simulation:
 
     def __init__(
         self,
-        model: "FingerModel",
+        model: FingerModel,
         comm: MPI.Comm,
         on_step: Callable[[Step, float], None] = lambda step, done: None,
         on_load: Callable[[], None] = lambda: None,

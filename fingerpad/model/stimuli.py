@@ -7,18 +7,14 @@ The compressive stress is minus the Cauchy stress normal to the screen. The stra
 over its reference length L: in plane strain the stretch ds/dS is the current area over the reference area.
 """
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 import ufl
 from mpi4py import MPI
 from numpy.typing import NDArray
 
+from fingerpad.model.finger import Finger
 from variational.output import Receptors
 from variational.state import Stimuli
-
-if TYPE_CHECKING:
-    from fingerpad.model.finger import Finger
 
 Array = NDArray[np.float64]
 
@@ -26,7 +22,7 @@ Array = NDArray[np.float64]
 class SiteStimuli:
     """The stimuli of a finger with receptor sites."""
 
-    def __init__(self, finger: "Finger") -> None:
+    def __init__(self, finger: Finger) -> None:
         """Find the sites, and the halves of the ridges that can touch; collective."""
         self._finger, profiles = finger, finger.profiles
         sites = np.concatenate([profiles.merkel_sites(), profiles.meissner_sites(), profiles.pacinian_sites()])

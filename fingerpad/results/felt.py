@@ -24,7 +24,7 @@ from variational.state import ContactState
 Array = NDArray[np.float64]
 CHANGE = 0.01
 """Part of the range of a stimulus that may change between two states, however far they are apart."""
-SITE_ERROR = 0.22
+_SITE_ERROR = 0.22
 """Largest known error of energy densities at three Merkel sites on the mesh of the default path, 20 µm in contact and
 at the sites (``again`` in docs/errors.json)."""
 _OVER_TIME = {
@@ -34,7 +34,7 @@ _OVER_TIME = {
     "pacinian_stress": "at Pacinian sites",
     "surface_strain": "strain of the surface",
 }
-SAMPLE = 1e-4  # s, between two samples of a stimulus
+_SAMPLE = 1e-4  # s, between two samples of a stimulus
 _SIDES = ("left", "right")
 _TIME_TOLERANCE = 1e-9  # of the length of a run: two times that are one
 
@@ -54,7 +54,7 @@ def afferents(result: ResultData, laws: str | Afferent | Iterable[str | Afferent
     time, loads = np.array([state.time for state in states]), [state.load for state in states]
     at_states = _histories(states)
     scale, notes = result.scene.numerics.step_scale, [_mesh(result, states)]
-    fine: Array = np.arange(int(time[-1] / SAMPLE * (1 + 1e-9)) + 1, dtype=np.float64) * SAMPLE
+    fine: Array = np.arange(int(time[-1] / _SAMPLE * (1 + 1e-9)) + 1, dtype=np.float64) * _SAMPLE
     units: list[Unit] = []
     trains: list[Array] = []
     refusals: list[str] = []
@@ -67,7 +67,7 @@ def afferents(result: ResultData, laws: str | Afferent | Iterable[str | Afferent
             if laws is not None:
                 raise SceneError(coarse)
             continue
-        trains += law.spikes(_between(time, loads, stimulus, fine), SAMPLE)
+        trains += law.spikes(_between(time, loads, stimulus, fine), _SAMPLE)
         units += _units(name, law, at_states[law.site], _ridges(states), len(units))
     if not units:
         raise SceneError(refusals[0])
@@ -146,8 +146,8 @@ def _between(time: Array, loads: Sequence[str], values: Array, fine: Array) -> A
 
     moved, near = time.copy(), _TIME_TOLERANCE * time[-1]
     jumps = np.flatnonzero(np.diff(moved) <= near) + 1
-    after = np.append(np.diff(moved), SAMPLE)[jumps]  # to the next state
-    moved[jumps] += np.minimum(SAMPLE, after) / 2
+    after = np.append(np.diff(moved), _SAMPLE)[jumps]  # to the next state
+    moved[jumps] += np.minimum(_SAMPLE, after) / 2
     found = np.repeat(values[:, -1:], len(fine), axis=1)
     for _, group in groupby(range(1, len(time)), key=lambda k: loads[k]):
         part = list(group)
@@ -194,6 +194,6 @@ def _mesh(result: ResultData, states: Sequence[ContactState]) -> str:
         )
     return (
         f"{begins} Their discretisation error is not estimated. On the path of the default scene, with 20 µm in both, "
-        f"energy densities at three Merkel sites are known to be off by up to {SITE_ERROR:.0%}, and stresses, whose "
+        f"energy densities at three Merkel sites are known to be off by up to {_SITE_ERROR:.0%}, and stresses, whose "
         "square they go with, by about half of that (docs/errors.json)."
     )

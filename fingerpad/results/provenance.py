@@ -44,7 +44,7 @@ def provenance() -> dict[str, Any]:
         "versions": _versions() | {"mumps": next((found[1] for found in mumps if found), None)},
         "libraries": [file.name for file in libraries],
         "blas": _openblas(libraries),
-        "petsc_options": in_use(),
+        "petsc_options": _in_use(),
         "jit_options": {name: _plain(value) for name, value in jit.options().items()},
         "ffcx_options": {name: _plain(value) for name, value in ffcx.options.get_options().items()},
         "environment": {name: value for name, value in sorted(os.environ.items()) if _VARIABLES.fullmatch(name)},
@@ -103,7 +103,7 @@ class OptionError(SceneError):
     """An option that PETSc refuses or does not know; one sentence."""
 
 
-def in_use() -> dict[str, str]:
+def _in_use() -> dict[str, str]:
     """Return PETSc's options from all sources (command line, environment), the solver's defaults included."""
     given = PETSc.Options().getAll()
     return {f"-{name}": "" if value is None else str(value) for name, value in sorted(given.items())}
@@ -147,7 +147,7 @@ def refuse_unread() -> None:
         OptionError: the first of them.
     """
     used = ctypes.CDLL(PETSc.__file__).PetscOptionsUsed  # which petsc4py does not offer
-    for option, value in in_use().items():
+    for option, value in _in_use().items():
         name, was_read = option.removeprefix(f"-{PREFIX}"), ctypes.c_int(0)
         if name == option or name in DEFAULTS or used(None, option[1:].encode(), ctypes.byref(was_read)):
             continue
@@ -161,7 +161,7 @@ def _refusal(error: PETSc.Error) -> str:
     words = str(error).splitlines()[-1].split("] ", 1)[-1].strip()
     options = {
         option: value
-        for option, value in in_use().items()
+        for option, value in _in_use().items()
         if option.startswith(f"-{PREFIX}") and DEFAULTS.get(option.removeprefix(f"-{PREFIX}")) != value
     }
     named = [o for o, v in options.items() if v and v.lower() in re.findall(r"[\w.-]+", words.lower())]

@@ -11,14 +11,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fingerpad import notebook
-from fingerpad.results import dataset, files
+from fingerpad.results import files
 
 if TYPE_CHECKING:
     import xarray
     from matplotlib.figure import Figure
 
 Array = NDArray[np.float64]
-CAUTION = (
+_CAUTION = (
     "Thresholds are relative: the laws are of other skins, and their gains those of a flat pin. Compare runs and "
     "ridges; rates of a person do not follow from them."
 )
@@ -152,7 +152,7 @@ class Spikes:
 
     def to_netcdf(self, path: str | Path) -> None:
         """Write the dataset as NetCDF 3."""
-        files.replace(Path(path), dataset.content(self.to_xarray()))
+        files.replace(Path(path), bytes(self.to_xarray().to_netcdf(engine="scipy", format="NETCDF3_64BIT")))
 
     def plot(self, path: str | Path | None = None) -> "Figure":
         """Draw energy densities at Merkel sites over time, and each spike unit by unit below; write a PNG if asked."""
@@ -172,7 +172,7 @@ class Spikes:
     @property
     def remarks(self) -> tuple[str, ...]:
         """The caution, and the notes."""
-        return CAUTION, *self.notes
+        return _CAUTION, *self.notes
 
     def table(self) -> list[list[str]]:
         """Return a head and a row for each class: units, those that fired, spikes, rates, first spike, and by load."""

@@ -19,7 +19,7 @@ from variational.state import ContactState, StepRecord
 if TYPE_CHECKING:
     from mpi4py import MPI
 
-OnStep = Callable[[ContactState, float], None]
+_OnStep = Callable[[ContactState, float], None]
 _TERMINAL = r"/dev/(pts/\d+|tty\w*|console)"
 _LEGEND = (
     "f_ext: external force on the bone; U: voltage; bone x, bone y: its place; f_T: friction; µ_app = f_T / f_ext",
@@ -29,12 +29,10 @@ _LEGEND = (
 )
 _HEADER = "step load     f_ext     U  bone x   bone y      f_T   µ_app    f_el ridges  contact  iter. fact.  path left"
 _UNITS = "           (N/m)   (V)    (mm)     (mm)    (N/m)          (N/m)           (mm)"
-_SURE = 0.1  # part done from which on the pace is known
-_SPREAD = 2.0  # factor either way of the time left at the beginning; it shrinks to the next one
-_LEAST_SPREAD = 1.25
-_SLIPS = 0.9  # of a load that ends with full slip: done where friction is at its largest, before it is held
-_ROUNDOFF = 1e-9  # of a load's end
-_SHORT = 1.0  # s, below which no time is printed
+_KNOWN = 0.1  # part done from which on the pace is known
+_SPREAD, _SMALLEST_SPREAD = 2.0, 1.25  # factors either way of the time left, at the beginning and at the end
+_SLIPPED = 0.9  # of a load that ends with full slip: done where friction is at its largest, before it is held
+_LOAD_TOLERANCE = 1e-9  # of a load's end
 
 
 def watched(stream: TextIO | None = None) -> bool:
@@ -46,15 +44,26 @@ def watched(stream: TextIO | None = None) -> bool:
     stream = sys.stdout if stream is None else stream
     if launcher.rank() or os.environ.get("NO_COLOR") or os.environ.get("TERM", "dumb") == "dumb" or not stream.isatty():
         return False
-    return not launcher.launched() or _launcher_is_watched()
-
-
-def _launcher_is_watched() -> bool:
-    """Return whether the output of the parent process is a terminal; where that cannot be found out, it is none."""
+    if not launcher.launched():
+        return True
     try:
         return re.fullmatch(_TERMINAL, os.readlink(f"/proc/{os.getppid()}/fd/1")) is not None
     except OSError:
         return False
+
+
+def in_words(*seconds: float) -> str:
+    """Return a time (s), or a range of two, in the unit in which the longest one is read."""
+    if seconds[-1] < 1.0:
+        return "less than 1 s"
+    size, unit = next(((s, u) for s, u in ((3600.0, "hours"), (60.0, "minutes")) if seconds[-1] >= 2 * s), (1.0, "s"))
+    return f"{' to '.join(about(each / size) for each in seconds)} {unit}"
+
+
+def about(value: float) -> str:
+    """Return a number of two digits, as it is read."""
+    rounded = float(f"{value:.2g}")
+    return f"{rounded:,.0f}".replace(",", " ") if rounded >= 10 else f"{rounded:g}"
 
 
 class Pace:
@@ -82,56 +91,29 @@ class Pace:
             slipped: part of the present load, where it ends with full slip: friction over its largest value.
         """
         number = min(done, 1.0) * self._loads
-        k = min(int(number + _ROUNDOFF), self._loads - 1)
+        k = min(int(number + _LOAD_TOLERANCE), self._loads - 1)
         part = number - k
-        if part > _ROUNDOFF:  # else the load before has just ended, perhaps with full slip
-            part = max(part, min(slipped, _SLIPS))
+        if part > _LOAD_TOLERANCE:  # else the load before has just ended, perhaps with full slip
+            part = max(part, min(slipped, _SLIPPED))
         self.part = (k + part) / self._loads
-        if math.isnan(self._start) and number >= self._first - _ROUNDOFF:
+        if math.isnan(self._start) and number >= self._first - _LOAD_TOLERANCE:
             self._start = self._clock()
 
     def left(self) -> str:
         """Return the time left in words, as a range; that it is not known before a tenth is done."""
         before = self._first / self._loads
         done = (self.part - before) / (1 - before)
-        if math.isnan(self._start) or done < _SURE:
+        if math.isnan(self._start) or done < _KNOWN:
             return "not known"
-        time_left = (self._clock() - self._start) * (1 - done) / done
-        spread = max(_SPREAD ** (1 - done), _LEAST_SPREAD)
-        return between(time_left / spread, time_left * spread)
-
-
-def between(low: float, high: float) -> str:
-    """Return a range of times (s) in words, in the unit in which the longer one is read."""
-    if high < _SHORT:
-        return f"less than {_SHORT:g} s"
-    size, unit = _unit(high)
-    return f"{about(low / size)} to {about(high / size)} {unit}"
-
-
-def in_words(seconds: float) -> str:
-    """Return a time (s) in words, in the unit in which it is read; that it is short below a second."""
-    if seconds < _SHORT:
-        return f"less than {_SHORT:g} s"
-    size, unit = _unit(seconds)
-    return f"{about(seconds / size)} {unit}"
-
-
-def _unit(seconds: float) -> tuple[float, str]:
-    units = ((3600.0, "hours"), (60.0, "minutes"))
-    return next(((s, u) for s, u in units if seconds >= 2 * s), (1.0, "s"))
-
-
-def about(value: float) -> str:
-    """Return a number of two digits, as it is read."""
-    rounded = float(f"{value:.2g}")
-    return f"{rounded:,.0f}".replace(",", " ") if rounded >= 10 else f"{rounded:g}"
+        seconds = (self._clock() - self._start) * (1 - done) / done
+        spread = max(_SPREAD ** (1 - done), _SMALLEST_SPREAD)
+        return in_words(seconds / spread, seconds * spread)
 
 
 class Console:
     """Prints the lines of a run, or nothing but the progress bar, or nothing."""
 
-    def __init__(self, comm: "MPI.Comm", lines: bool = True, bar: bool = True, on_step: "OnStep | None" = None) -> None:
+    def __init__(self, comm: "MPI.Comm", lines: bool = True, bar: bool = True, on_step: _OnStep | None = None) -> None:
         """Start the progress bar, where a person watches: in a terminal, or in the cell of a notebook.
 
         Args:

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from fingerpad.results.files import below, lock_file, replace_json
 from fingerpad.results.folder import identity
-from fingerpad.results.terminal import between, watched
+from fingerpad.results.terminal import in_words, watched
 from fingerpad.runs import processes
 from fingerpad.runs.context import OUT_OF_MEMORY, Summary, ended, summary
 from fingerpad.runs.processes import End, run
@@ -152,7 +152,7 @@ def finish(
     def report(name: str, found: Summary) -> None:
         if not quiet:
             count = sum(map(len, left.values()))
-            rest = f"; {between(*times_left(took, count, jobs))} left" if timed and count and took else ""
+            rest = f"; {in_words(*times_left(took, count, jobs))} left" if timed and count and took else ""
             words = found.get("failure") or _description(found)
             text = f"{name}: {words} ({total - count} of {total}{rest})"
             bar.console.print(text, highlight=False, markup=False, soft_wrap=True)

@@ -1,6 +1,6 @@
 """The values of a key at which a quantity at full slip has a target, by the closed form.
 
-The closed form is the model "cylinders" (:mod:`fingerpad.reduced.cylinders`), of one state alone. The key is varied
+The closed form is the model "cylinders" (:mod:`fingerpad.reduced.cylinders`). The key is varied
 over a range, and each crossing of the target is refined (:mod:`fingerpad.runs.roots`). The full model confirms a value
 by a run of the scene there.
 
@@ -13,18 +13,21 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from fingerpad.reduced.cylinders import Cylinders
+from fingerpad.reduced.model import Model
 from fingerpad.reduced.registry import find
 from fingerpad.results.data import Number
 from fingerpad.results.quantities import EXTREMES, FINGER, QUANTITIES, Output, plus_minus_of
 from fingerpad.results.result import Result
-from fingerpad.runs.closed_form import STATE, ClosedForm
+from fingerpad.runs.context import RunContext
 from fingerpad.runs.roots import EQUAL, Axis, Roots, axis
-from fingerpad.runs.solve import checked
+from fingerpad.runs.solve import checked, solved
 from fingerpad.scene import Scene, with_values
 from fingerpad.scene.messages import SceneError, clip, show
 from fingerpad.scene.remarks import drive_in_short, other_under_a_drive
 from fingerpad.slices import errors
 from geometry.units import to_si
+
+_STATE = "full_slip"
 
 
 # -- the target ----------------------------------------------------------------------------------------------
@@ -164,8 +167,7 @@ def solve(
         raise SceneError(f"{given}; give one quantity and its value, such as mu_app=0.4")
     if way.path:
         raise SceneError(f"model is {model!r}, too slow for a search; run it at the scene of a value of 'cylinders'")
-    form = ClosedForm(way)
-    form.model.check(scene)
+    way.check(scene)
     if over == "voltage" and scene.drive is not None:
         raise SceneError("voltage is a drive and over is voltage; give one of its keys, as voltage.rms")
     newtons = over == "force" or (scene.force is not None and over != "f_ext")
@@ -176,13 +178,34 @@ def solve(
         given = f"over is {over}" if over in ("f_ext", "force") else "force is given"
         raise SceneError(f"{goal.quantity.symbol} is of the {kind} and {given}; give {other} in its place")
     if goal.whole and not newtons:
-        force = form.newtons(scene)
+        uncharged = _result(scene.replace(voltage=0.0), way)
+        _number(uncharged, goal)  # refuses a finger that is too short
+        assert uncharged.finger is not None
+        force = uncharged.finger.f_ext
         at = f"the section at the finger's centre then bears the scene's f_ext, {scene.f_ext:g} N/m, at full slip"
         notes.append(f"No force is given. It is {force:.4g} N: {at}.")
         scene = scene.replace(force=force)
     elif over == "f_ext" and name in FINGER:
         notes.append("The whole finger has another value; vary force for it.")
-    return _Problem(scene, goal, axis(scene, over, between), form).solution(notes)
+    return _Problem(scene, goal, axis(scene, over, between), way).solution(notes)
+
+
+def _result(scene: Scene, model: Model) -> Result:
+    """Return the result of a scene without its bands over assumptions."""
+    return solved(scene, model, RunContext(report=False))
+
+
+def _number(result: Result, target: Target) -> Number:
+    """Return the quantity of a target with its error.
+
+    Raises:
+        SceneError: the result has no full slip, or no whole finger.
+    """
+    if target.whole and result.finger is None:
+        raise SceneError(result.notes[-1].partition(": ")[2])
+    if _STATE not in (result.finger.states if target.whole and result.finger is not None else result.named):
+        raise SceneError(f"the {'whole finger' if target.whole else 'section'} has no full slip with friction")
+    return result.number(_STATE, target.quantity.name, target.whole)
 
 
 @dataclass
@@ -192,7 +215,7 @@ class _Problem:
     scene: Scene
     target: Target
     axis: Axis
-    form: ClosedForm
+    model: Model
     base: float | None = None
 
     def solution(self, notes: Sequence[str]) -> Solution:
@@ -224,7 +247,7 @@ class _Problem:
         return with_values(self.scene, {self.axis.key: self.axis.value(place)})
 
     def _value(self, scene: Scene) -> float:
-        return self.form.value(scene, self.target.quantity, self.target.whole)
+        return _number(_result(scene, self.model), self.target).value
 
     def _reached(self, place: float) -> float:
         """Return what is compared with the target: the quantity, or its ratio to that without voltage."""
@@ -240,8 +263,8 @@ class _Problem:
 
     def _root(self, search: Roots, place: float) -> Root:
         scene, axis = self._at(place), self.axis
-        closed = self.form.result(scene)
-        number = closed.number(STATE, self.target.quantity.name, self.target.whole)
+        closed = _result(scene, self.model)
+        number = _number(closed, self.target)
         margin = abs(number.error / (number.value or math.nan) * search.values[place] / search.slope(place))
         margin *= axis.value(place) if axis.logarithmic else 1.0
         margin = margin if margin < axis.high - axis.low else math.nan  # where the slope vanishes

@@ -2,22 +2,19 @@
 
 import logging
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-from fingerpad.model.finger import meshed
+from fingerpad.model.finger import Finger, meshed
+from fingerpad.model.options import FingerModel
+from fingerpad.model.report import Clock
 from fingerpad.model.simulation import RestartRequired
 from fingerpad.results.interrupt import Interrupted
+from fingerpad.results.terminal import Console
+from fingerpad.startup import MPI
 from geometry.profiles import GeometryError
+from variational.solvers.continuation import StepFailed
 from variational.solvers.outcome import NotConverged
-
-if TYPE_CHECKING:
-    from fingerpad.model.finger import Finger
-    from fingerpad.model.options import FingerModel
-    from fingerpad.model.report import Clock
-    from fingerpad.results.terminal import Console
-    from fingerpad.startup import MPI
-    from variational.solvers.continuation import StepFailed
-    from variational.state import ContactState
+from variational.state import ContactState
 
 FINEST = 5e-6
 """Contact size (m) down to which a run starts again by itself where the path of its loads cannot be followed."""
@@ -44,7 +41,7 @@ class Restarts:
         notes: remarks for a reader of the result, on the restarts with smaller elements.
     """
 
-    def __init__(self, log: logging.Logger, console: "Console") -> None:
+    def __init__(self, log: logging.Logger, console: Console) -> None:
         """Start without any."""
         self._log, self._console = log, console
         self.table: list[dict[str, Any]] = []
@@ -59,9 +56,7 @@ class Restarts:
         """Go on from what another process kept."""
         self.table, self.notes, self._seconds = kept["table"], kept["notes"], kept["seconds"]
 
-    def record(
-        self, restart: RestartRequired, states: Sequence["ContactState"], finger: "Finger", clock: "Clock"
-    ) -> None:
+    def record(self, restart: RestartRequired, states: Sequence[ContactState], finger: Finger, clock: Clock) -> None:
         """Record a restart; states and finger are those until here; collective."""
         mesh = restart.model.mesh
         step, load = (states[-1].step, states[-1].load) if states else (0, "start")
@@ -95,7 +90,7 @@ class Restarts:
         self._seconds = seconds
 
 
-def hint(error: "StepFailed") -> str:
+def hint(error: StepFailed) -> str:
     """Return what to try against a load that could not be reached, empty if the error names it itself."""
     cause = error.__cause__
     if not isinstance(cause, NotConverged):
@@ -105,7 +100,7 @@ def hint(error: "StepFailed") -> str:
     return next((words for name, words in _HINTS.items() if cause.reason.startswith(name)), _OTHERWISE)
 
 
-def finer_mesh_may_help(error: "StepFailed", coarse_start: bool) -> bool:
+def finer_mesh_may_help(error: StepFailed, coarse_start: bool) -> bool:
     """Return whether a load that could not be reached may be with a smaller ``mesh.contact``.
 
     A mesh that was chosen as one to start from, and not by a person, may always be too coarse.
@@ -115,7 +110,7 @@ def finer_mesh_may_help(error: "StepFailed", coarse_start: bool) -> bool:
     return "smaller mesh.contact" in hint(error)
 
 
-def finer(model: "FingerModel", error: "StepFailed", comm: "MPI.Comm", reason: str = "") -> RestartRequired | None:
+def finer(model: FingerModel, error: StepFailed, comm: "MPI.Comm", reason: str = "") -> RestartRequired | None:
     """Return a restart with smaller elements, where that may help and is possible; collective.
 
     A path whose elements are twice as large as those of the final mesh is followed on that mesh. Else the contact size

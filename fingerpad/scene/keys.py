@@ -117,8 +117,9 @@ def _of_law(table: str, key: LawKey, meaning: str) -> Iterator[Key]:
     table = table.removesuffix("law.") if key.flat else table
     text = f"{meaning or 'Name of the law.'} A law of your own has its import path here (docs/laws.md)."
     yield Key(table + (key.flat or "law"), None if key.number else name, text, choices=f"{names} or module:Class")
+    several = bool(key.all_laws or key.number or key.flat)
     readers = dict[Key, list[str]]()  # of what has one range and meaning, under one name
-    for law in dict.fromkeys([type(default), *(key.kind.laws.values() if key.several else ())]):
+    for law in dict.fromkeys([type(default), *(key.kind.laws.values() if several else ())]):
         for field in keys_of(law).values():
             value = None if key.number or field.default is MISSING else field.default
             value = value if key.number or law is not type(default) else getattr(default, field.name)
@@ -128,7 +129,7 @@ def _of_law(table: str, key: LawKey, meaning: str) -> Iterator[Key]:
             same = next((each for each in readers if replace(each, default=value) == found), found)
             readers.setdefault(same, []).append(key.kind.name(law))
     for found, laws in readers.items():
-        alone = f" Of {' and '.join(laws)} alone." if key.several and len(laws) < len(key.kind.laws) else ""
+        alone = f" Of {' and '.join(laws)} alone." if several and len(laws) < len(key.kind.laws) else ""
         of = "" if key.kind.name(type(default)) in laws else laws[0]
         yield replace(found, meaning=found.meaning + alone, law=of)
     for each in key.tables(type(default)):  # that a law may have, and the default law has not

@@ -29,13 +29,13 @@ from fingerpad.scene.messages import LAW, SceneError, clip, show
 from geometry.units import Range
 from variational.coefficients import said
 
-_OWN = re.compile(r"([A-Za-z_]\w*(?:\.[A-Za-z_]\w*)*):([A-Za-z_<>][\w<>]*(?:\.[A-Za-z_<>][\w<>]*)*)", re.ASCII)
+IMPORT_PATH = re.compile(r"([A-Za-z_]\w*(?:\.[A-Za-z_]\w*)*):([A-Za-z_<>][\w<>]*(?:\.[A-Za-z_<>][\w<>]*)*)", re.ASCII)
 _KEPT = ContextVar("kept", default=False)
 
 
 @contextmanager
 def kept() -> Iterator[None]:
-    """Read laws of one's own inside the block as :class:`Kept`: results can be read where their laws are not."""
+    """Import no laws of one's own inside the block, in which results are read: they are :class:`UnresolvedLaw`."""
     before = _KEPT.set(True)
     try:
         yield
@@ -49,7 +49,7 @@ def reading_results() -> bool:
 
 
 @dataclass(frozen=True)
-class Kept:
+class UnresolvedLaw:
     """A law of one's own in results that were read, as it was written: its code is not imported."""
 
     table: Mapping[str, Any]
@@ -89,7 +89,7 @@ class Kind:
             ValueError: there is no such law; to follow name and semicolon.
         """
         found = name if isinstance(name, type) else self.laws.get(name) if isinstance(name, str) else None
-        if found is None and isinstance(name, str) and (parts := _OWN.fullmatch(name)):
+        if found is None and isinstance(name, str) and (parts := IMPORT_PATH.fullmatch(name)):
             found = imported(*parts.groups())
         if found is None:
             raise ValueError(f"it must be {', '.join(map(show, self.laws))} or a law of your own, as 'module:Class'")
@@ -100,39 +100,21 @@ class Kind:
         return found
 
 
+@dataclass(frozen=True, eq=False)
 class LawKey:
-    """How a scene's key holds a law, for pydantic: validation, what is written, and the schema.
+    """How a scene's key holds a law, for pydantic: validation and what is written."""
 
-    Attributes:
-        kind: of the law.
-        default: law whose parameters complete a table without ``law``.
-        number: parameter of the default law that a number in place of a table gives; empty for none.
-        flat: key of the law's name where name and parameters stand in the table around the law; else empty.
-        several: whether the reference has the parameters of every law.
-    """
-
-    def __init__(
-        self,
-        kind: Kind,
-        default: Any,
-        number: str = "",
-        flat: str = "",
-        of_scene: Callable[[Mapping[str, Any]], dict[str, Any]] = lambda data: {},
-        several: bool = False,
-    ) -> None:
-        """Describe a key.
-
-        Args:
-            kind: see the attribute.
-            default: see the attribute.
-            number: see the attribute.
-            flat: see the attribute.
-            of_scene: gives values of fields that the scene sets by itself, from the keys before this one.
-            several: whether the reference has the parameters of every law, as where a number or the table around may
-                stand for the default one.
-        """
-        self.several = several or bool(number or flat)
-        self.kind, self.default, self.number, self.flat, self._of_scene = kind, default, number, flat, of_scene
+    kind: Kind
+    default: Any
+    """Law whose parameters complete a table without ``law``."""
+    number: str = ""
+    """Parameter of the default law that a number in place of a table gives; empty for none."""
+    flat: str = ""
+    """Key of the law's name where name and parameters stand in the table around the law; else empty."""
+    of_scene: Callable[[Mapping[str, Any]], dict[str, Any]] = lambda data: {}
+    """Gives values of fields that the scene sets by itself, from the keys before this one."""
+    all_laws: bool = False
+    """Whether the reference has the parameters of every law, as also with a number or the table around."""
 
     def tables(self, law: type) -> tuple[type[BaseModel], ...]:
         """Return the tables inside that of a law, which stand there by their names in small letters."""
@@ -145,8 +127,8 @@ class LawKey:
         Raises:
             PydanticCustomError: it is none; with the place inside the value.
         """
-        given = {name: x for name, x in self._of_scene(info.data).items() if x is not None}
-        value = value.table if isinstance(value, Kept) else value
+        given = {name: x for name, x in self.of_scene(info.data).items() if x is not None}
+        value = value.table if isinstance(value, UnresolvedLaw) else value
         if is_dataclass(value) or isinstance(value, self.kind.base):
             law, given_table = self._kind_of(type(value)), parameters(value) if is_dataclass(value) else {}
             if value is not self.default:
@@ -155,14 +137,14 @@ class LawKey:
             given_table = dict(value)
             name = given_table.pop("law", None)
             if _KEPT.get() and isinstance(name, str) and name not in self.kind.laws:
-                return Kept(value)
+                return UnresolvedLaw(value)
             law = self._kind_of(type(self.default) if name is None else name)
             self._refuse_hash(law, given_table)
             given_table = self.completed(given_table, law)
         elif self.number and isinstance(value, str | Real):
             return _number(keys_of(self.default)[self.number], value, ())
         elif self.number:
-            raise fail(f"is {show(value)}; it must be a number, a table or a {self.kind.base.__name__}")
+            raise key_error(f"is {show(value)}; it must be a number, a table or a {self.kind.base.__name__}")
         else:
             raise PydanticKnownError("model_type", {"class_name": "table"})
         found = self._made(law, given_table, given)
@@ -186,21 +168,23 @@ class LawKey:
             return self.kind.find(law)
         except ValueError as error:
             shown = self.kind.name(law) if isinstance(law, type) else law
-            raise fail(f"is {show(shown)}; {error}", "law") from None
+            raise key_error(f"is {show(shown)}; {error}", "law") from None
 
     def _refuse_hash(self, law: type, table: dict[str, Any]) -> None:
         """Refuse a law whose file is not the one that was written."""
         given = table.pop("sha256", None)
         if given is not None and given != digest(law):
             name = self.kind.name(law)
-            raise fail(f"is {show(name)}, whose file was changed since; put that one back, or leave out sha256", "law")
+            raise key_error(
+                f"is {show(name)}, whose file was changed since; put that one back, or leave out sha256", "law"
+            )
 
     def _refuse_other(self, law: Any, given: Mapping[str, Any]) -> None:
         for name in _of_scene(law) & given.keys():
             own, value = getattr(law, name), given[name]
             same = abs(own - value) <= 1e-6 * abs(value) if isinstance(value, float) else own == value
             if not same:
-                raise fail(f"is {show(own)} and the scene has {show(value)}; the two must be the same", name)
+                raise key_error(f"is {show(own)} and the scene has {show(value)}; the two must be the same", name)
 
     def _made(self, law: type, table: Mapping[str, Any], given: Mapping[str, Any]) -> Any:
         """Return the law of these parameters, checked."""
@@ -213,20 +197,20 @@ class LawKey:
             if name in table:
                 values[name] = _number(field, table[name], (name,))
             elif field.default is MISSING and field.default_factory is MISSING:
-                raise fail("is missing; it must be given", name)
+                raise key_error("is missing; it must be given", name)
         try:
             found = law(**values, **{name: given[name] for name in _of_scene(law) & given.keys()})
             self.check(found)
         except Exception as error:  # whatever the user's class raises
             own = isinstance(error, ValueError) or self.kind.name(law) in self.kind.laws
-            raise whole(str(error) if own else f"{law.__name__} cannot be made: {said(error)}", *keys) from None
+            raise law_error(str(error) if own else f"{law.__name__} cannot be made: {said(error)}", *keys) from None
         digest(law)  # reads the file now, which may be edited while a run is on
         return found
 
     # -- writing -----------------------------------------------------------------------------------------
     def written(self, law: Any) -> Any:
         """Return a law as it stands in a file: a number, or a table that gives the same law again."""
-        if isinstance(law, Kept):
+        if isinstance(law, UnresolvedLaw):
             return dict(law.table)
         if not is_dataclass(law):
             return law
@@ -261,7 +245,7 @@ def table(law: Any) -> Any:
 
     A law of :attr:`made_of`, another law and keys beside that one's, has these in one table.
     """
-    if isinstance(law, Kept):
+    if isinstance(law, UnresolvedLaw):
         return dict(law.table)
     if hasattr(law, "made_of"):
         inner, more = law.made_of
@@ -274,17 +258,17 @@ def range_of(field: "Field[Any]") -> Range | None:
     return Range(*field.metadata["range"]) if "range" in field.metadata else None
 
 
-def fail(text: str, *at: str | int) -> PydanticCustomError:
+def key_error(text: str, *at: str | int) -> PydanticCustomError:
     """Return an error about a place inside a key's value; the text follows that place."""
     return PydanticCustomError(LAW, "{text}", {"text": text, "at": at})
 
 
-def whole(text: str, *keys: str) -> PydanticCustomError:
+def law_error(text: str, *keys: str) -> PydanticCustomError:
     """Return an error about a key's whole value: a sentence, which may begin with one of the value's keys."""
     return PydanticCustomError(LAW, "{text}", {"text": text, "keys": keys})
 
 
-def inside(error: ValidationError, table: type[BaseModel], *where: str) -> PydanticCustomError:
+def nested_error(error: ValidationError, table: type[BaseModel], *where: str) -> PydanticCustomError:
     """Return the first error of a table inside a key's value, whose place is where."""
     first = error.errors(include_url=False)[0]
     keys = {"keys": tuple(table.model_fields)} if first["type"] == "extra_forbidden" else {}
@@ -316,10 +300,10 @@ def _number(field: "Field[Any]", value: Any, at: tuple[str, ...]) -> Any:
     allowed = field.metadata.get("allowed")
     if allowed is not None and value not in allowed:
         *first, last = map(show, allowed)
-        raise fail(f"is {show(value)}; it must be {', '.join(first)} or {last}", *at)
+        raise key_error(f"is {show(value)}; it must be {', '.join(first)} or {last}", *at)
     found = _plain(value)
     if not _is_data(found):
-        raise fail(f"is {clip(repr(value))}; parameters of a law are numbers, texts, and lists of these", *at)
+        raise key_error(f"is {clip(repr(value))}; parameters of a law are numbers, texts, and lists of these", *at)
     return found
 
 

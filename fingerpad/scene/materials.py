@@ -16,7 +16,17 @@ from pydantic import BaseModel, ConfigDict, ValidationError, ValidationInfo
 
 from fingerpad import launcher
 from fingerpad.scene.electric import Electric
-from fingerpad.scene.law_keys import Kept, Kind, LawKey, fail, inside, keys_of, range_of, reading_results, whole
+from fingerpad.scene.law_keys import (
+    Kind,
+    LawKey,
+    UnresolvedLaw,
+    key_error,
+    keys_of,
+    law_error,
+    nested_error,
+    range_of,
+    reading_results,
+)
 from fingerpad.scene.messages import show
 from fingerpad.scene.viscosity import Viscosity, elastic
 from geometry import tags
@@ -62,7 +72,7 @@ class MaterialKey(LawKey):
 
     def read(self, value: Any, info: ValidationInfo) -> Any:
         """Return the law of a value, see :meth:`fingerpad.scene.law_keys.LawKey.read`."""
-        given: Any = value.table if isinstance(value, Kept) else value
+        given: Any = value.table if isinstance(value, UnresolvedLaw) else value
         if elastic(given) is not given:
             return self._viscous(super().read(elastic(given), info), given.viscosity)
         if not isinstance(given, Mapping) or "viscosity" not in given:
@@ -70,23 +80,21 @@ class MaterialKey(LawKey):
         found = super().read({key: each for key, each in given.items() if key != "viscosity"}, info)
         if given["viscosity"] is None:
             return found
-        return Kept(given) if isinstance(found, Kept) else self._viscous(found, given["viscosity"])
+        return UnresolvedLaw(given) if isinstance(found, UnresolvedLaw) else self._viscous(found, given["viscosity"])
 
     @staticmethod
-    def _viscous(solid: Material, viscosity: Any) -> Viscoelastic:
-        if not isinstance(viscosity, QLV):
-            try:
-                viscosity = Viscosity.model_validate(viscosity).qlv()
-            except ValidationError as error:
-                first = error.errors(include_url=False)[0]
-                if first["type"] != "value_error":
-                    raise inside(error, Viscosity, "viscosity") from None
-                raise whole(f"viscosity.{first['ctx']['error']}", "viscosity") from None
-        found = Viscoelastic(solid, viscosity)
+    def _viscous(elastic: Material, viscosity: Any) -> Viscoelastic:
         try:
+            viscosity = viscosity if isinstance(viscosity, QLV) else Viscosity.model_validate(viscosity).qlv()
+            found = Viscoelastic(elastic, viscosity)
             found.check()
+        except ValidationError as error:
+            first = error.errors(include_url=False)[0]
+            if first["type"] != "value_error":
+                raise nested_error(error, Viscosity, "viscosity") from None
+            raise law_error(f"viscosity.{first['ctx']['error']}", "viscosity") from None
         except ValueError as error:
-            raise whole(str(error), "viscosity") from None
+            raise law_error(str(error), "viscosity") from None
         return found
 
     def written(self, law: Any) -> Any:
@@ -206,15 +214,17 @@ class RoughnessKey(LawKey):
         if topography is not None:
             for name in law.measured:  # type: ignore[attr-defined]
                 if name in table:
-                    raise fail(
+                    raise key_error(
                         f"is {show(table[name])} and roughness.topography is given too, which has it; give one", name
                     )
             try:
                 table |= Topography.model_validate(topography).roughness(law)  # type: ignore[arg-type]
             except ValidationError as error:
-                raise inside(error, Topography, "topography") from None
+                raise nested_error(error, Topography, "topography") from None
             except ValueError as error:
-                raise whole(re.sub(r"(?<=\s)topography\.", "roughness.topography.", str(error)), "topography") from None
+                raise law_error(
+                    re.sub(r"(?<=\s)topography\.", "roughness.topography.", str(error)), "topography"
+                ) from None
         return super().completed(table, law)
 
     def check(self, law: Any) -> None:
@@ -243,7 +253,7 @@ def _insulators(data: Mapping[str, Any]) -> dict[str, Any]:
 
 
 BEARING_AREA = BearingArea(Electric().h_0(Fingertip().sc_thickness))
-ROUGHNESS = RoughnessKey(CLOSURES, BEARING_AREA, of_scene=_insulators, several=True)
+ROUGHNESS = RoughnessKey(CLOSURES, BEARING_AREA, of_scene=_insulators, all_laws=True)
 FRICTION = LawKey(FRICTION_LAWS, Coulomb(0.25), number="mu_f")
 
 

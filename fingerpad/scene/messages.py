@@ -12,9 +12,9 @@ from typing import Any, get_args
 
 from pydantic import BaseModel, ValidationError
 
-MOST = 1000  # characters of a message, which no sentence has
+_MAX_MESSAGE = 1000  # characters of a message, which no sentence has
 _MAX_VALUE = 60  # of a value that is quoted
-MOST_KEY = 40  # of a key
+_MAX_KEY = 40  # of a key
 
 LAW = "law"  # kind of the errors of a law, whose context has the text and the place
 NUMBER, WAVE, NAME, TABLE = "a number", "a waveform", "a name", "a table"
@@ -46,7 +46,7 @@ class SceneError(ValueError):
     """A scene that cannot be run; the message names the key, its value and what is allowed."""
 
     def __init__(self, message: str) -> None:
-        super().__init__(clip(message, MOST))
+        super().__init__(clip(message, _MAX_MESSAGE))
 
 
 def alike(caution: str) -> str:
@@ -114,7 +114,7 @@ def key_of(parts: Iterable[int | str]) -> str:
             key += f"[{part}]"
             continue
         plain = re.fullmatch(r"[A-Za-z0-9_-]+", part)
-        key += "." * bool(key) + (clip(part, MOST_KEY) if plain else clip(repr(part), MOST_KEY))
+        key += "." * bool(key) + (clip(part, _MAX_KEY) if plain else clip(repr(part), _MAX_KEY))
     return key
 
 
@@ -226,7 +226,7 @@ def _instead(loc: tuple[int | str, ...], own: Sequence[str], every: Iterable[str
         every: names of the keys of all tables.
     """
     table, name = key_of(loc[:-1]), str(loc[-1])
-    wanted = clip(name, MOST_KEY).lower().replace("-", "_")
+    wanted = clip(name, _MAX_KEY).lower().replace("-", "_")
     keys = [(table, key, _MIN_LIKENESS) for key in own]
     names = [name.replace("[]", "[0]").split(".") for name in every]
     tables = dict.fromkeys((".".join(name[:depth]), name[depth]) for name in names for depth in range(len(name)))

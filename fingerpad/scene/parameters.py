@@ -11,7 +11,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field, SerializerFunctionWrapHandler, model_serializer, model_validator
 
-from fingerpad.scene.law_keys import Kind, LawKey, fail, keys_of, reading_results
+from fingerpad.scene.law_keys import Kind, LawKey, key_error, keys_of, reading_results
 from fingerpad.scene.messages import SceneError, clip, show
 from geometry.parameters import Fingertip
 from geometry.units import Finite, Switch, Table, within
@@ -107,11 +107,11 @@ class Geometry(Fingertip):
         try:
             found = hashlib.sha256(files.read(file)).hexdigest()
         except FileNotFoundError:
-            raise fail(f"is {show(file)}, and there is no such file", "file") from None
+            raise key_error(f"is {show(file)}, and there is no such file", "file") from None
         except OSError as error:
-            raise fail(f"is {show(file)}, which cannot be read: {error.strerror}", "file") from None
+            raise key_error(f"is {show(file)}, which cannot be read: {error.strerror}", "file") from None
         if data.get("file_sha256") not in (None, found):
-            raise fail(f"is {show(file)}, which was changed since the scene was kept; put that file back", "file")
+            raise key_error(f"is {show(file)}, which was changed since the scene was kept; put that file back", "file")
         return data | {"file": str(Path(file).absolute()), "file_sha256": found}
 
 

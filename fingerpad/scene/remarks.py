@@ -14,7 +14,7 @@ import numpy as np
 
 from fingerpad.scene.drive import drive_of, leak_in_words, remains
 from fingerpad.scene.fingers import ADULT, FINGERS
-from fingerpad.scene.law_keys import Kept
+from fingerpad.scene.law_keys import UnresolvedLaw
 from fingerpad.scene.materials import LAYERS
 from fingerpad.scene.messages import clip, show
 from fingerpad.scene.viscosity import elastic, viscous_layers
@@ -31,7 +31,7 @@ LEAKAGE = (
     "5 % high at 10 kHz (200 V rms, 75 N/m: docs/drive.md). A constant voltage leaks away."
 )
 """Note on every result with a constant voltage; its numbers are ``left_out`` of docs/drive.json."""
-UNDER_A_DRIVE = (
+_UNDER_A_DRIVE = (
     "The finger's tissue and leak have no effect without a drive, and under a drive a moist finger can need more "
     "of it than a dry one: compare fingers under one drive, as "
     'voltage = {waveform = "sine", rms = 150, frequency = 100}.'
@@ -45,7 +45,7 @@ _LONGEST = 100e-6  # m, lambda_0 of the paper (Table 3), and the default
 # -- laws ----------------------------------------------------------------------------------------------
 def coefficient(scene: "Scene") -> float | None:
     """Return the friction coefficient of Coulomb's law; None where the scene has another one."""
-    return None if isinstance(scene.friction, Kept | Friction) else scene.friction
+    return None if isinstance(scene.friction, UnresolvedLaw | Friction) else scene.friction
 
 
 # -- in words ------------------------------------------------------------------------------------------
@@ -73,7 +73,7 @@ def _call(name: str, numbers: Mapping[str, Any], units: Mapping[str, str] | None
 
 
 def _words(law: Any) -> str:
-    if isinstance(law, Kept):
+    if isinstance(law, UnresolvedLaw):
         return _call(str(law.table.get("law")), {k: v for k, v in law.table.items() if k not in ("law", "sha256")})
     if elastic(law) is not law:
         return f"{_words(elastic(law))}, {_words(law.viscosity)}"
@@ -122,7 +122,7 @@ def other_under_a_drive(scenes: Iterable["Scene"]) -> list[str]:
     """Return a sentence where a constant voltage is put on a finger whose circuit would lose it; none elsewhere."""
     constant = (scene for scene in scenes if scene.drive is None and scene.volts)
     loses = any(not scene.electric.circuit(scene.geometry.sc_thickness).lossless for scene in constant)
-    return [UNDER_A_DRIVE] if loses else []
+    return [_UNDER_A_DRIVE] if loses else []
 
 
 def _drive_in_words(name: str, wave: Waveform, scene: "Scene") -> str:

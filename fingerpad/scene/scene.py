@@ -19,7 +19,7 @@ from fingerpad.scene.electric import Electric
 from fingerpad.scene.fingers import ADULT, FingerName
 from fingerpad.scene.keys import every
 from fingerpad.scene.law_code import digest, folder_of, imported
-from fingerpad.scene.law_keys import Kept, kept
+from fingerpad.scene.law_keys import UnresolvedLaw, kept
 from fingerpad.scene.loads import Load, Voltage, drives, refuse_contradictions, repeated
 from fingerpad.scene.materials import (
     BEARING_AREA,
@@ -201,7 +201,7 @@ class Scene(Table):
 
     def resolved(self) -> "Scene":
         """Return the scene with the laws that were not imported where results were read; raises as :meth:`replace`."""
-        return self.replace() if any(isinstance(law, Kept) for law in self.laws().values()) else self
+        return self.replace() if any(isinstance(law, UnresolvedLaw) for law in self.laws().values()) else self
 
     def refuse_laws_of_program(self, where: str) -> None:
         """Refuse laws that no other process can import.
@@ -291,7 +291,7 @@ def changed_keys(parameters: Mapping[str, Any]) -> dict[str, tuple[Any, Any]]:
 
 
 def _known(key: str, law: Any) -> Any:
-    return law.refuse(key) if isinstance(law, Kept) else law
+    return law.refuse(key) if isinstance(law, UnresolvedLaw) else law
 
 
 # -- files ---------------------------------------------------------------------------------------------
