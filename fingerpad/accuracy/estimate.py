@@ -5,9 +5,9 @@ from contextlib import suppress
 from dataclasses import fields, replace
 from typing import TYPE_CHECKING, Any
 
-from fingerpad.accuracy.richardson import RECEPTOR, TWO, of_sum, of_two_meshes, plus_minus, rigid
+from fingerpad.accuracy.richardson import RECEPTOR, TWO, of_sum, of_two_meshes, rigid
 from fingerpad.accuracy.states import Solve, with_values
-from fingerpad.results.quantities import QUANTITIES, Output
+from fingerpad.results.quantities import QUANTITIES, Output, plus_minus
 from fingerpad.results.states import WORDS
 from fingerpad.scene.messages import SceneError
 from variational.element import ELEMENTS
