@@ -3,7 +3,7 @@ r"""Named states on a final mesh with their discretisation errors, refined until
 **Two meshes.** Full slip does not depend on the path of the loads where the same ridges touch. So a path is followed on
 elements twice as large as those that the scene gives, and its named states are restored on the final mesh and solved
 for again (:mod:`variational.solvers.transfer`), with facets of a sixteenth where their contact ends
-(:mod:`fingerpad.accuracy.edges`). The difference of the two meshes makes the estimated error
+(:mod:`fingerpad.accuracy.states`). The difference of the two meshes makes the estimated error
 (:mod:`fingerpad.accuracy.richardson`), without a further solve. Where other ridges touch on the final mesh, or a state
 is not found there, the path is followed on the scene's sizes, and states on elements twice as large are solved for.
 

@@ -8,8 +8,7 @@ import numpy as np
 from mpi4py import MPI
 from numpy.typing import NDArray
 
-from fingerpad.accuracy import edges
-from fingerpad.accuracy.states import Solve, State, StateRecorder, together
+from fingerpad.accuracy.states import Solve, State, StateRecorder, contact_ends, edge_places, together
 from fingerpad.model.cautions import adhering, lost
 from fingerpad.model.checks import FingerExceeded
 from fingerpad.model.options import FingerModel
@@ -187,8 +186,8 @@ def _solve(
     pause: Callable[[], None],
 ) -> Solve:
     profiles = Profiles(model.geometry)
-    ends = ((edges.ends(state.snapshot, profiles.along_skin, state.facet), state.facet) for state in states.values())
-    found = edges.about(ends, model.mesh)
+    ends = ((contact_ends(state.snapshot, profiles.along_skin, state.facet), state.facet) for state in states.values())
+    found = edge_places(ends, model.mesh)
     simulation = StateSolver(model.changed(edges=found), comm)
     recorder, over, finger = StateRecorder(simulation), StateRecorder(simulation), simulation.finger
     springs, soft, viewer = finger.problem.interface.formulation, "", Viewer(finger) if views else None
