@@ -20,9 +20,7 @@ NAMES = tuple(in_table("trace", SLICES))
 LEAST = 3
 """Least number of points of a trace. A power law needs two, and the error of the interpolation leaves one out."""
 _NO_FORCE = 1e-12  # of the largest external force: values below it are roundoff
-_SAME_POINT = (
-    1e-4  # relative distance of two points: of closer ones, slopes are made by the tolerances of solvers (1e-6)
-)
+_SAME_POINT = 1e-4  # relative distance of two points: slopes of closer ones are made by solvers' tolerances (1e-6)
 
 
 class TraceError(SceneError):
