@@ -21,9 +21,9 @@ import numpy as np
 from benchmarks import harness
 from benchmarks.paper.friction import within
 from benchmarks.runs import Array, Run
-from fingerpad.accuracy.richardson import plus_minus
 from fingerpad.reduced import closure_band, cylinders
 from fingerpad.results import files
+from fingerpad.results.quantities import plus_minus
 from fingerpad.runs.batch import Summary
 from fingerpad.scene import Scene, load
 from fingerpad.scene.reading import override

@@ -19,9 +19,10 @@ from benchmarks import harness, limits
 from benchmarks.limits import Limit
 from benchmarks.runs import SITES as AT_SITES
 from benchmarks.runs import Run, finished
-from fingerpad.accuracy.richardson import ORDER, plus_minus
+from fingerpad.accuracy.richardson import ORDER
 from fingerpad.model.options import by_rule
 from fingerpad.results import style
+from fingerpad.results.quantities import plus_minus
 from fingerpad.results.states import WORDS
 from fingerpad.scene import Scene, from_data, load
 

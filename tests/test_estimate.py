@@ -4,7 +4,8 @@ import pytest
 
 from benchmarks.errors import stiffer
 from fingerpad.accuracy import solves
-from fingerpad.accuracy.richardson import ONCE, ORDER, MeshParameter, errors, plus_minus, rigid, to_refine
+from fingerpad.accuracy.richardson import ONCE, ORDER, MeshParameter, errors, rigid, to_refine
+from fingerpad.results.quantities import plus_minus
 from fingerpad.scene import SceneError, from_data
 
 

@@ -115,7 +115,7 @@ def test_commands_know_the_names(tmp_path, capsys):
     assert '"adult", "woman", "child", "elderly", "callused", "dry", "moist"' in capsys.readouterr().out
     changed = ["--set", "finger=dry", "--set", "friction=0.3", "--set", "mesh.contact=60e-6"]
     assert main(["check", *changed, "--out", str(tmp_path)]) == 0
-    words = "finger dry, a dry finger: 3 keys by its name (docs/fingers.md); otherwise: friction\n"
+    words = "finger dry, a dry finger: 3 keys by its name (docs/assumptions.md); otherwise: friction\n"
     assert words in capsys.readouterr().out
     assert "must be 'adult'" in refused(capsys, "check", "--set", "finger=old")
 

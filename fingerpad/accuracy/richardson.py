@@ -32,6 +32,8 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import ArrayLike
 
+from fingerpad.results.quantities import in_table
+
 Parts = Mapping[str, ArrayLike]  # a number, or the parts of a sum, shape (ridges,)
 
 ONCE, MORE = 2.0, 1.5
@@ -39,7 +41,7 @@ ONCE, MORE = 2.0, 1.5
 
 With them the estimated error covers the known one in at least 90 % of the known cases of each kind, of runs with an
 accuracy, where all sizes are changed in turn. One size changed alone does not show the scatter of energy densities.
-``docs/accuracy.json`` has the cases, ``benchmarks/accuracy.py`` counts them for ``docs/accuracy.md``, and
+``docs/accuracy.json`` has the cases, ``benchmarks/accuracy.py`` counts them for ``docs/errors.md``, and
 ``tests/test_calibration.py`` holds the factors to it.
 """
 TWO = 2.0
@@ -53,7 +55,7 @@ lengths, highest pressures and energy densities, of the last in 457 of 457, and 
 error, of which that is a half to three quarters, in at least 95 % of each kind. These factors, and the order of the
 highest pressure, were chosen on the same scenes.
 ``docs/two_meshes.json`` has the values on the three meshes, ``benchmarks/two_meshes.py`` counts the cases for
-``docs/two_meshes.md``, and ``tests/test_calibration.py`` holds the factors to it.
+``docs/errors.md``, and ``tests/test_calibration.py`` holds the factors to it.
 """
 RECEPTOR = 5e-6
 """Largest element (m) at a receptor site with which the error of an energy density there is estimated. The tips of the
@@ -145,7 +147,7 @@ def of_two_meshes(
         sites: that part of the median.
         short: whether facets are shorter where contact ends than elsewhere.
     """
-    found, first_order = {}, ("contact_length", *(() if short else ("f_t", "mu_app", "f_electrostatic", "bone_height")))
+    found, first_order = {}, ("contact_length",) if short else tuple(in_table("edges"))
     for name in (name for name in fine if name in coarse):
         of_ends = name.endswith(first_order)
         state = next((prefix for prefix in facets if name.startswith(f"{prefix}_")), None)
@@ -222,12 +224,6 @@ def to_refine(parameters: Mapping[str, MeshParameter], allowed: Mapping[str, flo
             left -= shares[key] * (1 - 2 ** -parameters[key].order(name))
             found.add(key)
     return [key for key in parameters if key in found]
-
-
-def plus_minus(value: float, error: float) -> str:
-    """Return a value with its error, which is given to two digits: ``0.4750 ± 0.0041``."""
-    digits = int(max(0, 1 - np.floor(np.log10(error)))) if error > 0 else 6
-    return f"{value:z.{digits}f} ± {error:.{digits}f}"
 
 
 def rigid(values: Mapping[str, float], stiffer: Mapping[str, float]) -> dict[str, float]:

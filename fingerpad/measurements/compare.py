@@ -19,7 +19,7 @@ from fingerpad.measurements.computed import CLOSE, Array, Computed, Source, comp
 from fingerpad.measurements.table import Measured
 from fingerpad.scene.messages import SceneError
 
-COLUMNS = ("force", "voltage", "measured", "spread", "mu_0", "computed", "error", "difference", "relative_difference")
+_COLUMNS = ("force", "voltage", "measured", "spread", "mu_0", "computed", "error", "difference", "relative_difference")
 """Columns of a comparison."""
 
 
@@ -77,7 +77,7 @@ def comparison(table: Measured, known: Computed) -> pd.DataFrame:
     about |= {"state": table.state, "quantity": table.quantity, "unit": table.unit, "force_unit": table.force_unit}
     used = rows[rows.voltage > 0] if fit else rows
     about |= {"turned": table.turned, "mu_0": known.mu_0, "fit": fit, "misfit": misfit(used)}
-    rows = rows[[name for name in COLUMNS if name in rows]]
+    rows = rows[[name for name in _COLUMNS if name in rows]]
     rows.attrs = about
     return rows
 

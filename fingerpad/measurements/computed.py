@@ -126,12 +126,12 @@ def computed(source: Source | Sequence[Source], table: Measured) -> Computed:
 
 
 # -- runs ----------------------------------------------------------------------------------------------------
-Point = dict[str, Any]
+_Point = dict[str, Any]
 
 
 def _of_runs(runs: Sequence[Result], table: Measured) -> pd.DataFrame:
     """Return the values of all runs; of one run the last state at a force and a voltage."""
-    points = list[Point]()
+    points = list[_Point]()
     for run in runs:
         for point in _of_finger(run, table) if table.whole else _section(run, table):
             if (same := next((each for each in points if _same(each, point)), None)) is not None:
@@ -152,12 +152,12 @@ def _of_runs(runs: Sequence[Result], table: Measured) -> pd.DataFrame:
     return pd.DataFrame(points, columns=["force", "voltage", "value", "error"])
 
 
-def _same(one: Point, other: Point) -> bool:
+def _same(one: _Point, other: _Point) -> bool:
     """Return whether two points have the same force and voltage up to roundoff."""
     return all(math.isclose(one[key], other[key], rel_tol=_SAME_CONDITION) for key in ("force", "voltage"))
 
 
-def _section(run: Result, table: Measured) -> Iterator[Point]:
+def _section(run: Result, table: Measured) -> Iterator[_Point]:
     """Yield the values of the cross-section: of the whole press in the uncharged state, else of the named state.
 
     The named state stands in place of its step: it has errors, and may be of a finer mesh.
@@ -172,7 +172,7 @@ def _section(run: Result, table: Measured) -> Iterator[Point]:
         yield {"force": state.f_ext, "voltage": abs(state.voltage), "value": value, "error": error, "run": run}
 
 
-def _of_finger(run: Result, table: Measured, force: float | None = None) -> Iterator[Point]:
+def _of_finger(run: Result, table: Measured, force: float | None = None) -> Iterator[_Point]:
     """Yield the value of the whole finger under the run's force, or under another one (N) that its traces reach."""
     finger = run.finger
     if finger is None:

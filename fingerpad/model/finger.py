@@ -128,8 +128,10 @@ class Finger:
             d_eq = both_sides(d_eq)
         p_c = self.ridge_loads(by_gap=True).p_c if self.coupling.by_gap else loads.p_c  # the closure's own
         notes = [self.closure.state(float(p), self.voltage) if self.closure else "" for p in p_c]
-        more = {"load": load, "load_number": number, "mesh_contact": self.contact_size}
-        state = contact_state(self.continuation, loads, self.ridges, d_eq, notes, **more)
+        state = contact_state(
+            self.continuation, loads, self.ridges, d_eq, notes,
+            load=load, load_number=number, mesh_contact=self.contact_size,
+        )  # fmt: skip
         return Step(state, attempt or Attempt())
 
 

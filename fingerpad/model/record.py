@@ -18,13 +18,14 @@ from fingerpad.model.stimuli import SiteStimuli
 from fingerpad.results import motion, states
 from fingerpad.results.drawing import Drawing
 from fingerpad.results.fields import View, sorted_along
+from fingerpad.results.quantities import SKIN, in_table
 from fingerpad.scene import Load
 from variational.output import Lines, Receptors
 from variational.snapshot import Snapshot
 from variational.state import ContactState, Sites, Skin, StepRecord, Stimuli
 
 Array = NDArray[np.float64]
-_PROFILE = ("x", "y", "p_n", "t_t", "p_el", "area_x", "area_y")
+_PROFILE = (*SKIN, "area_x", "area_y")
 _HORIZONTAL = ("x", "t_t", "area_x")  # the other way round in the mirror
 
 
@@ -201,18 +202,12 @@ class PathRecord:
         """Return sums and largest values over all states, ready for JSON."""
         records = [s.record for s in self.states if s.record is not None]
         jumps = [r for r in records if r.jump]
-        return {
-            "steps": len(self.states),
-            "jumps": len(jumps),
-            "cutbacks": sum(r.cutbacks for r in records),
-            "penetration": max((r.penetration for r in records), default=0.0),
-            "imbalance": max((r.imbalance for r in records), default=0.0),
-            "energy_released": sum(r.energy_released for r in jumps),
-            "energy_released_error": sum(r.released_error for r in jumps),
-            "dissipation": sum(r.dissipation for r in records),
-            "floor": max((r.floor for r in records), default=0.0),
-            **_of_viscous([r for r in records if not math.isnan(r.viscous)]),
-        }
+        released = {"energy_released": sum(r.energy_released for r in jumps)}
+        released["energy_released_error"] = sum(r.released_error for r in jumps)
+        sums = {name: sum(getattr(r, name) for r in records) for name in in_table("summed")}
+        largest = {name: max((getattr(r, name) for r in records), default=0.0) for name in in_table("largest")}
+        viscous = _of_viscous([r for r in records if not math.isnan(r.viscous)])
+        return {"steps": len(self.states), "jumps": len(jumps)} | released | sums | largest | viscous
 
 
 def _of_viscous(records: Sequence[StepRecord]) -> dict[str, float]:

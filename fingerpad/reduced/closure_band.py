@@ -54,12 +54,12 @@ from variational.state import ContactState
 if TYPE_CHECKING:
     from fingerpad.results.result import Result
 
-CHANGE, TIPS = (0.8, 1.2), (2.0, 1 / 1.5)
+_CHANGE, TIPS = (0.8, 1.2), (2.0, 1 / 1.5)
 """Factors of a value, and of the radius of a tip."""
 LAW = "friction law"
-SHEAR_STRESS = Derjaguin(mu_f=0.0, tau_0=1.0)
+_SHEAR_STRESS = Derjaguin(mu_f=0.0, tau_0=1.0)
 """A constant shear stress on ridges in contact (Pa)."""
-OUTSIDE, OWN = "no field in contact", "the result's own closure"
+_OUTSIDE, _OWN = "no field in contact", "the result's own closure"
 
 
 def closures(own: Closure) -> dict[str, Closure]:
@@ -77,7 +77,7 @@ def closures(own: Closure) -> dict[str, Closure]:
 
     found = {"bearing area": like(BearingArea)}
     for law, words in ((BoundaryElements, "boundary elements"), (Persson, "Persson's theory")):
-        for touching, more in ((True, ""), (False, f", {OUTSIDE}")):
+        for touching, more in ((True, ""), (False, f", {_OUTSIDE}")):
             found[words + more] = like(law, field_in_contact=touching)
     return {words: law for words, law in found.items() if _is_there(law)}
 
@@ -198,7 +198,7 @@ def _known(result: "Result", slip: ContactState, here: Slip, of_closures: Mappin
     found: dict[str, Any] = {"mu_app": mu, "low": None, "high": None, "whole": finger is not None, "parts": []}
     found |= {"not_known": unknown}
     if here.why:
-        return found | {"no_number": {OWN: here.why}}
+        return found | {"no_number": {_OWN: here.why}}
     parts = [part for part in _parts(result, slip, here.mu_app, mu, of_closures) if part]
     if not parts:
         return {}
@@ -261,8 +261,8 @@ def changes(
         "tips": [(scene, own, tips) for tips in TIPS],
     }
     if own.shared:
-        found["roughness"] = [(scene, replace(own, h_rms=factor * own.h_rms), 1.0) for factor in CHANGE]
-        found["coating"] = [(*_coated(scene, own, factor), 1.0) for factor in CHANGE]
+        found["roughness"] = [(scene, replace(own, h_rms=factor * own.h_rms), 1.0) for factor in _CHANGE]
+        found["coating"] = [(*_coated(scene, own, factor), 1.0) for factor in _CHANGE]
     return found
 
 
@@ -272,7 +272,7 @@ def laws_like(own: Friction | None, p_c: float) -> tuple[float, Derjaguin]:
     On the ridge that they have in common the pressure is the same too: what friction shears is its own.
     """
     stress = 0.0 if own is None else float(own.limit(p_c))
-    return stress / p_c, replace(SHEAR_STRESS, tau_0=stress / float(SHEAR_STRESS.limit(p_c)))
+    return stress / p_c, replace(_SHEAR_STRESS, tau_0=stress / float(_SHEAR_STRESS.limit(p_c)))
 
 
 @cache

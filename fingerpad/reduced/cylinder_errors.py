@@ -29,7 +29,7 @@ from fingerpad.scene.reading import flat
 from fingerpad.scene.scene import Scene
 from variational.state import ContactState
 
-Bands = Mapping[str, Mapping[str, float]]
+_Bands = Mapping[str, Mapping[str, float]]
 """Relative errors by state and quantity; those of a whole finger at full slip are under :data:`WHOLE`."""
 WHOLE = "finger"
 PULL = "attraction over force"
@@ -50,7 +50,7 @@ class Region:
     """Range by dotted key, in SI units; both ends belong to it, and a voltage has no sign. Keys of scenes' tables that
     are not there have their defaults. A scene has ``force`` or ``f_ext``, and the range of the other one is not read.
     The range :data:`PULL` is one of results."""
-    errors: Bands
+    errors: _Bands
     """Errors over the printed value, of the attraction and of lengths: of a section by its states, of a finger."""
 
 
@@ -190,7 +190,7 @@ def _units() -> dict[str, str]:
 
 
 # -- how large -----------------------------------------------------------------------------------------------
-def errors(scene: Scene, states: Mapping[str, ContactState]) -> Bands:
+def errors(scene: Scene, states: Mapping[str, ContactState]) -> _Bands:
     """Return the known relative errors of a section by state and quantity; empty where none is known.
 
     Args:
@@ -220,7 +220,7 @@ def at_full_slip(scene: Scene, f_electrostatic: float) -> dict[str, float]:
     return {**known, "mu_app": share, "f_t": share}
 
 
-def in_words(bands: Bands) -> str:
+def in_words(bands: _Bands) -> str:
     """Return the known errors of a result in words."""
     if not bands:
         return "the error of this model is not known here"

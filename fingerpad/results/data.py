@@ -5,17 +5,11 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from fingerpad import launcher
 from fingerpad.results.quantities import BAND, KNOWN, MESH, MODEL, PENALTY, QUANTITIES, Output
 from fingerpad.results.states import STATES, LoadResult
-from fingerpad.scene.remarks import coefficient
 from variational.state import ContactState
 
 if TYPE_CHECKING:
-    import pyvista
-
-    from fingerpad.results.drawing import Drawing
-    from fingerpad.results.fields import StateFields
     from fingerpad.scene import Scene
     from fingerpad.slices.finger import WholeFinger
 
@@ -81,8 +75,8 @@ class ResultData:
     """All else, ready for JSON: omissions, restarts, refinement, laws, provenance."""
     folder: Path | None = None
     """Folder of tables, plots and fields, an absolute path; None where nothing was written."""
-    drawing: "Drawing | None" = None
-    """Data of the pictures; None for a model without them."""
+    drawing: Any = None
+    """Data of the pictures, a :class:`fingerpad.results.drawing.Drawing`; None for a model without them."""
     outputs: tuple[Output, ...] = ()
     """Outputs that are computed from a state; of a result that was read their values alone are known."""
     finger: "WholeFinger | None" = None
@@ -175,34 +169,3 @@ class ResultData:
         known = ({name for each in kind for name in each.known()} for kind in kinds)
         mesh, penalty = (key in names if key else bool(names) for names in known)
         return (*[MESH] * mesh, *[PENALTY] * (mesh and penalty))
-
-    # -- pictures and fields ---------------------------------------------------------------------------
-    def _drawn(self) -> "Drawing | None":
-        """Return what pictures are drawn from, of a result that was read from its folder; None off rank 0."""
-        if self.drawing is None and self.steps and self.folder is not None and launcher.rank() == 0:
-            from fingerpad.results.drawing import read  # Matplotlib
-
-            mu_0 = None if "laws" in self.record.get("parameters", {}) else coefficient(self.scene)
-            return read(self.folder, self.steps, self.named, mu_0)
-        return self.drawing
-
-    @property
-    def fields(self) -> "StateFields":
-        """Displacement, stress, strain and energy density inside the finger, by load or named state; on rank 0.
-
-        A load's name stands for its end. Named states are those of the mesh that their numbers are of. Empty for
-        models without a mesh, and on other ranks.
-        """
-        from fingerpad.results.fields import StateFields
-
-        drawing = self._drawn()
-        return StateFields({} if drawing is None else drawing.fields(), self.model)
-
-    def to_pyvista(self) -> "pyvista.MultiBlock":
-        """Return :attr:`fields` as blocks of PyVista, each a grid of the unloaded finger in m.
-
-        Raises:
-            ImportError: PyVista is not installed.
-            ValueError: there are no fields.
-        """
-        return self.fields.to_pyvista()

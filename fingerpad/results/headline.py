@@ -120,30 +120,35 @@ def _of_result(result: ResultData) -> Headline:
 
 
 # -- what a number is of ---------------------------------------------------------------------------------------
+def _of_number(result: ResultData, whole: bool, state: str, key: str, sentence: str, at: str) -> Headline:
+    """Return the headline of a quantity of a named state; with its likely range where that is of the same finger."""
+    value, error, parts = result.number(state, key, whole)
+    of, quantity = (WHOLE, FINGER[key]) if whole else (SECTION, QUANTITIES[key])
+    kept = result.record.get(KNOWN, {})
+    known = known_in_words(kept) if state == "full_slip" and kept and kept["whole"] == whole else ""
+    return Headline(sentence, of, quantity, value, at, error, parts, known=known)
+
+
 def _of_finger(result: ResultData, finger: "WholeFinger") -> Headline:
     """Return the friction coefficient of the whole finger; its ridge contact area without full slip."""
     volts = result.scene.volts
     force = f"{finger.f_ext:.4g} N" if result.whole else f"{finger.f_ext * (1 + _ROUNDOFF):.2g} N"
-    conditions = f"{finger.f_ext:.4g} N and {volts:.4g} V"
     if "full_slip" in finger.states:
-        values, key = finger.values("full_slip"), "mu_app"
-        before = _without(result, finger.f_ext)
-        sentence = _change(result, force, volts, "friction force", before, abs(values["f_t"]), "N")
-        _, error, parts = result.number("full_slip", key, whole=True)
-        at = f"at full slip, {conditions}"
-        return Headline(sentence, WHOLE, FINGER[key], values[key], at, error, parts, known=_known(result, WHOLE))
-    name, quantity = list(finger.states)[-1], FINGER["contact_area"]
-    section = result.named.get(name)
-    if section is not None and not (section.voltage or finger.states[name].totals["f_electrostatic"]):
+        before, after = _without(result, finger.f_ext), abs(finger.values("full_slip")["f_t"])
+        sentence = _change(result, force, volts, "friction force", before, after, "N")
+        at = f"at full slip, {finger.f_ext:.4g} N and {volts:.4g} V"
+        return _of_number(result, True, "full_slip", "mu_app", sentence, at)
+    name, scale = list(finger.states)[-1], FINGER["contact_area"].scale
+    section, attraction = result.named.get(name), finger.states[name].totals["f_electrostatic"]
+    if section is not None and not (section.voltage or attraction):
         volts = 0.0  # a run can end before its voltage
-    conditions = f"{finger.f_ext:.4g} N and {volts:.4g} V"
-    area = finger.values(name)["contact_area"]
     attracts = volts and "uncharged" in finger.states and name == "charged"
-    before = quantity.scale * finger.values("uncharged")["contact_area"] if attracts else None
-    sentence = _change(result, force, volts, "ridge contact area", before, quantity.scale * area, "mm²")
-    _, error, parts = result.number(name, "contact_area", whole=True)
-    at = f"in {called(name, finger.states[name].totals['f_electrostatic'])}, {conditions}"
-    return Headline(_stuck(result, f"{force} and {volts:.4g} V") or sentence, WHOLE, quantity, area, at, error, parts)
+    before = scale * finger.values("uncharged")["contact_area"] if attracts else None
+    after = scale * finger.values(name)["contact_area"]
+    sentence = _change(result, force, volts, "ridge contact area", before, after, "mm²")
+    at = f"in {called(name, attraction)}, {finger.f_ext:.4g} N and {volts:.4g} V"
+    sentence = _stuck(result, f"{force} and {volts:.4g} V") or sentence
+    return _of_number(result, True, name, "contact_area", sentence, at)
 
 
 def _of_slip(result: ResultData, slip: ContactState) -> Headline:
@@ -151,28 +156,22 @@ def _of_slip(result: ResultData, slip: ContactState) -> Headline:
     force, what = f"{slip.f_ext:.4g} N/m", f"friction force of the {SECTION}"
     before = _without(result, slip.f_ext) if slip.f_ext > 0 else None
     sentence = _change(result, force, slip.voltage, what, before, abs(slip.f_t), "N/m")
-    at = f"at full slip, {slip.f_ext:.4g} N/m and {slip.voltage:.4g} V"
-    key = "f_t" if math.isnan(slip.mu_app) else "mu_app"
-    _, error, parts = result.number("full_slip", key)
-    known = _known(result, SECTION)
-    return Headline(sentence, SECTION, QUANTITIES[key], getattr(slip, key), at, error, parts, known=known)
+    at = f"at full slip, {force} and {slip.voltage:.4g} V"
+    return _of_number(result, False, "full_slip", "f_t" if math.isnan(slip.mu_app) else "mu_app", sentence, at)
 
 
 def _of_contact(result: ResultData) -> Headline:
     """Return the contact length of the middle section in normal contact."""
-    named, quantity = result.named, QUANTITIES["contact_length"]
-    if not named:
-        return Headline("No contact state was kept.", SECTION, quantity, math.nan)
-    name, state = list(named.items())[-1]
-    force = f"{state.f_ext:.4g} N/m"
+    if not result.named:
+        return Headline("No contact state was kept.", SECTION, QUANTITIES["contact_length"], math.nan)
+    (name, state), scale = list(result.named.items())[-1], QUANTITIES["contact_length"].scale
     attracts = state.voltage and result.uncharged is not None and name == "charged"
-    before = quantity.scale * result.uncharged.contact_length if attracts and result.uncharged else None
-    after = quantity.scale * state.contact_length
-    sentence = _change(result, force, state.voltage, f"contact length of the {SECTION}", before, after, "mm")
-    at = f"in {called(name, state.voltage)}, {state.f_ext:.4g} N/m and {state.voltage:.4g} V"
-    _, error, parts = result.number(name, "contact_length")
-    sentence = _stuck(result, f"{force} and {state.voltage:.4g} V") or sentence
-    return Headline(sentence, SECTION, quantity, state.contact_length, at, error, parts)
+    before = scale * result.uncharged.contact_length if attracts and result.uncharged else None
+    under, what = (f"{state.f_ext:.4g} N/m", state.voltage), f"contact length of the {SECTION}"
+    sentence = _change(result, *under, what, before, scale * state.contact_length, "mm")
+    load = f"{under[0]} and {state.voltage:.4g} V"
+    at = f"in {called(name, state.voltage)}, {load}"
+    return _of_number(result, False, name, "contact_length", _stuck(result, load) or sentence, at)
 
 
 def _over_time(load: LoadResult, slip: ContactState | None) -> Headline:
@@ -196,12 +195,6 @@ def _timed(result: ResultData) -> LoadResult | None:
     timed = [load for load in result.loads if load.name in waves and load.over_time is not None and load.rubs(least)]
     whole = [load for load in timed if not math.isnan(load.over_time.mean["mu_app"])]  # type: ignore[union-attr]
     return whole[-1] if whole else None
-
-
-def _known(result: ResultData, of: str) -> str:
-    """Return the likely range of friction, in words; empty where the band of the record is of something else."""
-    kept = result.record.get(KNOWN, {})
-    return known_in_words(kept) if kept and kept["whole"] == (of == WHOLE) else ""
 
 
 # -- sentences -------------------------------------------------------------------------------------------------

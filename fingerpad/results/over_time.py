@@ -34,7 +34,7 @@ NOTE = (
     "frequency sets how far the finger slides in a period, and nothing else."
 )
 """What a result with a load over time says of it."""
-HARMONICS, SAMPLED = 6, 4
+HARMONICS, _SAMPLED = 6, 4
 """Number of amplitudes in the spectrum of a wave, and of samples that friction has in a period of the last of them. A
 file, which may be a carrier under a slow envelope, has as many amplitudes as its samples allow, and no fewer."""
 _MAX_AMPLITUDES = 200  # of a waveform from a file
@@ -90,7 +90,7 @@ def over_time(states: Sequence[ContactState], wave: "Waveform | None") -> OverTi
     if (periods := int(seconds / wave.period + _TIME_TOLERANCE)) < 1:
         return OverTime(start, seconds, mean)
     samples = int(np.count_nonzero(time >= time[-1] - periods * wave.period)) // periods
-    count = min(max(HARMONICS, samples // SAMPLED), _MAX_AMPLITUDES) if wave.waveform == "file" else HARMONICS
+    count = min(max(HARMONICS, samples // _SAMPLED), _MAX_AMPLITUDES) if wave.waveform == "file" else HARMONICS
     found = spectrum(time, values["f_t"], wave.period, periods, corners, count)
     frequency = tuple(k / wave.period for k in range(1, count + 1))
     return OverTime(start, seconds, mean, periods, frequency, tuple(map(float, found)))

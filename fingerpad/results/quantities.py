@@ -10,7 +10,6 @@ from collections.abc import Callable, Collection, Iterable, Mapping
 from dataclasses import dataclass, fields, replace
 from typing import Any
 
-from fingerpad.accuracy.richardson import plus_minus
 from fingerpad.scene.messages import SceneError
 from geometry.units import in_si
 from variational.state import ContactState
@@ -22,8 +21,8 @@ _PRINTED = {
 """Units of tables that are not those of files, which are SI units, and the factor from SI."""
 SUMS = {"N/m": ("N", 1), "J/m": ("J", 2), "m": ("mm²", 1), "m^2": ("m^3", 2)}
 """Of quantities per metre of finger: the unit of their sum, and :attr:`Output.power`."""
-TABLES = frozenset({"result", "load", "sweep"})
-"""Tables that outputs may stand in: the printed result, extremes and means of loads, and sweeps."""
+TABLES = frozenset({"result", "sweep"})
+"""Tables that an output of one's own may stand in: the printed result, and those of sweeps."""
 SYMBOL = re.compile(r"(?<![\w.-])([µdfFhLp])_(app|eq|ext|el|max|[0cRT])(?![\w(=])")
 """A symbol in words, which pages and pictures typeset: its letter and its subscript."""
 
@@ -213,6 +212,8 @@ STEPS = _listed(
     work="newton_iterations factorisations cutbacks jump",
     estimated="f_t mu_app f_electrostatic contact_length p_max bone_height",
     edges="contact_length f_t mu_app f_electrostatic bone_height",
+    summed="cutbacks dissipation",
+    largest="penetration imbalance floor",
 )  # fmt: skip
 """Of a state, in the order of ``steps.csv``."""
 STABILITY = _listed(
@@ -323,6 +324,12 @@ PER_LENGTH = (
     "N/m: force per metre of finger out of the plane of the cross-section; 75 N/m at its centre correspond to about "
     "0.5 N on the whole default finger."
 )
+
+
+def plus_minus(value: float, error: float) -> str:
+    """Return a value with its error, which is given to two digits: ``0.4750 ± 0.0041``."""
+    digits = max(0, 1 - math.floor(math.log10(error))) if error > 0 else 6
+    return f"{value:z.{digits}f} ± {error:.{digits}f}"
 
 
 def plus_minus_of(parts: Iterable[str]) -> str:

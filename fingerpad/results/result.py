@@ -10,16 +10,18 @@ from fingerpad.results import dataset, loading, printing
 from fingerpad.results.data import Cost, ResultData
 from fingerpad.results.headline import Headline, headline
 from fingerpad.results.outputs import checked, valued
-from fingerpad.results.quantities import (
-    Output,
-)
+from fingerpad.results.quantities import Output
 from fingerpad.scene.messages import SceneError, clip
+from fingerpad.scene.remarks import coefficient
 
 if TYPE_CHECKING:
+    import pyvista
     import xarray
     from matplotlib.figure import Figure
 
     from fingerpad.afferents.afferent import Afferent
+    from fingerpad.results.drawing import Drawing
+    from fingerpad.results.fields import StateFields
     from fingerpad.results.spikes import Spikes
 
 KINDS = ("surface", "finger", "history", "footprint", "time", "field", "solid")
@@ -29,6 +31,16 @@ KINDS = ("surface", "finger", "history", "footprint", "time", "field", "solid")
 @dataclass(frozen=True, eq=False, repr=False)
 class Result(ResultData):
     """Result of a model for a scene: what it holds, with pictures, text and one file."""
+
+    # -- pictures and fields ---------------------------------------------------------------------------
+    def _drawn(self) -> "Drawing | None":
+        """Return what pictures are drawn from, of a result that was read from its folder; None off rank 0."""
+        if self.drawing is None and self.steps and self.folder is not None and launcher.rank() == 0:
+            from fingerpad.results.drawing import read  # Matplotlib
+
+            mu_0 = None if "laws" in self.record.get("parameters", {}) else coefficient(self.scene)
+            return read(self.folder, self.steps, self.named, mu_0)
+        return self.drawing
 
     def plot(self, kind: str = "surface", path: str | Path | None = None) -> "Figure | None":
         """Draw the skin, the deformed finger, the history of sliding, or the footprint of the whole finger.
@@ -60,6 +72,27 @@ class Result(ResultData):
         if not self.steps:
             raise ValueError(f"the result of the model {self.model!r} has no steps to draw; those of model='full' have")
         return None  # on the other ranks
+
+    @property
+    def fields(self) -> "StateFields":
+        """Displacement, stress, strain and energy density inside the finger, by load or named state; on rank 0.
+
+        A load's name stands for its end. Named states are those of the mesh that their numbers are of. Empty for
+        models without a mesh, and on other ranks.
+        """
+        from fingerpad.results.fields import StateFields
+
+        drawing = self._drawn()
+        return StateFields({} if drawing is None else drawing.fields(), self.model)
+
+    def to_pyvista(self) -> "pyvista.MultiBlock":
+        """Return :attr:`fields` as blocks of PyVista, each a grid of the unloaded finger in m.
+
+        Raises:
+            ImportError: PyVista is not installed.
+            ValueError: there are no fields.
+        """
+        return self.fields.to_pyvista()
 
     @property
     def headline(self) -> Headline:

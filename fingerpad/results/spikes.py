@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fingerpad import notebook
-from fingerpad.results import dataset, files
+from fingerpad.results import files
 
 if TYPE_CHECKING:
     import xarray
@@ -152,7 +152,7 @@ class Spikes:
 
     def to_netcdf(self, path: str | Path) -> None:
         """Write the dataset as NetCDF 3."""
-        files.replace(Path(path), dataset.content(self.to_xarray()))
+        files.replace(Path(path), bytes(self.to_xarray().to_netcdf(engine="scipy", format="NETCDF3_64BIT")))
 
     def plot(self, path: str | Path | None = None) -> "Figure":
         """Draw energy densities at Merkel sites over time, and each spike unit by unit below; write a PNG if asked."""

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from fingerpad.scene import Load
     from fingerpad.scene.waveform import Waveform
 
-STILL = 1e-12  # m, largest sideways displacement of a bone at rest
+_STILL = 1e-12  # m, largest sideways displacement of a bone at rest
 SLIDE_ON = 0.2e-3  # m, further sliding over which the forces of full slip are constant
 STATES = ("uncharged", "charged", "full_slip")
 WORDS = {"uncharged": "uncharged normal contact", "charged": "charged normal contact", "full_slip": "full slip"}
@@ -32,7 +32,7 @@ FIRST_TOUCH = "touch"
 """Name of the steps that press a finger in the air in a little, before a force can control it."""
 _ROUNDOFF = 1e-9  # relative, of a displacement or a voltage
 _MEANS = {"f_t": ("f_T", "N/m", 1.0), "contact_length": ("L_R", "mm", 1e3)}
-_SURE = 0.02  # of the largest amount in the load: change of a mean with every second step that is not told
+_MEAN_TOLERANCE = 0.02  # of the largest amount in the load: change of a mean on half of the steps that needs no caution
 UNLOADED = ContactState(
     f_ext=0.0, voltage=0.0, f_t=0.0, mu_app=math.nan, f_contact=0.0, f_electrostatic=0.0, ridges_in_contact=0,
     contact_length=0.0, time=0.0,
@@ -56,7 +56,7 @@ def before_sliding(rows: Sequence[ContactState]) -> Sequence[ContactState]:
     for k, row in enumerate(rows):
         if row.ridges_in_contact == 0:
             place = row.bone_x
-        elif abs(row.bone_x - place) >= STILL:
+        elif abs(row.bone_x - place) >= _STILL:
             return rows[:k]
     return rows
 
@@ -94,16 +94,8 @@ def unchanged(first: ContactState, row: ContactState, steady: float, least: floa
     return bool(same and all(abs(b - a) <= steady * abs(a) + least for a, b in pairs))
 
 
-def asked_for(rows: Sequence[ContactState], names: Sequence[str] = ()) -> list[ContactState]:
-    """Return the states on the way of the loads, without those of a first touch, whose depth no load asks for.
-
-    A load may have the name of the first touch, whose states then count as its own.
-
-    Args:
-        rows: states of a history.
-        names: of its loads in order; by default those that the last states have, so that of a path that ends in a first
-            touch the touch counts.
-    """
+def _prescribed_states(rows: Sequence[ContactState], names: Sequence[str] = ()) -> list[ContactState]:
+    """Return the states of the loads, without the automatic first touch, unless a load has its name."""
     loads = {row.load_number: row.load for row in rows} | dict(enumerate(names, start=1))
     return [row for row in rows if _counts(row, loads[row.load_number])]
 
@@ -120,7 +112,7 @@ def named(rows: Sequence[ContactState], names: Sequence[str] = ()) -> dict[str, 
         rows: states of the history.
         names: of its loads in order; by default those that the last states have.
     """
-    asked = {row.step for row in asked_for(rows, names)}
+    asked = {row.step for row in _prescribed_states(rows, names)}
     still = [row for row in before_sliding(rows) if row.ridges_in_contact > 0 and row.step in asked]
     uncharged = still[: next((k for k, row in enumerate(still) if row.voltage != 0), len(still))]
     held = next((row.slip_began for row in reversed(rows) if row.slip_held), None)
@@ -315,7 +307,7 @@ def long_steps(loads: Iterable[LoadResult], least: float) -> list[str]:
             ends = load.extremes.get(key)
             most = 0.0 if ends is None else max(abs(ends.min), abs(ends.max))
             change = changes.get(key, 0.0)
-            if change > _SURE * most and (key != "f_t" or load.rubs(least)):
+            if change > _MEAN_TOLERANCE * most and (key != "f_t" or load.rubs(least)):
                 found.append(
                     f"In the load {load.name} the mean {words} over time would change by {factor * change:.2g} {unit} "
                     "with every second step alone: its steps are too long for it; give a smaller numerics.step_scale."

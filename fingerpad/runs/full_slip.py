@@ -36,6 +36,7 @@ from fingerpad.model.state import broken
 from fingerpad.results.data import Cost
 from fingerpad.results.files import below
 from fingerpad.results.provenance import provenance
+from fingerpad.results.quantities import SWEPT
 from fingerpad.results.result import Result
 from fingerpad.runs import batch
 from fingerpad.runs.context import RunContext
@@ -311,10 +312,9 @@ def _with_other(result: Result, other: ContactState) -> Result:
     """Return a result with a second state of full slip, and a caution that gives both."""
     mine = result.full_slip
     assert mine is not None
-    names = ("f_t", "mu_app", "contact_length", "f_electrostatic", "ridges_in_contact", "reached")
     both = [f"f_T {s.f_t:.6g} N/m with {counted(s.ridges_in_contact, 'ridge')} ({s.reached})" for s in (mine, other)]
     caution = f"there are two states of full slip: {both[0]} and {both[1]}"
-    record = result.record | {OTHER: {name: getattr(other, name) for name in names}}
+    record = result.record | {OTHER: {name: getattr(other, name) for name in (*SWEPT, "reached")}}
     return replace(result, record=record, cautions=(*result.cautions, caution))
 
 

@@ -27,7 +27,7 @@ from fingerpad.scene.remarks import drive_in_short, other_under_a_drive
 from fingerpad.slices import errors
 from geometry.units import to_si
 
-STATE = "full_slip"
+_STATE = "full_slip"
 
 
 # -- the target ----------------------------------------------------------------------------------------------
@@ -203,9 +203,9 @@ def _number(result: Result, target: Target) -> Number:
     """
     if target.whole and result.finger is None:
         raise SceneError(result.notes[-1].partition(": ")[2])
-    if STATE not in (result.finger.states if target.whole and result.finger is not None else result.named):
+    if _STATE not in (result.finger.states if target.whole and result.finger is not None else result.named):
         raise SceneError(f"the {'whole finger' if target.whole else 'section'} has no full slip with friction")
-    return result.number(STATE, target.quantity.name, target.whole)
+    return result.number(_STATE, target.quantity.name, target.whole)
 
 
 @dataclass

@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 import numpy as np
 import scipy  # its parts are imported where they are used first
 
-from fingerpad.accuracy.richardson import plus_minus
+from fingerpad.results.quantities import plus_minus
 from fingerpad.scene import Scene, value_of, with_values
 from fingerpad.scene.keys import by_name
 from fingerpad.scene.messages import SceneError, clip, show

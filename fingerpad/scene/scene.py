@@ -83,8 +83,8 @@ class Scene(Table):
     friction: Annotated[float | Friction, FRICTION] = 0.25
     """Friction coefficient mu_0 of skin on the screen, or a table of a law of friction."""
     finger: FingerName = "adult"
-    """Finger by its name, whose keys are those of docs/fingers.md. A key that is given wins over the name's. "adult" is
-    the default finger. Its tissue and leak act under a drive; a constant voltage has no losses."""
+    """Finger by its name (docs/assumptions.md). A given key wins over the name's. "adult" is the default finger.
+    Its tissue and leak act under a drive; a constant voltage has no losses."""
     geometry: Geometry = Geometry()
     mesh: MeshSize = MeshSize()
     materials: Materials = Materials()
