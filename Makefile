@@ -15,12 +15,12 @@
 # make paper FIGURE=6  a figure of the paper; python3 -m benchmarks.paper.figures lists them with their times
 # make measured  measured fingers beside this model's numbers; docs/measured.md, two minutes
 # make drive  friction over frequency and waveform of the voltage; docs/drive.md, a minute
-# make fingers    friction of fingers by name side by side; docs/fingers.md
-# make viscosity  how skin relaxes, energy of random histories, friction after a step of voltage; docs/viscosity.md
-# make loads  seeded scenes of people's loads beside the closed form; docs/loads.md, an hour or two in pieces of twenty minutes
-# make feel   what people and nerves were measured to do beside spikes; docs/feel.md, ten minutes
+# make fingers    friction of fingers by name side by side; docs/assumptions.md
+# make viscosity  how skin relaxes, energy of random histories, friction after a step of voltage; docs/laws.md
+# make loads  seeded scenes of people's loads beside the closed form; docs/closed_form.md, an hour or two in pieces of twenty minutes
+# make feel   what people and nerves were measured to do beside spikes; docs/measured.md, ten minutes
 # make performance  counts, ratios and seconds, part by part, on an idle machine; docs/performance.md, half an hour; prints the targets
-# make calibration  estimated errors beside known ones, scene by scene; docs/two_meshes.md, ten minutes
+# make calibration  estimated errors beside known ones, scene by scene; docs/errors.md, ten minutes
 # make chart  error over work, one numerical setting after the other; docs/errors.md and chart.md, half an hour or more
 #
 # With SUITE=sid in Debian unstable, that is with a newer dolfinx: make test SUITE=sid

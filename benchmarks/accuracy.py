@@ -3,7 +3,7 @@
 environment/run python3 -m benchmarks.accuracy [--jobs 2] [--draw]     after benchmarks.errors; an hour of one core
 
 Scenes with an ``[accuracy]``, ten of them drawn at random, against their limits on finer meshes (benchmarks/limits.py),
-with the same penalty. Writes docs/accuracy.json and docs/accuracy.md. fingerpad/accuracy/richardson.py takes its
+with the same penalty. Writes docs/accuracy.json and docs/errors.md. fingerpad/accuracy/richardson.py takes its
 factors of safety from them; tests/test_calibration.py checks the coverage.
 """
 

@@ -4,7 +4,7 @@ environment/run python3 -m benchmarks.chart [--jobs 2] [--draw]     after benchm
 
 A point is a run of the default scene (press, charge, slide to full slip) with a setting of its own. Its error is the
 distance from the limit of benchmarks/errors.py; its cost is factorisations times unknowns of the path
-up to the state of the quantity and of all states solved again on the final mesh. Writes docs/chart.json, docs/chart.md
+up to the state of the quantity and of all states solved again on the final mesh. Writes docs/chart.json, docs/errors.md
 and docs/chart.png.
 """
 

@@ -3,7 +3,8 @@
 environment/run python3 -m benchmarks.fingers [--draw]     also: make fingers; two minutes of processor time
 
 The closed form has the fingers that are similar to the default one. The others are run by the full model, on coarse
-elements, and so is the default finger beside its closed form. Writes docs/fingers.json, docs/fingers.md and a picture.
+elements, and so is the default finger beside its closed form. Writes docs/fingers.json, numbers of docs/assumptions.md
+and a picture.
 """
 
 import argparse
@@ -83,7 +84,7 @@ def _full(summary: Summary | None) -> dict[str, Any] | None:
 
 # -- page ----------------------------------------------------------------------------------------------------
 def draw(docs: Path) -> Path:
-    """Write docs/fingers.md and its picture from docs/fingers.json."""
+    """Write docs/assumptions.md and its picture from docs/fingers.json."""
     numbers = harness.kept("fingers", docs).numbers
     harness.picture(docs / "fingers.png", (8, 3.6), lambda figure: _paint(figure, numbers))
     return harness.page(docs, "fingers", "make fingers", globals())

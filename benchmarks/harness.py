@@ -197,7 +197,7 @@ def page(docs: Path, name: str, command: str, names: Mapping[str, Any], *others:
         ValueError: no page shows numbers of the study.
     """
     found, files = kept(name, docs), ", ".join(f"[{each}.json]({each}.json)" for each in (name, *others))
-    origin = f"{found.made} Computed by `{command}` into {files}; put in place by `make pages`."
+    origin = f"{found.made} Computed by `{command}` into {files}."
     if not (paths := fill.pages(docs, name)):
         raise ValueError(f"no page in {docs} has the comment <!--numbers {name}-->")
     for path in paths:

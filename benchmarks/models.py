@@ -3,7 +3,7 @@
 environment/run python3 -m benchmarks.models [--jobs 2] [--draw]     twenty minutes, mostly full runs
 
 The full runs have a contact size of 10 um. Four more are at loads that no number of a model comes from, and a few
-beyond these forces and voltages; both have tables of their own on the page. Writes docs/models.json and docs/models.md,
+beyond these forces and voltages. Writes docs/models.json and numbers of docs/closed_form.md,
 and prints what fingerpad/reduced has of them: the lengths that the cylinders interpolate, and their known error. Where
 the lengths differ they are put there, and the command is given again, which runs the cylinders alone.
 """

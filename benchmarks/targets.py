@@ -1,6 +1,6 @@
 """What was asked of speed and accuracy, beside what the kept numbers of the pages have reached.
 
-python3 -m benchmarks.targets     prints the table; make performance and docs/chart.md have it too
+python3 -m benchmarks.targets     prints the table; make performance and docs/errors.md have it too
 
 Each figure comes from the numbers that a command of this repository keeps in docs/; one that no command has computed
 yet is a dash. A figure is of the program of its date, the oldest one where two pages have a part in it.

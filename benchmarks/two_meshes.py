@@ -7,7 +7,7 @@ A run without an ``[accuracy]`` follows its path on elements twice as large as t
 again on the scene's sizes, the final mesh; the two meshes make its estimated error
 (:func:`fingerpad.accuracy.richardson.of_two_meshes`). Here the states are solved once more with half of all sizes,
 which shows the error that they had: the *known error* is what that changes. The default scene and the ten of
-:func:`benchmarks.accuracy.drawn`. Writes docs/two_meshes.json and docs/two_meshes.md. fingerpad/accuracy/richardson.py
+:func:`benchmarks.accuracy.drawn`. Writes docs/two_meshes.json and docs/errors.md. fingerpad/accuracy/richardson.py
 takes its factors TWO and SITES from them; tests/test_calibration.py checks the coverage.
 """
 

@@ -2,7 +2,7 @@
 
 environment/run python3 -m benchmarks.viscosity [--draw]     also: make viscosity
 
-Writes docs/viscosity.json, and from it docs/viscosity.md and its picture; some 25 minutes, a line for each part done.
+Writes docs/viscosity.json, and from it docs/laws.md and its picture; some 25 minutes, a line for each part done.
 """
 
 import argparse
@@ -207,7 +207,7 @@ def _voltage_step(preset: str | None, speed: float) -> dict[str, Any]:
 
 # -- page ----------------------------------------------------------------------------------------------------
 def draw(docs: Path) -> Path:
-    """Write docs/viscosity.md and its picture from docs/viscosity.json."""
+    """Write docs/laws.md and its picture from docs/viscosity.json."""
     picture(docs / "viscosity.png", (10, 4), lambda figure: _paint(figure, kept("viscosity", docs).numbers))
     return page(docs, "viscosity", "make viscosity", globals())
 

@@ -1,7 +1,7 @@
 # %% [markdown]
 # # Your own mesh
 #
-# A body can come from a gmsh file. The names of the physical groups mark the parts (docs/mesh.md): layers of triangles,
+# A body can come from a gmsh file. The names of the physical groups mark the parts (docs/laws.md): layers of triangles,
 # the `bone rim` glued to the rigid bone, and `ridge 0`, `ridge 1`, `ridge -1`, … that can touch. Lengths are in metres,
 # and the screen is the line y = 0. The example is an artificial fingertip of two layers with three round ridges, as
 # cast from silicone.

@@ -12,7 +12,7 @@ of facets are
 - *outer skin*: skin that is not expected to touch. A run of a whole finger checks that it stays clear of the screen.
 - *nail surface*, *sides*: free surfaces, of which nothing depends.
 
-The rest of the outline is free. ``docs/mesh.md`` has an example.
+The rest of the outline is free. ``docs/laws.md`` has an example.
 """
 
 import hashlib

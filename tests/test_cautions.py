@@ -1,6 +1,5 @@
 """Cautions of a state are the same whatever computed it: a run, a body, a cheaper model, a table."""
 
-import tomllib
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -10,13 +9,12 @@ import fingerpad as fp
 import geometry
 from benchmarks import drive
 from benchmarks.harness import DOCS, kept
-from fingerpad.calculator.page import page
 from fingerpad.cli import compare, main
 from fingerpad.model.cautions import on_states
 from fingerpad.reduced import cylinders
 from fingerpad.scene import Scene, from_data
 from fingerpad.scene.remarks import LEAKAGE, leakage, remarks
-from tests.small_finger import SMALL, small
+from tests.small_finger import small
 from variational.contact.penalty import Penalty
 from variational.materials.ogden import Ogden
 from variational.roughness.bam import BearingArea
@@ -233,21 +231,3 @@ def test_a_result_has_it_once():
     assert found.notes.count(LEAKAGE) == 1 and str(found).count(LEAKAGE) == 1
     assert compare.table([found, found]).count(LEAKAGE) == 1
     assert LEAKAGE not in str(cylinders.solve(from_data({"voltage": 0.0})))
-
-
-@pytest.mark.mpi
-def test_a_full_run_has_it_once():
-    """Of a press and a charge in the air, on a coarse mesh."""
-    loads = [{"name": "press", "bone_height": -1e-6}, {"name": "charge", "voltage": 20.0}]
-    mesh = {"contact": 60e-6, "receptor": 100e-6, "interface": 200e-6, "growth": 0.9}
-    lean = {"errors": False, "receptors": False, "each_load": False}
-    geometry = from_data(tomllib.loads(SMALL.read_text(encoding="utf-8"))).geometry.model_dump(exclude_none=True)
-    found = fp.run(from_data({"geometry": geometry, "history": loads, "mesh": mesh, "output": lean}))
-    assert found.notes.count(LEAKAGE) == 1
-
-
-def test_calculator_and_commands_have_it_once(capsys, tmp_path):
-    assert page().count(LEAKAGE) == 1
-    assert main(["estimate"]) == 0
-    assert main(["check", str(SMALL), "--out", str(tmp_path), "--set", "mesh.contact=60e-6"]) == 0
-    assert capsys.readouterr().out.count(LEAKAGE) == 2

@@ -214,7 +214,9 @@ def test_sweep_of_full_slip_is_that_of_paths(tmp_path, monkeypatch):
         assert direct.array(quantity)[1] == pytest.approx(paths.array(quantity), rel=1e-6), quantity
     assert direct.array("contact_length")[1] == pytest.approx(paths.array("contact_length"), rel=1e-5)
     assert [r.full_slip.reached for r in direct[2:]] == ["full slip from voltage 60 V", "path"]
-    assert "1 of 2 states of full slip are from a neighbour, the others from paths." in str(direct)
+    assert "1 of 2 full-slip states were continued from the neighbouring point, 1 computed along the load path." in str(
+        direct
+    )
     row = direct.rows()[2]
     assert row["full_slip_reached"] == "full slip from voltage 60 V"
     assert not any(column.startswith(("uncharged", "charged")) for column in row)

@@ -247,12 +247,6 @@ def test_negative_voltages(capsys):
         assert re.search(r"^ *-200 +0.5377 +0.594", capsys.readouterr().out, re.MULTILINE)
 
 
-def test_terminal_without_the_letters_gets_others():
-    """µ and ² are no letters of ASCII; the command prints a mark for each and goes on."""
-    done = python("-m", "fingerpad", "microscale", "--p", "1e4", PYTHONIOENCODING="ascii")
-    assert done.returncode == 0 and "rms roughness 3.1 ?m" in done.stdout
-
-
 def test_file_that_cannot_be_written_is_named(capsys, tmp_path, monkeypatch):
     """As on a disk that is full: in a sentence, after the table."""
 

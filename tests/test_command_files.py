@@ -101,15 +101,6 @@ def test_check(tmp_path, capsys):
     assert (tmp_path / "mesh.png").stat().st_size > 10_000
 
 
-@pytest.mark.parametrize(("formulation", "told"), [("augmented", 1), ("penalty", 0), ("nitsche", 0)])
-def test_method_for_comparison_is_named_before_a_run(tmp_path, monkeypatch, capsys, formulation, told):
-    """One line of the model, for the augmented Lagrangian alone."""
-    monkeypatch.setattr("fingerpad.cli.check._picture", lambda *given: "")
-    argv = ["check", "--set", f"contact.formulation={formulation}", "--out", str(tmp_path)]
-    assert main([*argv, *(word for text in COARSE for word in ("--set", text))]) == 0
-    assert capsys.readouterr().out.count("contact by a method for comparison") == told
-
-
 @pytest.mark.slow
 def test_loads_that_were_never_tried_are_named(tmp_path, capsys):
     """There is no promise for them."""
@@ -145,13 +136,6 @@ def test_two_meshes_are_named_where_there_are_two(capsys, tmp_path, errors):
     assert main(["check", "--out", str(tmp_path), *(word for text in words for word in ("--set", text))]) == 0
     said = "with 1.88 µm where their contact ends; the path on elements 2 times as large"
     assert (said in capsys.readouterr().out) == errors
-
-
-def test_whole_path_on_two_meshes_is_named(capsys, tmp_path):
-    """With viscous layers."""
-    words = [*COARSE, 'materials.dermis.viscosity={preset="fingerpad"}']
-    assert main(["check", "--out", str(tmp_path), *(word for text in words for word in ("--set", text))]) == 0
-    assert "the path on these, and once more on elements 2 times as large" in capsys.readouterr().out
 
 
 def test_mesh_beyond_the_memory_is_refused(capsys):

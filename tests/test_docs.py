@@ -20,7 +20,7 @@ from fingerpad.results.quantities import FINGER
 from tests.pages import ROOT, alike, blocks, printed, sentences, words
 
 PAGES = ["README.md", "CONTRIBUTING.md", "demos/README.md"]
-PAGES += [f"docs/{page.name}" for page in sorted((ROOT / "docs").glob("*.md"))]
+PAGES += [f"docs/{page.name}" for page in sorted((ROOT / "docs").glob("*.md")) if page.name != "scene.md"]  # built
 README, LAWS, COMMAND = (
     (ROOT / name).read_text(encoding="utf-8") for name in ("README.md", "docs/laws.md", "docs/command.md")
 )
@@ -43,7 +43,8 @@ def test_readme_fits_a_screen():
 def test_door_is_the_demo():
     """Every line of Python of the README is one of the first demo, which runs them; so is the body of docs/laws.md."""
     demo = code((ROOT / "demos" / "first_run.py").read_text(encoding="utf-8"))
-    lines = [line for block, _ in [*blocks(README), blocks(LAWS)[-1]] for line in code(block)]
+    body = [block for block, _ in blocks(LAWS) if "ridge.press(4.4)" in block]
+    lines = [line for block in [*(block for block, _ in blocks(README)), *body] for line in code(block)]
     assert len(lines) > 10 and [line for line in lines if line not in demo] == []
 
 
@@ -96,7 +97,8 @@ def test_commands_are_known(capsys):
 
 def test_every_page_is_in_the_index():
     index = (ROOT / "docs" / "README.md").read_text(encoding="utf-8")
-    assert [page.name for page in (ROOT / "docs").glob("*.md") if f"({page.name})" not in index] == ["README.md"]
+    names = [Path(page).name for page in PAGES if page.startswith("docs/")]
+    assert [name for name in names if f"({name})" not in index] == ["README.md"]
 
 
 # -- words: short sentences, and none of the code's own dialect -----------------------------------------
@@ -239,7 +241,7 @@ def test_site(site):
     assert (site / "docs" / "README.html").read_text(encoding="utf-8").count("?</p></td>") == questions > 20
     index = json.loads((site / "searchindex.js").read_text(encoding="utf-8").partition("(")[2].rpartition(")")[0])
     first = {word: index["docnames"][pages[0][0]] for word, pages in index["indexentries"].items()}
-    assert first | {"coating": "docs/scene", "viscous": "docs/viscosity", "windows": "docs/command"} == first
+    assert first | {"coating": "docs/scene", "viscous": "docs/laws", "windows": "docs/command"} == first
     places = set(re.findall(r"`([a-z_.]+:\w+)`", source))
     linked = set(LINK.findall(model.read_text(encoding="utf-8")))
     assert len(places) > 25 and places - linked == set()  # to the reference, which leads to the source

@@ -7,9 +7,8 @@ import pytest
 from dolfinx.mesh import entities_to_geometry
 from mpi4py import MPI
 
-from fingerpad.accuracy import edges
 from fingerpad.accuracy.solves import solve_again
-from fingerpad.accuracy.states import StateRecorder
+from fingerpad.accuracy.states import StateRecorder, contact_ends, edge_places
 from fingerpad.model.finger import meshed
 from fingerpad.model.options import FingerModel, by_rule, plan
 from fingerpad.scene import from_data
@@ -39,7 +38,7 @@ def snapshot_of(gaps) -> StateSnapshot:
 
 def test_ends_are_where_the_gap_is_zero():
     """Of a parabola on one ridge, closed over 81 um, and none on the other. Tolerance: lines between points."""
-    found = edges.ends(snapshot_of({0: lambda s: s**2 - 40.5e-6**2, 2: lambda s: 0 * s + 1e-6}), ALONG, 10e-6)
+    found = contact_ends(snapshot_of({0: lambda s: s**2 - 40.5e-6**2, 2: lambda s: 0 * s + 1e-6}), ALONG, 10e-6)
     np.testing.assert_allclose(found, [-40.5e-6, 40.5e-6], atol=0.1e-6)
 
 
@@ -47,10 +46,10 @@ def test_facets_are_small_outwards_of_ends_on_coarse_facets():
     """On both sides alike, by the mirror image; an end that is known is one place. Roundoff of the ends moves none."""
     size = MeshSize(contact=16e-6)
     assert size.edge == pytest.approx(1e-6)
-    found = edges.about([(np.array([-50e-6, 40e-6]), 20e-6)], size)
+    found = edge_places([(np.array([-50e-6, 40e-6]), 20e-6)], size)
     np.testing.assert_allclose(found, [40e-6, 44e-6, 50e-6, 54e-6], rtol=1e-9)
-    assert edges.about([(np.array([-50e-6, 40e-6]) * (1 + 1e-13), 20e-6)], size) == found
-    known = edges.about([(np.array([-50e-6, 40e-6]), 1e-6)], size)
+    assert edge_places([(np.array([-50e-6, 40e-6]) * (1 + 1e-13), 20e-6)], size) == found
+    known = edge_places([(np.array([-50e-6, 40e-6]), 1e-6)], size)
     np.testing.assert_allclose(known, [40e-6, 50e-6], rtol=1e-9)
 
 

@@ -97,7 +97,7 @@ def test_record_of_a_run_changes_its_name(name, tmp_path):
 
 def test_mesh_of_a_file_keeps_its_shape():
     """The name gives no lengths beside a mesh but the thickness that the attraction reads."""
-    data = with_presets({"finger": "child", "geometry": {"file": "finger.msh"}})
+    data = with_presets({"finger": "child", "geometry": {"file": "finger.msh"}}, {})
     assert data["geometry"] == {"file": "finger.msh", "sc_thickness": FINGERS["child"].values["geometry.sc_thickness"]}
 
 
@@ -115,7 +115,7 @@ def test_commands_know_the_names(tmp_path, capsys):
     assert '"adult", "woman", "child", "elderly", "callused", "dry", "moist"' in capsys.readouterr().out
     changed = ["--set", "finger=dry", "--set", "friction=0.3", "--set", "mesh.contact=60e-6"]
     assert main(["check", *changed, "--out", str(tmp_path)]) == 0
-    words = "finger dry, a dry finger: 3 keys by its name (docs/fingers.md); otherwise: friction\n"
+    words = "finger dry, a dry finger: 3 keys by its name (docs/assumptions.md); otherwise: friction\n"
     assert words in capsys.readouterr().out
     assert "must be 'adult'" in refused(capsys, "check", "--set", "finger=old")
 

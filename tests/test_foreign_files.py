@@ -1,9 +1,7 @@
 """Folders of results with files that somebody else has written, or that are cut short: one sentence each."""
 
-import html
 import json
 import os
-import re
 import shlex
 import shutil
 import struct
@@ -142,7 +140,7 @@ def test_model_that_is_no_name_is_refused(answered, tmp_path, capsys, model):
 def test_values_in_the_command_of_a_report_are_quoted():
     """What a shell gets for them are the words themselves."""
     text = "a 'b' $(rm x); `rm x` & <i>"
-    code = html.unescape(re.search("<code>(.*)</code>", again({"finger": text}, "my model"), re.DOTALL)[1])
+    code = again({"finger": text}, "my model")
     assert shlex.split(code)[2:] == ["--set", f"finger={text}", "--model", "my model", "--out", "results/again"]
 
 
@@ -154,8 +152,7 @@ def test_picture_beyond_all_bounds_is_left_out(tmp_path):
     data = out.getvalue()
     head = b"IHDR" + struct.pack(">II", 20_000, 20_000) + data[24:29]
     (tmp_path / "large.png").write_bytes(data[:12] + head + struct.pack(">I", zlib.crc32(head)) + data[33:])
-    assert "large.png is left out" in picture(tmp_path / "large.png", "Large")
-    assert picture(tmp_path / "none.png", "None") == ""
+    assert picture(tmp_path / "large.png") == picture(tmp_path / "none.png") == ""
 
 
 STATE = ContactState(f_ext=1.0, voltage=0.0, f_t=0.0, mu_app=0.0, f_contact=1.0, f_electrostatic=0.0, load="a",

@@ -59,21 +59,6 @@ def process(kind: str, number: int, *words: str) -> int:
     return done.returncode
 
 
-VISCOUS = """# a viscous finger under a voltage over time
-geometry.ridge_count = 9
-mesh = {contact = 40e-6, receptor = 100e-6, interface = 200e-6, growth = 1.0, touching_half_arc = 1.0e-3}
-output = {errors = false, receptors = false}
-materials.dermis.viscosity = {preset = "fingerpad"}
-materials.stratum_corneum.viscosity = {preset = "fingerpad"}
-[[history]]
-name = "press"
-f_ext = 2.0
-[[history]]
-name = "wave"
-bone_x_by = 100e-6
-duration = 10e-3
-voltage = {waveform = "sine", amplitude = 100.0, frequency = 100.0}
-"""
 MOMENTS = [("solve", 9), ("part", 3), ("row", 9), *(("solve", n) for n in random.Random(1).sample(range(2, 21), 7))]
 
 
@@ -82,12 +67,6 @@ def undisturbed(tmp_path_factory):
     """Return a file of a scene with an error estimate, and the tables of its run."""
     text = (ROOT / "demos" / "scenes" / "small_finger.toml").read_text(encoding="utf-8")
     return ended(tmp_path_factory.mktemp("undisturbed"), text.replace("contact = 20e-6", "contact = 40e-6"))
-
-
-@pytest.fixture(scope="module")
-def viscous(tmp_path_factory):
-    """Return the same of a viscous finger under a voltage over time."""
-    return ended(tmp_path_factory.mktemp("viscous"), VISCOUS)
 
 
 def ended(folder: Path, text: str):
@@ -103,14 +82,6 @@ def ended(folder: Path, text: str):
 def test_kill_9(undisturbed, tmp_path, kind, number):
     """At a solve of the path or of the error estimate, in writing a part, between two rows."""
     killed_and_resumed(undisturbed, tmp_path / "run", kind, number)
-
-
-@pytest.mark.parametrize(
-    ("kind", "number"), [("solve", 20), *(pytest.param(*m, marks=pytest.mark.long) for m in [("part", 3), ("row", 7)])]
-)
-def test_kill_9_of_viscous_layers(viscous, tmp_path, kind, number):
-    """What viscous layers keep of their past goes on to the last bit."""
-    killed_and_resumed(viscous, tmp_path / "run", kind, number)
 
 
 def killed_and_resumed(undisturbed, out, kind, number):

@@ -16,6 +16,7 @@ from fingerpad.runs.branches import Branches
 from fingerpad.scene import Load, SceneError, from_data
 from fingerpad.slices import traces
 from fingerpad.slices.total import BeyondTrace
+from geometry.profiles import GeometryError
 from tests.runs import path_of, tables_alone
 from tests.small_finger import NINE, small
 from variational.solvers.continuation import StepFailed
@@ -155,6 +156,7 @@ def test_accuracy_is_refused():
     [
         (newtons, "at_force", BeyondTrace("of a test"), "the correction of the traces failed: of a test; give f_ext"),
         (Branches, "follow", StepFailed("no equilibrium"), "the light press failed: no equilibrium; give f_ext"),
+        (Branches, "follow", GeometryError("too large"), "the finger cannot be meshed: too large"),
     ],
 )
 def test_lost_trace_is_refused_with_its_reason(monkeypatch, of, name, error, words):

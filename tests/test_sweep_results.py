@@ -19,6 +19,7 @@ from fingerpad.report.write import write
 from fingerpad.runs.sweep_results import Sweep, _stacked
 from fingerpad.scene.remarks import LEAKAGE
 from fingerpad.slices.finger import WholeFinger
+from tests.browser import asked
 from tests.measures import rows_of
 from tests.small_finger import small
 from tests.test_loads_over_time import BY, PRESS, SLIDE, WAVE, scene
@@ -70,7 +71,7 @@ def test_report_has_newtons_and_says_how_to_repeat_it(found, tmp_path):
     mu = found.array("mu_app")
     ends = f"from {mu.min():.3f} to {mu.max():.3f}."
     assert f"<h1>At full slip the friction coefficient of the whole finger goes {ends}</h1>" in page
-    assert "friction force F<sub>T</sub> (N)" in page and "F_T of the whole finger (N) at full slip over" in page
+    assert "friction force F<sub>T</sub> (N)" in page and "F_T of the whole finger (N) over the sweep" in page
     study = page.partition("<script")[0].partition('id="study"')[2].partition('id="failed"')[0]
     assert "N/m" not in re.sub(r"\(200\sV rms, 75\sN/m: docs", "", study), "but for the note on Eq. 3"
     code = html.unescape(re.search(r"<pre><code>(.*?)</code>", page, re.DOTALL)[1])
@@ -93,6 +94,20 @@ def test_force_that_no_trace_reaches_fails_alone(tmp_path):
     found = fp.sweep(fp.Scene(), tmp_path, model="cylinders", force=[0.2, 60.0])
     assert found[1].failure and found[1].finger is None and found[1].failure in str(found)
     assert found[0].failure == "" and np.isfinite(found.array("f_t")[0]) and np.isnan(found.array("f_t")[1])
+
+
+def test_charts_have_the_units_of_their_titles(found, tmp_path):
+    """A chart's numbers are in mm², as the table below: within the tenth of a pixel to which they are drawn."""
+    program = """
+    const all = [...document.querySelectorAll(".chart > svg")].map((each) => [each.getAttribute("aria-label"), each]);
+    const [words, chart] = all.find(([words]) => words.startsWith("ridge")), panel = chart.querySelector(".panel");
+    const [low, high] = panel.dataset.scale.split(" ").map(Number);
+    const up = (y) => high - (y - panel.dataset.top) / panel.dataset.height * (high - low);
+    const marks = (each) => each.dataset.marks.split(" ").map((pair) => up(pair.split(",")[1]));
+    return [words, [...panel.querySelectorAll(".series")].map(marks)];"""
+    words, (_, drawn) = asked(write(found.folder).read_text(encoding="utf-8"), program, tmp_path)
+    assert words.startswith("ridge contact area of the whole finger (mm²)")
+    assert drawn == pytest.approx(1e6 * found.array("contact_area")[1], abs=0.02)
 
 
 @pytest.mark.parametrize(

@@ -3,7 +3,7 @@
 environment/run python3 -m benchmarks.feel [--draw]     also: make feel
 
 The rules are in benchmarks/feel/rules.py. Runs are kept in results/feel; some 10 minutes of processor
-time. Writes docs/feel.json, and from it docs/feel.md and its picture.
+time. Writes docs/feel.json, and from it docs/measured.md and its picture.
 """
 
 import argparse
@@ -211,7 +211,7 @@ def of_grating(result: fp.Result) -> dict[str, float]:
 
 # -- page ----------------------------------------------------------------------------------------------------
 def draw(docs: Path) -> Path:
-    """Write docs/feel.md and its picture from docs/feel.json."""
+    """Write docs/measured.md and its picture from docs/feel.json."""
     numbers = kept("feel", docs).numbers
     picture(docs / "feel.png", (9, 3.8), lambda figure: _paint(figure, numbers))
     judged = rules.judge(numbers)

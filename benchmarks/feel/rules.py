@@ -1,6 +1,6 @@
 """The statements, their sources and the rules of their verdicts.
 
-The rules were written before the numbers, but for what docs/feel.md lists.
+The rules were written before the numbers, but for what docs/measured.md lists.
 """
 
 from collections.abc import Mapping

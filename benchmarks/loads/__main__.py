@@ -5,7 +5,7 @@ environment/run python3 -m benchmarks.loads [--minutes 20] [--draw]     one proc
 A scene is a force on the finger, a voltage, a friction coefficient and a coating: a point of a scrambled Sobol
 sequence in these five keys. Its full slip is followed over growing forces of the section, up to that at the centre of
 the finger. So a scene has errors of the section at several forces, and one of the sum over slices. States are solved
-for from neighbours, without a path. Writes docs/loads.json, docs/loads.md and its picture, and the known errors into
+for from neighbours, without a path. Writes docs/loads.json, docs/closed_form.md, its picture, and the known errors into
 fingerpad/reduced/cylinder_errors.json; prints the contact lengths that fingerpad/reduced/default_finger.py has of them,
 and the number of shear of fingerpad/reduced/cylinders.py.
 """

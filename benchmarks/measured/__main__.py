@@ -86,14 +86,14 @@ class Row(NamedTuple):
 def judged(docs: Path) -> list[Row]:
     """Return the rows of the page from the kept numbers of a folder."""
     found, judged = kept("measured", docs).numbers["rows"], []
-    sources = {source["key"]: source for source in _read("sources")}
+    sources = {source["key"]: f"[{k}]({source['link']})" for k, source in enumerate(_read("sources"), start=1)}
     for text in _read("rows"):
-        source, (numbers, verdict) = sources[text["source"]], found[text["key"]].values()
+        numbers, verdict = found[text["key"]].values()
         verdict = BUILT if text["built"] and verdict == HIT else verdict
         because = f": {text['why']}" if verdict != HIT and text["why"] else ""
-        by = f"[{source['words']}]({source['link']}); people: {source['people']}; {source['read']}"
         ours = text["ours"].format(**numbers).replace("%", " %")
-        line = cells(text["measured"], by, ours, text["fitted"], f"**{verdict}**{because}")
+        measured, fitted = f"{text['measured']} {sources[text['source']]}", _number(text["fitted"])
+        line = cells(measured, ours, fitted, f"**{verdict}**{because}")
         judged.append(Row(text["key"], text["kind"], numbers, verdict, line))
     return judged
 
@@ -106,9 +106,14 @@ def with_keys(docs: Path) -> list[Row]:
         numbers, verdict = found[text["key"]].values()
         verdict = BUILT if text["built"] and verdict == HIT else verdict
         ours = text["ours"].format(**numbers).replace("%", " %")
-        line = cells(first[text["key"]]["measured"], text["keys"], ours, text["fitted"], f"**{verdict}**")
+        line = cells(first[text["key"]]["measured"], text["keys"], ours, _number(text["fitted"]), f"**{verdict}**")
         made_of.append(Row(text["key"], "other", numbers, verdict, line))
     return made_of
+
+
+def _number(fitted: str) -> str:
+    """Return how many parameters are fitted, without which ones."""
+    return fitted.partition(" (")[0]
 
 
 def _read(name: str) -> list[dict[str, str]]:
@@ -120,7 +125,7 @@ def draw(docs: Path) -> Path:
     """Write docs/measured.md and its picture from docs/measured.json."""
     picture(docs / "measured.png", (11, 4), lambda figure: _paint(figure, kept("measured", docs).numbers))
     every = judged(docs)
-    names: dict[str, Any] = {"judged": every, "others": with_keys(docs)}
+    names: dict[str, Any] = {"judged": every, "others": with_keys(docs), "sources": _read("sources")}
     names |= {"left_out": sum(row.verdict == rules.MISS for row in every if row.key in _LEFT_OUT)}
     names |= {"found": [row.verdict for row in every if row.kind != "simulated"]}
     return page(docs, "measured", "make measured", globals() | names)

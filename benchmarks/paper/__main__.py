@@ -19,9 +19,9 @@ import numpy as np
 
 from benchmarks import newtons
 from benchmarks.errors import known
-from benchmarks.harness import keep, kept, made, main, page, run, table
+from benchmarks.harness import cells, keep, kept, made, main, page, run
 from benchmarks.paper import energy, fields, friction, scenes, states
-from benchmarks.paper.figures import FIGURES, PaperFigure
+from benchmarks.paper.figures import FIGURES
 from benchmarks.paper.figures import draw as drawn
 from benchmarks.paper.statement import BUILT, HOLDS, IN_PART, NOT, Statement
 from benchmarks.runs import FORCES, VOLTAGES, Run
@@ -111,74 +111,39 @@ def off(grid: friction.Grid) -> dict[str, float]:
     return {name: float(100 * (grid[name][at] / known()[name].value - 1)) for name in names}
 
 
-_CAPTIONS = {
-    "2": "Pressure is highest at the central ridges, and air gaps are smallest there. The elastic stress is in tension "
-    "at edges of ridges. Under slip the shear follows the pressure.",
-    "4": "The air gap has a limit, where the mean separation is zero.",
-    "5": "A ridge sticks without a force where its curve is below zero.",
-    "6": "The attraction raises friction most at small forces. Newtons are N/m times the paper’s 20 mm.",
-    "7": "With voltage each ridge has a longer contact, and all together have, at every force.",
-    "8A": "A voltage lengthens the contact. Sliding shortens it, in steps where ridges leave and come.",
-    "8B": "Sliding mostly shortens the contact, more at higher mean shear stress, and scatters where ridges come.",
-    "9A": "In normal contact the voltage changes the outer layer alone. In sliding the energy density moves to the "
-    "leading side, more so with voltage.",
-    "9B": "Friction and all sites rise or fall once in half a period of the voltage.",
-}
-_EXPERIMENT = """
-The paper's figure also has markers of Ayyildiz et al. 2018. Their numbers could not be read: they are in no text that
-was found, and no public table of them was. So no marker is drawn here.
-"""
-
-
 def _of_figure(name: str, statements: Sequence[Statement]) -> list[Statement]:
     """Return the statements about a figure; those about the whole of one in two parts are with the second part."""
     own = [(s, s.figure.partition(",")[0]) for s in statements]
     return [s for s, of in own if of == name or (of.rstrip("ABC") == name and of not in FIGURES) or f"{of}B" == name]
 
 
-def _rows(statements: Sequence[Statement]) -> str:
-    because = [f": {s.why}" if s.verdict != HOLDS and s.why else "" for s in statements]
-    rows = [(s.paper, s.ours, f"**{s.verdict}**{why}") for s, why in zip(statements, because, strict=True)]
-    return table(("the paper", "this model", "verdict"), rows)
+def lines(name: str, statements: Sequence[Statement]) -> list[str]:
+    """Return the rows of a figure's table, or of section 5: the paper, this model and the verdict."""
+    mine = [s for s in statements if s.figure.startswith(name)] if name == "section" else _of_figure(name, statements)
+    because = [f": {s.why}" if s.verdict != HOLDS and s.why else "" for s in mine]
+    return [cells(s.paper, s.ours, f"**{s.verdict}**{why}") for s, why in zip(mine, because, strict=True)]
 
 
-def _section(name: str, figure: PaperFigure, statements: Sequence[Statement], docs: Path) -> str:
-    """Return a figure's part of the page: its command, its picture if it was drawn, and the statements about it."""
-    parts = [f"### Fig. {name}: {figure.shows}", f"`make paper FIGURE={name}`: {figure.cost or 'a closed form'}."]
-    if (docs / f"paper_{name}.png").exists():
-        parts.append(f"![{_CAPTIONS[name]}](paper_{name}.png)")
-    else:
-        parts.append("Not drawn yet: its runs are missing here.")
-    parts += [_EXPERIMENT.strip()] if name == "6" else []
-    mine = _of_figure(name, statements)
-    return "\n\n".join([*parts, *([_rows(mine)] if mine else [])])
-
-
-def figures(statements: Sequence[Statement], loads: dict[str, Any], docs: Path) -> str:
-    """Draw the figures whose numbers are kept, and return their parts of the page, and that of section 5."""
+def pictures(loads: dict[str, Any], docs: Path) -> None:
+    """Draw the figures whose numbers are kept."""
     there = kept("paper_figures", docs).numbers if (docs / "paper_figures.json").exists() else {}
-    sections = []
     for name, figure in FIGURES.items():
-        numbers = loads if figure.of_loads else there.get(name)
-        if numbers:
+        if numbers := loads if figure.of_loads else there.get(name):
             drawn(figure, numbers, docs / f"paper_{name}.png")
-        sections.append(_section(name, figure, statements, docs))
-    if others := [s for s in statements if s.figure.startswith("section")]:
-        sections.append(f"### Section 5\n\n{_rows(others)}")
-    return "\n\n".join(sections)
 
 
 def draw(docs: Path) -> Path:
     """Draw the page and its pictures from docs/paper.json, paper_figures.json and, in newtons, newtons.json."""
     numbers, sums = kept("paper", docs).numbers, (docs / "newtons.json").exists()
     statements = [Statement(**s) for s in numbers["statements"]]
+    pictures(numbers.get("grid", {}), docs)
     names: dict[str, Any] = {
         "statements": statements,
         "count": [[s.verdict for s in statements].count(verdict) for verdict in (HOLDS, BUILT, IN_PART, NOT)],
         "runs": len(FORCES) * len(VOLTAGES),
         "slices": errors.percent(errors.known_at(newtons.COMPARED)["f_t"]),
         "limit": next((s.numbers["mu_app"] for s in statements if "mu_app" in s.numbers), None),
-        "figures": figures(statements, numbers.get("grid", {}), docs),
+        "lines": lambda name: lines(name, statements),
         "missing": numbers.get("missing"),
         "sites": _sites(statements),
         "grid": {key: np.array(values) for key, values in numbers.get("grid", {}).items()},

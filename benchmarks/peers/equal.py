@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from benchmarks.peers import ours, plain
 from benchmarks.peers.compared import CURVED, OURS, STRAIGHT, values
 from benchmarks.peers.exchange import Case, timed
-from fingerpad.accuracy import edges
+from fingerpad.accuracy.states import contact_ends, edge_places
 from geometry.bodies import ridge
 from geometry.mesh import TaggedMesh, load
 from geometry.parameters import MeshSize
@@ -67,8 +67,8 @@ def by_package(case: Case, size: float) -> dict[str, Any]:
     begun = time.process_time()
     path = ours.create(case, load(MPI.COMM_SELF, ridge(2 * size * _UM)))
     kept = [take_snapshot(path.coupling, s) for now, s in ours.follow(case, path) if now.name]
-    found = [edges.ends(state, lambda places: places[:, 0], 2 * size * _UM) for state in kept]
-    places = edges.about([(ends, 2 * size * _UM) for ends in found], MeshSize(contact=size * _UM))
+    found = [contact_ends(state, lambda places: places[:, 0], 2 * size * _UM) for state in kept]
+    places = edge_places([(ends, 2 * size * _UM) for ends in found], MeshSize(contact=size * _UM))
     sharp = ours.create(case, load(MPI.COMM_SELF, ridge(size * _UM, ends=[*places, *(-x for x in places)])))
     states = [_again(sharp, state, name) for state, name in zip(kept, STATES, strict=True)]
     return {

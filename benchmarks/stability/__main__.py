@@ -3,7 +3,7 @@
 environment/run python3 -m benchmarks.stability [--part single | random] [--jobs 2] [--draw]
 
 Each run has a process of its own and is kept in results/stability; after a change of the solver delete that folder.
-Writes docs/stability.json, and from it docs/stability.md.
+Writes docs/stability.json, and from it docs/performance.md.
 """
 
 import argparse
@@ -158,7 +158,7 @@ def dearer(runs: Iterable[Row], formulation: str) -> float:
 
 
 def draw(docs: Path) -> Path:
-    """Write docs/stability.md from docs/stability.json."""
+    """Write docs/performance.md from docs/stability.json."""
     numbers = kept("stability", docs).numbers
     rows, runs = {_key(row["case"]): row for row in numbers["runs"]}, numbers["random"]["runs"]
     names = {

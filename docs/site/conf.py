@@ -79,11 +79,11 @@ PLACE = re.compile(r"`((?:geometry|variational|fingerpad)[a-z_.]*):(\w+)`")
 WORDS = {
     "docs/command": {"": ["Windows", "WSL", "macOS", "Docker", "conda", "install"], "## Targets": ["target"]},
     "docs/drive": {"": ["alternating voltage", "frequency", "waveform"]},
-    "docs/feel": {"": ["nerve", "perception", "spike"]},
-    "docs/fingers": {"": ["child", "elderly", "moisture", "sweat", "callus"]},
+    "docs/measured": {"## What is felt": ["nerve", "perception", "spike"]},
+    "docs/assumptions": {"## Fingers by name": ["child", "elderly", "moisture", "sweat", "callus"]},
     "docs/newtons": {"": ["newton", "contact area"]},
     "docs/scene": {"## `[electric]`": ["coating", "insulator", "dielectric", "permittivity"]},
-    "docs/viscosity": {"": ["viscous", "relaxation", "creep"]},
+    "docs/laws": {"## Viscous layers": ["viscous", "relaxation", "creep"]},
 }
 
 

@@ -41,7 +41,7 @@ ONCE, MORE = 2.0, 1.5
 
 With them the estimated error covers the known one in at least 90 % of the known cases of each kind, of runs with an
 accuracy, where all sizes are changed in turn. One size changed alone does not show the scatter of energy densities.
-``docs/accuracy.json`` has the cases, ``benchmarks/accuracy.py`` counts them for ``docs/accuracy.md``, and
+``docs/accuracy.json`` has the cases, ``benchmarks/accuracy.py`` counts them for ``docs/errors.md``, and
 ``tests/test_calibration.py`` holds the factors to it.
 """
 TWO = 2.0
@@ -55,7 +55,7 @@ lengths, highest pressures and energy densities, of the last in 457 of 457, and 
 error, of which that is a half to three quarters, in at least 95 % of each kind. These factors, and the order of the
 highest pressure, were chosen on the same scenes.
 ``docs/two_meshes.json`` has the values on the three meshes, ``benchmarks/two_meshes.py`` counts the cases for
-``docs/two_meshes.md``, and ``tests/test_calibration.py`` holds the factors to it.
+``docs/errors.md``, and ``tests/test_calibration.py`` holds the factors to it.
 """
 RECEPTOR = 5e-6
 """Largest element (m) at a receptor site with which the error of an energy density there is estimated. The tips of the

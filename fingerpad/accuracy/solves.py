@@ -8,8 +8,7 @@ import numpy as np
 from mpi4py import MPI
 from numpy.typing import NDArray
 
-from fingerpad.accuracy import edges
-from fingerpad.accuracy.states import Solve, State, StateRecorder, together
+from fingerpad.accuracy.states import Solve, State, StateRecorder, contact_ends, edge_places, together
 from fingerpad.model.cautions import adhering, lost
 from fingerpad.model.checks import FingerExceeded
 from fingerpad.model.options import FingerModel
@@ -187,8 +186,8 @@ def _solve(
     pause: Callable[[], None],
 ) -> Solve:
     profiles = Profiles(model.geometry)
-    ends = ((edges.ends(state.snapshot, profiles.along_skin, state.facet), state.facet) for state in states.values())
-    found = edges.about(ends, model.mesh)
+    ends = ((contact_ends(state.snapshot, profiles.along_skin, state.facet), state.facet) for state in states.values())
+    found = edge_places(ends, model.mesh)
     simulation = StateSolver(model.changed(edges=found), comm)
     recorder, over, finger = StateRecorder(simulation), StateRecorder(simulation), simulation.finger
     springs, soft, viewer = finger.problem.interface.formulation, "", Viewer(finger) if views else None
@@ -290,6 +289,10 @@ class Solves:
             f"{solve.unknowns} unknowns, {solve.factorisations} factorisations"
         )
         return solve
+
+    def doubts(self) -> list[str]:
+        """Return which states roundoff may have chosen among others, a sentence each."""
+        return [each for solve in self.found for each in solve.doubts]
 
     def least(self) -> float:
         """Return the processor time (s) of this rank of the last solve on another mesh; 0 where none was made.

@@ -17,10 +17,10 @@ contact pressure:
 
 The one number :math:`\kappa` (:data:`SHEAR`) is fitted to the attraction of states of the full model, of seeded scenes
 over coatings, forces, voltages and friction coefficients. Other states test it, and so do all contact lengths
-(``docs/loads.md``). The number of ridges stays that of the table.
+(``docs/closed_form.md``). The number of ridges stays that of the table.
 
 The model leaves out that ridges in the middle bear more than those at the edge, and that ridges come and go with the
-voltage. ``docs/models.md`` has its errors.
+voltage. ``docs/closed_form.md`` has its errors.
 """
 
 import time

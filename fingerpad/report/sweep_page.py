@@ -2,10 +2,8 @@
 
 import csv
 import io
-import itertools
 import math
-import shlex
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from functools import cached_property
@@ -13,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from fingerpad.report import page as html
+from fingerpad.report.charts import COLOURS, DASHES, Panel, Series, chart
 from fingerpad.report.page import BAD, CARE, GOOD
 from fingerpad.results.files import read_object, refuse_other_format
 from fingerpad.results.headline import SECTION, WHOLE
@@ -37,13 +36,11 @@ from fingerpad.scene.reading import DEFAULT_MODEL, model_name
 from fingerpad.slices.errors import remarks
 from variational.files import read
 
-_CHARTS = dict.fromkeys((*in_table("short"), *in_table("first", FINGER)))
+_CHARTS = dict.fromkeys(key for key in (*in_table("short"), *in_table("first", FINGER)) if key != "f_ext")
 _MAX_CAUTIONS = 3  # in the headline
 _MAX_VALUES = 6  # of a key in the headline
-_MAX_TITLE = 30  # characters beside an axis, beyond which they take two lines
 _RUBS = 1e-6  # µ_app that is no roundoff
 _IN_TIME = ("mu_app_max", "mu_app_mean", "f_t_amplitude")  # columns with a chart of a load over time, behind its name
-
 _RESULTS = ("uncharged_", "charged_", "full_slip_", "load_")
 
 
@@ -144,17 +141,31 @@ def _value(text: str) -> Any:
 
 def page(table: Table) -> str:
     """Return the page of a sweep."""
-    title = f"fingerpad: sweep over {', '.join(table.axes)}"
-    made = (_head, _over_time, _study, _points, _failed, _parameters, _cite)
-    parts = [section(table) for section in made]
-    return html.page(title, "\n".join(filter(None, parts)), {"sweep": _curves(table)})
-
-
-def _head(table: Table) -> str:
     state, columns = table.shown
-    slid = [row for row in table.rows if table.reached(row)]
+    sentence, said = _finding(table)
+    charts = _charts(table)
+    over_time = [(name, [charts[c] for c in charts if c.startswith(f"{LOAD}_{name}_")], heads, rows)
+                 for name, (heads, *rows) in tables(table.rows, table.heads)]  # fmt: skip
+    failed = [(", ".join(f"{key} = {printed(row[key])}" for key in table.axes), row["failure"]) for row in table.rows
+              if row["failure"]]  # fmt: skip
+    code, lists = _again(table)
+    return html.page(
+        "sweep.html", f"fingerpad: sweep over {', '.join(table.axes)}", name=table.folder.resolve().name,
+        sentence=sentence, said=said, verdict=_verdict(table), state=state, of=description(columns),
+        over_time=over_time, charts=[charts[column] for column in columns if column in charts],
+        heads=[*table.heads.values(), *(quantity.title for quantity in columns.values()), ""], points=_points(table),
+        remarks=[*remarks(dict.fromkeys(table.forces())), *([] if table.whole else [PER_LENGTH])],
+        notes=[*table.notes, *table.cautions], failed=failed, parameters=html.parameters(table.parameters, table.axes),
+        again=code, lists=lists, version=table.version,
+    )  # fmt: skip
+
+
+def _finding(table: Table) -> tuple[str, str]:
+    """Return the finding, a sentence, and what it is over."""
+    state, columns = table.shown
     sentence, said = f"No point reached {state}.", f"Over {_varied(table)}."
-    for column, quantity in _drawn(columns).values():  # the coefficient of friction first
+    slid = [row for row in table.rows if table.reached(row)]
+    for column, quantity in _drawn(columns).items():  # the coefficient of friction first
         values = [quantity.scale * value for row in slid if (value := row.get(column)) is not None]
         if values:
             words = quantity.words if quantity.symbol == quantity.words else quantity.words.rpartition(" ")[0]
@@ -168,18 +179,22 @@ def _head(table: Table) -> str:
         said += f" {sentence}" if slid else ""
         sentence = f"In the load {name} the friction coefficient of the {SECTION} goes "
         sentence += f"from {least:z.3f} to {most:z.3f}."
+    return sentence, said
+
+
+def _verdict(table: Table) -> tuple[str, str]:
+    """Return whether the points can be used, and why not."""
     failed = [row for row in table.rows if row["failure"]]
-    missing = len(table.rows) - len(slid) - sum(1 for row in failed if not table.reached(row))
-    kind, words = GOOD, "Every point was computed."
+    missing = sum(not table.reached(row) and not row["failure"] for row in table.rows)
     if failed:
-        kind, words = BAD, f"{len(failed)} of {len(table.rows)} points failed; the table of failures says why."
-    elif missing or table.cautions:
-        slips = f"{missing} of {len(table.rows)} points have no {state}." if missing else ""
-        more = len(table.cautions) - _MAX_CAUTIONS
-        limits = [*table.cautions[:_MAX_CAUTIONS], *([f"and {more} more"] if more > 0 else [])]
-        limit = f"Limits of validity are reached: {'; '.join(limits)}." if limits else ""
-        kind, words = CARE, " ".join(filter(None, (slips, limit)))
-    return html.banner("report of a sweep", table.folder, sentence, "", said, kind, html.text(words))
+        return BAD, f"{len(failed)} of {len(table.rows)} points failed; the table of failures says why."
+    if not (missing or table.cautions):
+        return GOOD, "Every point was computed."
+    slips = f"{missing} of {len(table.rows)} points have no {table.shown[0]}." if missing else ""
+    more = len(table.cautions) - _MAX_CAUTIONS
+    limits = [*table.cautions[:_MAX_CAUTIONS], *([f"and {more} more"] if more > 0 else [])]
+    limit = f"Limits of validity are reached: {'; '.join(limits)}." if limits else ""
+    return CARE, " ".join(filter(None, (slips, limit)))
 
 
 def _wave(table: Table) -> tuple[str, float, float] | None:
@@ -194,38 +209,28 @@ def _wave(table: Table) -> tuple[str, float, float] | None:
     return None
 
 
-def _drawn(columns: Mapping[str, Output]) -> dict[str, tuple[str, Output]]:
-    """Return the columns with a chart by the names of their quantities; of the whole finger before the section's."""
-    found = {key: [each for each in columns.items() if each[0].endswith(f"_{key}")] for key in _CHARTS}
-    return {key: each[0] for key, each in found.items() if each}
+def _drawn(columns: Mapping[str, Output]) -> dict[str, Output]:
+    """Return the columns with a chart, one of each quantity; of the whole finger before the section's."""
+    found = [next((each for each in columns.items() if each[0].endswith(f"_{key}")), None) for key in _CHARTS]
+    return dict(each for each in found if each is not None)
 
 
 def _varied(table: Table) -> str:
     words = []
     for key, values in table.values().items():
-        shown = ", ".join(map(printed, values[:_MAX_VALUES]))
-        words.append(f"{head_of(key, 'title')}: {shown}{', …' if len(values) > _MAX_VALUES else ''}")
+        some = ", ".join(map(printed, values[:_MAX_VALUES]))
+        words.append(f"{head_of(key, 'title')}: {some}{', …' if len(values) > _MAX_VALUES else ''}")
     return "; ".join(words)
 
 
-def _over_time(table: Table) -> str:
-    """Return friction and contact in loads over time, which no state at full slip has; nothing without such a load."""
-    parts = list[str]()
-    for name, (heads, *lines) in tables(table.rows, table.heads):
-        drawn = _charts(table).items()
-        charts = [html.chart(key, title) for key, (column, title) in drawn if column.startswith(f"{LOAD}_{name}_")]
-        parts += [html.paragraph(f"In the load {name}:"), *charts, html.table(heads, lines, "numbers")]
-    return html.section("time", "Loads over time", *parts)
-
-
-def _charts(table: Table) -> dict[str, tuple[str, str]]:
-    """Return the column and the title of each chart by the name of its place on the page."""
-    found = {f"sweep_{key}": (column, _titled(column, each)) for key, (column, each) in _drawn(table.shown[1]).items()}
-    for k, name in enumerate(loads(table.rows[0])):
+def _charts(table: Table) -> dict[str, Any]:
+    """Return the charts by column: those of full slip, and those of loads over time."""
+    titles = {column: (_titled(column, each), each.scale) for column, each in _drawn(table.shown[1]).items()}
+    for name in loads(table.rows[0]):
         words = in_time(name, table.rows[0])
-        columns = {key: f"{LOAD}_{name}_{key}" for key in _IN_TIME}
-        found |= {f"sweep_load_{k}_{key}": (each, words[each]) for key, each in columns.items() if each in words}
-    return found
+        columns = [f"{LOAD}_{name}_{key}" for key in _IN_TIME]
+        titles |= {column: (words[column], 1.0) for column in columns if column in words}
+    return {column: _chart(table, column, *title) for column, title in titles.items()}
 
 
 def _titled(column: str, quantity: Output) -> str:
@@ -234,59 +239,57 @@ def _titled(column: str, quantity: Output) -> str:
     return f"{quantity.symbol.removesuffix(' of section')} of the {WHOLE if of_finger(column) else SECTION}{unit}"
 
 
-def _study(table: Table) -> str:
-    state, columns = table.shown
-    drawn = [(place, words) for place, (column, words) in _charts(table).items() if column in columns]
-    note = "Bars are the whole known errors, where a point has them."
-    without = (
-        '<noscript><p class="note">The charts need JavaScript; the table below has the same numbers.</p></noscript>'
+def _chart(table: Table, column: str, title: str, scale: float) -> Any:
+    """Return the chart of a column: a curve for each value of all axes but the one along x, which has most numbers."""
+    along, curves = curves_of(table, column)
+    numbers = [value for value in table.values()[along] if type(value) in (int, float)]
+    names = [] if numbers else [printed(value) for value in table.values()[along]]
+    series = []
+    for k, (name, rows) in enumerate(curves.items()):
+        x = [table.values()[along].index(row[along]) if names else row[along] for row in rows]
+        y, error = ([_scaled(row.get(f"{column}{end}"), scale) for row in rows] for end in ("", "_error"))
+        series.append(Series(name, x, y, "both", COLOURS[k % len(COLOURS)], DASHES[k % len(DASHES)], error))
+    return chart(
+        [Panel(title, series, 200.0, zero=True)], head_of(along, "title"), f"{title} over the sweep", names=names
     )
-    charts = (html.chart(place, f"{words} at {state} over the sweep") for place, words in drawn)
-    title = f"Friction and contact of the {description(columns)} at {state}"
-    return html.section("study", title, without, *charts, html.paragraph(note, "note"))
 
 
-def _points(table: Table) -> str:
+def curves_of(table: Table, column: str) -> tuple[str, dict[str, Sequence[Mapping[str, Any]]]]:
+    """Return the key along x, and the rows of each curve of a column by the values of the other keys, in words."""
+    numbers = {key: [each for each in values if type(each) in (int, float)] for key, values in table.values().items()}
+    along = max(table.axes, key=lambda key: len(numbers[key]))
+    curves = dict[str, Any]()
+    for row in table.rows:
+        name = ", ".join(f"{key} = {printed(row[key])}{_unit(key)}" for key in table.axes if key != along)
+        curves.setdefault(name, []).append(row)
+    return along, curves
+
+
+def _scaled(value: float | None, scale: float) -> float:
+    return math.nan if value is None else scale * value
+
+
+def _unit(key: str) -> str:
+    meant = described(key)
+    return f" {meant.unit}" if meant is not None and meant.unit else ""
+
+
+def _points(table: Table) -> list[list[str]]:
+    """Return a row for each point."""
     state, columns = table.shown
     rows = []
     for row in table.rows:
         cells = (each.shown(row.get(column), row.get(f"{column}_error")) for column, each in columns.items())
         said = "failed" if row["failure"] else "" if table.reached(row) else f"no {state}"
         rows.append([*(printed(row[key]) for key in table.axes), *cells, said])
-    heads = [*table.heads.values(), *(quantity.title for quantity in columns.values()), ""]
-    notes = [*remarks(dict.fromkeys(table.forces())), *([] if table.whole else [PER_LENGTH])]
-    return html.section(
-        "points",
-        "Every point",
-        html.table(heads, rows, "numbers"),
-        *(html.paragraph(note, "note") for note in notes),
-        html.items((*table.notes, *table.cautions)),
-    )
+    return rows
 
 
-def _failed(table: Table) -> str:
-    rows = [
-        (", ".join(f"{key} = {printed(row[key])}" for key in table.axes), row["failure"])
-        for row in table.rows
-        if row["failure"]
-    ]
-    if not rows:
-        return html.section("failed", "Failures", html.paragraph("No run failed."))
-    note = "A run that crashed, was stopped or had too little memory is started again by the same command."
-    return html.section(
-        "failed", "Which runs failed, and why", html.table(("point", "reason"), rows), html.paragraph(note)
-    )
-
-
-def _parameters(table: Table) -> str:
-    return html.section("parameters", "Parameters", html.all_parameters(table.parameters, table.axes))
-
-
-def _cite(table: Table) -> str:
+def _again(table: Table) -> tuple[str, bool]:
+    """Return the command that repeats the sweep, and whether lists of the scene are not in it."""
     given = {key: value for key, (value, _) in changed_keys(table.parameters).items()}
     kept = {key: value for key, value in given.items() if not (key in table.axes or "[" in key or value is None)}
-    options = [html.option_of(key, value) for key, value in kept.items()]
-    options += [f"--model {shlex.quote(table.model)}"] if table.model != DEFAULT_MODEL else []
+    options = [*(html.option_of(key, value) for key, value in kept.items()), *html.model_option(table.model)]
     options += ["--states full_slip"] if any("full_slip_reached" in row for row in table.rows) else []
     values = table.values()
     if all(type(value) in (int, float) for each in values.values() for value in each):
@@ -296,37 +299,4 @@ def _cite(table: Table) -> str:
         lines = [f"{html.toml(key)} = {html.toml(each)}" for key, each in values.items()]
         command = " ".join(["fingerpad sweep study.toml", *options, "--out results/again"])
         code = "\n".join(["# study.toml", "[sweep]", *lines, "", "# the command", command])
-    lists = any("[" in key and key not in table.axes for key in given)
-    note = "Loads of its own, and other lists of the scene, are not in this line." if lists else ""
-    return html.section(
-        "reproduce", "How to reproduce and cite", f"<pre><code>{html.text(code)}</code></pre>",
-        html.paragraph(note, "note") if note else "", html.cite(table.version),
-    )  # fmt: skip
-
-
-def _unit(key: str) -> str:
-    meant = described(key)
-    return f" {meant.unit}" if meant is not None and meant.unit else ""
-
-
-def _curves(table: Table) -> dict[str, Any]:
-    """Return one curve for each value of all axes but the one along x, which is that with most numbers."""
-    charts, scales = _charts(table), {column: quantity.scale for column, quantity in table.shown[1].items()}
-    numbers = {key: [each for each in values if type(each) in (int, float)] for key, values in table.values().items()}
-    along = max(table.axes, key=lambda key: len(numbers[key]))
-    others = [key for key in table.axes if key != along]
-    groups: dict[tuple[Any, ...], list[dict[str, Any]]] = {}
-    for row in table.rows:
-        groups.setdefault(tuple(row[key] for key in others), []).append(row)
-    curves = []
-    for values, rows in groups.items():
-        name = ", ".join(f"{key} = {printed(value)}{_unit(key)}" for key, value in zip(others, values, strict=True))
-        x = [row[along] if numbers[along] else printed(row[along]) for row in rows]
-        curve: dict[str, Any] = {"name": name, "x": x}
-        for (place, (column, _)), end in itertools.product(charts.items(), ("", "_error")):
-            found = [row.get(f"{column}{end}") for row in rows]
-            curve[f"{place}{end}"] = [None if value is None else value * scales.get(column, 1.0) for value in found]
-        curves.append(curve)
-    breaks = {place: "<br>of the " if len(title) > _MAX_TITLE else " of the " for place, (_, title) in charts.items()}
-    titles = {place: html.typeset(title).replace(" of the ", breaks[place]) for place, (_, title) in charts.items()}
-    return {"along": html.typeset(head_of(along, "title")), "curves": curves, "charts": titles}
+    return code, any("[" in key and key not in table.axes for key in given)

@@ -1,23 +1,18 @@
-"""The headline of the report of a run, and whether to rely on it: one finding for each thing that can be wrong."""
+"""Whether to rely on a run: one finding for each thing that can be wrong."""
 
 import math
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 from fingerpad.accuracy.richardson import FEW_FACETS
 from fingerpad.reduced.cylinder_errors import in_words
 from fingerpad.reduced.registry import follows_path
-from fingerpad.report import page as html
-from fingerpad.report.known import bars
 from fingerpad.report.page import BAD, CARE, GOOD
 from fingerpad.results.headline import why_not_known
 from fingerpad.results.quantities import KNOWN
+from fingerpad.results.result import Result
 from fingerpad.results.states import called
-from fingerpad.scene.remarks import coefficient
 from variational.state import ContactState
-
-if TYPE_CHECKING:
-    from fingerpad.results.result import Result
 
 _SMALL, _LARGE = 0.02, 0.1
 """Relative errors below which an error is small, and above which the mesh is too coarse for more than a trend."""
@@ -34,7 +29,7 @@ class Finding(NamedTuple):
     words: str
 
 
-def findings(result: "Result") -> list[Finding]:
+def findings(result: Result) -> list[Finding]:
     """Return what was looked at, in the order in which a reader needs it."""
     found = [_end(result), *_full_slip(result), *_not_known(result)]
     if not follows_path(result.model):
@@ -59,20 +54,20 @@ def verdict(found: list[Finding]) -> tuple[str, str]:
     return GOOD, f"{holds} What the finger and the model assume is not in it."
 
 
-def _cautions(result: "Result") -> Iterator[Finding]:
+def _cautions(result: Result) -> Iterator[Finding]:
     for text in result.cautions:
         key = {".", "_"} & set(text.split(" ", 1)[0])  # a key of the scene begins the sentence, spelled as it is
         yield Finding("limit of validity", CARE, f"{text[0] if key else text[0].upper()}{text[1:].removesuffix('.')}.")
 
 
-def _end(result: "Result") -> Finding:
+def _end(result: Result) -> Finding:
     if result.failure:
         words = result.failure[0].upper() + result.failure[1:] + "." if result.interrupted else result.failure
         return Finding("the run did not finish", BAD, words)
     return Finding("end of the run", GOOD, "Every load was reached.")
 
 
-def _full_slip(result: "Result") -> Iterator[Finding]:
+def _full_slip(result: Result) -> Iterator[Finding]:
     if result.full_slip is not None and follows_path(result.model):
         words = "Every point in contact slips one way, and the forces stayed the same over a further 0.2 mm."
         yield Finding("full slip", GOOD, words)
@@ -84,12 +79,12 @@ def _full_slip(result: "Result") -> Iterator[Finding]:
             yield Finding("no full slip under a waveform", CARE, f"In the load {load.name} {load.sticking}.")
 
 
-def _not_known(result: "Result") -> Iterator[Finding]:
+def _not_known(result: Result) -> Iterator[Finding]:
     if why := why_not_known(result.record.get(KNOWN, {})):
         yield Finding("friction is not known", BAD, f"{why[0].upper()}{why[1:]}.")
 
 
-def _mesh(result: "Result") -> Iterator[Finding]:
+def _mesh(result: Result) -> Iterator[Finding]:
     """Judge the errors of friction and contact length, and tell the larger one."""
     state = result.full_slip or result.charged
     if state is None:
@@ -104,7 +99,7 @@ def _mesh(result: "Result") -> Iterator[Finding]:
     yield _of_share(share, f"The error of {name} by mesh and penalty is {100 * share:.2g} % of its value.")
 
 
-def _over_time(result: "Result") -> Iterator[Finding]:
+def _over_time(result: Result) -> Iterator[Finding]:
     """Judge the error of friction over time, where it is estimated."""
     over_time = (result.record.get("accuracy") or {}).get("over_time", {})
     if "f_t" in over_time:
@@ -122,7 +117,7 @@ def _of_share(share: float, words: str, when: str = "") -> Finding:
     return Finding(f"the mesh is coarse{when}", CARE, f"{words} The mesh is {more}; a smaller mesh.contact reduces it.")
 
 
-def _shares(result: "Result", state: ContactState) -> dict[str, float]:
+def _shares(result: Result, state: ContactState) -> dict[str, float]:
     """Return the relative errors of friction and contact length by name; NaN of one that is not estimated.
 
     A friction whose error is below the roundoff of the forces does not depend on the mesh, and is left out.
@@ -141,7 +136,7 @@ def _share(error: float, value: float) -> float:
     return error / abs(value) if value else math.nan
 
 
-def _facets(result: "Result", state: ContactState) -> Iterator[Finding]:
+def _facets(result: Result, state: ContactState) -> Iterator[Finding]:
     """Find contacts of few facets, on which the effect of the penalty's springs is not resolved."""
     springs = result.scene.contact.law.over_stiffer_screen() is not None
     if not (springs and state.ridges_in_contact and state.mesh_contact):
@@ -153,7 +148,7 @@ def _facets(result: "Result", state: ContactState) -> Iterator[Finding]:
         yield Finding("contacts of few facets", CARE, f"{words} {more}")
 
 
-def _balance(result: "Result") -> Iterator[Finding]:
+def _balance(result: Result) -> Iterator[Finding]:
     state, floor = result.full_slip or result.charged or result.uncharged, result.record.get("force_error")
     if state is None or math.isnan(state.f_contact):
         return
@@ -167,7 +162,7 @@ def _balance(result: "Result") -> Iterator[Finding]:
     yield Finding("balance of forces" if holds else "forces do not balance", GOOD if holds else BAD, words)
 
 
-def _stability(result: "Result") -> Iterator[Finding]:
+def _stability(result: Result) -> Iterator[Finding]:
     known = {name: state.stable for name, state in result.named.items() if state.stable is not None}
     if not known:
         yield Finding("stability is not examined", CARE, "A finger would leave an unstable state by itself.")
@@ -183,7 +178,7 @@ def _stability(result: "Result") -> Iterator[Finding]:
         yield Finding("stability", GOOD, words)
 
 
-def _jumps(result: "Result") -> Iterator[Finding]:
+def _jumps(result: Result) -> Iterator[Finding]:
     steps = [state for state in result.steps if jumped(state)]
     if not steps:
         if result.steps:
@@ -200,7 +195,7 @@ def _jumps(result: "Result") -> Iterator[Finding]:
     )
 
 
-def _restarts(result: "Result") -> Iterator[Finding]:
+def _restarts(result: Result) -> Iterator[Finding]:
     restarts = result.record.get("restarts") or []
     if restarts:
         why = "; ".join(str(each.get("reason", "")) for each in restarts if isinstance(each, dict))
@@ -218,24 +213,3 @@ def _restarts(result: "Result") -> Iterator[Finding]:
 def jumped(state: ContactState) -> bool:
     """Return whether part of the skin jumped in the step of a state."""
     return state.record is not None and state.record.jump
-
-
-# -- headline --------------------------------------------------------------------------------------------
-def head(result: "Result") -> str:
-    """Return the finding: its sentence, the number, its error, its likely range, and whether to rely on it."""
-    found = result.headline
-    kind, words = verdict(findings(result))
-    number = html.typeset(f"{found.symbol} {found.number}") if found.number else ""
-    said = f"of the {found.of}, {found.at}{_factor(result)}" if number else ""
-    more = f'{html.typeset(words)} <a href="#trust">What was examined</a>'
-    known = (line.removesuffix(".") for line in found.known.splitlines())
-    claims = html.claims(filter(None, (found.solved, *known, found.remark.removesuffix("."))), bars(result))
-    return html.banner("report of a run", result.folder, found.sentence, number, said, kind, more, claims)
-
-
-def _factor(result: "Result") -> str:
-    """Return in words how many times the friction without attraction that of the headline is."""
-    found, friction = result.headline, coefficient(result.scene)
-    if not friction or found.quantity.name != "mu_app" or math.isnan(found.value):
-        return ""
-    return f": {abs(found.value) / friction:.2f} times the {friction:.3g} without attraction"

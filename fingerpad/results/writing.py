@@ -7,14 +7,11 @@ from collections.abc import Mapping
 from contextlib import suppress
 from typing import TYPE_CHECKING, Any
 
-from fingerpad.results import dataset
-from fingerpad.results.files import Table, replace, replace_json
+from fingerpad.results.files import Table
 from fingerpad.results.folder import Folder, Serial
 
 if TYPE_CHECKING:
     from mpi4py import MPI
-
-    from fingerpad.results.result import Result
 
 _LOG = "run.log"
 
@@ -67,17 +64,6 @@ class Writer:
             if name not in self._tables:
                 self._tables[name] = Table(self._place.folder / f"{name}.csv", row)
             self._tables[name].write(row)
-
-    def result(self, result: "Result", headline: bool) -> None:
-        """Write ``result.nc``, and what others read as ``summary.json``, on rank 0.
-
-        Args:
-            result: the result.
-            headline: whether the summary has one.
-        """
-        if self._place is not None and self.comm.rank == 0:
-            replace(self._place.folder / dataset.FILE, dataset.content(result.to_xarray()))
-            replace_json(self._place.folder / "summary.json", result.to_dict(headline))
 
     def lost(self, why: str, trace: str) -> None:
         """Print and log, on rank 0, what a result has to do without.

@@ -32,6 +32,7 @@ from fingerpad.runs.branches import Branches, RestartTraces, TraceStates
 from fingerpad.runs.checkpoint import Checkpoint, checkpoint_of, read
 from fingerpad.runs.context import RunContext
 from fingerpad.runs.post import Entry, cautions_on, kept, of_outputs
+from fingerpad.runs.restarts import hint
 from fingerpad.scene import Scene, SceneError
 from fingerpad.scene.messages import counted
 from fingerpad.scene.reading import DEFAULT_MODEL
@@ -82,11 +83,12 @@ def run(scene: Scene, context: RunContext) -> Result:
             failure = f"{str(stopped).partition(';')[0]} of the {made.doing}; the same command goes on with it"
             bare = Result(scene, DEFAULT_MODEL, None, None, None, failure=failure, interrupted=stopped.signal.name)
             return replace(bare, cost=made.clock.cost(made.branches.counts, 0))
-        except (BeyondTrace, TraceError, StepFailed, GeometryError) as error:
-            raise SceneError(
-                f"force is {scene.force:g} N, and the {made.doing} failed: {error}; give f_ext, of the middle section, "
-                "or use the model 'cylinders'"
-            ) from error
+        except GeometryError as error:
+            raise SceneError(f"the finger cannot be meshed: {error}") from error
+        except (BeyondTrace, TraceError, StepFailed) as error:
+            tip = hint(error) if isinstance(error, StepFailed) else ""
+            tip = tip or "give f_ext, of the middle section, or use the model 'cylinders'"
+            raise SceneError(f"force is {scene.force:g} N, and the {made.doing} failed: {error}; {tip}") from error
         result = kept(bare, context, [cautions, *of_outputs(context.outputs)])
         if checkpoint is not None and comm.rank == 0:
             checkpoint.delete()

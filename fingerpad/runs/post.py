@@ -14,6 +14,9 @@ from dataclasses import replace
 from pkgutil import resolve_name
 from typing import NamedTuple
 
+from fingerpad.results import dataset
+from fingerpad.results.files import replace as replace_file
+from fingerpad.results.files import replace_json
 from fingerpad.results.folder import Serial
 from fingerpad.results.outputs import checked
 from fingerpad.results.quantities import Output
@@ -172,19 +175,26 @@ def completed(result: Result, context: RunContext, writer: Writer, own: Sequence
     """Write a result, compute what follows from it, and write it again; collective; see :func:`kept`."""
     writer.take()
     written = result = replace(result, folder=writer.folder)
-    writer.result(_unfinished(result), headline=False)
+    _write(_unfinished(result), writer, headline=False)
     in_words = True
     for entry in sorted((*own, *POST), key=lambda each: each.files):
         if entry.files and result is not written:
-            writer.result(result, in_words)
+            _write(result, writer, in_words)
             written = result
         result, done = _tried(entry, result, context, writer)
         in_words &= done or entry is not WORDS
     if result is not written:
-        writer.result(result, in_words)
+        _write(result, writer, in_words)
     if result.failure:
         writer.log.error(result.failure)
     return result
+
+
+def _write(result: Result, writer: Writer, headline: bool) -> None:
+    """Write ``result.nc``, and what others read as ``summary.json``, on rank 0."""
+    if writer.folder is not None and writer.comm.rank == 0:
+        replace_file(writer.folder / dataset.FILE, dataset.content(result.to_xarray()))
+        replace_json(writer.folder / "summary.json", result.to_dict(headline))
 
 
 def _unfinished(result: Result) -> Result:

@@ -116,13 +116,13 @@ def sweep(
         found = [applied(each, of_kept(outputs)) for each in kept]
     else:
         found = [_here(each, way, outputs) for each in scenes]
-    said = list(dict.fromkeys(note for each in found for note in leakage(each.scene)))
-    leaks = f"{'First point: ' * (len(said) > 1)}{said[0]}" if said else ""
-    done = Sweep(values, tuple(found), folder, (leaks,) if leaks else ())
+    leaks = list(dict.fromkeys(note for each in found for note in leakage(each.scene)))
+    notes = [f"{'First point: ' * (len(leaks) > 1)}{note}" for note in leaks[:1]]
+    done = Sweep(values, tuple(found), folder, tuple(notes))
     if folder is None:
         return done
-    asked: dict[str, Any] = {"format": FORMAT, "version": version(), "model": model, "parameters": scene.parameters()}
-    return _written(done, folder, asked, folder / (model if states == STATES[0] else states))
+    about: dict[str, Any] = {"format": FORMAT, "version": version(), "model": model, "parameters": scene.parameters()}
+    return _written(done, folder, about, folder / (model if states == STATES[0] else states))
 
 
 def _written(done: Sweep, folder: Path, about: dict[str, Any], place: Path) -> Sweep:
@@ -148,7 +148,8 @@ def _reached(done: Sweep) -> str:
     """Return a note on how the states of a sweep of full slip alone were reached; empty for another one."""
     alone = [each.full_slip.reached for each in done.results if "reached" in each.record and each.full_slip is not None]
     direct = len(alone) - alone.count(PATH)
-    return f"{direct} of {len(alone)} states of full slip are from a neighbour, the others from paths." if alone else ""
+    words = f"{direct} of {len(alone)} full-slip states were continued from the neighbouring point"
+    return f"{words}, {alone.count(PATH)} computed along the load path." if alone else ""
 
 
 def _older(done: Sweep, folder: Path) -> str:
@@ -232,29 +233,27 @@ def _in_processes(
     """Return the results of points, those that can be run in processes of their own, kept by their parameters."""
     chained = states != STATES[0]
     place = below(folder, states if chained else model.name)
-    keys, results, named = [batch.key(scene) for scene in scenes], dict[str, Result](), dict[str, Scene]()
-    order: list[str | None] = []
-    for key, scene, point in zip(keys, scenes, _points(axes), strict=True):
-        words = ", ".join(f"{name} {show(value)}" for name, value in point.items())
+    names, named, found = list[str](), dict[str, Scene](), dict[str, dict[str, Any]]()
+    for scene, point in zip(scenes, _points(axes), strict=True):
+        names.append(f"{', '.join(f'{name} {show(value)}' for name, value in point.items())} ({batch.key(scene)})")
         try:
             model.check(scene)
             if chained and scene.friction_law() is None:
                 raise SceneError("friction is 0; with states='full_slip' it must be greater than 0")
-            named[f"{words} ({key})"] = scene
-            order.append(f"{words} ({key})")
+            named[names[-1]] = scene
         except SceneError as error:
-            results[key] = _failed(scene, model, str(error))
-            order.append(None)
+            found[names[-1]] = {"failure": str(error)}
     if chained:
-        along = [order[k] for k in _neighbours(axes)]
-        found = chains.sweep({name: named[name] for name in along if name is not None}, place, jobs, quiet, executor)
+        along = [names[k] for k in _neighbours(axes) if names[k] in named]
+        found |= chains.sweep({name: named[name] for name in along}, place, jobs, quiet, executor)
     else:
-        found = batch.sweep(named, place, jobs, _LIMIT, model.name, quiet, executor)
-    for name, scene in named.items():
-        summary, key = found[name], batch.key(scene)
-        lost = set(summary) == {"failure"}
-        results[key] = _failed(scene, model, summary["failure"]) if lost else Result.load(place / key)
-    return [results[key] for key in keys]
+        found |= batch.sweep(named, place, jobs, _LIMIT, model.name, quiet, executor)
+    return [
+        _failed(scene, model, found[name]["failure"])
+        if set(found[name]) == {"failure"}
+        else Result.load(place / batch.key(scene))
+        for name, scene in zip(names, scenes, strict=True)
+    ]
 
 
 def _neighbours(axes: Mapping[str, Sequence[Any]]) -> list[int]:

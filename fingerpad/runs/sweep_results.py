@@ -143,12 +143,9 @@ class Sweep:
             attributes are the parameters that all points share. Under a force on the whole finger there are
             sums over it alone.
         """
-        import xarray  # brings pandas, which the file does not need
+        import xarray  # brings pandas
 
-        found, coordinates, attributes = _variables(self)
-        coords = {name: value for name, value in found.items() if name in coordinates}
-        data = {name: value for name, value in found.items() if name not in coordinates}
-        return xarray.Dataset(data, coords, attributes)
+        return xarray.Dataset(_variables(self), attrs=_shared(self))
 
     def save(self) -> str:
         """Write ``sweep.nc`` into the folder; return why not in one sentence, empty where it was written."""
@@ -226,12 +223,10 @@ def _aligned(table: Sequence[Sequence[str]]) -> list[str]:
     return ["   ".join(cell.rjust(width) for cell, width in zip(line, widths, strict=False)) for line in table]
 
 
-def _variables(sweep: Sweep) -> tuple[dataset.Variables, tuple[str, ...], dict[str, Any]]:
-    """Return the variables of a sweep with at least one point, the names of its coordinates, and its attributes."""
-    shape = [len(values) for values in sweep.axes.values()]
-    axes = tuple(sweep.axes)
-    points = [_of_point(result, sweep.whole) for result in sweep.results]
-    found = _stacked(points, axes, shape)
+def _variables(sweep: Sweep) -> dataset.Variables:
+    """Return the variables of a sweep with at least one point."""
+    axes, shape = tuple(sweep.axes), [len(values) for values in sweep.axes.values()]
+    found = _stacked([_of_point(result, sweep.whole) for result in sweep.results], axes, shape)
     failures = np.array([result.failure for result in sweep.results], object).reshape(shape)
     found["failure"] = axes, failures, {"units": "1", "long_name": "reason of a failure, empty without one"}
     for name, words in (("wall_seconds", "elapsed time"), ("processor_seconds", "processor time of all ranks")):
@@ -241,7 +236,7 @@ def _variables(sweep: Sweep) -> tuple[dataset.Variables, tuple[str, ...], dict[s
         meant = described(key)
         unit, words = ("1", key) if meant is None else (meant.unit or "1", meant.meaning)
         found[key] = (key,), _coordinate(along), {"units": unit, "long_name": words}
-    return found, (*axes, *dataset.COORDINATES), _shared(sweep)
+    return found
 
 
 def _stacked(points: Sequence[dataset.Variables], axes: tuple[str, ...], shape: Sequence[int]) -> dataset.Variables:
@@ -269,12 +264,8 @@ def _stacked(points: Sequence[dataset.Variables], axes: tuple[str, ...], shape: 
 
 def _of_point(result: "Result", whole: bool) -> dataset.Variables:
     """Return the variables of a point; of one of several forces of a run the sums over the whole finger alone."""
-    every = dataset.variables(result).items()
-    return {
-        name: each
-        for name, each in every
-        if _OF_POINT.issuperset(each[0]) and (not whole or name == "state" or name.startswith("finger_"))
-    }
+    every = {name: each for name, each in dataset.variables(result).items() if _OF_POINT.issuperset(each[0])}
+    return {name: each for name, each in every.items() if not whole or name == "state" or name.startswith("finger_")}
 
 
 def _coordinate(values: Sequence[Any]) -> Any:

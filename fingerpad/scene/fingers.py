@@ -7,7 +7,7 @@
 
 ``"adult"`` is the default finger and gives no key. A value is from a source that is cited, or it is marked as an
 *assumption*; of most sources the abstract alone was read, and the text says so. Relative values are relative to the
-default finger, which stands for an adult between the moist and the dry one. ``docs/fingers.md`` has every value and the
+default finger, which stands for an adult between the moist and the dry one. ``docs/assumptions.md`` has the
 friction of all fingers side by side.
 """
 
@@ -52,7 +52,7 @@ _MOISTURE = "Yuan and Verma 2006, Colloids and Surfaces B 48, 6 to 12, abstract"
 _FRICTION = "Buchholz, Frederick and Armstrong 1988, Ergonomics 31, 317 to 325, as tabled on a page of the authors"
 
 
-NOT_MEASURED = "This finger was not measured: its values are from several sources, and assumptions (docs/fingers.md)."
+NOT_MEASURED = "This finger was not measured: its values are from several sources, or assumed (docs/assumptions.md)."
 MOISTURE = (
     "No finger was measured for these values. Moisture raises the attraction of a constant voltage here, without "
     "losses; people with moist fingers needed a higher voltage to feel it (arXiv 2409.16936)."

@@ -93,7 +93,7 @@ class Geometry(Fingertip):
     """
 
     file: str | None = None
-    """File of a gmsh mesh in place of the cross-section and of the sizes in mesh, by the rules of ``docs/mesh.md``; a
+    """File of a gmsh mesh in place of the cross-section and of the sizes in mesh, by the rules of ``docs/laws.md``; a
     relative path starts at the scene file. Only sc_thickness is read of the other keys, for the attraction."""
     file_sha256: str | None = None
     """Hash of that file, which a run writes into its scene; another file is then refused."""
@@ -147,8 +147,8 @@ class Contact(Table):
     law: Annotated[Formulation, CONTACT] = Penalty()
     """Penalty (springs of the screen), Nitsche's method or an augmented Lagrangian; see
     :mod:`variational.contact.formulation`. The augmented Lagrangian is a method for comparison: it takes several times
-    the factorisations of the penalty, finds full slip in fewer scenes (``docs/stability.md``), and its friction at full
-    slip depends a little on the load path."""
+    the factorisations of the penalty, finds full slip in fewer scenes (``docs/performance.md``), and its friction at
+    full slip depends a little on the load path."""
     length: Literal["pressure", "gap"] = "pressure"
     """Ridge length L_R of Eq. 4: ``"pressure"`` is the length under contact pressure, ``"gap"`` the length where
     the gap is below d_eq. *Assumption*: the former; the domain printed in Eq. 4 is the whole boundary. Tables have the

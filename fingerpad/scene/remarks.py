@@ -161,8 +161,9 @@ def finger_in_words(scene: "Scene") -> list[str]:
     other = _changed(scene)
     count = len(FINGERS[scene.finger].values) - len(other)
     more = f"; otherwise: {', '.join(other)}" if other else ""
-    words = f"finger {scene.finger}, {FINGERS[scene.finger].words}: {count} keys by its name (docs/fingers.md){more}"
-    return [words, FINGERS[scene.finger].remark]
+    finger = FINGERS[scene.finger]
+    words = f"finger {scene.finger}, {finger.words}: {count} keys by its name (docs/assumptions.md){more}"
+    return [words, finger.remark]
 
 
 def _changed(scene: "Scene") -> list[str]:

@@ -48,7 +48,7 @@ class Viscosity(Table):
     """Quasi-linear viscoelasticity of a layer's isochoric stress, by ``preset`` or by ``moduli`` and ``times``."""
 
     law: Literal["QLV"] = "QLV"
-    """Law of the relaxation, see docs/viscosity.md."""
+    """Law of the relaxation, see docs/laws.md."""
     preset: Literal["skin, mouse", "fingerpad"] | None = None
     """Branches by name. "skin, mouse" is of a mouse's skin. "fingerpad" is a calibration of this program to the times
     in which the force of a pressed fingerpad relaxes, with weights that are an assumption."""

@@ -13,17 +13,13 @@ external force f, friction force, attraction, contact length and gross width ove
 The scale is exact for an elastic section without a length of its own. Ridges, roughness and attraction have one, so
 that w should stay near 1.
 
-What is summed. A slice touches where h > 0 and follows its trace from there, the branch of a finger that comes down:
-pressed, charged, or at full slip with a force that is raised. A charged slice that is still held below h = 0 after it
-was pressed deeper, its tension and its attraction, are left out; friction and area are low by that much. Full slip does
-not depend on the path of loads as long as the same ridges touch (``tests/test_slices_runs.py``), so that each slice is
-taken from one trace of sliding. A ridge that came down in the press may stay down in sliding: then the trace, on which
-it comes in sliding, has less friction (``docs/newtons.md``).
+A slice touches where h > 0 and follows its trace from there, the branch of a finger that comes down: pressed, charged,
+or at full slip, which does not depend on the path of loads as long as the same ridges touch
+(``tests/test_full_slip_direct.py``). A charged slice that is still held below h = 0 after it was pressed deeper is left
+out. A ridge that came down in the press may stay down in sliding: then the trace, on which it comes in sliding, has
+less friction (``docs/newtons.md``). Left out are shear between slices, the end cap of the finger, and the flow of soft
+tissue along the axis. Fingers in three dimensions are the measure of that: :mod:`fingerpad.slices.errors` has what is
+known at a force. Errors of the cross-section's mesh and of the points of its trace are stated apart.
 
-What is left out: shear between slices, the end cap of the finger, and the flow of soft tissue along the axis, which in
-a slice goes sideways alone. Fingers in three dimensions are the measure of that: :mod:`fingerpad.slices.errors` has
-what is known at a force. This is the error of the model. The errors of the cross-section's mesh and of the points of
-its trace are stated apart.
-
-Everything here is NumPy and SciPy; only :mod:`fingerpad.slices.traces` orders runs of finite elements.
+Everything here is NumPy and SciPy.
 """

@@ -35,7 +35,7 @@ class Nitsche(Formulation):
 
     gamma_0: float = parameter(1e-3, 1e6, default=1.0)
     """Nitsche's stiffness, divided by the skin's constrained modulus per facet length. With 10 no equilibrium was
-    found while the default finger was pressed (``docs/chart.md``)."""
+    found while the default finger was pressed (``docs/errors.md``)."""
     theta: int = field(default=0, metadata={"allowed": (-1, 0, 1)})
     """Variant of Nitsche's method. Variants 1 and -1 compile for longer. Variant 1 needs a larger gamma_0: below it
     stresses can remain in the unloaded skin, which is refused where the finger is lifted."""

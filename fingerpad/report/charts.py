@@ -1,0 +1,217 @@
+"""Charts of a report as inline SVG: drawn without a script, which shows the values below a pointer (``page.js``)."""
+
+import json
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from markupsafe import Markup
+from matplotlib.path import Path
+from matplotlib.ticker import MaxNLocator
+
+from fingerpad.report.page import render
+from fingerpad.results.headline import notes, span
+
+COLOURS = ("blue", "vermilion", "green", "purple", "orange", "ink")
+DASHES = ("", "6 3", "2 3", "8 3 2 3", "10 4")
+_WIDTH, _LEFT, _RIGHT, _TOP, _FOOT, _GAP = 560.0, 48.0, 16.0, 22.0, 42.0, 30.0  # px
+_MARGIN = 0.05  # of the span of values
+_BAR = 0.35  # half of a bar's width, of the distance of two
+_TICK = 0.4  # half of the height of a spike
+_BEFORE, _AFTER, _ROW, _TIP = 112.0, 114.0, 26.0, 14.0  # px: names, numbers, rows and arrows of bars of errors
+_VALUES = (0.02, 0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.8, 1, 1.5, 2, 3, 5, 10, 20, 50, 100)  # ticks of a logarithm
+_APART, _SHORT = 34.0, 3.0  # px: two ticks; the shortest bar
+
+
+@dataclass(frozen=True)
+class Series:
+    """Values over the scale along x; NaN breaks a line."""
+
+    name: str
+    x: Sequence[float]
+    y: Sequence[float]
+    kind: str = "line"
+    """``line``, ``points``, ``both``, ``bars``, or ``ticks``, short upright lines."""
+    colour: str = "ink"
+    """A variable of ``page.css``."""
+    dash: str = ""
+    error: Sequence[float] = ()
+    """Of each value, shown as a bar; NaN without one."""
+    labels: Sequence[str] = ()
+    """Of each value, shown below the pointer."""
+
+
+@dataclass(frozen=True)
+class Panel:
+    """Series with one scale."""
+
+    label: str
+    series: Sequence[Series]
+    height: float = 140.0
+    """px, where the chart is 560 wide."""
+    ends: tuple[float, float] | None = None
+    """Of the scale; by default those of the values."""
+    zero: bool = False
+    """Whether zero is on the scale, as with bars."""
+    image: str = ""
+    """Link of a picture that fills the panel."""
+
+
+def chart(
+    panels: Sequence[Panel],
+    along: str,
+    words: str,
+    *,
+    ends: tuple[float, float] | None = None,
+    names: Sequence[str] = (),
+    lines: Iterable[float] = (),
+    spans: Sequence[tuple[float, float, str]] = (),
+    legend: bool = True,
+) -> Markup:
+    """Return a chart of panels below each other.
+
+    Args:
+        panels: from the top.
+        along: title of the scale along x, which they share.
+        words: for those who do not see the chart.
+        ends: of the scale along x; by default those of all values.
+        names: at 0, 1, … along x, in place of numbers.
+        lines: places along x of dotted lines through all panels.
+        spans: parts of the scale along x, of which the script shows these words.
+        legend: whether the series are named below the chart.
+    """
+    every = [float(x) for panel in panels for series in panel.series for x in series.x if not math.isnan(x)]
+    bars = any(series.kind == "bars" for panel in panels for series in panel.series)
+    left, right = ends or _ends(every, 0.0, 0.7 if bars or names else 0.0)
+
+    def across(x: float) -> float:
+        return _LEFT + (x - left) / (right - left) * (_WIDTH - _LEFT - _RIGHT)
+
+    drawn, top = [], _TOP
+    for panel in panels:
+        drawn.append(_panel(panel, top, across))
+        top += panel.height + _GAP
+    ticks = [(across(k), name) for k, name in enumerate(names)] or [(across(x), f"{x:g}") for x in _ticks(left, right)]
+    shown = {series.name: series for panel in panels for series in panel.series if series.name}
+    return render(
+        "chart.svg", panels=drawn, ticks=ticks, foot=top - _GAP, along=along, words=words, width=_WIDTH, left=_LEFT,
+        right=_WIDTH - _RIGHT, height=top - _GAP + _FOOT, scale=f"{left:.9g} {right:.9g}",
+        lines=[across(x) for x in lines], legend=list(shown.values()) if legend and len(shown) > 1 else [],
+        spans=json.dumps(spans, ensure_ascii=False) if spans else "",
+    )  # fmt: skip
+
+
+def _ends(values: Sequence[float], margin: float, more: float = 0.0) -> tuple[float, float]:
+    """Return the ends of a scale of values, with a part of their span and a number more on either side."""
+    low, high = (min(values), max(values)) if values else (0.0, 1.0)
+    beyond = margin * (high - low) + more or (0.0 if high > low else abs(high) or 1.0)
+    return low - beyond, high + beyond
+
+
+def _ticks(low: float, high: float) -> list[float]:
+    found = MaxNLocator(5, steps=[1, 2, 5, 10]).tick_values(low, high)
+    return [float(f"{value:.6g}") for value in found if low <= value <= high]
+
+
+def _panel(panel: Panel, top: float, across: Any) -> dict[str, Any]:
+    values = [
+        float(end)
+        for series in panel.series
+        for k, y in enumerate(series.y)
+        if not math.isnan(y)
+        for end in (y, *_error(series, k, y))
+    ]
+    zero = panel.zero or any(series.kind == "bars" for series in panel.series)
+    low, high = panel.ends or _ends([*values, 0.0] if zero else values, _MARGIN)
+    low = 0.0 if zero and values and min(values) >= 0 else low
+
+    def up(y: float) -> float:
+        return top + panel.height * (high - y) / (high - low)
+
+    groups = sum(series.kind == "bars" for series in panel.series)
+    return {
+        "top": top, "height": panel.height, "label": panel.label, "image": panel.image,
+        "scale": f"{low:.9g} {high:.9g}",
+        "zero": up(0.0) if low < 0 < high else None, "ticks": [(up(y), f"{y:g}") for y in _ticks(low, high)],
+        "series": [_drawn(each, k, groups, across, up) for k, each in enumerate(panel.series)],
+    }  # fmt: skip
+
+
+def _error(series: Series, k: int, y: float) -> tuple[float, ...]:
+    error = series.error[k] if len(series.error) else math.nan
+    return () if math.isnan(error) else (y - error, y + error)
+
+
+def _drawn(series: Series, place: int, groups: int, across: Any, up: Any) -> dict[str, Any]:
+    """Return a series as a path and marks, in px."""
+    points = np.array([[across(x), up(y)] for x, y in zip(series.x, series.y, strict=True)]).reshape(-1, 2)
+    known = [(k, x, y) for k, (x, y) in enumerate(points.tolist()) if not math.isnan(x + y)]
+    points[(points[:, 0] < _LEFT - 1) | (points[:, 0] > _WIDTH - _RIGHT + 1)] = math.nan
+    path = _line(points) if series.kind in ("line", "both") else ""
+    if series.kind == "bars":
+        wide = 2 * _BAR * (across(1) - across(0)) / groups
+        first = across(0) - across(_BAR) + place * wide
+        path = " ".join(f"M{x + first:.1f} {up(0):.1f}h{wide:.1f}V{y:.1f}h-{wide:.1f}z" for _, x, y in known)
+    if series.kind == "ticks":
+        high = _TICK * (up(0) - up(1))
+        path = "".join(f"M{x:.1f} {y - high:.1f}v{2 * high:.1f}" for _, x, y in known)
+    errors = [
+        f"M{x:.1f} {up(ends[0]):.1f}V{up(ends[1]):.1f}" for k, x, _ in known if (ends := _error(series, k, series.y[k]))
+    ]
+    marks = "" if series.kind == "line" else " ".join(f"{x:.1f},{y:.1f}" for _, x, y in known)
+    return {
+        "name": series.name, "kind": series.kind, "colour": series.colour, "dash": series.dash, "path": path,
+        "errors": "".join(errors), "marks": marks, "dots": known if series.kind in ("points", "both") else [],
+        "labels": json.dumps([series.labels[k] for k, *_ in known], ensure_ascii=False) if series.labels else "",
+    }  # fmt: skip
+
+
+def _line(points: Any) -> str:
+    """Return a line through points (px) with no more of them than can be seen, broken at NaN."""
+    path = Path(points)
+    path.should_simplify, path.simplify_threshold = True, 1 / 9
+    thin = path.cleaned(simplify=True, remove_nans=True)
+    codes = {Path.MOVETO: "M", Path.LINETO: "L"}
+    pairs = zip(thin.codes if thin.codes is not None else (), thin.vertices, strict=False)
+    return "".join(f"{codes[code]}{x:.1f} {y:.1f}" for code, (x, y) in pairs if code in codes)
+
+
+def bars(kept: Mapping[str, Any], error: float, of: str) -> Markup:
+    """Return how far friction is solved and its likely range, with its parts, as bars over a logarithmic scale.
+
+    Args:
+        kept: the band, as a record has it, with its ``parts``.
+        error: of the solution; NaN where it is not known.
+        of: what the friction is of.
+    """
+    mu = kept["mu_app"]
+    solved = {"name": "solved to", "low": mu - error, "high": mu + error, "colour": "blue"}
+    parts = [solved] * (error < mu)
+    parts += [
+        {**kept, "name": "likely range", "colour": "vermilion"},
+        *(each | {"colour": "soft"} for each in kept["parts"]),
+    ]
+    every = [part[key] for part in parts for key in ("low", "high", "at_least") if part.get(key) is not None]
+    least, most = _ends([math.log(value) for value in every], _MARGIN)
+
+    def at(value: float) -> float:
+        return _BEFORE + (_WIDTH - _BEFORE - _AFTER) * (math.log(value) - least) / (most - least)
+
+    ticks = list[tuple[float, str]]()
+    for value in _VALUES:
+        if least <= math.log(value) <= most and (not ticks or at(value) - ticks[-1][0] >= _APART):
+            ticks.append((at(value), f"{value:g}"))
+    rows = []
+    for k, part in enumerate(parts):
+        begin, end = at(part["low"]), _WIDTH - _AFTER if part["high"] is None else at(part["high"])
+        wide = max(end - begin - _TIP, 0.0) if part["high"] is None else max(end - begin, _SHORT)
+        rows.append({**part, "y": _ROW * k + 6, "x": begin, "end": end, "wide": wide, "span": span(part)})
+    said = ["Each grey bar has one assumption changed. The band takes these parts as independent."]
+    said += ["An arrow is an open end."] if kept["high"] is None else []
+    said += [note for part in kept["parts"] for note in notes(part)]
+    return render(
+        "bars.svg", rows=rows, ticks=ticks, at=at(mu), foot=_ROW * len(rows) + 4, tip=_TIP, of=of, width=_WIDTH,
+        before=_BEFORE - 8, after=_WIDTH - _AFTER + 8, said=" ".join(said),
+    )  # fmt: skip
