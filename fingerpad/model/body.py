@@ -48,7 +48,7 @@ from variational.solvers.continuation import Attempt, StepFailed, Target
 from variational.state import ContactState, Skin, StepRecord
 
 Array = NDArray[np.float64]
-_Quantity = float | str
+Quantity = float | str
 """A number in SI, or a text with a unit: ``"0.0044 N/mm"``."""
 _TOLERANCE = 1e-9  # of the solves, over the force scale
 _FARTHEST = 1000.0  # of the size of the body: a slide in millimetres, given as metres
@@ -155,7 +155,7 @@ class Body(StatePrinted):
 
     # -- loads -------------------------------------------------------------------------------------------
     def press(
-        self, f_ext: _Quantity | None = None, *, height: _Quantity | None = None, seconds: _Quantity | None = None
+        self, f_ext: Quantity | None = None, *, height: Quantity | None = None, seconds: Quantity | None = None
     ) -> "Body":
         """Press the body, by a force or by the height of the bone; return the body.
 
@@ -179,7 +179,7 @@ class Body(StatePrinted):
             raise ValueError(f"f_ext is {force:g} N/m; it must be positive; lift() takes a body off the screen")
         return self._reach(Target("press", f_ext=force), seconds)
 
-    def lift(self, height: _Quantity = 0.0, *, seconds: _Quantity | None = None) -> "Body":
+    def lift(self, height: Quantity = 0.0, *, seconds: Quantity | None = None) -> "Body":
         """Lift the bone by displacement; return the body.
 
         Args:
@@ -193,7 +193,7 @@ class Body(StatePrinted):
         """
         return self._reach(Target("lift", bone_height=_finite("height", height, "m")), seconds)
 
-    def charge(self, voltage: _Quantity, *, seconds: _Quantity | None = None) -> "Body":
+    def charge(self, voltage: Quantity, *, seconds: Quantity | None = None) -> "Body":
         """Change the voltage between screen and body, without leakage; return the body.
 
         Args:
@@ -210,7 +210,7 @@ class Body(StatePrinted):
         return self._reach(Target("charge", voltage=u), seconds)
 
     def slide(
-        self, distance: _Quantity | None = None, *, until_full_slip: bool = False, seconds: _Quantity | None = None
+        self, distance: Quantity | None = None, *, until_full_slip: bool = False, seconds: Quantity | None = None
     ) -> "Body":
         """Move the bone sideways; return the body.
 
@@ -242,7 +242,7 @@ class Body(StatePrinted):
             raise StepFailed(f"slide: there is no full slip within {abs(far):g} m; give a larger distance")
         return self
 
-    def _reach(self, target: Target, seconds: _Quantity | None) -> "Body":
+    def _reach(self, target: Target, seconds: Quantity | None) -> "Body":
         if seconds is None and self.problem.in_time:
             raise ValueError(
                 f"{target.name} takes seconds, how long the load lasts, 0 for at once: the state of a body with a "
@@ -318,27 +318,25 @@ def _solids(mesh: TaggedMesh, material: Material | Mapping[str, Material]) -> di
         return dict.fromkeys(layers.values(), material)
     if not isinstance(material, Mapping):
         raise ValueError(f"material is {material!r}; it must be a Material, or a dictionary of one for each layer")
-    listed = ", ".join(map(repr, layers))
-    given, material = material, {}
-    for key, solid in given.items():
+    listed, found = ", ".join(map(repr, layers)), dict[str, Material]()
+    for key, solid in material.items():
         name = key.replace("_", " ") if isinstance(key, str) else key
-        if name in material:
+        if name in found:
             raise ValueError(f"there are two materials for the layer {name!r}, with a space and with _; give it once")
-        material[name] = solid
-    for name in material:
         if name not in layers:
             near = get_close_matches(str(name), layers, n=1)
             hint = f"did you mean {near[0]!r}?" if near else f"its layers are {listed}"
             raise ValueError(f"there is a material for {name!r}, which is no layer of the body; {hint}")
-        if not isinstance(material[name], Material):
-            raise ValueError(f"the material of {name!r} is {material[name]!r}; it must be a Material")
-    missing = next((name for name in layers if name not in material), None)
+        if not isinstance(solid, Material):
+            raise ValueError(f"the material of {name!r} is {solid!r}; it must be a Material")
+        found[name] = solid
+    missing = next((name for name in layers if name not in found), None)
     if missing is not None:
         raise ValueError(f"there is no material for the layer {missing!r}; the body's layers are {listed}")
-    return {tag: material[name] for name, tag in layers.items()}
+    return {tag: found[name] for name, tag in layers.items()}
 
 
-def _finite(name: str, value: _Quantity | None, unit: str) -> float:
+def _finite(name: str, value: Quantity | None, unit: str) -> float:
     """Return a number in SI; a text has a unit of its own."""
     if isinstance(value, str):
         try:

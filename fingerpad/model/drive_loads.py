@@ -69,7 +69,7 @@ def gap_factor(scene: Scene) -> GapFactor | None:
     return GapFactor(tuple(float(f"{ratio:.12g}") for ratio in drive.effective(GAPS) / drive.reference))
 
 
-def loads(scene: Scene) -> "tuple[Load, ...]":
+def loads(scene: Scene) -> tuple[Load, ...]:
     """Return the loads of a scene with the voltages that the full model follows.
 
     Raises:
