@@ -19,8 +19,7 @@ from matplotlib.figure import Figure
 import fingerpad as fp
 from fingerpad.reduced.cylinders import tip_radius
 from fingerpad.startup import MPI
-from geometry import tags
-from variational.attraction.cylinder import Cylinder
+from variational.attraction.cylinder import Cylinder, hertz_modulus
 
 MU_0 = 0.25
 SMALL = Path(__file__).parent / "scenes" / "small_finger.toml"
@@ -28,19 +27,20 @@ SMALL = Path(__file__).parent / "scenes" / "small_finger.toml"
 
 # %% [markdown]
 # For comparison: the full model with finite elements of every ridge, here of a small finger. The model "cylinders"
-# contains the contact length of the default finger. For another finger one cylinder is computed over the length in
-# contact that the full model has.
+# contains the contact length of the default finger without voltage. For another finger it is that of the full model: by
+# Hertz's law it is the modulus of a ridge.
 
 
 # %%
 def beside(voltage: float, scene: fp.Scene) -> tuple[float, float]:
     """Return µ_app of the full model and of the cylinders at a voltage (V)."""
     scene = scene.replace(voltage=voltage)
-    slip = fp.run(scene).full_slip
+    result = fp.run(scene)
+    slip, press = result.full_slip, result.uncharged
     assert abs(slip.f_t - MU_0 * slip.f_contact) < 1e-6 * slip.f_ext
-    n, modulus = slip.ridges_in_contact, scene.solids()[tags.STRATUM_CORNEUM].plane_modulus
-    cylinder = Cylinder(tip_radius(scene.geometry), modulus, scene.h_0, scene.closure())
-    ridge = cylinder.over_length(slip.contact_length / n, scene.f_ext / n, voltage)
+    n, radius = press.ridges_in_contact, tip_radius(scene.geometry)
+    modulus = hertz_modulus(radius, scene.f_ext / n, press.contact_length / n).item()
+    (ridge,) = Cylinder(radius, modulus, scene.h_0, scene.closure()).under_loads([scene.f_ext / n], voltage)
     return slip.mu_app, MU_0 * n * ridge.f_contact / scene.f_ext
 
 

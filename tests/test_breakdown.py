@@ -1,6 +1,5 @@
 """Breakdown of air by the field in the gap of each ridge, in states of the full model."""
 
-import warnings
 from dataclasses import replace
 
 import numpy as np
@@ -100,11 +99,6 @@ def test_before_a_run(scene, volts):
     assert "in a ridge under 10 kPa" in found and "from 330 V on air breaks down there" in found
 
 
-def test_nothing_is_said_of_voltages_that_air_bears():
-    """200 V leave 160 V across a gap of 2 µm."""
-    assert breakdown_ahead(fp.Scene(voltage=200.0)) == breakdown_ahead(fp.Scene(voltage=0.0)) == []
-
-
 @pytest.mark.parametrize("command", [["check"], ["estimate", "--force", "0.5 N"]])
 def test_commands_tell_before_a_run(command, capsys, tmp_path, monkeypatch):
     """At 450 V there is a friction."""
@@ -132,19 +126,6 @@ def test_one_voltage_of_breakdown():
     (small, large) = breaking_gaps(600.0, H_0)
     assert 600.0 * large[0] / (H_0 + large[0]) == pytest.approx(330.0) or large[0] == pytest.approx(330.0 / 350e6)
     assert float(breakdown_voltage(5e-6)) == 330.0
-
-
-@pytest.mark.slow
-def test_run_has_the_caution():
-    """In its result and its summary; half of the voltage has none."""
-    for volts, told in ((450.0, 1), (225.0, 0)):
-        history = [{"name": "press", "f_ext": 1.0}, {"name": "charge", "voltage": volts}]
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")  # of the same breakdown, before the run
-            found = fp.run(fp.Scene(**NINE, history=history, output=OUTPUT))
-        cautions = [text for text in found.cautions if "air breaks down" in text]
-        assert len(cautions) == told
-        assert all(" in 'charge', step" in text and text in str(found) for text in cautions)
 
 
 # -- losses in newtons and in direct states ----------------------------------------------------------------

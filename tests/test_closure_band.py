@@ -47,11 +47,6 @@ def test_points_of_a_sweep_have_the_band(result):
     assert none.closures == {} and point.closures == pytest.approx(result.closures, rel=1e-9)
 
 
-def test_section_of_a_force_has_the_band():
-    found = fp.run(fp.Scene(force="0.5 N", voltage=70.7), model="cylinders")
-    assert found.closures["bearing area"] == pytest.approx(found.full_slip.mu_app, rel=1e-9)
-
-
 def test_own_closure_is_in_the_band():
     """With boundary elements of another shortest wave the others have it too."""
     given = {"law": "BoundaryElements", "shortest_wave": 4e-6, "field_in_contact": False}
@@ -112,11 +107,6 @@ def test_closure_beyond_its_table_has_no_number():
     assert f"to {largest:.2f} (Persson's theory, no field in contact) at full slip." in text
     assert f" No number by {' and '.join(none)}: ridges adhere at 200 V. " in text
     assert band_in_words({}) == ""
-
-
-def test_no_band_without_voltage_or_friction():
-    for scene in (fp.Scene(voltage=0.0), fp.Scene(friction=0.0)):
-        assert BAND not in fp.run(scene, model="cylinders").record
 
 
 def test_no_band_with_a_law_of_ones_own():

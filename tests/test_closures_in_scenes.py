@@ -1,7 +1,5 @@
 """Closures of rough contact in scenes, height maps, the command microscale and sweeps."""
 
-import re
-
 import numpy as np
 import pytest
 
@@ -9,7 +7,6 @@ import fingerpad as fp
 from fingerpad.cli import main
 from fingerpad.cli import roughness as microscale
 from fingerpad.scene import with_values
-from tests.test_microscale_closures import CLOSURES
 from variational.roughness.spectrum import SelfAffine
 
 
@@ -87,37 +84,6 @@ def test_microscale_table(law):
     for row in microscale.table(scene, [100.0], [5e3, 5e4]):
         assert row["p_el"] == pytest.approx(float(scene.roughness.attraction(row["p_c"], 100.0)), rel=1e-4)
         assert row["p_ext"] == pytest.approx(row["p_c"] - row["p_el"])
-
-
-@pytest.mark.parametrize(
-    ("name", "pressures", "ends"),
-    [("boundary elements", "5e3,1e5", 2), ("boundary elements", "1e4", 1), ("persson", "1e4", 0)],
-)
-def test_microscale_prints_the_scatter(capsys, name, pressures, ends):
-    """Of boundary elements some per cent, one number where there is one alone; theory has none."""
-    closure = CLOSURES[name]
-    assert main(["microscale", "--set", f"roughness.law={type(closure).__name__}", "--p", pressures]) == 0
-    found = re.findall(r"to the next the air gap scatters by (.*) % \(rms\)", capsys.readouterr().out)
-    p = np.array([float(each) for each in pressures.split(",")])
-    known = sorted(100 * closure.spread(p) / closure(p).d_eq)
-    assert found == ([" to ".join(f"{share:.2g}" for share in known)] if ends else []) and len(known) >= ends
-
-
-@pytest.mark.parametrize(
-    ("changes", "begin"),
-    [
-        ({}, "1 kPa (roughness.p_floor)"),
-        ({"law": "BoundaryElements"}, "1 kPa (roughness.p_floor)"),
-        ({"law": "BoundaryElements", "p_floor": 1.0}, " kPa (the beginning of the table of gaps)"),
-    ],
-)
-def test_microscale_prints_where_the_air_gap_begins_to_follow(capsys, changes, begin):
-    """At the larger one of p_floor and the least pressure of the table."""
-    settings = [part for key, value in changes.items() for part in ("--set", f"roughness.{key}={value}")]
-    assert main(["microscale", *settings, "--p", "1e4"]) == 0
-    (line,) = re.findall("The air gap stays constant below .*", capsys.readouterr().out)
-    closure = microscale.microscopic(fp.Scene(roughness=changes))
-    assert f"{closure.pressures[0] * 1e-3:.4g} kPa (" in line and begin in line
 
 
 def test_sweep_over_closures_is_of_one_surface():

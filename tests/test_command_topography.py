@@ -1,16 +1,10 @@
 """Roughness from a measured height map, by the command and in a scene."""
 
-import itertools
-import re
-import sys
-from types import SimpleNamespace
-
 import numpy as np
 import pytest
 
-from fingerpad import launcher
 from fingerpad.cli import main
-from fingerpad.scene import from_data, load, materials
+from fingerpad.scene import from_data, load
 from fingerpad.scene.messages import SceneError
 from fingerpad.scene.remarks import remarks
 from tests.commands import refused
@@ -119,29 +113,3 @@ def test_map_smaller_than_the_longest_waves_is_told(tmp_path, capsys, width, tol
     topography = {"file": str(tmp_path / "map.npy"), "unit": "m", "size": [width, width]}
     scene = from_data({"roughness": {"topography": topography}})
     assert any("roughness ends at waves" in text for text in remarks(scene)) == told
-
-
-@pytest.mark.parametrize(("terminal", "rank"), [(True, 0), (False, 0), (False, 1)])
-def test_progress_of_a_maps_table(tmp_path, monkeypatch, capsys, terminal, rank):
-    """In a terminal one line that is written over; elsewhere, by a clock of 12 s a contact, each third contact's.
-
-    Of several processes the first alone has it.
-    """
-    monkeypatch.setenv("FINGERPAD_CACHE", str(tmp_path))
-    monkeypatch.setattr(launcher, "rank", lambda: rank)
-    clock = itertools.count(step=12.0)
-    monkeypatch.setattr(materials, "time", SimpleNamespace(monotonic=lambda: next(clock)))
-    monkeypatch.setattr(sys.stderr, "isatty", lambda: terminal)
-    rough = SelfAffine(2.0, 0.8, 40.0, shortest=12.0).surface((48, 48), (100.0, 100.0), 1)
-    np.save(tmp_path / "skin.npy", rough.heights)
-    given = {"file": str(tmp_path / "skin.npy"), "unit": "um", "size": ["100 um", "100 um"]}
-    from_data({"roughness": {"law": "BoundaryElements", "topography": given}})
-    text = capsys.readouterr().err
-    if rank:
-        assert text == ""
-        return
-    (of,) = {int(number) for number in re.findall(r"of the height map: \d+ of (\d+)", text)}
-    lines = [f"contacts of the height map: {k} of {of}" for k in range(1, of + 1)]
-    assert text == (
-        "".join(f"\r{line}" for line in lines) + "\n" if terminal else "".join(f"{x}\n" for x in lines[2::3])
-    )

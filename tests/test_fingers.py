@@ -97,7 +97,7 @@ def test_record_of_a_run_changes_its_name(name, tmp_path):
 
 def test_mesh_of_a_file_keeps_its_shape():
     """The name gives no lengths beside a mesh but the thickness that the attraction reads."""
-    data = with_presets({"finger": "child", "geometry": {"file": "finger.msh"}})
+    data = with_presets({"finger": "child", "geometry": {"file": "finger.msh"}}, {})
     assert data["geometry"] == {"file": "finger.msh", "sc_thickness": FINGERS["child"].values["geometry.sc_thickness"]}
 
 

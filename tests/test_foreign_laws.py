@@ -139,7 +139,6 @@ def test_option_names_a_folder_even_of_the_scene(user, capsys, monkeypatch):
     monkeypatch.syspath_prepend(got)
     assert main(words) == 2 and BELOW in capsys.readouterr().err
     assert main([*words, "--laws", str(got)]) == 0
-    assert "Friction Mine()." in capsys.readouterr().out
 
 
 @pytest.mark.parametrize("name", ["none", "a:b", "file.py"])

@@ -59,11 +59,6 @@ def test_roughness_is_that_of_runs_with_it(result):
         assert parts(result)[name] == pytest.approx([result.headline.value * ratio for ratio in ratios], rel=1e-9)
 
 
-def test_blunter_tips_raise_friction(result):
-    low, high = parts(result)["tips"]
-    assert low < result.headline.value < high
-
-
 @pytest.mark.parametrize("load", [{"force": "0.5 N"}, {"f_ext": 70.0}])
 def test_band_is_of_the_headline(load):
     """The whole finger's, with or without a force in newtons; slices are a part where their error is known."""
@@ -177,12 +172,6 @@ def test_reason_of_no_number(result, voltage, why):
     law = fp.BoundaryElements(result.scene.h_0)
     slip = replace(result.full_slip, voltage=voltage, f_ext=5000.0)
     assert friction(result.scene, slip, law, None) == Slip(np.inf, why)
-
-
-def test_none_without_voltage_or_friction():
-    for scene in (fp.Scene(voltage=0.0), fp.Scene(friction=0.0)):
-        found = fp.run(scene, model="cylinders")
-        assert found.known == {} and known_in_words({}) == bars(found) == ""
 
 
 def test_text_files_and_picture_have_it(result):

@@ -182,10 +182,3 @@ def test_a_value_beyond_all_ranges_is_told_the_nearest_one():
         assert outside.key == "friction"
         assert f"{end:g}" in outside.known.split(" to ")
     assert cylinder_errors.find(Scene(friction=0.1, voltage=150.0)) is not None
-
-
-def test_zero_is_told_the_lowest_range():
-    """Of several ranges of the friction coefficient, that which begins at the lowest value."""
-    (friction,) = [each for each in cylinder_errors.outside(Scene(friction=0.0)) if each.key == "friction"]
-    lowest = min(region.ranges["friction"][0] for region in cylinder_errors.REGIONS if "friction" in region.ranges)
-    assert friction.known.startswith(f"{lowest:g} ")

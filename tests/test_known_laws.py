@@ -8,7 +8,6 @@ import pytest
 import fingerpad as fp
 from benchmarks import harness
 from fingerpad.reduced.closure_band import LAW, laws_like, powers, with_band
-from tests.small_finger import NINE
 
 
 def cylinders(**keys):
@@ -120,11 +119,3 @@ def test_reason_is_a_note(keys, why):
         pytest.skip(str(error))
     found = with_band(replace(result, scene=scene, record={}))
     assert found.notes[-1] == f"No likely range of µ_app is computed: {why}." and found.known == {}
-
-
-@pytest.mark.slow
-def test_full_run_without_friction_ends_well():
-    """Its friction at full slip is roundoff of forces, over which no band is taken."""
-    lean = {"receptors": False, "errors": False}
-    found = fp.run(fp.Scene(**NINE, f_ext=1.0, voltage=50.0, friction=0.0, output=lean))
-    assert not found.failure and found.known == {}

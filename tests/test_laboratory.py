@@ -89,14 +89,6 @@ def test_nothing_is_fitted_to_one_kind_of_rows(grid, columns):
     assert found.attrs["fit"] == {} and "mu_0" not in found
 
 
-def test_attraction_is_zero_without_voltage(grid):
-    """It is read, and has no ratio."""
-    table = pd.DataFrame({"force (N/m)": [75, 75], "voltage (V)": [0, 200], "attraction (N/m)": [0.0, 60.0]})
-    found = fp.compare(table, grid)
-    assert found.computed.iloc[0] == 0 and np.isnan(found.relative_difference.iloc[0])
-    assert found.attrs["misfit"]["rows"] == 1
-
-
 def test_command_prints_fit_and_remarks(grid, tmp_path, capsys):
     """Fit, signs and ignored columns in words; a column for the coefficient in the file; a picture."""
     file = tmp_path / "lab.csv"

@@ -3,7 +3,6 @@
 import json
 import re
 from dataclasses import dataclass, fields
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -234,15 +233,6 @@ def test_law_of_the_package_is_one_line_of_a_registry(kind, law, table, key, mon
         load(None, flat(table) | {key: "1 s"})
     if kind in (FRICTION_LAWS, CLOSURES):  # with others the contact length is another
         cylinders.solve(scene)
-
-
-def test_registries_of_the_recipes_are_there():
-    """Each row of CONTRIBUTING for a law names a folder and a registry, which this test's laws were added to."""
-    rows = (Path(__file__).parents[1] / "CONTRIBUTING.md").read_text(encoding="utf-8").splitlines()
-    names = {"friction law": "FRICTION_LAWS", "material": "MATERIALS", "model of roughness": "CLOSURES"}
-    for what, name in (names | {"contact formulation": "FORMULATIONS"}).items():
-        file = "materials" if what in names else "parameters"
-        assert any(f"| {what} |" in row and f"`{name}` in `fingerpad/scene/{file}.py`" in row for row in rows), what
 
 
 # -- scenes apart ----------------------------------------------------------------------------------------------

@@ -120,8 +120,6 @@ def test_no_column_is_guessed(grid, columns, words):
     ("given", "words"),
     [
         ({"table": [[75, 0.3]]}, "table is of the type list; it must be a DataFrame of pandas, or the path"),
-        ({"result": None}, "result is of the type NoneType; it must be a result of fp.run, a sweep"),
-        ({"result": fp.Body(fp.geometry.block(1e-3, 1e-4, 1e-4), fp.NeoHooke(1e5, 0.4))}, "result is of the type Body"),
         ({"result": [Scene()]}, "result is of the type Scene; it must be a result of fp.run, a sweep"),
         ({"result": []}, "result is empty; it must be a result of fp.run, a sweep"),
         ({"columns": ["friction"]}, "columns is of the type list; it must be names by heads, as {'CoF'"),
@@ -150,10 +148,6 @@ HEADS = "force (N/m), friction (1)\n"
     ("text", "words"),
     [
         ("force, friction (1)\n1, 2\n", "has 'force' without a unit; write 'force (N/m)' in the head"),
-        (
-            "force (furlong), friction (1)\n1, 2\n",
-            "has 'force (furlong)' in 'furlong', which is not a unit of force per",
-        ),
         ("force (N/m), friction force (N)\n1, 2\n", "it must be in N, as another column is of a whole finger"),
         (
             "voltage (g), friction (1)\n1, 2\n",
@@ -162,26 +156,15 @@ HEADS = "force (N/m), friction (1)\n"
         ("voltage (V), friction (N)\n1, 2\n", "has 'friction (N)' in 'N', which is not a number; it must be in 1 or %"),
         ("force (N), contact length (mm)\n1, 2\n", "has contact length, and a whole finger, which has a column in new"),
         (HEADS + "1, 2\n3,\n", "has nothing in line 4 of 'friction (1)'; it must be a finite number"),
-        (HEADS + ", 2\n", "has nothing in line 3 of 'force (N/m)'; it must be a finite number"),
         (HEADS + "1, 0\n", "has '0' in line 3 of 'friction (1)'; it must be a finite number other"),
         ("force (N/m), contact length (mm)\n1, -2\n", "has '-2' in line 3 of 'contact length (mm)'; it must be"),
         (
             "force (N/m); friction (1)\n1; 1.000,5\n",
             "in line 3 of 'friction (1)'; it must be a finite number; decimals have",
         ),
-        (
-            "force (N/m); friction (1)\n1; 2; 3\n",
-            "has more cells in line 3 than its 2 heads; each cell must have a head",
-        ),
         ("voltage (V), attraction (N/m)\n5, 0\n", "has '0' in line 3 of 'attraction (N/m)'; it must be other"),
         ('friction (1)\n"0.2\n', "is no table in CSV: a quotation in line 3 does not end there"),
-        (HEADS + "1, 1_0\n", "has '1_0' in line 3 of 'friction (1)'; it must be a finite number"),
         (HEADS + "1, 0,2\n", "has more cells in line 3 than its 2 heads; decimals have points"),
-        ("voltage (V), friction (1)\ninf, 0.2\n", "has 'inf' in line 3 of 'voltage (V)'; it must be a finite number"),
-        (
-            "force (N/m), friction (1), spread (mm)\n1, 2, 3\n",
-            "has 'spread (mm)' in 'mm', which is not a number; it must be in 1 or %",
-        ),
         ("# state: sideways\n" + HEADS + "1, 2\n", "has the state 'sideways'; it must be one of uncharged, ch"),
         ("# State: Charged\nforce (N/m), friction force (N/m)\n1, 2\n", "has friction force at the state charged; bef"),
         ("", "has no numbers below a header"),
@@ -247,31 +230,23 @@ def test_misfit_is_printed_and_drawn(folder, table, tmp_path, capsys):
 
 def test_numbers_are_written(folder, table, tmp_path, capsys):
     """In SI units and unrounded, a row for each row of every table; what is missing is empty."""
-    tmp_path = tmp_path / ("a" * 120)  # longer than what a message shows of a path
-    tmp_path.mkdir()
     first = table("force (N/mm), voltage (V), contact length (mm), spread (um)\n0.025, 100, 1, 20\n0.9, 0, 1,\n")
-    second = first.rename(tmp_path / "first.csv"), table("force (N/m), voltage (V), friction (1)\n75, 100, 0.3\n")
+    both = first.rename(tmp_path / "first.csv"), table("force (N/m), voltage (V), friction (1)\n75, 100, 0.3\n")
     csv_file = tmp_path / "out.csv"
-    argv = ["compare-data", *map(str, second), "--sweep", str(folder), "--csv", str(csv_file)]
+    argv = ["compare-data", *map(str, both), "--sweep", str(folder), "--csv", str(csv_file)]
     assert main(argv) == 0
     assert capsys.readouterr().out.endswith(f"Written: {csv_file}\n")
     rows = rows_of(tmp_path, "out")
-    assert [(row["quantity"], row["state"], row["unit"]) for row in rows] == [
-        *[("contact length", "full slip", "m")] * 2,
-        ("friction", "full slip", "1"),
-    ]
-    assert rows[0]["table"] == str(tmp_path / "first.csv") and rows[0]["force_unit"] == "N/m"
+    kinds = [(row["quantity"], row["state"], row["unit"]) for row in rows]
+    assert kinds == [*[("contact length", "full slip", "m")] * 2, ("friction", "full slip", "1")]
     numbers = [float(rows[0][key]) for key in ("force", "voltage", "measured", "spread")]
     assert numbers == pytest.approx([25, 100, 1e-3, 2e-5], rel=1e-12)
     assert float(rows[0]["difference"]) == float(rows[0]["computed"]) - float(rows[0]["measured"])
-    empty = ("spread", "computed", "error", "difference", "relative_difference")
-    assert [rows[1][key] for key in empty] == [""] * 5
+    assert [rows[1][key] for key in ("spread", "computed", "error", "difference", "relative_difference")] == [""] * 5
     assert float(rows[2]["computed"]) == at(computed(folder, asked()), [75.0], [100.0])[0]
-    said = refused(capsys, *argv, "--out", str(csv_file))
-    assert "out.csv cannot be a picture" in said
-    measured = str(tmp_path / "first.csv")
     before = (tmp_path / "first.csv").read_bytes()
-    assert "first.csv is there and is not a table of this command" in refused(capsys, *argv[:-1], measured)
+    said = refused(capsys, *argv[:-1], str(tmp_path / "first.csv"))
+    assert "first.csv is there and is not a table of this command" in said
     assert (tmp_path / "first.csv").read_bytes() == before
 
 

@@ -15,7 +15,6 @@ from tests.runs import followed
 from tests.small_finger import NINE, small
 from tests.test_laws import DERJAGUIN, OWN, Held
 from variational.contact.friction import CONE_ROUNDOFF, Coulomb, Derjaguin, Friction
-from variational.materials.neo_hooke import NeoHooke
 from variational.roughness.closure import AirGap, check
 from variational.solvers.coupling import Coupling
 
@@ -72,12 +71,6 @@ def test_cylinders_take_any_closure():
     found = cylinders.solve(Scene(roughness=Held()))
     assert found.record["full_slip_d_eq"] == 2e-6
     assert found.full_slip.f_electrostatic != cylinders.solve(Scene()).full_slip.f_electrostatic
-
-
-def test_cylinders_know_the_default_fingers_lengths_alone():
-    scene = Scene(materials={"stratum_corneum": NeoHooke(1e5)})
-    with pytest.raises(SceneError, match="materials is not that of the default finger or of one similar to it, whose"):
-        cylinders.solve(scene)
 
 
 def test_rule_of_thumb_takes_a_law():

@@ -69,7 +69,10 @@ def test_output_is_read_back(result):
 
 
 def test_output_of_a_sweep(tmp_path):
-    found = fp.sweep(fp.Scene(), tmp_path, model="cylinders", voltage=[0, 200], outputs=[P_MEAN])
+    hidden = fp.Output("hidden", "N/m", lambda state: state.f_t, tables={"result"})
+    found = fp.sweep(fp.Scene(), tmp_path, model="cylinders", voltage=[0, 200], outputs=[P_MEAN, hidden])
+    assert found.array("hidden")[0] > 0 and "hidden" in str(found[0]) and "hidden" not in str(found)
+    assert not any("hidden" in row for row in found.rows())
     values = [each.full_slip.f_contact / each.full_slip.contact_length for each in found]
     assert found.array("p_mean").tolist() == values
     assert [float(row["full_slip_p_mean"]) for row in rows_of(tmp_path, "table")] == values
@@ -93,7 +96,7 @@ def test_entry_of_the_package_is_everywhere(tmp_path, monkeypatch):
     [
         (P_MEAN, "it must be a list of fingerpad.Output"),
         (["p_mean"], "it must be a list of fingerpad.Output"),
-        ([fp.Output("p_mean", "Pa", max, tables={"report"})], "has the table 'report'; tables are load, result, sweep"),
+        ([fp.Output("p_mean", "Pa", max, tables={"report"})], "has the table 'report'; tables are result, sweep"),
         ([P_MEAN, fp.Output("p_mean", "Pa", max)], "called .*p_mean.*; it must have a name of its own"),
         ([fp.Output("f_t", "N/m", max)], "called .*f_t.*; it must have a name of its own"),
         ([fp.Output("mean p", "Pa", max)], "called .*mean p.*; it must have a name of its own"),

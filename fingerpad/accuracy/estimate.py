@@ -1,22 +1,20 @@
 """Estimated discretisation errors of named states: what a result, a summary and a console have of them."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import fields, replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from fingerpad.accuracy.richardson import RECEPTOR, TWO, of_sum, of_two_meshes, rigid
 from fingerpad.accuracy.states import Solve, with_values
+from fingerpad.model.options import FingerModel
 from fingerpad.results.quantities import QUANTITIES, Output, plus_minus
 from fingerpad.results.states import WORDS
 from fingerpad.scene.messages import SceneError
 from variational.element import ELEMENTS
 from variational.state import ContactState, Errors
 
-if TYPE_CHECKING:
-    from fingerpad.accuracy.solves import Solves
-
-_ROUNDOFF = 1e-9  # relative: friction without voltage does not depend on the mesh
+_SAME_VALUE = 1e-9  # relative: friction without voltage does not depend on the mesh
 
 
 class Estimate:
@@ -26,21 +24,21 @@ class Estimate:
         model: with the mesh of the path.
         base: the states that the errors are of.
         coarse: the same on a coarser mesh; None where there is none.
-        solves: all that was solved.
         failure: why the accuracy asked for is not reached, else empty.
         notes: remarks on the estimate.
         penalty: change of each quantity by a rigid screen, where contact is a penalty and this is estimated.
         degree: of the elements.
     """
 
-    def __init__(self, solves: "Solves") -> None:
+    def __init__(self, model: FingerModel, base: Solve, show: Callable[[str], None]) -> None:
         """Begin with the states of the path.
 
         Args:
-            solves: the path's alone.
+            model: with the mesh of the path.
+            base: the path's states.
+            show: prints a line.
         """
-        self.solves, self._show, self.model = solves, solves.show, solves.model
-        (self.base,) = solves.found
+        self.model, self.base, self._show = model, base, show
         self.coarse: Solve | None = None
         self.failure, self.notes = "", list[str]()
         self.penalty: dict[str, float] = {}
@@ -54,10 +52,6 @@ class Estimate:
     def allowed(self) -> dict[str, float]:
         """Return the largest error allowed of each quantity that is asked for, in its unit."""
         return {}
-
-    def cautions(self) -> list[str]:
-        """Return which states roundoff may have chosen among others."""
-        return [each for solve in self.solves.found for each in solve.doubts]
 
     def summary(self) -> dict[str, Any]:
         """Return how errors were found, ready for JSON; collective."""
@@ -80,7 +74,6 @@ class Estimate:
             "step_scale": self.model.numerics.step_scale,
             "quantities": quantities,
             "notes": self.notes,
-            **self.solves.cost(),
         }
 
     def _compare(self, coarse: Solve, fine: Solve, short: bool = True) -> None:
@@ -114,7 +107,7 @@ class Estimate:
         """Print the values of the states with their errors."""
         values, found, allowed = self.base.values(), self.estimates(), self.allowed()
         for name, error in found.items():
-            if "_sed_" in name or error <= _ROUNDOFF * abs(values[name]):
+            if "_sed_" in name or error <= _SAME_VALUE * abs(values[name]):
                 continue
             quantity, words = of_key(name)
             limit = f", {allowed[name] * quantity.scale:.2g} allowed" if name in allowed else ""

@@ -20,10 +20,11 @@ beside it. Not estimated: the effect on normal contact of a friction history tha
 import math
 from collections.abc import Mapping
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from fingerpad.accuracy.estimate import Estimate, of_key
 from fingerpad.accuracy.richardson import MeshParameter, errors, rigid, to_refine
+from fingerpad.accuracy.solves import Solves
 from fingerpad.accuracy.states import Solve, quantities
 from fingerpad.model.cautions import lost
 from fingerpad.model.simulation import RestartRequired
@@ -32,9 +33,6 @@ from fingerpad.results.states import WORDS
 from fingerpad.scene.messages import counted
 from geometry.profiles import GeometryError
 from variational.solvers.continuation import StepFailed
-
-if TYPE_CHECKING:
-    from fingerpad.accuracy.solves import Solves
 
 _SIZES = {"contact": ("contact",), "bulk": ("growth", "interface", "coarsest"), "receptor": ("receptor",)}
 _ROUNDS = 6  # of refinement
@@ -46,10 +44,11 @@ class Refinement(Estimate):
     Attributes:
         refinements: how often each mesh parameter was halved.
         stiffer: the contact over a screen of twice the stiffness; None where the screen is rigid.
+        solves: all that was solved.
         to_come: solves that are still to come, the one that starts now among them; more where they are not enough.
     """
 
-    def __init__(self, solves: "Solves") -> None:
+    def __init__(self, solves: Solves) -> None:
         """Choose the mesh parameters.
 
         Args:
@@ -58,7 +57,8 @@ class Refinement(Estimate):
         Raises:
             StepFailed: the path has no state in which a quantity asked for is known.
         """
-        super().__init__(solves)
+        super().__init__(solves.model, solves.found[0], solves.show)
+        self.solves = solves
         path, model = self.base, self.model
         self.asked = model.asked
         for name in {"mu_app", "f_t"} & set(self.asked) if "full_slip" not in path.states else ():
@@ -197,7 +197,8 @@ class Refinement(Estimate):
     def summary(self) -> dict[str, Any]:
         """Return how errors were found, ready for JSON; collective."""
         step_scale = self._step_scale(self.refinements.get("steps", 0))
-        return super().summary() | {"reached": self._met and not self.failure, "step_scale": step_scale}
+        met = {"reached": self._met and not self.failure, "step_scale": step_scale}
+        return super().summary() | met | self.solves.cost()
 
     def _shares(self, name: str, error: float) -> dict[str, float]:
         if not self.asked:

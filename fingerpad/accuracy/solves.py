@@ -290,6 +290,10 @@ class Solves:
         )
         return solve
 
+    def doubts(self) -> list[str]:
+        """Return which states roundoff may have chosen among others, a sentence each."""
+        return [each for solve in self.found for each in solve.doubts]
+
     def least(self) -> float:
         """Return the processor time (s) of this rank of the last solve on another mesh; 0 where none was made.
 

@@ -57,6 +57,7 @@ class WholePath(Estimate):
     """Errors of a path's named states, and of the path over time, from the path on elements twice as large.
 
     Attributes:
+        solves: all that was solved.
         over_time: largest difference of the two paths over time by quantity, over its largest amount; empty where no
             load takes time.
     """
@@ -69,7 +70,8 @@ class WholePath(Estimate):
             states: accepted states of the path.
             on_step: called with the part of the coarser path that is done; may raise to stop.
         """
-        super().__init__(solves)
+        super().__init__(solves.model, solves.found[0], solves.show)
+        self.solves = solves
         self._states, self._on_step = states, on_step
         self._simulation: Simulation | None = None  # on the coarser mesh
         self._stimuli: SiteStimuli | None = None
@@ -108,7 +110,7 @@ class WholePath(Estimate):
         over_time = {
             name: {"difference": difference, "error": self._errors[name]} for name, difference in self.over_time.items()
         }
-        return super().summary() | ({"over_time": over_time} if over_time else {})
+        return super().summary() | self.solves.cost() | ({"over_time": over_time} if over_time else {})
 
     def _accepted(self, simulation: Simulation, step: Step, done: float) -> None:
         """Keep an accepted state of the coarser path; collective."""

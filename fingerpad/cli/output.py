@@ -20,8 +20,6 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-ERROR_KNOWN = Output("error_known", "", meaning="1 where the error of the closed form is known, else 0")
-"""First column of the table of a heat map."""
 _DASHES = ("-", "--", "-.", ":", (0, (6, 1, 1, 1, 1, 1)), (0, (8, 3)), (0, (1, 3)))
 _MAX_MARKERS = 15  # points up to which each has a marker
 
@@ -45,21 +43,18 @@ def write(file: Path, columns: Sequence[Output], rows: Sequence[Mapping[str, Any
     """
     out = io.StringIO()
     writer = csv.DictWriter(out, [c.name for c in columns], extrasaction="ignore", lineterminator="\n")
-    writer.writerows({key: f"'{cell}" if _is_formula(cell) else cell for key, cell in row.items()} for row in rows)
+    for row in rows:
+        writer.writerow(
+            {k: f"'{cell}" if isinstance(cell, str) and is_formula(cell) else cell for k, cell in row.items()}
+        )
     replace(file, _head(columns) + out.getvalue())
-
-
-def _is_formula(cell: Any) -> bool:
-    return isinstance(cell, str) and is_formula(cell)
 
 
 def _head(columns: Sequence[Output]) -> str:
     return ",".join(c.name for c in columns) + "\n"
 
 
-def add_files(
-    parser: Parser, columns: Sequence[Output], picture: str, option: str = "--plot", *, more: bool = False
-) -> None:
+def add_files(parser: Parser, columns: Sequence[Output], picture: str, option: str = "--plot") -> None:
     """Add the options of a table in a file and of a picture.
 
     Args:
@@ -67,10 +62,9 @@ def add_files(
         columns: of the table; a file is replaced whose columns are these.
         picture: help of the picture's ``option``.
         option: of the picture.
-        more: whether the table has further columns after these.
     """
     parser.add_file(option, PICTURE, picture, dest="plot")
-    table = Kind("a table", (".csv",), _head(columns)[:-1] + ("," if more else "\n"))
+    table = Kind("a table", (".csv",), _head(columns))
     parser.add_file("--csv", table, "table in SI units; results are unrounded")
 
 
@@ -95,7 +89,7 @@ def write_files(
 def panels(file: Path, title: str, count: int = 1) -> "Iterator[tuple[Figure, list[Axes]]]":
     """Give a figure and its panels side by side; write it at the end of the block."""
     with chdir("/"):  # a matplotlibrc of the current folder is not obeyed, see fingerpad.startup
-        from fingerpad.results import style
+        from fingerpad.results.pictures import style
 
     with style.look():
         figure = style.figure(4.0, width=2.5 + 3.0 * count)
@@ -111,7 +105,7 @@ def curve(
 
     A band is drawn of an ``error`` above and below; none where it is 0.
     """
-    from fingerpad.results import style
+    from fingerpad.results.pictures import style
 
     marked = np.size(x) <= _MAX_MARKERS
     marker: dict[str, Any] = {"marker": style.MARKERS[k % len(style.MARKERS)], "ms": 5} if marked else {}

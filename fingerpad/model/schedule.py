@@ -5,7 +5,8 @@ from functools import partial
 from itertools import pairwise
 
 from fingerpad.scene import Load
-from fingerpad.scene.waveform import Sample, Waveform
+from fingerpad.scene.wavefile import Sample
+from fingerpad.scene.waveform import Waveform
 from variational.solvers.target import Target
 
 _BEGIN = 60e-6  # m, with which a slide begins

@@ -48,7 +48,7 @@ class Model(ABC):
         Raises:
             SceneError: the model has no answer to the scene.
         """
-        refuse_others(scene, self.name)
+        check_supported(scene, self.name)
 
     @abstractmethod
     def solve(self, scene: "Scene", context: "RunContext") -> "Result":
@@ -112,7 +112,7 @@ def reduced_state(scene: "Scene", contact: Mapping[str, float], slips: bool) -> 
     return ContactState(f_ext=scene.f_ext, voltage=scene.volts, f_t=f_t, mu_app=f_t / scene.f_ext, **values)
 
 
-def refuse_others(scene: "Scene", model: str) -> None:
+def check_supported(scene: "Scene", model: str) -> None:
     """Refuse a scene whose loads are not press, charge and slide, or whose finger has a mesh of its own or is viscous.
 
     Raises:

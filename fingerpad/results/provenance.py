@@ -33,7 +33,6 @@ _VARIABLES = re.compile(
     r"(BLIS|GOTO|MKL|OMP|OMPI_MCA|OPENBLAS|PETSC|UCX)_.*|CC|CFLAGS|CPPFLAGS|LDFLAGS|LD_PRELOAD|LD_LIBRARY_PATH"
 )
 _LIBRARIES = re.compile(r"lib(openblas|blas|cblas|lapack|mkl|blis|d?mumps|scotch|metis|parmetis|scalapack)[^/]*")
-_DIRECT = ("lu", "cholesky")
 
 
 def provenance() -> dict[str, Any]:

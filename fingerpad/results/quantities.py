@@ -21,8 +21,8 @@ _PRINTED = {
 """Units of tables that are not those of files, which are SI units, and the factor from SI."""
 SUMS = {"N/m": ("N", 1), "J/m": ("J", 2), "m": ("mm²", 1), "m^2": ("m^3", 2)}
 """Of quantities per metre of finger: the unit of their sum, and :attr:`Output.power`."""
-TABLES = frozenset({"result", "load", "sweep"})
-"""Tables that outputs may stand in: the printed result, extremes and means of loads, and sweeps."""
+TABLES = frozenset({"result", "sweep"})
+"""Tables that an output of one's own may stand in: the printed result, and those of sweeps."""
 SYMBOL = re.compile(r"(?<![\w.-])([µdfFhLp])_(app|eq|ext|el|max|[0cRT])(?![\w(=])")
 """A symbol in words, which pages and pictures typeset: its letter and its subscript."""
 
@@ -153,7 +153,8 @@ def _listed(*rows: tuple[Any, ...], error: Mapping[str, str] | None = None, **ta
     found = {}
     for name, unit, *more in rows:
         mine = (table for table, names in tables.items() if name in names.split())
-        found[name] = Output(name, unit, None, *more, tables=frozenset(mine), error=(error or {}).get(name, ""))
+        given: dict[str, Any] = {"tables": frozenset(mine), "error": (error or {}).get(name, "")}
+        found[name] = Output(name, unit, **dict(zip(("meaning", "words", "digits"), more, strict=False)), **given)
     return found
 
 

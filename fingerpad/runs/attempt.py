@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import asdict, dataclass, replace
 from typing import Any
 
-from fingerpad.accuracy.estimate import Estimate, with_errors
+from fingerpad.accuracy.estimate import with_errors
 from fingerpad.accuracy.refinement import Refinement
 from fingerpad.accuracy.solves import Solves
 from fingerpad.accuracy.states import StateRecorder
@@ -76,7 +76,7 @@ class Attempt:
         writer, console, clock = self._writer, self._console, self._clock
         self.report = Report(self.simulation, model.omitted, loads, writer, console, clock, self._outputs)
         self._recorder = StateRecorder(self.simulation) if model.options.errors else None
-        self._estimate: Estimate | None = None
+        self._estimate: Refinement | WholePath | None = None
         self._ended: dict[str, str] = {}
         self._has_kept = False  # whether there is a checkpoint
         self._solves, self._tenths = 0, -1  # for the error estimate: solves, and what is done of the coarser path
@@ -245,7 +245,7 @@ class Attempt:
             result = replace(result, drawing=drawing, **found)  # type: ignore[arg-type]
             failure = result.failure or broken(result.full_slip, error, mu_0)
             notes = (*result.notes, *([] if estimate is None else estimate.notes))
-            cautions = [] if estimate is None else estimate.cautions()
+            cautions = [] if estimate is None else estimate.solves.doubts()
             return post.with_cautions(replace(result, failure=failure, notes=notes), cautions)
 
         def with_outputs(result: Result) -> Result:
@@ -257,7 +257,7 @@ class Attempt:
                 self.report.final(final)
                 if result.folder is not None and result.drawing is not None:
                     fields.write(result.folder, {**result.drawing.groups(scene.output.each_load), **motion})
-                    result.drawing.write(result.folder, scene.output.each_load)
+                    result.drawing.write(result.folder)
             return result
 
         def with_cost(result: Result) -> Result:  # collective, and never fails on one rank alone

@@ -36,7 +36,7 @@ def row(result: "Result") -> dict[str, Any]:
     """Return the values of a point in SI units by column, and its failure."""
     if result.whole:
         return (_newtons(result.finger) if result.finger is not None else {}) | {"failure": result.failure}
-    values, keys = dataset.values(result), (*SWEPT, *(each.name for each in result.outputs))
+    values, keys = dataset.values(result), (*SWEPT, *(each.name for each in result.outputs if "sweep" in each.tables))
     alone = "reached" in result.record  # full slip without a path
     names = [f"{state}_{key}" for state in (STATES[-1:] if alone else STATES) for key in keys]
     cells = {key: values.get(key) for name in names for key in (name, f"{name}_error") if key in values}
@@ -91,7 +91,7 @@ def shown(columns: Iterable[str], whole: bool, outputs: Iterable[Output] = ()) -
         Full slip. Without friction a whole finger has none, and it is the last state before. Without a force in newtons
         the whole finger comes first where it is known, and the middle section second.
     """
-    there = set(columns)
+    there, outputs = set(columns), [each for each in outputs if "sweep" in each.tables]
     if not whole:
         summed = _of_finger("full_slip", "mu_app") in there
         section, finger = dict(SWEPT), dict[str, Output]()

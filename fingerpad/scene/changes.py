@@ -11,12 +11,10 @@ from typing import Any
 
 from fingerpad.scene.fingers import FINGERS
 from fingerpad.scene.law_keys import keys_of
-from fingerpad.scene.materials import CLOSURES, MATERIALS
 from geometry.parameters import Fingertip
 
 DEFAULT_HISTORY = ("f_ext", "voltage", "slide_length")
 """Keys of the default loads, which a history replaces."""
-_LAWS: dict[str, type] = {**MATERIALS.laws, **CLOSURES.laws}
 _RECORD = ("geometry", "materials", "roughness", "electric", "slices", "output", "numerics")  # tables of every record
 _SHAPE = (*(name for name in Fingertip.model_fields if name != "sc_thickness"), "file_sha256")
 REPLACED = {
@@ -44,32 +42,33 @@ def presets(data: Mapping[str, Any]) -> dict[str, Any]:
     return found | {f"mesh.{key}": size for key, size in sizes.items()}
 
 
-def with_presets(data: Mapping[str, Any]) -> Mapping[str, Any]:
+def with_presets(data: Mapping[str, Any], laws: Mapping[str, type]) -> Mapping[str, Any]:
     """Return the data of a scene with the values of its presets.
 
     A key that is given wins, and so does one that makes it meaningless (:data:`REPLACED`), or a law that is given as
-    an object, of one's own, or without such a parameter.
+    an object, of one's own, or without such a parameter; ``laws`` has those of the package by name.
     """
     found, gone = data, set(_replaced(data))
     for key, value in presets(data).items():
-        if key not in gone and _takes(found, key.split(".")):
+        if key not in gone and _takes(found, key.split("."), laws):
             found = _put(found, key.split("."), value)
     return found
 
 
-def preset_keys(data: Mapping[str, Any], default: Callable[[], Any]) -> list[str]:
+def preset_keys(data: Mapping[str, Any], laws: Mapping[str, type], default: Callable[[], Any]) -> list[str]:
     """Return the dotted keys for which a preset may stand: those that are not given.
 
     In the record of a run, which gives every key, they are those that have the default value or that of a preset.
 
     Args:
         data: nested tables.
+        laws: of the package, by name.
         default: gives the default scene.
     """
     values = presets(data)
     keys = dict.fromkeys(key for finger in FINGERS.values() for key in finger.values) | values
     if any(data.get(name) is None for name in _RECORD):
-        return [key for key in keys if _takes(data, key.split("."))]
+        return [key for key in keys if _takes(data, key.split("."), laws)]
     scene = default()
     return [key for key in keys if value_at(data, key) in (values.get(key), reduce(getattr, key.split("."), scene))]
 
@@ -117,14 +116,14 @@ def _same_law(present: Mapping[str, Any], name: Any) -> bool:
     return name in (None, kind, *names)
 
 
-def _takes(table: Any, parts: Sequence[str]) -> bool:
+def _takes(table: Any, parts: Sequence[str], laws: Mapping[str, type]) -> bool:
     """Return whether a value may be put at a place: nothing else stands there or on the way."""
     if not isinstance(table, Mapping):
         return False
     if len(parts) > 1:
-        return _takes(table.get(parts[0], {}), parts[1:])
+        return _takes(table.get(parts[0], {}), parts[1:], laws)
     law = table.get("law")
-    law = _LAWS.get(law) if isinstance(law, str) else law
+    law = laws.get(law) if isinstance(law, str) else law
     known = "law" not in table or (isinstance(law, type) and is_dataclass(law) and parts[0] in keys_of(law))
     return known and parts[0] not in table
 

@@ -25,6 +25,9 @@ _EITHER = (
     ("bone_x", "bone_x_by", "give the place or the move"),
     ("speed", "duration", "one follows from the other, so give one"),
 )  # keys of which a load has one at most
+_HELD = ("f_ext", "bone_height", "voltage")  # controls that a slide to full slip may not have reached
+CONTROLS = (*_HELD, "bone_x", "bone_x_by")
+"""Keys of what a load controls: force, height, voltage and place or move of the bone."""
 _FORBIDDEN = '/\\:*?"<>|'  # the first separates folders, the others are forbidden on memory sticks
 Way = Annotated[Finite, within(1e-9, 0.1, "m", zero=True, sides=2)]
 
@@ -101,44 +104,36 @@ class Load(Table):
 
     @model_validator(mode="after")
     def _consistent(self) -> "Load":
+        given = {name: getattr(self, name) for name in CONTROLS if getattr(self, name) is not None}
         for one, other, remedy in _EITHER:
             values = getattr(self, one), getattr(self, other)
             if None not in values:
                 raise ValueError(f"{one} is {show(values[0])} and {other} is {show(values[1])}; {remedy}")
-        if not any(v is not None for v in (self.f_ext, self.bone_height, self.voltage, self.bone_x, self.bone_x_by)):
+        if not given:
+            *first, last = CONTROLS
             raise ValueError(
-                f"name is {show(self.name)} and nothing else is given; "
-                "it must come with at least one of f_ext, bone_height, voltage, bone_x and bone_x_by"
+                f"name is {show(self.name)} and nothing else is given; it must come with at least one of "
+                f"{', '.join(first)} and {last}"
             )
-        if self.until_full_slip:
-            self._refuse_unfinished()
-        self._refuse_time()
-        return self
-
-    def _refuse_unfinished(self) -> None:
-        """Refuse what a load that stops at full slip may not have reached."""
-        for name in ("f_ext", "bone_height", "voltage"):
-            if getattr(self, name) is not None:
-                given = "a waveform" if self.wave is not None and name == "voltage" else show(getattr(self, name))
-                raise ValueError(
-                    f"{name} is {given} and until_full_slip is true, which may stop before that is "
-                    f"reached; {name} must come in a load of its own"
-                )
-
-    def _refuse_time(self) -> None:
-        """Refuse times that are missing or belong to nothing."""
-        if self.speed is not None and self.bone_x is None and self.bone_x_by is None:
+        for name in [name for name in _HELD if name in given and self.until_full_slip]:
+            shown = "a waveform" if isinstance(given[name], Waveform) else show(given[name])
+            raise ValueError(
+                f"{name} is {shown} and until_full_slip is true, which may stop before that is reached; {name} must "
+                "come in a load of its own"
+            )
+        if self.speed is not None and not {"bone_x", "bone_x_by"} & given.keys():
             raise ValueError(f"speed is {show(self.speed)} and the bone does not move; give bone_x or bone_x_by too")
-        if self.wave is None:
-            return
-        for name in ("f_ext", "bone_height"):
-            if getattr(self, name) is not None:
+        if self.wave is not None:
+            for name in [name for name in _HELD if name in given and name != "voltage"]:
                 raise ValueError(
-                    f"{name} is {show(getattr(self, name))} and voltage is a waveform; {name} must come in a load of "
-                    "its own, before it"
+                    f"{name} is {show(given[name])} and voltage is a waveform; {name} must come in a load of its own, "
+                    "before it"
                 )
-        if self.speed is None and self.duration is None and self.wave.end == math.inf:
-            raise ValueError(f"voltage is a {self.wave.waveform} and the load takes no time; give a speed or duration")
+            if self.speed is None and self.duration is None and self.wave.end == math.inf:
+                raise ValueError(
+                    f"voltage is a {self.wave.waveform} and the load takes no time; give a speed or duration"
+                )
+        return self
 
     @property
     def wave(self) -> Waveform | None:
@@ -199,19 +194,6 @@ def refuse_contradictions(history: Sequence[Load], given: Mapping[str, Any], err
     Raises:
         ValueError: the keys, their values and the remedy.
     """
-    _refuse_history(history, given)
-    for k, load in enumerate(history) if errors else ():
-        if first_clash([*FINAL_STATES, load.name]) is not None:
-            raise ValueError(
-                f"history[{k}].name is {show(load.name)}, and the state of that name has files of its own; take "
-                "another name"
-            )
-    _refuse_times(history, step_scale)
-    _refuse_floating(history)
-
-
-def _refuse_history(history: Sequence[Load], given: Mapping[str, Any]) -> None:
-    """Refuse a history beside keys of the default loads, without a first height, or with two loads of one name."""
     for name, value in given.items():
         raise ValueError(
             f"{name} is {show(value)} and history is given too; with a history each load states its own values"
@@ -222,13 +204,20 @@ def _refuse_history(history: Sequence[Load], given: Mapping[str, Any]) -> None:
             f"history[0].name is {show(first.name)}, with neither f_ext nor bone_height; "
             "the first load must give one of them"
         )
-    clash = first_clash([load.name for load in history])
-    if clash is not None:
+    if clash := first_clash([load.name for load in history]):
         one, other = (show(history[k].name) for k in clash)
         raise ValueError(
             f"history[{clash[1]}].name is {other} and history[{clash[0]}].name is {one}; each load must have a "
             "name of its own, also where spaces become _ and letters have no case, since files are named by it"
         )
+    for k, load in enumerate(history) if errors else ():
+        if first_clash([*FINAL_STATES, load.name]):
+            raise ValueError(
+                f"history[{k}].name is {show(load.name)}, and the state of that name has files of its own; take "
+                "another name"
+            )
+    _refuse_times(history, step_scale)
+    _refuse_floating(history)
 
 
 def _refuse_floating(history: Sequence[Load]) -> None:

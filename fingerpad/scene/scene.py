@@ -8,7 +8,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import is_dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 from pydantic import BeforeValidator, Field, PrivateAttr, ValidationError, model_validator
 
@@ -23,8 +23,10 @@ from fingerpad.scene.law_keys import UnresolvedLaw, kept
 from fingerpad.scene.loads import Load, Voltage, drives, refuse_contradictions, repeated
 from fingerpad.scene.materials import (
     BEARING_AREA,
+    CLOSURES,
     FRICTION,
     LAYERS,
+    MATERIALS,
     ROUGHNESS,
     Materials,
     refuse_thickness,
@@ -46,10 +48,10 @@ from fingerpad.scene.waveform import Waveform
 from geometry.parameters import MeshSize
 from geometry.units import Finite, Table, computed, within
 from variational.contact.friction import Friction, law_of
+from variational.materials.material import Material
 from variational.roughness.closure import Closure
 
-if TYPE_CHECKING:
-    from variational.materials.material import Material
+_LAWS: dict[str, type] = {**MATERIALS.laws, **CLOSURES.laws}
 
 
 class Scene(Table):
@@ -104,10 +106,10 @@ class Scene(Table):
         given = plain(data)
         refuse_beside_mesh(given)
         try:
-            self.__pydantic_validator__.validate_python(with_presets(given), self_instance=self)
+            self.__pydantic_validator__.validate_python(with_presets(given, _LAWS), self_instance=self)
         except ValidationError as error:
             raise SceneError(first_error(error, Scene, (key.name for key in every(Scene)))) from None
-        self._preset = preset_keys(given, Scene)
+        self._preset = preset_keys(given, _LAWS, Scene)
 
     def __eq__(self, other: object) -> bool:
         """Return whether another scene has the same values, whichever of them were given."""
@@ -234,7 +236,7 @@ class Scene(Table):
         """Return the law of friction, None without friction; raises as :meth:`closure` does."""
         return law_of(_known("friction", self.friction))
 
-    def solids(self) -> dict[int, "Material"]:
+    def solids(self) -> dict[int, Material]:
         """Return the material of each layer's tag; raises as :meth:`closure` does."""
         return {tag: _known(f"materials.{name}", getattr(self.materials, name)) for name, tag in LAYERS.items()}
 
@@ -318,7 +320,7 @@ def overridden(data: Mapping[str, Any], changes: Mapping[str, Any]) -> dict[str,
     Raises:
         SceneError: a table, or an entry of a list, that is not there.
     """
-    found = without(data, preset_keys(data, Scene)) if "finger" in changes else dict(data)
+    found = without(data, preset_keys(data, _LAWS, Scene)) if "finger" in changes else dict(data)
     put_all(found, changes)
     return found
 

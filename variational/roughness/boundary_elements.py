@@ -54,10 +54,12 @@ class BoundaryElements(TabulatedClosure):
 
         Args:
             measured: heights (m).
-            progress: is told of each contact that is solved.
+            progress: called after each contact with the number done and the total.
 
         Raises:
             ValueError: a map that is flat or has too few pixels or pixels that are not square; in one sentence.
         """
-        name, h_rms, wavelength = tables.keep(measured.detrended("curvature"), progress)
+        from variational.roughness.contacts import keep  # solves contacts
+
+        name, h_rms, wavelength = keep(measured.detrended("curvature"), progress)
         return {"h_rms": h_rms, "wavelength": wavelength, "surface": name}

@@ -1,10 +1,14 @@
 """Tables of gaps from contacts: of surfaces of one spectrum, and of a measured height map."""
 
-from collections.abc import Iterable, Sequence
+import hashlib
+import tempfile
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import contextmanager
 
 import numpy as np
 from numpy.typing import NDArray
 
+from variational.roughness import tables
 from variational.roughness.closure import Progress
 from variational.roughness.gaps import FULL, PRESSURES, Bins, GapTable, bins
 from variational.roughness.halfspace import press
@@ -15,6 +19,7 @@ Array = NDArray[np.float64]
 FEWEST_PIXELS = 20
 """In contact, below which a contact is not resolved."""
 _FEWEST_PRESSURES = 6
+_METHOD = "2"  # of a measured map's table; another one makes other files
 _SQUARE, _LEVEL = 0.01, 0.05  # differences of pixels' sides; part of the mean square that a tilt may be
 _WAVE, _UNRESOLVED = 4.0, 0.5  # pixels of a wave that is resolved; part of the mean square that shorter waves may be
 
@@ -53,7 +58,7 @@ def gap_table(
         surfaces: periodic.
         wavelength: lambda_0, in the surfaces' unit of length.
         pressures: over E* q_0 h_rms, increasing by equal steps of the logarithm.
-        progress: is told of each contact.
+        progress: called after each contact with the number done and the total.
         copies: how often a surface has each of its pixels, which count once.
 
     Raises:
@@ -89,7 +94,7 @@ def measured_table(measured: HeightMap, progress: Progress | None = None) -> tup
 
     Args:
         measured: heights, positive towards the plane, without their tilt or curvature.
-        progress: is told of each contact.
+        progress: called after each contact with the number done and the total.
 
     Raises:
         ValueError: a flat map, one with a tilt or with pixels that are not square, or of too few pixels; one sentence.
@@ -141,3 +146,44 @@ def refuse_map(measured: HeightMap) -> None:
             f"{100 * _UNRESOLVED:g} % is allowed: pixels of {max(a, b):.3g} m do not resolve it, or it is noise; "
             "measure with smaller pixels, or filter the map"
         )
+
+
+def keep(measured: HeightMap, progress: Progress | None = None) -> tuple[str, float, float]:
+    """Return the name of a measured map's table, its h_rms and its wavelength (m); the table is computed once.
+
+    Args:
+        measured: heights, without tilt or curvature.
+        progress: called after each contact with the number done and the total.
+
+    Raises:
+        ValueError: as :func:`measured_table`, or a folder that takes no files.
+    """
+    refuse_map(measured)
+    content = np.ascontiguousarray(measured.heights).tobytes() + repr((measured.size, _METHOD)).encode()
+    name = hashlib.sha256(content).hexdigest()[:16]
+    try:
+        tables.of_map(name)
+    except ValueError:  # none yet, or a damaged one
+        with _kept_in():
+            tempfile.TemporaryFile(dir=tables.cache()).close()  # before minutes of contacts
+        table = measured_table(measured, progress)[0]
+        with _kept_in():
+            tables.save(tables.map_file(name), table)
+    return name, measured.h_rms, min(measured.size)
+
+
+@contextmanager
+def _kept_in() -> Iterator[None]:
+    """Name the folder of tables where it takes no files.
+
+    Raises:
+        ValueError: it does not; in one sentence.
+    """
+    try:
+        tables.cache().mkdir(parents=True, exist_ok=True)
+        yield
+    except OSError as error:
+        raise ValueError(
+            f"the table of the height map cannot be kept in {tables.cache()} ({error.strerror or error}); name another "
+            "folder by FINGERPAD_CACHE"
+        ) from None

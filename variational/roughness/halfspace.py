@@ -20,8 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import fft
 
-from variational.roughness.spectrum import wavevectors
-from variational.roughness.topography import HeightMap
+from variational.roughness.topography import HeightMap, wavevectors
 
 Array = NDArray[np.float64]
 _TOLERANCE = 1e-6

@@ -31,7 +31,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.optimize import minimize_scalar
 
-from variational.roughness.topography import HeightMap
+from variational.roughness.topography import HeightMap, wavevectors
 
 Array = NDArray[np.float64]
 Window = Literal["none", "hann"]
@@ -44,12 +44,6 @@ _SIGNIFICANT = 2.0  # gain in log-likelihood, two standard deviations, that tell
 def prefactor(hurst: float, plateau: bool) -> float:
     """Return Eq. 8's c: 4 pi H / (1 + H) for a spectrum that is constant below q_0, 4 pi H for one that is zero."""
     return 4 * np.pi * hurst / (1 + hurst if plateau else 1)
-
-
-def wavevectors(shape: tuple[int, ...], size: tuple[float, float]) -> Array:
-    r"""Return \|q\| (1/m) of the modes of a grid, shape (nx, ny) as numpy.fft.fft2 orders them."""
-    q_x, q_y = (2 * np.pi * np.fft.fftfreq(n, length / n) for n, length in zip(shape, size, strict=True))
-    return np.hypot(q_x[:, None], q_y[None, :])
 
 
 @dataclass(frozen=True)

@@ -8,14 +8,11 @@ between the tables have a mean attraction within 3 % of it (``tests/test_gaps.py
 folder of the user's, under a hash of heights, size and method; ``FINGERPAD_CACHE`` names another folder.
 """
 
-import hashlib
 import io
 import os
-import tempfile
 import zipfile
 import zlib
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Sequence
 from dataclasses import replace
 from functools import lru_cache
 from pathlib import Path
@@ -24,20 +21,21 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from variational import files
-from variational.roughness.closure import Progress
 from variational.roughness.gaps import GapTable
 
 if TYPE_CHECKING:
-    from variational.roughness.topography import HeightMap
+    pass
 
 HURSTS = (0.6, 0.75, 0.9)
 """Hurst exponents of the tables that come with the package; 0.75 is the paper's."""
 RATIOS = (8.0, 16.0, 32.0, 64.0)
 """Ratios of the longest to the shortest wave of these tables."""
-_WIDE, _NARROW, _MOST = 4, 2, 32.0  # longest waves in the side of a surface, and the ratio up to which it is wide
+_WIDE, _NARROW, _WIDEST_RATIO = (
+    4,
+    2,
+    32.0,
+)  # longest waves in the side of a surface, and the ratio up to which it is wide
 _FIELDS = ("pressure", "area", "weight", "mean", "deviation")
-_METHOD = "2"  # of a measured map's table; another one makes other files
-_SHOWN = 16  # digits of a hash
 _ROUNDOFF = 1e-6
 
 
@@ -80,7 +78,7 @@ def _shipped(hurst: float, ratio: float) -> GapTable:
 
 def waves(ratio: float) -> int:
     """Return the longest waves in the side of each surface of a table of the package, by the ratio of its waves."""
-    return _WIDE if ratio <= _MOST else _NARROW
+    return _WIDE if ratio <= _WIDEST_RATIO else _NARROW
 
 
 def ratios(hurst: float) -> list[float]:
@@ -134,49 +132,6 @@ def cache() -> Path:
     return Path(given) if given else Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "fingerpad"
 
 
-def keep(measured: "HeightMap", progress: Progress | None = None) -> tuple[str, float, float]:
-    """Return the name of a measured map's table, its h_rms and its wavelength (m); the table is computed once.
-
-    Args:
-        measured: heights, without tilt or curvature.
-        progress: is told of each contact of a table that is computed.
-
-    Raises:
-        ValueError: as :func:`variational.roughness.contacts.measured_table`, or a folder that takes no files.
-    """
-    from variational.roughness.contacts import measured_table, refuse_map
-
-    refuse_map(measured)
-    content = np.ascontiguousarray(measured.heights).tobytes() + repr((measured.size, _METHOD)).encode()
-    name = hashlib.sha256(content).hexdigest()[:_SHOWN]
-    try:
-        of_map(name)
-    except ValueError:  # none yet, or a damaged one
-        with _kept_in():
-            tempfile.TemporaryFile(dir=cache()).close()  # before minutes of contacts
-        table = measured_table(measured, progress)[0]
-        with _kept_in():
-            save(_file(name), table)
-    return name, measured.h_rms, min(measured.size)
-
-
-@contextmanager
-def _kept_in() -> Iterator[None]:
-    """Name the folder of tables where it takes no files.
-
-    Raises:
-        ValueError: it does not; in one sentence.
-    """
-    try:
-        cache().mkdir(parents=True, exist_ok=True)
-        yield
-    except OSError as error:
-        raise ValueError(
-            f"the table of the height map cannot be kept in {cache()} ({error.strerror or error}); name another folder "
-            "by FINGERPAD_CACHE"
-        ) from None
-
-
 def of_map(name: str) -> list[tuple[float, GapTable]]:
     """Return the table of a measured map by its name, as :func:`of_spectrum`.
 
@@ -184,7 +139,7 @@ def of_map(name: str) -> list[tuple[float, GapTable]]:
         ValueError: it is not in the cache; in one sentence.
     """
     try:
-        return [(1.0, read(_file(name)))]
+        return [(1.0, read(map_file(name)))]
     except (OSError, ValueError) as error:
         reason = error.strerror if isinstance(error, OSError) else error
         raise ValueError(
@@ -193,5 +148,6 @@ def of_map(name: str) -> list[tuple[float, GapTable]]:
         ) from None
 
 
-def _file(name: str) -> Path:
+def map_file(name: str) -> Path:
+    """Return the path of a measured map's table by its name."""
     return cache() / f"gaps_{''.join(c for c in name if c.isalnum())}.npz"

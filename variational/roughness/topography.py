@@ -197,3 +197,9 @@ def _shifted(shape: tuple[int, ...], axis: int, side: int, end: int) -> tuple[sl
     low = slice(0, n - 1) if (side == 1) == (end == 0) else slice(1, n)
     other = slice(0, shape[1 - axis])
     return (low, other) if axis == 0 else (other, low)
+
+
+def wavevectors(shape: tuple[int, ...], size: tuple[float, float]) -> Array:
+    r"""Return \|q\| (1/m) of the modes of a grid, shape (nx, ny) as numpy.fft.fft2 orders them."""
+    q_x, q_y = (2 * np.pi * np.fft.fftfreq(n, length / n) for n, length in zip(shape, size, strict=True))
+    return np.hypot(q_x[:, None], q_y[None, :])
