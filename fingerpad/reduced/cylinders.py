@@ -35,7 +35,7 @@ from numpy.typing import NDArray
 from fingerpad.model.cautions import on_scene, sticking
 from fingerpad.reduced import cylinder_errors, default_finger
 from fingerpad.reduced.default_finger import Similar, similar
-from fingerpad.reduced.model import STATES, Model, reduced_state, refuse_others
+from fingerpad.reduced.model import STATES, Model, check_supported, reduced_state
 from fingerpad.results.data import MODEL_ERROR, Cost
 from fingerpad.results.quantities import MODEL
 from fingerpad.results.result import Result
@@ -142,7 +142,7 @@ def solve(scene: Scene) -> Result:
         SceneError: a scene with a history, a finger that is not similar to the default one, or ridges that do not stay.
     """
     start = time.process_time()
-    refuse_others(scene, Cylinders.name)
+    check_supported(scene, Cylinders.name)
     source, ridges = _source(scene, _scaled(scene)), dict[str, RidgeState]()
     exact = "a closed form, without a mesh: no discretisation error but that of the contact length it is given"
     cautions, found = list[str](), dict[str, ContactState]()
@@ -193,7 +193,7 @@ def over_forces(
     Raises:
         SceneError: as :func:`solve`, but for what is wrong with the other state alone.
     """
-    refuse_others(scene, Cylinders.name)
+    check_supported(scene, Cylinders.name)
     return [found for found, _ in _over_forces(scene, f_ext, state, press, tips, shear)]
 
 
