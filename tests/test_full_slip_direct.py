@@ -66,6 +66,7 @@ def test_chain_returns_to_where_it_began(solved):
     assert "h_rms=2e-06" in last.reached
 
 
+@pytest.mark.long
 def test_voltage_that_changes_in_sliding_ends_in_direct_states(solved):
     """A waveform in steps, each slid on to full slip again: its ends are the states without a path, in its order."""
     slips, (first, *_) = solved

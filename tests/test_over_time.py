@@ -89,10 +89,3 @@ def test_states_that_take_no_time_count_by_their_last():
     mean = over_time([*air, *press], None).mean
     assert mean["mu_app"] == pytest.approx(1.5, rel=1e-12)
     assert mean["contact_length"] == pytest.approx(1e-3, rel=1e-12)
-
-
-def test_load_without_time_has_nothing_over_time():
-    load = states([(0.0, 1.0), (0.0, 2.0)], lambda u: u)
-    assert over_time(load, None) is None
-    held = over_time(states([(0.0, 1.0), (2.0, 3.0)], lambda u: u), None)
-    assert (held.periods, held.frequency) == (0, ()) and held.mean["f_t"] == pytest.approx(2.0)

@@ -89,6 +89,3 @@ def test_numbers_are_put_in_place():
     assert fill.filled(found, "study", names) == found
     with pytest.raises(ValueError, match="must be one word"):
         fill.filled(PAGE, "study", {"x": "1 m", "rows": [], "text": ""})
-
-
-# -- The picture that opens the README is drawn from the numbers in git ---

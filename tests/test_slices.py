@@ -87,14 +87,6 @@ def test_scale_of_the_slices():
     assert total.totals["contact_area"] == pytest.approx(0.01 * 2 * one["contact_length"][0], rel=EXACT)
 
 
-def test_table_of_heights_is_the_parabola():
-    """A table of the parabola, interpolated, gives its force. Tolerance: cubics over 0.5 mm."""
-    z = np.linspace(-14e-3, 14e-3, 57)
-    table = Slices(z=tuple(z), height=tuple(z**2 / (2 * R_Z)))
-    forces = [at_indentation(profile(each), foundation(), 0.7e-3, 48).totals["f_ext"] for each in (table, Slices())]
-    assert forces[0] == pytest.approx(forces[1], rel=1e-3)
-
-
 def test_two_humps_touch_apart():
     """Two stretches of contact of a table are two sums; each bears the half."""
     z = (-10e-3, -6e-3, -5e-3, -4e-3, 0.0, 4e-3, 5e-3, 6e-3, 10e-3)
@@ -120,12 +112,6 @@ def test_slices_refined():
     sums = [at_indentation(profile(Slices()), kept(200.0), 0.68e-3, n).totals["f_t"] for n in (8, 32, 128, 2048)]
     errors = np.abs(np.array(sums[:3]) / sums[3] - 1)
     assert np.all(errors[1:] < errors[:-1] / 16) and errors[1] < 1e-4
-
-
-def test_points_of_a_trace_are_its_states():
-    of = kept(200.0)
-    for name, values in of.at(of.depth).items():
-        assert_allclose(values, of.columns[name], rtol=1e-12)
 
 
 def test_states_that_go_back_are_left_out():
@@ -269,11 +255,6 @@ def test_force_beyond_the_trace():
         at_indentation(profile(Slices()), kept(200.0), 2e-3, 16)
     with pytest.raises(TraceError, match="beyond the trace"):
         kept(200.0).at(np.array([2e-3]))
-
-
-def test_tilt_without_contact():
-    with pytest.raises(SceneError, match="slices.tilt is 0.5 rad, with which the finger is lowest at its end"):
-        at_force(profile(Slices(tilt=0.5, radius=40e-3)), foundation(), 0.1, 8)
 
 
 def test_more_contact_than_the_finger_has():

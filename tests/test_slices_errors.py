@@ -17,7 +17,7 @@ from fingerpad.scene.parameters import Slices
 from fingerpad.slices import errors
 from fingerpad.slices.estimate import estimate
 from fingerpad.slices.finger import WholeFinger
-from fingerpad.slices.total import Profile, at_force, at_indentation, profile
+from fingerpad.slices.total import at_force, at_indentation, profile
 from fingerpad.slices.trace import NAMES, Trace, TraceError, trace
 from tests.measures import contact_state
 from tests.test_slices import foundation, kept, whole
@@ -119,19 +119,6 @@ def test_error_of_a_smaller_force_covers_the_trace_of_more_points():
         less, full = of_half.under(force), at_force(FINGER, of, force, 48)
         for key in ("f_t", "contact_area", "gross_area"):
             assert abs(less.values("full_slip")[key] - full.values[key]) <= less.error["full_slip"][key], (force, key)
-
-
-def test_coarser_traces_leave_points_out():
-    """Each half has both ends, and the later one has two points at least: of three points as well."""
-    depth = np.array([1.0, 1.5, 2.5, 3.0, 4.0])
-    of = Trace(depth, {name: depth for name in NAMES})
-    assert [half.depth.tolist() for half in of.halves()] == [[1.0, 2.5, 4.0], [1.0, 1.5, 3.0, 4.0]]
-    assert of.later().depth.tolist() == [2.5, 3.0, 4.0]
-    three = Trace(depth[:3], {name: depth[:3] for name in NAMES})
-    assert three.halves()[0].depth.tolist() == [1.0, 2.5] and three.later().depth.tolist() == [1.5, 2.5]
-    two = Trace(depth[:2], {name: depth[:2] for name in NAMES})
-    straight = Profile((0.0, 1.0), np.zeros_like, np.ones_like, straight=True)
-    assert errors.interpolation(FINGER, two, at_force(straight, two, 1.2, 4), 4) == {}, "not known"
 
 
 def test_estimate_of_a_run_covers_the_traces_of_the_full_model():

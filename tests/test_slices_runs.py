@@ -128,14 +128,6 @@ def test_trace_of_the_closed_form_is_scene_by_scene(name):
             assert found.columns[key][k] == pytest.approx(getattr(state, key), rel=1e-11, abs=0)
 
 
-def test_folder_of_another_force_is_refused_in_newtons(tmp_path):
-    """Of a model without a path, too, whose state in N/m nobody gave; the same force is taken again."""
-    for force in ("0.5 N", 0.5):
-        fp.run(fp.Scene(force=force), model="cylinders", out=tmp_path)
-    with pytest.raises(SceneError, match=r"another scene \(its force was 0.5, and is 0.6 now\)"):
-        fp.run(fp.Scene(force=0.6), model="cylinders", out=tmp_path)
-
-
 class Stop(Exception):
     """Stops at the first scene."""
 
@@ -199,11 +191,7 @@ def test_report_and_text_of_a_force_begin_with_the_whole_finger(tmp_path):
     whole = result.finger.values("full_slip")
     assert whole["mu_app"] != pytest.approx(result.full_slip.mu_app, rel=0.05)
     page = (tmp_path / "report.html").read_text(encoding="utf-8")
-    mu = result.finger.shown("full_slip", "mu_app")
-    assert (
-        float(mu.partition(" ")[0]) == pytest.approx(whole["mu_app"], abs=5e-4)
-        and result.headline.value == whole["mu_app"]
-    )
+    assert result.headline.value == whole["mu_app"]
     page = page.replace("\u00a0", " ")
     assert "<h1>At 2 N, 200 V raise the friction force from 0.50 to 0.88 N.</h1>" in page
     assert f"{whole['f_t']:.2f}" == "0.88"

@@ -17,7 +17,6 @@ from fingerpad.cli import sweep as cli_sweep
 from fingerpad.reduced import cylinder_errors
 from fingerpad.report.write import write
 from fingerpad.runs.sweep_results import Sweep, _stacked
-from fingerpad.scene.remarks import LEAKAGE
 from fingerpad.slices.finger import WholeFinger
 from tests.browser import asked
 from tests.measures import rows_of
@@ -79,14 +78,6 @@ def test_report_has_newtons_and_says_how_to_repeat_it(found, tmp_path):
     over = [words[k + 1] for k, word in enumerate(words) if word == "--over"]
     _, axes = cli_sweep.study(None, [], over)
     assert {key: tuple(map(float, values)) for key, values in axes.items()} == found.axes
-
-
-def test_frictionless_finger_has_its_areas(tmp_path):
-    """Without friction there is no full slip: the charged state is shown."""
-    found = fp.sweep(fp.Scene(friction=0.0), tmp_path, model="cylinders", force=[0.2, 0.5])
-    assert str(found).startswith("Whole finger, at charged normal contact")
-    assert "µ_app" not in str(found).replace(LEAKAGE, "") and "ridge contact area (mm²)" in str(found)
-    assert "the ridge contact area of the whole finger goes from" in write(tmp_path).read_text(encoding="utf-8")
 
 
 def test_force_that_no_trace_reaches_fails_alone(tmp_path):
@@ -256,8 +247,6 @@ def test_cautions_of_points_are_the_sweep_s(tmp_path):
     ours = f"{start}electric.d_i is 0.0001 m, and it is known for {low:g} to {high:g} m (2 of 6 points"
     ours += ", numbers of the first)"
     assert unknown[0] == ours, "of two thicknesses at 200 V"
-    assert [re.search(r"\((\d) of 6 points", text)[1] for text in unknown] == ["2", "1", "2"], "others at 400 V"
-    assert [text.endswith(", numbers of the first)") for text in unknown] == [True, False, True]
     places = [text for text in cautions if "the closure is out of its range" in text and "d_eq rises" in text]
     count = sum(any("the closure is out of its range" in text for text in each.cautions) for each in found)
     assert len(places) == 1 and f"({count} of 6 points" in places[0] and 1 < count < 6

@@ -121,6 +121,7 @@ def test_afferents_state_the_errors_of_their_stimuli():
 
 
 @pytest.mark.slow
+@pytest.mark.long
 def test_runs_that_start_again_with_more_ridges():
     """The second path has the elements of the last one, twice as large, and may start again by itself."""
     found = fp.run(scene(PRESS, mesh=SIZES | {"touching_half_arc": 0.1e-3}))
@@ -131,20 +132,6 @@ def test_runs_that_start_again_with_more_ridges():
 
 
 # -- what can go wrong ---------------------------------------------------------------------------------------
-@pytest.mark.slow
-def test_no_larger_elements():
-    """A sentence, and the results without errors: facets of a quarter of a ridge are the largest."""
-    largest = fp.Scene().geometry.ridge_wavelength / 4
-    found = fp.run(scene(PRESS, mesh=SIZES | {"contact": largest}))
-    (note,) = [note for note in found.notes if "could not be estimated" in note]
-    assert note == (
-        "discretisation errors could not be estimated: on elements twice as large, the ridges have no larger elements "
-        f"than {largest * 1e6:.3g} µm"
-    )
-    assert not found.failure and found.charged.contact_length > 0
-    assert math.isnan(found.charged.error.contact_length)
-
-
 @pytest.mark.slow
 def test_path_that_is_lost_on_the_coarser_mesh(monkeypatch):
     """Where a load is lost there alone, the results stay, and a note has the reason."""

@@ -43,7 +43,7 @@ viewcode_follow_imported_members = False
 toc_object_entries = False  # hundreds, in the navigation of every page
 add_module_names = False
 autodoc_member_order = "bysource"
-autodoc_default_options = {"exclude-members": "model_config, model_post_init"}  # Pydantic's
+autodoc_default_options = {"exclude-members": "model_config, model_post_init, set"}  # of Pydantic, Matplotlib
 autodoc_typehints = "description"
 autodoc_typehints_description_target = "documented"
 autodoc_preserve_defaults = True
@@ -113,7 +113,7 @@ def adapt(app: Any, docname: str, source: list[str]) -> None:
 
 def plain_text(app: Any, what: str, name: str, thing: Any, options: Any, lines: list[str]) -> None:
     """Take bars in the text of an attribute for absolute values, and what stands before a colon for no type."""
-    if what in ("attribute", "property"):
+    if what in ("attribute", "property", "data"):
         lines[:] = ["..", "", *(line if "`" in line else line.replace("|", "\\|") for line in lines)]
 
 

@@ -14,7 +14,7 @@ from fingerpad.scene.messages import SceneError
 from variational.element import ELEMENTS
 from variational.state import ContactState, Errors
 
-_ROUNDOFF = 1e-9  # relative: friction without voltage does not depend on the mesh
+_SAME_VALUE = 1e-9  # relative: friction without voltage does not depend on the mesh
 
 
 class Estimate:
@@ -107,7 +107,7 @@ class Estimate:
         """Print the values of the states with their errors."""
         values, found, allowed = self.base.values(), self.estimates(), self.allowed()
         for name, error in found.items():
-            if "_sed_" in name or error <= _ROUNDOFF * abs(values[name]):
+            if "_sed_" in name or error <= _SAME_VALUE * abs(values[name]):
                 continue
             quantity, words = of_key(name)
             limit = f", {allowed[name] * quantity.scale:.2g} allowed" if name in allowed else ""

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 _OUTSIDE = 0.3  # of a facet: how far outside of where it is found contact may end
-_APART = 4.0  # small facets between two places about which they are small
+_EDGE_SPACING = 4.0  # small facets between two places about which they are small
 _DIGITS = 0.1  # of a small facet: to what places are rounded, so that roundoff of a state changes no mesh
 
 
@@ -230,7 +230,7 @@ def edge_places(ends: Iterable[tuple[Array, float]], size: MeshSize) -> tuple[fl
     """
     found = [np.empty(0)]
     for places, facet in ends:
-        outwards = np.arange(0.0, _OUTSIDE * facet + _APART * size.edge / 2, _APART * size.edge)
+        outwards = np.arange(0.0, _OUTSIDE * facet + _EDGE_SPACING * size.edge / 2, _EDGE_SPACING * size.edge)
         side = np.tile([-1.0, 1.0], len(places) // 2)
         found.append((places + side * outwards[:, None]).ravel())
     unit = _DIGITS * size.edge

@@ -82,7 +82,7 @@ def parts(data: "xarray.Dataset", cost: type) -> dict[str, Any]:
         found = {name: named.get(name) for name in STATES} | {"scene": scene, "model": model_name(about["model"])}
         found |= {name: about.get(name, "") for name in ("failure", "interrupted")}
         found |= {name: tuple(filter(None, about.get(name, "").split("\n"))) for name in ("notes", "cautions")}
-        found["cost"] = cost(**{each.name: type(each.default)(about[each.name]) for each in fields(cost)})
+        found["cost"] = cost(**{each.name: _plain(about[each.name]) for each in fields(cost)})
         found |= {"steps": steps, "loads": loads_of(scene, steps, stable), "record": record, "outputs": outputs}
         return found | {"finger": _finger(data, outputs, scene.slices)}
     except (KeyError, ValueError, TypeError, IndexError, AttributeError) as error:  # a SceneError is a ValueError

@@ -29,7 +29,7 @@ _SCALED = ("|bone_height|", *_SUMS.values(), "f_t/f_c")
 _OF_SUM = {**_SUMS, "indentation": "|bone_height|", **dict.fromkeys(FRICTION, "f_t")}
 """Names of a sum's quantities, and of the section's value whose relative error each has."""
 _SECTION = "section_"
-_ROUNDOFF = 1e-9  # of the contact force: sideways forces of normal contact are below
+_NO_FRICTION = 1e-9  # of the contact force: sideways forces of normal contact are below
 
 
 @dataclass(frozen=True)
@@ -120,7 +120,7 @@ def _values(states: Sequence[ContactState], wavelength: float, own: Sequence[Out
     """Return what is scaled of states, shape (states,)."""
     found = columns(states, wavelength, own)
     depth, borne = np.array([-state.bone_height for state in states]), found["f_ext"] + found["f_electrostatic"]
-    f_t = np.where(found["f_t"] > _ROUNDOFF * borne, found["f_t"], 0.0)
+    f_t = np.where(found["f_t"] > _NO_FRICTION * borne, found["f_t"], 0.0)
     return found | {"|bone_height|": depth, "f_t": f_t, "f_t/f_c": f_t / borne}
 
 

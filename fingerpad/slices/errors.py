@@ -27,7 +27,7 @@ _OF_SECTION = {name: each.error for name, each in FINGER.items() if each.error}
 """Quantities of the section whose relative errors they have; the external force is prescribed."""
 _AREAS = {"contact_length": "contact_area"}  # of a section and of a sum
 _FINER = 40  # times as many slices, so that there are some between any two points of a trace
-_TINY = 1e-300
+_SMALLEST_VALUE = 1e-300
 _RELATIVE_STEP = 1e-3  # of the largest indentation: its change for the slope over the force
 MESH, ESTIMATED, POINTS = "mesh of the cross-section", "estimate beside the centre", "points of the traces"
 COARSE = "coarser mesh of the traces"
@@ -191,7 +191,11 @@ def _between(finger: Profile, trace: Trace, total: Total, count: int, slope: Map
     power = {each.name: each.power for each in trace.own}
     for name, column in fine.summed.items():
         values, width = trace.columns[column], np.asarray(finger.width(fine.z)) ** power.get(column, 1)
-        linear = np.exp(np.interp(at, points, np.log(np.maximum(abs(values), _TINY)))) * width * np.sign(values.sum())
+        linear = (
+            np.exp(np.interp(at, points, np.log(np.maximum(abs(values), _SMALLEST_VALUE))))
+            * width
+            * np.sign(values.sum())
+        )
         half = (values[k + 1] - values[k]) / 2 * width
         moved[name] = np.where(above, np.where(jumps, half, linear - fine.columns[column]), 0.0)
     found = _at_equal_force(fine, moved, slope, total.values)
@@ -245,7 +249,7 @@ SMOOTH: Mapping[str, Sequence[tuple[float, Ends]]] = {
     )
 }
 COMPARISONS = ONCE, EARLIER, SMOOTH
-_ROUNDOFF = 1e-9
+_SAME_FORCE = 1e-9
 
 
 def known_at(force: float) -> dict[str, Ends]:
@@ -260,8 +264,8 @@ def known_at(force: float) -> dict[str, Ends]:
 
 def _around(points: Sequence[tuple[float, Ends]], force: float) -> list[Ends]:
     """Return the errors at the forces that are next to a force on either side; none where it is beyond all."""
-    below = [each for each in points if each[0] <= force * (1 + _ROUNDOFF)]
-    above = [each for each in points if each[0] >= force * (1 - _ROUNDOFF)]
+    below = [each for each in points if each[0] <= force * (1 + _SAME_FORCE)]
+    above = [each for each in points if each[0] >= force * (1 - _SAME_FORCE)]
     return [below[-1][1], above[0][1]] if below and above else []
 
 

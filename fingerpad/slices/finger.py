@@ -14,7 +14,7 @@ from fingerpad.slices import errors
 from fingerpad.slices.total import Total, at_force, profile
 from fingerpad.slices.trace import Trace
 
-_ROUNDOFF = 1e-9
+_SAME_FORCE = 1e-9
 _PARTS = errors.MESH, errors.ESTIMATED, errors.COARSE
 _TITLE = "Whole finger, as a sum of slices"
 
@@ -96,7 +96,7 @@ class WholeFinger:
         states = {name: at_force(finger, self.traces[name], value, self.shape.count) for name in self.states}
         for name, total in states.items():
             first = finger.centre_scale * float(self.traces[name].columns["f_ext"][0])
-            if total.centre < first * (1 - _ROUNDOFF):
+            if total.centre < first * (1 - _SAME_FORCE):
                 raise SceneError(
                     f"the force is {value:.4g} N, under which the centre of the finger bears {total.centre:.3g} N/m, "
                     f"and its trace in {WORDS[name]} begins at {first:.3g} N/m; "
@@ -123,7 +123,7 @@ class WholeFinger:
 
     def flat(self) -> dict[str, float]:
         """Return all quantities and their errors by name, such as ``full_slip_finger_f_t``; SI units."""
-        found = {}
+        found = dict[str, float]()
         for name in self.states:
             start, error = f"{name}_finger_", self.error[name]
             found |= {f"{start}{key}": value for key, value in self.values(name).items()}

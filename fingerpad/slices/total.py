@@ -20,7 +20,7 @@ Floats = NDArray[np.floating[Any]]
 _SEARCHED = 2001  # places along the finger between which ends of contact are looked for
 _SEARCHED_FOR_DEEPEST = 4001  # places along the finger among which the first to end its trace is looked for
 _DOUBLINGS = 6  # of the depth, from the least one tried to the end of the trace
-_TINY = 1e-300  # N, of a logarithm
+_SMALLEST_FORCE = 1e-300  # N, of a logarithm
 AREAS = {"contact_length": "contact_area", "gross_width": "gross_area"}
 """Columns of a slice whose sums have names of their own."""
 
@@ -237,7 +237,7 @@ def at_force(profile: Profile, trace: Trace, force: float, count: int) -> Total:
         """Return the logarithm of the force over the one looked for, nearly a straight line over that of the depth."""
         if x not in totals:
             totals[x] = at_indentation(profile, trace, math.exp(x), count)
-        return math.log(max(totals[x].totals["f_ext"], _TINY) / force)
+        return math.log(max(totals[x].totals["f_ext"], _SMALLEST_FORCE) / force)
 
     high = math.log(most)
     try:

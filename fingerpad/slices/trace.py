@@ -19,8 +19,8 @@ NAMES = tuple(in_table("trace", SLICES))
 """Columns of every trace: N/m the forces, m the lengths. Others are of outputs with a rule of sums."""
 LEAST = 3
 """Least number of points of a trace. A power law needs two, and the error of the interpolation leaves one out."""
-_NOTHING = 1e-12  # of the largest external force: values below it are roundoff
-_APART = 1e-4  # relative distance of two points: of closer ones, slopes are made by the tolerances of solvers (1e-6)
+_NO_FORCE = 1e-12  # of the largest external force: values below it are roundoff
+_SAME_POINT = 1e-4  # relative distance of two points: slopes of closer ones are made by solvers' tolerances (1e-6)
 
 
 class TraceError(SceneError):
@@ -137,7 +137,7 @@ class Trace:
         for name in ("gross_width", *(each.name for each in self.own if each.si == "m")):
             slopes[name] = min(slopes[name], slopes["contact_length"])
         values = np.array([columns[name] for name in names])
-        least = np.array([[0.0 if name in {each.name for each in self.own} else _NOTHING] for name in names])
+        least = np.array([[0.0 if name in {each.name for each in self.own} else _NO_FORCE] for name in names])
         most = abs(values).max(axis=1, keepdims=True)
         signs = np.sign(values.sum(axis=1, keepdims=True)) * (most > least * columns["f_ext"].max())
         cubics = PchipInterpolator(np.log(self.depth), np.log(np.maximum(abs(values), np.finfo(float).tiny)).T)
@@ -169,7 +169,7 @@ def trace(
     kept: list[ContactState] = []
     for state in sorted(states, key=lambda state: state.f_ext):
         depth, force = (-kept[-1].bone_height, kept[-1].f_ext) if kept else (0.0, 0.0)
-        deeper, more = -state.bone_height > depth * (1 + _APART), state.f_ext > force * (1 + _APART)
+        deeper, more = -state.bone_height > depth * (1 + _SAME_POINT), state.f_ext > force * (1 + _SAME_POINT)
         if state.contact_length > 0 and deeper and more:
             kept.append(state)
     if len(kept) < LEAST:
