@@ -101,7 +101,7 @@ class DrivenFriction:
 
     def plot(self, path: str | Path | None = None) -> "Figure":
         """Draw U, attraction and friction over a period, and the spectrum of friction; write a picture if asked."""
-        from fingerpad.results.drive_picture import Period, over_period  # Matplotlib
+        from fingerpad.results.pictures.curves import Period, over_period  # Matplotlib
 
         arrays = self.time, self.voltage, self.sigma_el, self.f_t
         drawn = Period(*arrays, self.unit, self.frequency, self.amplitude)
