@@ -23,8 +23,8 @@ PARTS = {
     "bands of friction": "fingerpad.reduced.closure_band.with_band",
     "cautions": "fingerpad.model.cautions.on_states",
     "headline": "fingerpad.results.result.headline",
-    "pictures": "fingerpad.results.drawing.Drawing.write",
-    "footprint.png": "fingerpad.results.whole_picture.draw",
+    "pictures": "fingerpad.results.pictures.drawing.Drawing.write",
+    "footprint.png": "fingerpad.results.pictures.solid.draw",
     "report": "fingerpad.report.run_page.page",
 }
 """What fails, by the name of the entry that has it."""

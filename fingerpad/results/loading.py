@@ -17,6 +17,7 @@ from fingerpad.results.quantities import RIDGES, SKIN, STEPS, STIMULI, Output
 from fingerpad.results.states import STATES, LoadResult, load_results
 from fingerpad.scene.law_code import foreign
 from fingerpad.scene.messages import SceneError, clip
+from fingerpad.scene.parameters import Slices
 from fingerpad.scene.reading import model_name
 from fingerpad.scene.remarks import coefficient
 from fingerpad.scene.scene import Scene, as_kept
@@ -26,7 +27,6 @@ from variational.state import PATH, ContactState, Errors, RidgeStates, Sites, Sk
 if TYPE_CHECKING:
     import xarray
 
-    from fingerpad.scene.parameters import Slices
     from fingerpad.slices.finger import WholeFinger
 
 
@@ -110,7 +110,7 @@ def _states(data: "xarray.Dataset", own: Sequence[str]) -> tuple[tuple[ContactSt
     return steps, {name: _named_state(arrays, k, own) for k, name in there}
 
 
-def _finger(data: "xarray.Dataset", outputs: Sequence[Output], shape: "Slices") -> "WholeFinger | None":
+def _finger(data: "xarray.Dataset", outputs: Sequence[Output], shape: Slices) -> "WholeFinger | None":
     """Return the whole finger of a dataset; None without one.
 
     Args:

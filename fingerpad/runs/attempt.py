@@ -16,9 +16,9 @@ from fingerpad.model.report import Clock, Report
 from fingerpad.model.simulation import RestartRequired, Simulation
 from fingerpad.model.state import broken, force_error
 from fingerpad.results import fields
+from fingerpad.results.data import valued
 from fingerpad.results.folder import CheckpointError
 from fingerpad.results.interrupt import Interrupt, Interrupted
-from fingerpad.results.outputs import valued
 from fingerpad.results.provenance import provenance, refuse_unread
 from fingerpad.results.quantities import Output
 from fingerpad.results.result import Result
@@ -257,7 +257,7 @@ class Attempt:
                 self.report.final(final)
                 if result.folder is not None and result.drawing is not None:
                     fields.write(result.folder, {**result.drawing.groups(scene.output.each_load), **motion})
-                    result.drawing.write(result.folder, scene.output.each_load)
+                    result.drawing.write(result.folder)
             return result
 
         def with_cost(result: Result) -> Result:  # collective, and never fails on one rank alone

@@ -15,10 +15,10 @@ from pkgutil import resolve_name
 from typing import NamedTuple
 
 from fingerpad.results import dataset
+from fingerpad.results.data import checked
 from fingerpad.results.files import replace as replace_file
 from fingerpad.results.files import replace_json
 from fingerpad.results.folder import Serial
-from fingerpad.results.outputs import checked
 from fingerpad.results.quantities import Output
 from fingerpad.results.result import Result
 from fingerpad.results.writing import Writer
@@ -125,7 +125,12 @@ POST: list[Entry] = [
     BANDS,
     cautions_on(),
     WORDS,
-    Entry("footprint.png", lambda r, c: _page(r, c) and r.finger is not None, _picture("footprint"), files=True),
+    Entry(
+        "footprint.png",
+        lambda r, c: _page(r, c) and r.finger is not None and (r.whole or not r.steps),
+        _picture("footprint"),
+        files=True,
+    ),
     Entry("solid.png", lambda r, c: _page(r, c) and r.finger is not None and r.whole, _picture("solid"), files=True),
     Entry("report", _page, "fingerpad.report.write:of_result", files=True),
 ]
