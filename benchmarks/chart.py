@@ -24,7 +24,7 @@ from benchmarks.errors import STATES, parted
 from benchmarks.limits import Limit
 from benchmarks.runs import finished
 from fingerpad.model.options import by_rule
-from fingerpad.results import style
+from fingerpad.results.pictures import style
 from fingerpad.scene import Scene, load
 
 _LIMIT = 10800.0  # s of processor time for one run

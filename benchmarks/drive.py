@@ -17,7 +17,7 @@ from matplotlib.figure import Figure
 
 from benchmarks import harness
 from benchmarks.harness import keep, kept, made, page, picture
-from fingerpad.results import style
+from fingerpad.results.pictures import style
 from fingerpad.runs.drive import FREQUENCIES as TABLED
 from fingerpad.runs.drive import drive, thresholds
 from fingerpad.scene import Scene

@@ -21,7 +21,7 @@ from benchmarks.runs import SITES as AT_SITES
 from benchmarks.runs import Run, finished
 from fingerpad.accuracy.richardson import ORDER
 from fingerpad.model.options import by_rule
-from fingerpad.results import style
+from fingerpad.results.pictures import style
 from fingerpad.results.quantities import plus_minus
 from fingerpad.results.states import WORDS
 from fingerpad.scene import Scene, from_data, load

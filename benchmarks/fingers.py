@@ -20,7 +20,7 @@ import fingerpad as fp
 from benchmarks import harness
 from fingerpad.reduced.default_finger import Similar, similar
 from fingerpad.reduced.registry import find
-from fingerpad.results import style
+from fingerpad.results.pictures import style
 from fingerpad.runs.batch import Summary
 from fingerpad.runs.context import RunContext
 from fingerpad.runs.solve import solved

@@ -27,8 +27,8 @@ from matplotlib.figure import Figure
 
 from benchmarks import fill
 from fingerpad.cli.arguments import positive
-from fingerpad.results import style
 from fingerpad.results.files import replace
+from fingerpad.results.pictures import style
 from fingerpad.runs import processes
 from fingerpad.runs.batch import Summary, sweep
 from fingerpad.runs.processes import End

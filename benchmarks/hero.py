@@ -23,8 +23,9 @@ from numpy.typing import NDArray
 
 from benchmarks import newtons
 from benchmarks.harness import DOCS, keep, kept, made, picture
-from fingerpad.results import fields, style
-from fingerpad.results.finger_picture import LAYER_COLOURS
+from fingerpad.results import fields
+from fingerpad.results.pictures import style
+from fingerpad.results.pictures.finger import LAYER_COLOURS
 from fingerpad.results.result import Result
 from fingerpad.scene.parameters import Slices
 from fingerpad.slices.total import at_force

@@ -31,7 +31,7 @@ from fingerpad.model.options import FingerModel, by_rule, plan
 from fingerpad.model.report import Report
 from fingerpad.model.simulation import Simulation
 from fingerpad.results import dataset
-from fingerpad.results.drawing import Drawing
+from fingerpad.results.pictures.drawing import Drawing
 from fingerpad.runs import full
 from fingerpad.runs.context import RunContext
 from fingerpad.scene import load

@@ -20,7 +20,7 @@ from benchmarks import harness
 from benchmarks.models import name
 from benchmarks.runs import FORCES, VOLTAGES
 from fingerpad.reduced import default_finger
-from fingerpad.results import style
+from fingerpad.results.pictures import style
 from fingerpad.results.quantities import RESULTS
 from fingerpad.scene import Scene
 from fingerpad.scene.parameters import Slices

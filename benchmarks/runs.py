@@ -86,7 +86,8 @@ class Run:
         found: dict[str, Any] = {}
         if name == "surface":
             for state, view in states.items():
-                found |= {f"{state}_{key}": values for key, values in dict(view.skin or {}).items()}
+                skin: Any = view.skin or {}
+                found |= {f"{state}_{key}": values for key, values in skin.items()}
         elif (end := loads.get(name.removeprefix("finger_"))) is not None and end.snapshot is not None:
             found = vars(end.snapshot) | ({} if end.merkel is None else {"merkel": end.merkel})
         if not found:

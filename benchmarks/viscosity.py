@@ -17,7 +17,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from benchmarks.harness import ROOT, keep, kept, made, main, page, picture
-from fingerpad.results import style
+from fingerpad.results.pictures import style
 from fingerpad.scene import Scene
 from fingerpad.scene.materials import LAYERS
 from fingerpad.scene.viscosity import PRESETS

@@ -1,9 +1,9 @@
 # %% [markdown]
 # # Results with other tools
 #
-# A run leaves its tables as one NetCDF file, `result.nc`. xarray opens it with units and names. The fields inside the
-# finger are NumPy arrays of the result, also of one that is read from its folder. The folder has them as files of VTK,
-# too: ParaView opens `fields.pvd`, and PyVista reads it (docs/results.md).
+# A run leaves its numbers as one NetCDF file, `result.nc`. xarray opens it with units and names. The fields inside the
+# finger are NumPy arrays of the result, also of one that is read from its folder. For ParaView,
+# `result.to_pyvista().save("fields.vtm")` writes them as VTK has them (docs/results.md).
 
 # %%
 import sys

@@ -5,7 +5,7 @@ PETSc (``.petscrc``, ``petscrc``), dolfinx (``dolfinx_jit_options.json``, and th
 FFCx (``ffcx_options.json``) and Matplotlib (``matplotlibrc``) when they start. PETSc alone has an option against it. So
 all of them are started in a folder of the system, where nothing is configured. Files in the user's home were written
 for other programs and would change results without a trace in the scene: PETSc, dolfinx and FFCx read none, pictures
-have :mod:`fingerpad.results.style`, meshes :mod:`geometry.shape`.
+have :mod:`fingerpad.results.pictures.style`, meshes :mod:`geometry.shape`.
 
 PETSc's options come from the environment, ``PETSC_OPTIONS``, and from :func:`start`. This module comes before any other
 import of these libraries.

@@ -10,8 +10,9 @@ from mpi4py import MPI
 
 from fingerpad.model.options import FingerModel, by_rule, plan
 from fingerpad.model.simulation import Simulation
-from fingerpad.results import curves, finger_picture, style
-from fingerpad.results.drawing import Drawing
+from fingerpad.results.pictures import curves, style
+from fingerpad.results.pictures import finger as finger_picture
+from fingerpad.results.pictures.drawing import Drawing
 from fingerpad.runs import full
 from fingerpad.runs.context import RunContext
 from fingerpad.scene import Scene

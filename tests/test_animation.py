@@ -9,7 +9,8 @@ from PIL import Image
 
 from fingerpad.cli import main
 from fingerpad.reduced.registry import find
-from fingerpad.results import animation, fields, motion
+from fingerpad.results import fields
+from fingerpad.results.pictures import animation
 from fingerpad.results.result import Result
 from fingerpad.runs.context import RunContext
 from fingerpad.runs.solve import solved
@@ -48,20 +49,20 @@ def test_animation_has_a_frame_for_each_state(folder, tmp_path, capsys, ending):
 
 def test_motion_ends_in_the_last_state(folder):
     """Its skin is that of the last step, in single precision, and its places are the reference plus displacements."""
-    kept, state = motion.read(folder), Result.load(folder).steps[-1]
+    kept, state = animation.motion_of(folder), Result.load(folder).steps[-1]
     assert kept.step[-1] == state.step and len(kept.step) == len(Result.load(folder).steps)
     xy, skin = kept.between(len(kept.step) - 1, 0.0)
     last = dict(zip(fields.ALONG, fields.read(folder)["loads/slide"]["skin"], strict=True))
-    assert skin == pytest.approx(np.stack([last[name] for name in motion.ROWS]), rel=1e-6, abs=1e-9, nan_ok=True)
+    assert skin == pytest.approx(np.stack([last[name] for name in animation.ROWS]), rel=1e-6, abs=1e-9, nan_ok=True)
     assert xy.min(axis=0)[1] == pytest.approx(0.0, abs=1e-6), "the skin is not on the screen"
 
 
 def test_long_run_keeps_some_of_its_states():
     """The first and the last are among them, and there are never more than a few hundred."""
-    kept: dict[int, motion.Moved] = {}
+    kept: dict[int, animation.Moved] = {}
     for step in range(1, 2001):
         kept[step] = {}
-        motion.thin(kept)
+        animation.thin(kept)
         assert list(kept) == sorted(kept) and step in kept and len(kept) <= 160
     assert len(kept) > 50
 
@@ -77,7 +78,7 @@ def test_animation_that_cannot_be_made_is_refused(copy, capsys, name, words):
     assert words in said and said.count("\n") == 1 and printed == ""
 
 
-@pytest.mark.parametrize("where", ["fingerpad.results.animation._words", "pathlib.Path.replace"])
+@pytest.mark.parametrize("where", ["fingerpad.results.pictures.animation._words", "pathlib.Path.replace"])
 def test_animation_that_is_stopped_leaves_what_was_there(copy, capsys, monkeypatch, where):
     """By Ctrl-C while a frame is drawn, and before the file is put in place; one sentence, and no part of a file."""
 

@@ -34,7 +34,7 @@ def test_estimate_is_the_closed_form(tmp_path, capsys):
 def drawn(monkeypatch, over, **more):
     """Return the sweep and the first panel of its picture."""
     figures = []
-    monkeypatch.setattr("fingerpad.results.style.save", lambda figure, file: figures.append(figure))
+    monkeypatch.setattr("fingerpad.results.pictures.style.save", lambda figure, file: figures.append(figure))
     found = run_sweep(Scene(force=None if "force" in over else 0.5), None, model="cylinders", **over)
     estimate.draw(found, ROOT / "mu.png", **more)
     figures[0].canvas.draw()

@@ -86,7 +86,7 @@ def test_never_outside_the_cone(coarse):
 def test_leaves_what_it_promises(coarse, summary):
     names = {path.name for path in coarse.iterdir()}
     assert {"steps.csv", "result.nc", "summary.json", "run.log"} <= names
-    assert {"finger_press.png", "finger_charge.png", "finger_slide.png", "surface.png", "history.png"} <= names
+    assert {"finger.png", "surface.png", "history.png"} <= names
     assert "fields.npz" in names
     assert len(rows_of(coarse)) == summary["steps"]
     assert summary["parameters"]["mesh"]["contact"] == 10e-6

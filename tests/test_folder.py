@@ -151,7 +151,7 @@ def test_a_run_takes_the_folder(scene, folder, finished):
     summary = run(scene, folder, MPI.COMM_WORLD)
     left = {file.name for file in folder.iterdir()} - {".lock", "scene.json", "notes of mine.txt"}
     assert left == {file.name for pattern in LEFT for file in folder.glob(pattern)}
-    assert {"steps.csv", "summary.json", "run.log", "finger_press.png"} <= left
+    assert {"steps.csv", "summary.json", "run.log", "finger.png"} <= left
     assert json.loads((folder / "scene.json").read_text()) == json.loads(json.dumps(scene.parameters()))
     assert [name for name, data in kept(folder).items() if data == b"old"] == ["notes of mine.txt"]
     assert summary["provenance"]["petsc_options"]["-fingerpad_pc_type"] == "lu"

@@ -19,10 +19,11 @@ from fingerpad.cli import main
 from fingerpad.reduced.registry import find
 from fingerpad.report.page import again, picture
 from fingerpad.report.write import write
-from fingerpad.results import fields, style
+from fingerpad.results import fields
 from fingerpad.results.dataset import content
 from fingerpad.results.files import Table, lock_file, read_object, replace
 from fingerpad.results.folder import Folder, FolderError, Serial, full_scene
+from fingerpad.results.pictures import style
 from fingerpad.runs.checkpoint import Checkpoint
 from fingerpad.runs.context import RunContext
 from fingerpad.runs.solve import solved

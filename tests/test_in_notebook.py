@@ -10,7 +10,7 @@ from mpi4py import MPI
 
 import fingerpad as fp
 from fingerpad import notebook
-from fingerpad.results import style
+from fingerpad.results.pictures import style
 from fingerpad.results.terminal import Console
 from tests.commands import python
 from tests.small_finger import small

@@ -14,8 +14,8 @@ from fingerpad.model.options import FingerModel, by_rule, plan
 from fingerpad.model.schedule import targets
 from fingerpad.model.simulation import Simulation
 from fingerpad.report.run_page import page
-from fingerpad.results.drawing import Drawing
 from fingerpad.results.over_time import NOTE, without_parts_of_jumps
+from fingerpad.results.pictures.drawing import Drawing
 from fingerpad.results.result import Result
 from fingerpad.results.states import load_result
 from fingerpad.runs import full

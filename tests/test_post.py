@@ -6,7 +6,6 @@ from pathlib import Path
 import pytest
 
 import fingerpad as fp
-from fingerpad.cli import main
 from fingerpad.reduced.registry import find
 from fingerpad.results.result import Result
 from fingerpad.runs import post
@@ -24,8 +23,8 @@ PARTS = {
     "bands of friction": "fingerpad.reduced.closure_band.with_band",
     "cautions": "fingerpad.model.cautions.on_states",
     "headline": "fingerpad.results.result.headline",
-    "pictures": "fingerpad.results.drawing.Drawing.write",
-    "footprint.png": "fingerpad.results.whole_picture.draw",
+    "pictures": "fingerpad.results.pictures.drawing.Drawing.write",
+    "footprint.png": "fingerpad.results.pictures.solid.draw",
     "report": "fingerpad.report.run_page.page",
 }
 """What fails, by the name of the entry that has it."""
@@ -63,18 +62,6 @@ def test_states_survive_all_failures(broken):
     assert [state.f_t for state in found.steps] == [state.f_t for state in expected.steps]
 
 
-def test_failure_has_its_whole_sentence(tmp_path, monkeypatch):
-    """One of the length that refusals have."""
-    sentence = "a quantity of the band is missing: " + "x" * 150
-
-    def refuse(*args, **more):
-        raise RuntimeError(sentence)
-
-    monkeypatch.setattr(PARTS["bands of friction"], refuse)
-    result = solved(fp.Scene(), find("cylinders"), RunContext(tmp_path))
-    assert f"bands of friction: RuntimeError: {sentence}" in result.notes
-
-
 @pytest.mark.parametrize("name", ["bands of friction", "footprint.png", "report"])
 def test_failure_of_one_costs_no_other(tmp_path, monkeypatch, name):
     """Of the closed form, with a folder."""
@@ -104,11 +91,6 @@ def test_run_that_ends_before_its_entries_has_not_ended(tmp_path, monkeypatch):
     assert Result.load(tmp_path).full_slip.mu_app > 0.25
 
 
-def test_no_friction_under_a_voltage_has_no_band():
-    """Its friction is roundoff, over which no band is a ratio; the full model's is not an exact zero."""
-    assert fp.run(friction=0.0, model="cylinders").known == {}
-
-
 RANKS = """
 import sys
 from dataclasses import replace
@@ -136,10 +118,3 @@ def test_failure_on_one_rank_is_the_same_on_all(tmp_path: Path, rank):
     assert done.returncode == 0, done.stderr
     assert done.stderr.count("raised on one rank") == 1
     assert "ValueError: raised on one rank" in (tmp_path / "run.log").read_text(encoding="utf-8")
-
-
-@pytest.mark.slow
-def test_no_friction_of_the_full_model(tmp_path):
-    (scene := tmp_path / "scene.json").write_text(json.dumps(FULL | {"friction": 0.0}), encoding="utf-8")
-    assert main(["run", str(scene), "--out", str(tmp_path / "run"), "--quiet"]) == 0
-    assert not [note for note in summary(tmp_path / "run")["notes"] if "Error" in note]

@@ -11,8 +11,7 @@ from numpy.testing import assert_allclose
 
 import fingerpad as fp
 from fingerpad.reduced.cylinders import indentation
-from fingerpad.results.finger_picture import footprint, ridges_along
-from fingerpad.results.solid_picture import _strips, solid
+from fingerpad.results.pictures.solid import _strips, footprint, ridges_along, solid
 from fingerpad.scene import Scene, SceneError
 from fingerpad.scene.parameters import Slices
 from fingerpad.slices.errors import MESH

@@ -60,12 +60,12 @@ def test_each_module_is_imported_by_a_quick_test():
             for name in (
                 "report.run_page",
                 "report.sweep_page",
-                "results.animation",
-                "results.drawing",
-                "results.drive_picture",
+                "results.pictures.animation",
+                "results.pictures.drawing",
+                "results.pictures.curves",
                 "results.felt",
-                "results.spike_picture",
-                "results.whole_picture",
+                "results.pictures.spikes",
+                "results.pictures.solid",
                 "runs.batch",
             )
         ),

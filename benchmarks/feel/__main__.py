@@ -21,8 +21,9 @@ import fingerpad as fp
 from benchmarks import harness
 from benchmarks.feel import rules, scenes
 from benchmarks.harness import keep, kept, made, page, picture
-from fingerpad.results import fields, style
+from fingerpad.results import fields
 from fingerpad.results.over_time import without_parts_of_jumps
+from fingerpad.results.pictures import style
 from fingerpad.results.spikes import Spikes
 from fingerpad.scene import Scene
 from geometry.profiles import Profiles

@@ -23,7 +23,7 @@ from benchmarks.harness import cells, keep, kept, made, main, page, picture, run
 from benchmarks.measured import drives, fingers, keys, rows, rules
 from benchmarks.measured.rules import BUILT, HIT
 from benchmarks.runs import VOLTAGES, Run
-from fingerpad.results import style
+from fingerpad.results.pictures import style
 from fingerpad.scene import Scene
 
 _LEFT_OUT = (

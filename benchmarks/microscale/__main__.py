@@ -20,7 +20,7 @@ from benchmarks import harness
 from benchmarks.microscale import contacts, readings
 from benchmarks.microscale.readings import GAPS, LOAD, PAPER
 from fingerpad.reduced import cylinders
-from fingerpad.results import style
+from fingerpad.results.pictures import style
 from fingerpad.scene import Scene
 from fingerpad.scene.messages import SceneError
 from variational.attraction.electroadhesion import VACUUM_PERMITTIVITY

@@ -4,13 +4,12 @@ environment/run python3 -m benchmarks.paper [--jobs 2] [--draw]
 
 The limit of µ_app is that of docs/errors.json (make chart). Runs are kept in results/traces by a hash of their
 parameters and shared with the other studies: started again, only what is missing or changed is run. Writes
-docs/paper.json and docs/paper_figures.json, and from them docs/paper.md and its pictures. The page names what is
-missing.
+docs/paper.json and docs/paper_figures.json, and from them docs/paper.md and its pictures.
 """
 
 import argparse
 import sys
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
@@ -25,71 +24,37 @@ from benchmarks.paper.figures import FIGURES
 from benchmarks.paper.figures import draw as drawn
 from benchmarks.paper.statement import BUILT, HOLDS, IN_PART, NOT, Statement
 from benchmarks.runs import FORCES, VOLTAGES, Run
-from fingerpad.slices import errors
 
 _LIMIT = 3600.0  # s of processor time for one run; the sine takes longest
 
 
 def collect(out: Path) -> dict[str, Any]:
-    """Return the numbers of the page from the runs there are; what is missing is named."""
-    numbers: dict[str, Any] = {"missing": [], "statements": []}
-    grid = scenes.grid()
-
-    def at(force: float, voltage: float) -> Run:
-        return Run(grid[force, voltage], out)
-
-    def of_grid() -> list[Statement]:
-        runs = {pair: at(*pair) for pair in grid}
-        gathered = friction.gather(runs)
-        numbers["seconds"] = [float(run.summary["processor_seconds"]) for run in runs.values()]
-        numbers["grid"] = {name: values.tolist() for name, values in gathered.items()}
-        return friction.statements(gathered, friction.paths(runs), known()["full_slip_mu_app"])
-
-    def of_claim() -> list[Statement]:
-        high = at(scenes.MAP, 200.0)
-        return [fields.claim(high, Run(scenes.rougher(friction.mu_app(high)), out))]
-
-    parts: dict[str, Callable[[], list[Statement]]] = {
-        "Fig. 2": lambda: fields.section(at(*scenes.SECTION), Run(scenes.stiffer(), out)),
-        "Figs. 4 and 5": fields.microscale,
-        "Figs. 6 to 8": of_grid,
-        "Fig. 9A": lambda: energy.maps(*(at(scenes.MAP, voltage) for voltage in (0.0, 200.0))),
-        "Fig. 9B": lambda: fields.sine(Run(scenes.sine(), out)),
-        "section 5": of_claim,
-    }
-    for name, part in parts.items():
-        try:
-            numbers["statements"] += map(asdict, part())
-        except FileNotFoundError as missing:
-            print(f"missing: {name}, {missing}")
-            numbers["missing"].append(name)
-    return numbers
+    """Return the numbers of the page from its runs; FileNotFoundError where one is missing."""
+    runs = {pair: Run(scene, out) for pair, scene in scenes.grid().items()}
+    gathered, high = friction.gather(runs), runs[scenes.MAP, 200.0]
+    statements = [
+        *fields.section(runs[scenes.SECTION], Run(scenes.stiffer(), out)),
+        *fields.microscale(),
+        *friction.statements(gathered, friction.paths(runs), known()["full_slip_mu_app"]),
+        *energy.maps(runs[scenes.MAP, 0.0], high),
+        *fields.sine(Run(scenes.sine(), out)),
+        fields.claim(high, Run(scenes.rougher(friction.mu_app(high)), out)),
+    ]
+    seconds = [float(run.summary["processor_seconds"]) for run in runs.values()]
+    grid = {name: values.tolist() for name, values in gathered.items()}
+    return {"statements": [asdict(each) for each in statements], "seconds": seconds, "grid": grid}
 
 
 def compute(args: argparse.Namespace) -> None:
     """Run what is missing and keep its numbers."""
     named = {f"{f:g} N/m, {u:g} V": scene for (f, u), scene in scenes.grid().items()}
     summaries = run(named | {"sine": scenes.sine(), "stiffer": scenes.stiffer()}, args, _LIMIT)
-    try:
-        high = Run(scenes.grid()[scenes.MAP, 200.0], args.out)
-        summaries |= run({"friction": scenes.rougher(friction.mu_app(high))}, args, _LIMIT)
-    except FileNotFoundError as lost:
-        print(f"the run without voltage but with more friction cannot be made: {lost}")
+    high = Run(scenes.grid()[scenes.MAP, 200.0], args.out)
+    summaries |= run({"friction": scenes.rougher(friction.mu_app(high))}, args, _LIMIT)
     by = made(summaries.values())
     keep("paper", collect(args.out), by, args.docs)
-    keep("paper_figures", pictured(args.out, args.jobs), by, args.docs)
-
-
-def pictured(out: Path, jobs: int) -> dict[str, Any]:
-    """Return the numbers of the figures whose runs are there, but of those that paper.json has all numbers of."""
-    found = {}
-    for name, figure in FIGURES.items():
-        if not figure.of_loads:
-            try:
-                found[name] = figure.numbers(out, jobs)
-            except FileNotFoundError as missing:
-                print(f"missing: Fig. {name}, {missing}")
-    return found
+    shown = {name: figure.numbers(args.out, args.jobs) for name, figure in FIGURES.items() if not figure.of_loads}
+    keep("paper_figures", shown, by, args.docs)
 
 
 # -- page ----------------------------------------------------------------------------------------------------
@@ -126,40 +91,29 @@ def lines(name: str, statements: Sequence[Statement]) -> list[str]:
 
 def pictures(loads: dict[str, Any], docs: Path) -> None:
     """Draw the figures whose numbers are kept."""
-    there = kept("paper_figures", docs).numbers if (docs / "paper_figures.json").exists() else {}
+    there = kept("paper_figures", docs).numbers
     for name, figure in FIGURES.items():
-        if numbers := loads if figure.of_loads else there.get(name):
-            drawn(figure, numbers, docs / f"paper_{name}.png")
+        drawn(figure, loads if figure.of_loads else there[name], docs / f"paper_{name}.png")
 
 
 def draw(docs: Path) -> Path:
     """Draw the page and its pictures from docs/paper.json, paper_figures.json and, in newtons, newtons.json."""
-    numbers, sums = kept("paper", docs).numbers, (docs / "newtons.json").exists()
+    numbers, sums = kept("paper", docs).numbers, kept("newtons", docs).numbers
     statements = [Statement(**s) for s in numbers["statements"]]
-    pictures(numbers.get("grid", {}), docs)
-    names: dict[str, Any] = {
+    pictures(numbers["grid"], docs)
+    newtons.picture(sums, docs)
+    names = newtons.compared(sums) | {
         "statements": statements,
         "count": [[s.verdict for s in statements].count(verdict) for verdict in (HOLDS, BUILT, IN_PART, NOT)],
         "runs": len(FORCES) * len(VOLTAGES),
-        "slices": errors.percent(errors.known_at(newtons.COMPARED)["f_t"]),
-        "limit": next((s.numbers["mu_app"] for s in statements if "mu_app" in s.numbers), None),
+        "limit": next(s.numbers["mu_app"] for s in statements if "mu_app" in s.numbers),
         "lines": lambda name: lines(name, statements),
-        "missing": numbers.get("missing"),
         "sites": _sites(statements),
-        "grid": {key: np.array(values) for key, values in numbers.get("grid", {}).items()},
-        "middle": None,
-        "off": None,
+        "grid": (grid := {key: np.array(values) for key, values in numbers["grid"].items()}),
+        "off": off(grid),
         "states": states.shown(docs),
     }
-    if names["grid"]:
-        names["off"] = off(names["grid"])
-    if sums:
-        found = kept("newtons", docs).numbers
-        newtons.picture(found, docs)
-        names |= newtons.compared(found)
-    further = ["paper_figures"] * (docs / "paper_figures.json").exists()
-    further += ["newtons"] * sums + ["paper_states"] * (names["states"] is not None)
-    return page(docs, "paper", "make paper", globals() | names, *further)
+    return page(docs, "paper", "make paper", globals() | names, "paper_figures", "newtons", "paper_states")
 
 
 if __name__ == "__main__":

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from benchmarks.paper import scenes
 from benchmarks.runs import computed, known
-from fingerpad.results import style
+from fingerpad.results.pictures import style
 from fingerpad.scene import Scene
 
 Array = NDArray[np.float64]

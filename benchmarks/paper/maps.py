@@ -13,7 +13,8 @@ from numpy.typing import NDArray
 
 from benchmarks.paper import scenes
 from benchmarks.runs import computed
-from fingerpad.results import finger_picture, style
+from fingerpad.results.pictures import finger as finger_picture
+from fingerpad.results.pictures import style
 from variational.snapshot import Snapshot
 
 _LOADS = {"charge": "Normal contact", "slide": "Sliding"}
@@ -21,9 +22,6 @@ _VOLTAGES = (0.0, scenes.PEAK)
 _NEAR = -4.4e-3, 5.6e-3, -0.1e-3, 1.25e-3  # m: left, right, lower and upper end of the maps
 _MICRO = 1e6  # 1/m: places are kept in micrometres, a tenth of a pixel
 _KINDS = {"xy": "<i4", "merkel": "<i4", "triangles": "<i4", "lines": "<i4", "beside": "<i4", "tag": "<i1", "sed": "<f2"}
-_WIDE, _HIGH = 5.3, 0.72  # in: a map
-_LEFT, _BELOW = (0.78, 6.5), (1.25, 2.4)  # in: ends of columns and rows
-_COLOURS = 2.5, 10.0, 0.5, 0.62  # in: place of the bar of colours
 
 
 def numbers(out: Path, jobs: int) -> dict[str, Any]:
@@ -101,20 +99,19 @@ def paint(figure: Figure, numbers: Mapping[str, Any]) -> None:
     left, right, bottom, top = (1e3 * end for end in _NEAR)
     highest = max(float(np.quantile(body.sed, 0.999)) for body in bodies.values())
     scale = finger_picture.Scales((left, right, bottom, top), (left, right, bottom, top), highest)
-    figure.set_layout_engine("none")  # panels have their places
     figure.suptitle(f"Strain energy density at {numbers['f_ext']:g} N/m; lines: layers; points: Merkel sites")
+    axes = figure.subplots(len(_LOADS), len(_VOLTAGES), squeeze=False)
     for (voltage, load), body in bodies.items():
         row, column = list(_LOADS).index(load), _VOLTAGES.index(voltage)
-        x, y = _LEFT[column], _BELOW[1 - row]
-        box = finger_picture.fitted((x, x + _WIDE, y, y + _HIGH), scale.near)
-        ax = style.panel(figure, *box)
-        finger_picture.density(ax, body, scale, box)
+        ax = axes[row, column]
+        ax.set_aspect("equal")
+        finger_picture.density(ax, body, scale)
         sites = 1e3 / _MICRO * _unpack(states[voltage, load], "merkel", 2)
         ax.plot(*sites.T, "o", ms=2.5, mfc="white", mec="black", mew=0.6)
         ax.set(xlim=(left, right), ylim=(bottom, top), title=f"{_LOADS[load]}, {voltage:g} V", facecolor="0.92")
         ax.set(xlabel="x (mm)" if row else "", ylabel="" if column else "y (mm)")
     ticks = style.decades(1e-6 * highest, 1e-3 * highest)
-    colours, place = ScalarMappable(finger_picture.norm(scale), style.MAGNITUDE), style.panel(figure, *_COLOURS)
-    bar = figure.colorbar(colours, cax=place, orientation="horizontal", extend="both", ticks=ticks, format="%g")
+    colours = ScalarMappable(finger_picture.norm(scale), style.MAGNITUDE)
+    bar = figure.colorbar(colours, ax=axes, location="bottom", extend="both", ticks=ticks, format="%g", aspect=60)
     bar.minorticks_off()
     bar.set_label("strain energy density (kPa = kJ/m³)")

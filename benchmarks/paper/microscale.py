@@ -8,7 +8,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from benchmarks.paper import scenes
-from fingerpad.results import style
+from fingerpad.results.pictures import style
 from fingerpad.scene import Scene
 from variational.roughness.bam import BearingArea
 

@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 
 from benchmarks.paper import scenes
 from benchmarks.runs import computed
-from fingerpad.results import style
+from fingerpad.results.pictures import style
 
 _STATES = {"charged": "A  Normal contact", "partial": "B  Partial slip", "full_slip": "C  Full slip"}
 _ALONG = ("x", "p", "p_el", "t", "d_eq")

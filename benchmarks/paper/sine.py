@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from benchmarks.paper import scenes
 from benchmarks.runs import Run, computed
-from fingerpad.results import style
+from fingerpad.results.pictures import style
 
 Array = NDArray[np.float64]
 Which = NDArray[np.bool_]

@@ -137,10 +137,8 @@ def compared(numbers: Mapping[str, Any]) -> list[Beside]:
     return [Beside(**{**each, "states": tuple(each["states"])}) for each in numbers["beside"]]
 
 
-def shown(docs: Path) -> dict[str, Any] | None:
-    """Return what docs/paper.md has of the states; None where they were not computed."""
-    if not (docs / "paper_states.json").exists():
-        return None
+def shown(docs: Path) -> dict[str, Any]:
+    """Return what docs/paper.md has of the states."""
     numbers = kept("paper_states", docs).numbers
     listed = compared(numbers)
     direct = [row for row in numbers["default"] if row["reached"] != "path"]
@@ -151,7 +149,6 @@ def shown(docs: Path) -> dict[str, Any] | None:
         "two": [each for each in listed if each.bistable or not each.alike],
         "count": len(numbers["default"]),
         "direct": len(direct),
-        "seconds": numbers["seconds_of_sweep"],
         "factorisations": sum(row["factorisations"] for row in direct) / len(direct),
         "mean": sum(larger) / len(larger),
         "path": sum(numbers["seconds_of_paths"]) / len(numbers["seconds_of_paths"]),

@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 
 from benchmarks.paper import scenes
 from benchmarks.runs import computed
-from fingerpad.results import style
+from fingerpad.results.pictures import style
 
 
 def numbers(out: Path, jobs: int) -> dict[str, Any]:

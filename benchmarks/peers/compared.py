@@ -10,7 +10,7 @@ from numpy.polynomial import Polynomial
 
 from benchmarks.harness import ticks
 from benchmarks.peers.exchange import Answer, Array, Ridge, State, cases
-from fingerpad.results.style import BLUE, ORANGE, VERMILION
+from fingerpad.results.pictures.style import BLUE, ORANGE, VERMILION
 
 OURS, CURVED, STRAIGHT = "fingerpad", "plain dolfinx, curved facets", "plain dolfinx, straight facets"
 PEER = "NGSolve"

@@ -234,7 +234,7 @@ def _draw(file: Path, found: Section, scene: Scene) -> None:
     from matplotlib.colors import ListedColormap
     from matplotlib.patches import Patch
 
-    from fingerpad.results.finger_picture import LAYER_COLOURS
+    from fingerpad.results.pictures.finger import LAYER_COLOURS
 
     shape, size, x = scene.geometry, scene.mesh.contact, 0.0
     period, deep = shape.ridge_wavelength, shape.sc_thickness + shape.ve_thickness

@@ -198,7 +198,7 @@ def _draw(file: Path, compared: Sequence["pd.DataFrame"], known: Sequence["Compu
 
 
 def _panel(ax: "Axes", rows: "pd.DataFrame", known: "Computed") -> None:
-    from fingerpad.results import style
+    from fingerpad.results.pictures import style
 
     about, points = rows.attrs, known.points
     unit = _UNITS.get(about["unit"], about["unit"])

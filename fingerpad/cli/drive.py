@@ -92,7 +92,7 @@ def _scene(args: argparse.Namespace) -> Scene:
 def draw(file: Path, rows: Sequence[Mapping[str, Any]]) -> None:
     """Draw relative thresholds of a sine and a square over the frequency; extrapolated ones are open circles."""
     with output.panels(file, "Voltage at the threshold of detection", 2) as (_, (ax, other)):
-        from fingerpad.results import style
+        from fingerpad.results.pictures import style
 
         curves = [("sine", style.BLUE, "o-", ax), ("square", style.VERMILION, "s--", ax)]
         for name, colour, look, part in [*curves, ("square_over_sine", style.BLACK, "D-", other)]:

@@ -142,7 +142,7 @@ def _numeric(values: Sequence[Any]) -> bool:
 
 def _map(figure: Any, ax: Any, at: Any, quantity: Output, values: Any, errors: Any, target: float | None) -> None:
     """Draw a heat map, hatched where the error is not known, with a line at a target."""
-    from fingerpad.results import style
+    from fingerpad.results.pictures import style
 
     shown = np.ma.masked_invalid(values * quantity.scale)
     low, high = float(shown.min()), float(shown.max())

@@ -89,7 +89,7 @@ def write_files(
 def panels(file: Path, title: str, count: int = 1) -> "Iterator[tuple[Figure, list[Axes]]]":
     """Give a figure and its panels side by side; write it at the end of the block."""
     with chdir("/"):  # a matplotlibrc of the current folder is not obeyed, see fingerpad.startup
-        from fingerpad.results import style
+        from fingerpad.results.pictures import style
 
     with style.look():
         figure = style.figure(4.0, width=2.5 + 3.0 * count)
@@ -105,7 +105,7 @@ def curve(
 
     A band is drawn of an ``error`` above and below; none where it is 0.
     """
-    from fingerpad.results import style
+    from fingerpad.results.pictures import style
 
     marked = np.size(x) <= _MAX_MARKERS
     marker: dict[str, Any] = {"marker": style.MARKERS[k % len(style.MARKERS)], "ms": 5} if marked else {}

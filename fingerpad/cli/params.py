@@ -56,16 +56,14 @@ def main(argv: Sequence[str]) -> int:
 
 def table(found: Sequence[Key]) -> str:
     """Return keys in aligned columns, what they mean below each."""
-    rows = [("key", "unit", "default", "allowed")]
-    rows += [(key.name, key.unit, _default(key), key.allowed) for key in found]
+    rows = [("key", "unit", "default", "allowed"), *((key.name, key.unit, _default(key), key.allowed) for key in found)]
     widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
-    lines = []
-    for k, row in enumerate(rows):
-        lines.append("  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip())
-        if k:
-            indent = "    "
-            lines += textwrap.wrap(found[k - 1].meaning, _WIDTH, initial_indent=indent, subsequent_indent=indent)
-    return "\n".join(lines)
+    head, *lines = ["  ".join(map(str.ljust, row, widths)).rstrip() for row in rows]
+    return "\n".join([head, *(f"{line}\n{_wrapped(key, '    ')}" for line, key in zip(lines, found, strict=True))])
+
+
+def _wrapped(key: Key, indent: str) -> str:
+    return "\n".join(textwrap.wrap(key.meaning, _WIDTH, initial_indent=indent, subsequent_indent=indent))
 
 
 def toml(found: Sequence[Key]) -> str:
@@ -78,7 +76,7 @@ def toml(found: Sequence[Key]) -> str:
             table, many = where, where.endswith("[]")
             plain = where.replace("[]", "")
             lines += ["", f"# [[{plain}]]" if many else f"[{plain}]" if _read(found, where) else f"# [{plain}]"]
-        lines += textwrap.wrap(key.meaning, _WIDTH, initial_indent="# ", subsequent_indent="# ")
+        lines += _wrapped(key, "# ").splitlines()
         off = key.default is None or bool(key.law) or not _read(found, where)
         given = f"{'# ' * off}{name} ={'' if key.default is None else ' ' + _value(key.default)}"
         lines.append(f"{given}  # {', '.join(filter(None, (key.unit, key.allowed)))}")
@@ -96,14 +94,10 @@ def page(found: Sequence[Key]) -> str:
         heading = f"`[[{plain}]]`" if name.endswith("[]") else f"`[{plain}]`" if name else "Top level"
         lines += ["", f"## {heading}", "", "| key | unit | default | allowed | meaning |", "|---|---|---|---|---|"]
         for key in keys:
-            cells = (f"`{key.name.rpartition('.')[2]}`", key.unit, _short(key), key.allowed, key.meaning)
+            default = f"{key.default:.12g}" if isinstance(key.default, float) else _default(key)
+            cells = (f"`{key.name.rpartition('.')[2]}`", key.unit, default, key.allowed, key.meaning)
             lines.append(f"| {' | '.join(cells)} |")
     return "\n".join(lines)
-
-
-def _short(key: Key) -> str:
-    """Return the default of a key with the digits that it has."""
-    return f"{key.default:.12g}" if isinstance(key.default, float) else _default(key)
 
 
 def _read(found: Sequence[Key], table: str) -> bool:
@@ -120,10 +114,6 @@ def _default(key: Key) -> str:
 
 def _value(value: Any) -> str:
     """Return a value as TOML has it."""
-    if isinstance(value, bool):
-        return str(value).lower()
-    if isinstance(value, str):
-        return f'"{value}"'
     if isinstance(value, tuple):
-        return f"[{', '.join(_value(part) for part in value)}]"
-    return repr(value)
+        return f"[{', '.join(map(_value, value))}]"
+    return json.dumps(value, ensure_ascii=False) if isinstance(value, bool | str) else repr(value)

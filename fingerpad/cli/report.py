@@ -73,7 +73,7 @@ def _calculator(file: Path) -> Path:
 def _animate(folder: Path, file: Path | None) -> Path:
     result, file = Result.load(folder), file or folder / "animation.webp"
     refuse_file(file, Kind("an animation", (".webp", ".gif")))
-    from fingerpad.results.animation import animate  # Matplotlib
+    from fingerpad.results.pictures.animation import animate  # Matplotlib
 
     try:
         with raising_at_ctrl_c(), progress(quiet=not watched()) as bar:

@@ -123,7 +123,7 @@ def draw_microscale(file: Path, rows: Sequence[dict[str, Any]]) -> None:
     first = [row for row in rows if row["voltage"] == voltages[0]]
     p = [row["p_c"] * 1e-3 for row in first]
     with output.panels(file, "Microscale of a ridge", 3) as (_, axes):
-        from fingerpad.results import style
+        from fingerpad.results.pictures import style
 
         gaps, stress, area = axes
         output.curve(gaps, 0, p, [row["d_eq"] * 1e6 for row in first], "equivalent air gap $d_{eq}$")

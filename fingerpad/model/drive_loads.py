@@ -24,7 +24,7 @@ from geometry.units import computed
 from variational.attraction.network import Network
 
 Array = NDArray[np.float64]
-_FEWEST, _MOST = 12, 48  # points of a period of the wave
+_FEWEST_POINTS, _MOST_POINTS = 12, 48  # points of a period of the wave
 _JUMP = 1e-6  # of a period, which a jump takes
 
 
@@ -102,7 +102,7 @@ def _over_time(drive: Drive, seconds: float) -> tuple[Array, Array]:
     """
     wave = drive.wave
     factor = (drive.h_0 + REFERENCE) / REFERENCE
-    count = int(np.clip(POINTS / max(seconds * (wave.frequency or 0.0), 1.0), _FEWEST, _MOST))
+    count = int(np.clip(POINTS / max(seconds * (wave.frequency or 0.0), 1.0), _FEWEST_POINTS, _MOST_POINTS))
     if wave.carrier is None and drive.circuit.dielectric.debye() is not None:
         t, u = (np.array(each) for each in zip(*wave.samples(seconds, 24 / count), strict=True))
         network = Network.of(drive.circuit, REFERENCE, *drive.layers)

@@ -15,9 +15,10 @@ from numpy.typing import NDArray
 from fingerpad.model.checks import Checked
 from fingerpad.model.finger import Finger, Step
 from fingerpad.model.stimuli import SiteStimuli
-from fingerpad.results import motion, states
-from fingerpad.results.drawing import Drawing
+from fingerpad.results import states
 from fingerpad.results.fields import View, sorted_along
+from fingerpad.results.pictures import animation
+from fingerpad.results.pictures.drawing import Drawing
 from fingerpad.results.quantities import SKIN, in_table
 from fingerpad.scene import Load
 from variational.output import Lines, Receptors
@@ -128,14 +129,14 @@ class PathRecord:
         self._comm, self._checks = comm, checks
         self.states: list[ContactState] = []
         self.skins: dict[int, Skin] = {}
-        self.moved: dict[int, motion.Moved] = {}
+        self.moved: dict[int, animation.Moved] = {}
         self.ends: dict[str, View] = {}
 
     def move(self, state: ContactState, skin: Skin, body: Snapshot) -> None:
         """Keep lines and skin of an accepted state, on rank 0."""
         self.skins[state.step] = skin
-        self.moved[state.step] = motion.moved(body, sorted_along(skin, state))
-        motion.thin(self.moved)
+        self.moved[state.step] = animation.moved(body, sorted_along(skin, state))
+        animation.thin(self.moved)
 
     def prune(self, loads: Sequence[str]) -> None:
         """Drop the skin of steps that nothing will show, whatever follows; rank 0 alone has one.

@@ -14,10 +14,11 @@ from fingerpad.model.finger import Step
 from fingerpad.model.options import Omission
 from fingerpad.model.record import PathRecord, Viewer
 from fingerpad.model.simulation import Simulation
-from fingerpad.results import motion, states
+from fingerpad.results import states
 from fingerpad.results.data import Cost
 from fingerpad.results.fields import View
 from fingerpad.results.outputs import valued
+from fingerpad.results.pictures import animation
 from fingerpad.results.quantities import Output
 from fingerpad.results.terminal import Console
 from fingerpad.results.writing import Writer
@@ -193,7 +194,7 @@ class Report:
     def motion(self) -> dict[str, Any]:
         """Return the motion of the finger as a group of ``fields.npz``, on rank 0, nothing elsewhere; collective."""
         body = self._viewer.body(fields=False)
-        return {} if body is None or not self.record.moved else {"motion": motion.group(body, self.record.moved)}
+        return {} if body is None or not self.record.moved else {"motion": animation.group(body, self.record.moved)}
 
     def _log_checks(self) -> None:
         for step, check in list(self._simulation.checks.items())[self._logged :]:

@@ -30,7 +30,7 @@ DISPLACEMENT = (24.3, 11.1, 5.34, 1.87, 0.496, 0.115, 0.079, 0.049, 0.042, 0.046
 REFERENCE = 120.0
 """Frequency (Hz) of a sine to whose threshold others are relative."""
 _SAMPLES = 1 << 14
-_NOTHING = 1e-9  # of the largest force: an amplitude that is roundoff
+_ROUNDOFF = 1e-9  # of the largest force: an amplitude that is zero
 
 
 def threshold(frequency: ArrayLike) -> Array:
@@ -69,11 +69,11 @@ def level(force: ArrayLike, frequency: float) -> Level:
     """
     values = np.asarray(force, dtype=float)
     amplitude = 2 / len(values) * np.abs(np.fft.rfft(values))[1:]
-    amplitude[amplitude < _NOTHING * np.abs(values).max()] = 0.0
+    amplitude[amplitude < _ROUNDOFF * np.abs(values).max()] = 0.0
     at = frequency * np.arange(1, len(amplitude) + 1)
-    felt = amplitude / threshold(at)
-    k = int(np.argmax(felt))
-    return Level(float(felt[k]), float(at[k]))
+    levels = amplitude / threshold(at)
+    k = int(np.argmax(levels))
+    return Level(float(levels[k]), float(at[k]))
 
 
 def of_wave(circuit: GapCircuit, wave: str, frequency: float, layers: tuple[float, float, float, float]) -> Level:

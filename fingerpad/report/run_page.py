@@ -18,12 +18,13 @@ from fingerpad.results.printing import cells
 from fingerpad.results.quantities import BAND, KNOWN, PER_LENGTH, STEPS, in_table, plus_minus_of
 from fingerpad.results.result import Result
 from fingerpad.results.spikes import Spikes
-from fingerpad.results.states import WORDS, before_sliding, called
+from fingerpad.results.states import before_sliding, called
 from fingerpad.scene.messages import SceneError
 from fingerpad.scene.remarks import coefficient
 
 _MM, _MS, _KPA = 1e3, 1e3, 1e-3
 _PICTURES = {
+    "finger.png": "The deformed finger, and its strain energy density near the contact",
     "surface.png": "Pressure, shear traction, attraction and gap along the skin in the named states",
     "history.png": "Friction force, contact length and ridges in contact over sliding",
     "time.png": "Voltage, friction force and contact length over time",
@@ -248,13 +249,10 @@ def _raster(result: Result, spikes: Spikes) -> Markup:
 
 
 def _pictures(result: Result) -> Iterator[tuple[str, str, str]]:
-    """Yield name, link and words of each picture in the folder: fingers in the order of their states come first."""
+    """Yield name, link and words of each picture in the folder."""
     if result.folder is None:
         return
-    named = {WORDS[name]: called(name, state.voltage) for name, state in result.named.items()}
-    words = {f"finger_{name.replace(' ', '_')}.png": f"Deformed finger: {each}" for name, each in named.items()}
-    words = {"finger.png": "Deformed finger", **words, **_PICTURES}
-    for name, each in words.items():
+    for name, each in _PICTURES.items():
         if (result.folder / name).exists():
             yield name, html.picture(result.folder / name), each
 

@@ -76,7 +76,7 @@ class ResultData:
     folder: Path | None = None
     """Folder of tables, plots and fields, an absolute path; None where nothing was written."""
     drawing: Any = None
-    """Data of the pictures, a :class:`fingerpad.results.drawing.Drawing`; None for a model without them."""
+    """Data of the pictures, a :class:`fingerpad.results.pictures.drawing.Drawing`; None for a model without them."""
     outputs: tuple[Output, ...] = ()
     """Outputs that are computed from a state; of a result that was read their values alone are known."""
     finger: "WholeFinger | None" = None

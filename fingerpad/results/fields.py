@@ -2,7 +2,7 @@
 
 The file is NumPy's: ``numpy.load("fields.npz")["loads/press/stress"]``. Its groups are ``meshes/0``, …; ``loads/NAME``,
 the end of each load; ``states/NAME``, the skin of states of the path, and fields too of named states on another mesh;
-and ``motion``, see :mod:`fingerpad.results.motion`. Tensors have 32 bits there.
+and ``motion``, see :mod:`fingerpad.results.pictures.animation`. Tensors have 32 bits there.
 """
 
 import zipfile
@@ -34,7 +34,7 @@ Along = Skin | Mapping[str, Array]
 Groups = Mapping[str, Mapping[str, Any]]
 FILE = "fields.npz"
 ALONG = (*(name.removesuffix("_n").removesuffix("_t") for name in SKIN), "d_eq", "ridge")
-"""Arrays of the skin along a state, see :class:`fingerpad.results.curves.SurfaceProfile`."""
+"""Arrays of the skin along a state, see :class:`fingerpad.results.pictures.curves.SurfaceProfile`."""
 _LEVEL = 1  # of compression: the next ones take longer and save little
 _TRIANGLE = 5  # VTK's number of this cell
 _MESH = ("x", "triangles", "tag", "lines", "beside")  # of a snapshot, that states on one mesh share

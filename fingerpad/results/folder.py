@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 # All that a run leaves, for the next run of the same scene to delete; what else is in the folder is not touched.
 LEFT = (
     *("steps.csv", "summary.json", "summary.json*.part", "run.log", "result.nc", "result.nc*.part"),
-    *("fields.npz", "fields.npz*.part", "finger_*.png", "surface*.png"),
+    *("fields.npz", "fields.npz*.part", "finger*.png", "surface*.png"),
     *("history.png", "time.png", "field.png", "footprint.png", "solid.png", "report.html", "report.html*.part"),
     *("spikes.csv", "spikes.nc", "raster.png", "animation.webp"),
 )

@@ -17,6 +17,7 @@ from fingerpad.results.quantities import RIDGES, SKIN, STEPS, STIMULI, Output
 from fingerpad.results.states import STATES, LoadResult, load_results
 from fingerpad.scene.law_code import foreign
 from fingerpad.scene.messages import SceneError, clip
+from fingerpad.scene.parameters import Slices
 from fingerpad.scene.reading import model_name
 from fingerpad.scene.remarks import coefficient
 from fingerpad.scene.scene import Scene, as_kept
@@ -26,7 +27,6 @@ from variational.state import PATH, ContactState, Errors, RidgeStates, Sites, Sk
 if TYPE_CHECKING:
     import xarray
 
-    from fingerpad.scene.parameters import Slices
     from fingerpad.slices.finger import WholeFinger
 
 
@@ -82,7 +82,7 @@ def parts(data: "xarray.Dataset", cost: type) -> dict[str, Any]:
         found = {name: named.get(name) for name in STATES} | {"scene": scene, "model": model_name(about["model"])}
         found |= {name: about.get(name, "") for name in ("failure", "interrupted")}
         found |= {name: tuple(filter(None, about.get(name, "").split("\n"))) for name in ("notes", "cautions")}
-        found["cost"] = cost(**{each.name: type(each.default)(about[each.name]) for each in fields(cost)})
+        found["cost"] = cost(**{each.name: _plain(about[each.name]) for each in fields(cost)})
         found |= {"steps": steps, "loads": loads_of(scene, steps, stable), "record": record, "outputs": outputs}
         return found | {"finger": _finger(data, outputs, scene.slices)}
     except (KeyError, ValueError, TypeError, IndexError, AttributeError) as error:  # a SceneError is a ValueError
@@ -110,7 +110,7 @@ def _states(data: "xarray.Dataset", own: Sequence[str]) -> tuple[tuple[ContactSt
     return steps, {name: _named_state(arrays, k, own) for k, name in there}
 
 
-def _finger(data: "xarray.Dataset", outputs: Sequence[Output], shape: "Slices") -> "WholeFinger | None":
+def _finger(data: "xarray.Dataset", outputs: Sequence[Output], shape: Slices) -> "WholeFinger | None":
     """Return the whole finger of a dataset; None without one.
 
     Args:

@@ -153,7 +153,8 @@ def _listed(*rows: tuple[Any, ...], error: Mapping[str, str] | None = None, **ta
     found = {}
     for name, unit, *more in rows:
         mine = (table for table, names in tables.items() if name in names.split())
-        found[name] = Output(name, unit, None, *more, tables=frozenset(mine), error=(error or {}).get(name, ""))
+        given: dict[str, Any] = {"tables": frozenset(mine), "error": (error or {}).get(name, "")}
+        found[name] = Output(name, unit, **dict(zip(("meaning", "words", "digits"), more, strict=False)), **given)
     return found
 
 

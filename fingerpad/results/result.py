@@ -20,8 +20,8 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from fingerpad.afferents.afferent import Afferent
-    from fingerpad.results.drawing import Drawing
     from fingerpad.results.fields import StateFields
+    from fingerpad.results.pictures.drawing import Drawing
     from fingerpad.results.spikes import Spikes
 
 KINDS = ("surface", "finger", "history", "footprint", "time", "field", "solid")
@@ -36,7 +36,7 @@ class Result(ResultData):
     def _drawn(self) -> "Drawing | None":
         """Return what pictures are drawn from, of a result that was read from its folder; None off rank 0."""
         if self.drawing is None and self.steps and self.folder is not None and launcher.rank() == 0:
-            from fingerpad.results.drawing import read  # Matplotlib
+            from fingerpad.results.pictures.drawing import read  # Matplotlib
 
             mu_0 = None if "laws" in self.record.get("parameters", {}) else coefficient(self.scene)
             return read(self.folder, self.steps, self.named, mu_0)
@@ -63,7 +63,7 @@ class Result(ResultData):
         if kind in ("footprint", "solid"):
             if self.finger is None:
                 raise ValueError("the result has no whole finger to draw: a history has none, else a note says why")
-            from fingerpad.results.whole_picture import draw  # Matplotlib
+            from fingerpad.results.pictures.solid import draw  # Matplotlib
 
             place = None if path is None else Path(path)
             return draw(self, kind, place) if launcher.rank() == 0 else None
@@ -123,7 +123,7 @@ class Result(ResultData):
         Raises:
             SceneError: the run has no motion in its folder, or the name another ending.
         """
-        from fingerpad.results.animation import animate  # Matplotlib
+        from fingerpad.results.pictures.animation import animate  # Matplotlib
 
         return animate(self, Path(path))
 

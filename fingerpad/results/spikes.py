@@ -156,7 +156,7 @@ class Spikes:
 
     def plot(self, path: str | Path | None = None) -> "Figure":
         """Draw energy densities at Merkel sites over time, and each spike unit by unit below; write a PNG if asked."""
-        from fingerpad.results.spike_picture import Curves, Panel, raster  # Matplotlib
+        from fingerpad.results.pictures.spikes import Curves, Panel, raster  # Matplotlib
 
         panels = []
         for law in self.laws:

@@ -257,7 +257,7 @@ class Attempt:
                 self.report.final(final)
                 if result.folder is not None and result.drawing is not None:
                     fields.write(result.folder, {**result.drawing.groups(scene.output.each_load), **motion})
-                    result.drawing.write(result.folder, scene.output.each_load)
+                    result.drawing.write(result.folder)
             return result
 
         def with_cost(result: Result) -> Result:  # collective, and never fails on one rank alone

@@ -31,8 +31,8 @@ Array = NDArray[Any]
 POINTS = 11
 """Voltages at which friction is computed."""
 _MARGIN = 0.7  # gaps of a charged ridge over that without voltage, at the least
-_ITERATIONS, _SAME = 50, 1e-9  # of the air gap at an instant, relative
-_NOTHING = 1e-9  # of the mean: an amplitude that is roundoff
+_ITERATIONS, _TOLERANCE = 50, 1e-9  # of the air gap at an instant, relative
+_ROUNDOFF = 1e-9  # of the mean: an amplitude that is roundoff
 _COMPONENTS = 5  # largest of the spectrum that are printed
 _QUASI_STATIC = 100.0  # Hz, above which inertia begins to matter
 _FREQUENCY = (1e-3, 1e6)  # Hz, least and largest: those of a drive of a scene
@@ -81,7 +81,7 @@ class DrivenFriction:
         """Return the amplitude of the friction force at a frequency (Hz); 0 where the drive has none."""
         near = np.abs(self.frequency - frequency) < 1e-6 * frequency
         found = float(self.amplitude[near].sum())
-        return found if found > _NOTHING * float(self.f_t.mean()) else 0.0
+        return found if found > _ROUNDOFF * float(self.f_t.mean()) else 0.0
 
     def __str__(self) -> str:
         """Return mean, extremes and the largest components."""
@@ -101,7 +101,7 @@ class DrivenFriction:
 
     def plot(self, path: str | Path | None = None) -> "Figure":
         """Draw U, attraction and friction over a period, and the spectrum of friction; write a picture if asked."""
-        from fingerpad.results.drive_picture import Period, over_period  # Matplotlib
+        from fingerpad.results.pictures.curves import Period, over_period  # Matplotlib
 
         arrays = self.time, self.voltage, self.sigma_el, self.f_t
         drawn = Period(*arrays, self.unit, self.frequency, self.amplitude)
@@ -129,7 +129,7 @@ def drive(scene: Scene) -> DrivenFriction:
     for _ in range(_ITERATIONS):
         volts = given.instants(gap)
         before, gap = gap, _monotone(squares, gaps, volts**2)
-        if np.all(np.abs(gap - before) <= _SAME * gap):
+        if np.all(np.abs(gap - before) <= _TOLERANCE * gap):
             break
     f_t = _monotone(squares, friction, volts**2)
     amplitude = 2 / len(f_t) * np.abs(np.fft.rfft(f_t))[1:]

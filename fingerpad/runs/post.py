@@ -125,7 +125,12 @@ POST: list[Entry] = [
     BANDS,
     cautions_on(),
     WORDS,
-    Entry("footprint.png", lambda r, c: _page(r, c) and r.finger is not None, _picture("footprint"), files=True),
+    Entry(
+        "footprint.png",
+        lambda r, c: _page(r, c) and r.finger is not None and (r.whole or not r.steps),
+        _picture("footprint"),
+        files=True,
+    ),
     Entry("solid.png", lambda r, c: _page(r, c) and r.finger is not None and r.whole, _picture("solid"), files=True),
     Entry("report", _page, "fingerpad.report.write:of_result", files=True),
 ]

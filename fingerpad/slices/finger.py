@@ -123,7 +123,7 @@ class WholeFinger:
 
     def flat(self) -> dict[str, float]:
         """Return all quantities and their errors by name, such as ``full_slip_finger_f_t``; SI units."""
-        found = {}
+        found = dict[str, float]()
         for name in self.states:
             start, error = f"{name}_finger_", self.error[name]
             found |= {f"{start}{key}": value for key, value in self.values(name).items()}

@@ -41,7 +41,7 @@ Array = NDArray[np.floating[Any]]
 Voltage = float | Callable[[Array], Array]
 """A voltage U (V), or one of Eq. 3 by the air gap (m) where a drive loses a part of it that depends on the gap."""
 _PRESSURES = np.geomspace(10.0, 1e7, 181)  # Pa, among which roots are separated
-_LEAST, _LARGEST = 1e-9, 1e6  # of m - 1
+_SMALLEST, _LARGEST = 1e-9, 1e6  # of m - 1
 _ROUNDOFF = 2e-16  # relative
 _STEP = 1e-9  # of Newton's method, relative; the next one would be of its square
 _TOLERANCE = 1e-14  # of the pressure, relative
@@ -163,7 +163,7 @@ class Cylinder:
             grows += bent * a * root + pulled * a * (m / root * angle - logarithm)
             return np.log(gap / reach), beyond * grows / gap
 
-        low, high, y = (np.full_like(sigma, np.log(end)) for end in (_LEAST, _LARGEST, 1.0))
+        low, high, y = (np.full_like(sigma, np.log(end)) for end in (_SMALLEST, _LARGEST, 1.0))
         y = y if near is None else np.log(near)
         for _ in range(_ITERATIONS):
             value, slope = opening(y)

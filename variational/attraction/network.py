@@ -26,8 +26,8 @@ from variational.attraction.circuit import GapCircuit
 from variational.attraction.dielectric import VACUUM_PERMITTIVITY, Debye
 
 Array = NDArray[np.float64]
-_LEAST = 1e-12  # weight of a mode that is left out, of the sum of all
-_STILL = 1e-14  # rate that is roundoff of none, of the largest one
+_NEGLIGIBLE = 1e-12  # weight of a mode that is left out, of the sum of all
+_ZERO_RATE = 1e-14  # rate that is roundoff of none, of the largest one
 
 
 @dataclass(frozen=True)
@@ -52,9 +52,9 @@ class Network:
         capacitance, conductance, inlet = _assembled(circuit, terms, (gap, d_i / eps_i, d_sc))
         rate, vectors = scipy.linalg.eigh(conductance, capacitance)
         weight = (vectors[0] - vectors[1]) * (inlet * vectors[0])
-        kept = np.abs(weight) > _LEAST * np.abs(weight).sum()
+        kept = np.abs(weight) > _NEGLIGIBLE * np.abs(weight).sum()
         rate = rate[kept]
-        return cls(np.where(rate > _STILL * rate.max(), rate, 0.0), weight[kept])
+        return cls(np.where(rate > _ZERO_RATE * rate.max(), rate, 0.0), weight[kept])
 
     def gain(self, frequency: ArrayLike) -> NDArray[np.complex128]:
         """Return E g / U at frequencies (Hz) above 0, to compare with :meth:`GapCircuit.gain`."""
@@ -74,7 +74,7 @@ class Network:
             voltages: of the drive at these times (V). The first is switched on at the first time.
             start: the modes q (V) before that, shape (modes,); 0 for a gap without charge.
         """
-        return self._followed(np.asarray(times, dtype=float), np.asarray(voltages, dtype=float), start)[0]
+        return self._modes_over_time(np.asarray(times, dtype=float), np.asarray(voltages, dtype=float), start)[0]
 
     def periodic(self, times: ArrayLike, voltages: ArrayLike) -> Array:
         """Return the voltage across the gap (V) over a period in the steady state, at its times.
@@ -86,12 +86,12 @@ class Network:
         t, u = np.asarray(times, dtype=float), np.asarray(voltages, dtype=float)
         # With q at the end of a period: q = exp(-rate T) q + (what a period leaves that begins with q = 0 before it).
         held = self.rate > 0
-        left = self._followed(t, u, -u[-1])[1]
+        left = self._modes_over_time(t, u, -u[-1])[1]
         end = np.full_like(left, u[-1])  # capacitors in series, without charge of their own
         end[held] = left[held] / -np.expm1(-self.rate[held] * (t[-1] - t[0]))
-        return self._followed(t, u, end - u[-1])[0]
+        return self._modes_over_time(t, u, end - u[-1])[0]
 
-    def _followed(self, t: Array, u: Array, start: ArrayLike) -> tuple[Array, Array]:
+    def _modes_over_time(self, t: Array, u: Array, start: ArrayLike) -> tuple[Array, Array]:
         """Return the voltage across the gap at all times, and the modes at the last; the drive is 0 V before."""
         q, found = np.asarray(start, dtype=float) + u[0], np.empty_like(t)
         q = q * np.ones_like(self.rate)

@@ -54,7 +54,7 @@ class BoundaryElements(TabulatedClosure):
 
         Args:
             measured: heights (m).
-            progress: is told of each contact that is solved.
+            progress: called after each contact with the number done and the total.
 
         Raises:
             ValueError: a map that is flat or has too few pixels or pixels that are not square; in one sentence.

@@ -58,7 +58,7 @@ def gap_table(
         surfaces: periodic.
         wavelength: lambda_0, in the surfaces' unit of length.
         pressures: over E* q_0 h_rms, increasing by equal steps of the logarithm.
-        progress: is told of each contact.
+        progress: called after each contact with the number done and the total.
         copies: how often a surface has each of its pixels, which count once.
 
     Raises:
@@ -94,7 +94,7 @@ def measured_table(measured: HeightMap, progress: Progress | None = None) -> tup
 
     Args:
         measured: heights, positive towards the plane, without their tilt or curvature.
-        progress: is told of each contact.
+        progress: called after each contact with the number done and the total.
 
     Raises:
         ValueError: a flat map, one with a tilt or with pixels that are not square, or of too few pixels; one sentence.
@@ -153,7 +153,7 @@ def keep(measured: HeightMap, progress: Progress | None = None) -> tuple[str, fl
 
     Args:
         measured: heights, without tilt or curvature.
-        progress: is told of each contact of a table that is computed.
+        progress: called after each contact with the number done and the total.
 
     Raises:
         ValueError: as :func:`measured_table`, or a folder that takes no files.

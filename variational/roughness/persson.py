@@ -40,7 +40,7 @@ Array = NDArray[np.float64]
 _GAMMA = 0.45
 _LEAST_SLOPE = 1e-5  # rms slope of the first waves over q_0 h_rms, far below the least pressure
 _MAGNIFICATIONS, _NODES = 300, 48
-_LEAST, _MOST = 1e-9, 10.0  # arguments between which the inner integral is tabulated
+_SMALLEST, _LARGEST = 1e-9, 10.0  # arguments between which the inner integral is tabulated
 
 
 @dataclass(frozen=True)
@@ -118,7 +118,7 @@ def contact_area(pressure: Array, spectrum: Spectrum, q: Array) -> Array:
 @lru_cache(maxsize=1)
 def _inner() -> tuple[Array, Array]:
     """Return the logarithm of x and the integral from x on of 3 erf^2 exp(-x^2) / x."""
-    ln_x = np.linspace(np.log(_LEAST), np.log(_MOST), 6001)
+    ln_x = np.linspace(np.log(_SMALLEST), np.log(_LARGEST), 6001)
     x = np.exp(ln_x)
     up = scipy.integrate.cumulative_simpson(3 * scipy.special.erf(x) ** 2 * np.exp(-(x**2)), x=ln_x, initial=0.0)
     return ln_x, up[-1] - up
@@ -141,7 +141,7 @@ def separation(pressure: Array, spectrum: Spectrum, q: Array) -> Array:
     between = np.maximum(spectrum.slope_squared(there) - spectrum.slope_squared(q)[:, None], 1e-300)
     w = np.sqrt(2 / between)
     outer = spectrum.level * there ** (1 - 2 * spectrum.hurst) * w * 2 * root * weight
-    x = np.clip(w * p[:, :, None], _LEAST, None)
+    x = np.clip(w * p[:, :, None], _SMALLEST, None)
     inner = _GAMMA * scipy.special.exp1(x**2) / 2 + (1 - _GAMMA) * np.interp(np.log(x), *_inner(), right=0.0)
     return np.asarray(np.sqrt(np.pi) * (outer * inner).sum(axis=-1))
 

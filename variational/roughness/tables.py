@@ -30,7 +30,11 @@ HURSTS = (0.6, 0.75, 0.9)
 """Hurst exponents of the tables that come with the package; 0.75 is the paper's."""
 RATIOS = (8.0, 16.0, 32.0, 64.0)
 """Ratios of the longest to the shortest wave of these tables."""
-_WIDE, _NARROW, _MOST = 4, 2, 32.0  # longest waves in the side of a surface, and the ratio up to which it is wide
+_WIDE, _NARROW, _WIDEST_RATIO = (
+    4,
+    2,
+    32.0,
+)  # longest waves in the side of a surface, and the ratio up to which it is wide
 _FIELDS = ("pressure", "area", "weight", "mean", "deviation")
 _ROUNDOFF = 1e-6
 
@@ -74,7 +78,7 @@ def _shipped(hurst: float, ratio: float) -> GapTable:
 
 def waves(ratio: float) -> int:
     """Return the longest waves in the side of each surface of a table of the package, by the ratio of its waves."""
-    return _WIDE if ratio <= _MOST else _NARROW
+    return _WIDE if ratio <= _WIDEST_RATIO else _NARROW
 
 
 def ratios(hurst: float) -> list[float]:

@@ -95,7 +95,7 @@ class TabulatedClosure(Named, Closure):
 
     @classmethod
     def of_map(cls, measured: "HeightMap", progress: Progress | None = None) -> dict[str, Any]:
-        """Return the parameters that a measured height map gives; ``progress`` is told of each contact that is solved.
+        """Return the parameters that a measured height map gives; ``progress`` is called after each contact.
 
         Raises:
             ValueError: a map without roughness, or one that does not resolve it; in one sentence.

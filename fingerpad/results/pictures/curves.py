@@ -3,26 +3,25 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from fingerpad.results import style
+from fingerpad.results.pictures import style
 from fingerpad.results.states import called
 from variational.state import ContactState
 
 Array = NDArray[np.float64]
 _MM, _MS, _UM, _KPA = 1e3, 1e3, 1e6, 1e-3
-_SIDES = 1.0, 8.05  # in: left and right end of axes on a page, whose labels are beside them
-_HEAD, _FOOT = 0.35, 1.1  # in: of the picture of the skin, its title; label of x and legend
-_TITLES, _BETWEEN = 0.45, 0.1  # in: two lines of a title; between stresses and gaps
-_TITLE_AT = -0.07  # of the width of axes: where a title begins
 _SHORT = 1.0  # s, below which the axis of time is in ms
 _RUBS = 1e-6  # of mu_0: a coefficient below is roundoff
 _TOOTH_SPAN = 4  # points: the span of a saw tooth to either side
 _NOTHING = 1e-9  # of the contact force: an external force below is roundoff
+_LEAST_AMPLITUDE = 1e-3  # of the largest one, from which components are drawn
+_COMPONENTS = 60  # at most
 _COARSE = 0.1  # of the peak: deeper saw teeth are noted
 
 
@@ -55,7 +54,6 @@ def surface(
     states: Sequence[SurfaceProfile],
     title: str,
     largest_gap: float = 6e-6,
-    on: Figure | None = None,
 ) -> Figure:
     """Draw pressure, shear traction, attraction and gaps along the surface (Fig. 2 of Forsbach et al. 2023).
 
@@ -65,43 +63,26 @@ def surface(
     Args:
         path: of the PNG file; None for the figure alone.
         states: one pair of panels each, such as normal contact, partial slip and full slip.
-        title: what they have in common, see :mod:`fingerpad.results.style`.
+        title: what they have in common, see :mod:`fingerpad.results.pictures.style`.
         largest_gap: end of the gaps' axis (m).
-        on: figure of as many other states, which becomes that of these.
     """
     with style.look():
-        figure = on or style.sheet(1 + 3.0 * len(states), title)
-        style.head(figure, title)
-        axes = figure.axes or _surface_panels(figure, len(states))
-        style.clear(axes)
+        figure = style.figure(1 + 3.0 * len(states), title)
+        axes = style.column(figure, [2, 1] * len(states))
         stresses, gaps = axes[::2], axes[1::2]
         bottom, top = _common_range(states)
         for letter, state, above, below in zip("ABCDEFGH", states, stresses, gaps, strict=False):
             above.set_ylim(bottom, top)
             _draw_stresses(above, state)
-            above.set_title(_surface_title(letter, state), loc="left", x=_TITLE_AT, fontsize=9.5)
+            above.set_title(_surface_title(letter, state), loc="left", fontsize=9.5)
             _draw_gaps(below, state, largest_gap)
-        if on is None:
-            handles = [h for ax in (stresses[0], gaps[0]) for h in ax.get_legend_handles_labels()[0]]
-            figure.legend(handles=handles, loc="lower center", ncols=3)
-            gaps[-1].set_xlabel("x on the screen (mm)")
+        handles = [h for ax in (stresses[0], gaps[0]) for h in ax.get_legend_handles_labels()[0]]
+        figure.legend(handles=handles, loc="outside lower center", ncols=3)
+        gaps[-1].set_xlabel("x on the screen (mm)")
         touching = np.concatenate([s.x[s.p > 0] for s in states])
         if len(touching):
             gaps[-1].set_xlim(_MM * touching.min() - 0.5, _MM * touching.max() + 0.5)
-        style.align(axes)
         return style.save(figure, path)
-
-
-def _surface_panels(figure: Figure, states: int) -> list[Axes]:
-    """Return the axes of stresses and of gaps for each state, below each other, with one scale along x."""
-    high = float(figure.get_size_inches()[1])
-    each = (high - _FOOT - _HEAD) / states
-    heights: list[tuple[float, float]] = []
-    for k in range(states):
-        base = high - _HEAD - (k + 1) * each
-        middle = base + (each - _TITLES - _BETWEEN) / 3
-        heights += [(middle + _BETWEEN, base + each - _TITLES), (base, middle)]
-    return style.column(figure, *_SIDES, heights)
 
 
 def saw_teeth(p: Array) -> float:
@@ -187,7 +168,7 @@ def history(
     Args:
         path: of the PNG file; None for the figure alone.
         states: accepted states in order, from the last one before sliding on.
-        title: what run it is, see :mod:`fingerpad.results.style`.
+        title: what run it is, see :mod:`fingerpad.results.pictures.style`.
         mu_0: friction coefficient, drawn as the limit without attraction.
         named: states by name; those with a known error are drawn with error bars.
     """
@@ -197,8 +178,8 @@ def history(
 
     x, f_t = _MM * column("bone_x"), column("f_t")
     with style.look():
-        figure = style.sheet(7.25, title)
-        panels = style.column(figure, *_SIDES, [(4.5, 6.5), (2.0, 3.95), (0.6, 1.85)])
+        figure = style.figure(7.25, title)
+        panels = style.column(figure, [8, 8, 5])
         force, length, ridges = panels
         force.plot(x, f_t, "o-", ms=3.5, color=style.BLACK, label="friction force f_T")
         force.set_ylabel("friction force f_T (N/m)")
@@ -213,7 +194,6 @@ def history(
         style.count(ridges.yaxis)
         ridges.set_xlabel("sideways displacement of the bone (mm)")
         _draw_jumps(panels, x, states)
-        style.align(panels)
         for ax in (force, length):
             ax.legend(loc="lower left", bbox_to_anchor=(0, 1), ncols=2, borderaxespad=0.2)
         return style.save(figure, path)
@@ -263,7 +243,7 @@ def over_time(path: Path | str | None, states: Sequence[ContactState], title: st
     Args:
         path: of the PNG file; None for the figure alone.
         states: accepted states in order, with their times.
-        title: what run it is, see :mod:`fingerpad.results.style`.
+        title: what run it is, see :mod:`fingerpad.results.pictures.style`.
     """
     time = np.array([state.time for state in states])
     short = time[-1] - time[0] < _SHORT
@@ -274,12 +254,69 @@ def over_time(path: Path | str | None, states: Sequence[ContactState], title: st
         ("contact length\nL_R (mm)", [_MM * state.contact_length for state in states], style.BLUE),
     )
     with style.look():
-        figure = style.sheet(7.25, title)
-        axes = style.column(figure, *_SIDES, [(4.9, 6.8), (2.75, 4.65), (0.6, 2.5)])
+        figure = style.figure(7.25, title)
+        axes = style.column(figure, [1, 1, 1])
         for ax, (label, values, colour) in zip(axes, rows, strict=True):
             ax.plot(t, values, "o-", ms=3, color=colour)
             ax.set_ylabel(label)
         words = "; dotted lines: part of the skin jumps" if _draw_jumps(axes, t, states) else ""
-        style.align(axes)
         axes[-1].set_xlabel(f"time ({'ms' if short else 's'}){words}")
         return style.save(figure, path)
+
+
+class Period(NamedTuple):
+    """What is drawn of a drive, arrays over one period of shape (samples,), and of a spectrum (components,)."""
+
+    time: Array
+    """(s)."""
+    voltage: Array
+    """(V)."""
+    sigma_el: Array
+    """(Pa)."""
+    f_t: Array
+    """Friction force, in its unit."""
+    unit: str
+    frequency: Array
+    """(Hz)."""
+    amplitude: Array
+    """Of the friction force, in its unit."""
+
+
+def over_period(found: Period, title: str, path: Path | None) -> Figure:
+    """Draw a drive over a period; write it as a file where a path is given."""
+    with style.look():
+        figure = style.figure(6.0)
+        grid = figure.add_gridspec(3, 2, width_ratios=(3, 2))
+        panels = [figure.add_subplot(grid[k, 0]) for k in range(3)]
+        parts = (
+            (found.voltage, "U (V)", style.BLACK),
+            (found.sigma_el / 1e3, r"$\sigma_{el}$ (kPa)", style.ATTRACTION),
+            (found.f_t, f"{_symbol(found)} ({found.unit})", style.VERMILION),
+        )
+        for ax, (values, label, colour) in zip(panels, parts, strict=True):
+            ax.plot(1e3 * found.time, values, color=colour)
+            ax.set_ylabel(label)
+            ax.grid(alpha=0.3)
+        panels[-1].axhline(
+            found.f_t.mean(), color=style.GREY, ls="--", label=f"mean {found.f_t.mean():.4g} {found.unit}"
+        )
+        panels[-1].legend(frameon=True)
+        panels[-1].set_xlabel("time (ms)")
+        _spectrum(figure.add_subplot(grid[:, 1]), found)
+        figure.suptitle(style.plain(title))
+        return style.save(figure, path)
+
+
+def _symbol(found: Period) -> str:
+    """Return the symbol of the friction force: of the whole finger in N, and of a section in N/m."""
+    return "$F_T$" if found.unit == "N" else "$f_T$"
+
+
+def _spectrum(ax: Axes, found: Period) -> None:
+    shown = np.flatnonzero(found.amplitude > _LEAST_AMPLITUDE * found.amplitude.max(initial=0.0))[:_COMPONENTS]
+    ax.vlines(found.frequency[shown], 0, found.amplitude[shown], color=style.VERMILION)
+    ax.plot(found.frequency[shown], found.amplitude[shown], "o", color=style.VERMILION, ms=4)
+    ax.set(xlabel="frequency (Hz)", ylabel=f"amplitude of {_symbol(found)} ({found.unit})")
+    ax.set_xlim(left=0)
+    ax.set_ylim(bottom=0)
+    ax.grid(alpha=0.3)

@@ -13,11 +13,13 @@ import numpy as np
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from fingerpad.results import curves, field_picture, fields, finger_picture, style
-from fingerpad.results.curves import SurfaceProfile
+from fingerpad.results import fields
 from fingerpad.results.fields import Along, Groups, View, sorted_along
 from fingerpad.results.over_time import without_parts_of_jumps
-from fingerpad.results.states import WORDS, before_sliding, called, shown
+from fingerpad.results.pictures import curves, solid, style
+from fingerpad.results.pictures import finger as finger_picture
+from fingerpad.results.pictures.curves import SurfaceProfile
+from fingerpad.results.states import before_sliding, called, shown
 from variational.state import ContactState
 
 if TYPE_CHECKING:
@@ -44,31 +46,16 @@ class Drawing:
     named: Mapping[str, ContactState]
     """Named states with their estimated errors, by their names in :mod:`fingerpad.results.states`."""
 
-    def write(self, folder: Path, each_load: bool = True) -> None:
-        """Write every picture into a folder.
-
-        Args:
-            folder: where to.
-            each_load: also those of the end of each load.
-        """
-        finger, skin = None, None  # each drawn on again by the next of its kind
-        for load, end in self.ends.items() if each_load else ():
-            finger = self._finger_to(folder / f"finger_{_file(load)}", f"After {load}", end, finger)
-            if end.state.step in self.skins and end.state.ridges_in_contact > 0:
-                along = self._along(self.skins[end.state.step], f"After {load}", end.state)
-                skin = self._skin_to(folder / f"surface_{_file(load)}", {"end": along}, skin)
-        for name, view in self.finer.items():
-            if view.snapshot is not None:
-                file = folder / f"finger_{_file(WORDS[name])}"
-                finger = self._finger_to(file, _title(name, view.state), view, finger)
+    def write(self, folder: Path) -> None:
+        """Write the pictures of a run into a folder: the finger, its skin, and its history over sliding or time."""
         if self._shown():
-            self._skin_to(folder / "surface", self._named_skin())
-        if self._charged() is not None:
-            self.figure("field", folder / "field.png")
-        if self._sliding():
-            self.figure("history", folder / "history.png")
+            self.figure("surface", folder / "surface.png")
+        if self.body() is not None:
+            self.figure("finger", folder / "finger.png")
         if self._timed():
             self.figure("time", folder / "time.png")
+        elif self._sliding():
+            self.figure("history", folder / "history.png")
 
     def figure(self, kind: str, path: Path | None = None) -> Figure:
         """Draw a picture, and write it where a path is given.
@@ -93,7 +80,7 @@ class Drawing:
             if (name := self._charged()) is None:
                 raise ValueError("the run has no charged state with skin on the screen to draw")
             skin = self._named_skin()[name]
-            return field_picture.field(path, skin, f"{skin.title}: electric field of a ridge")
+            return solid.field(path, skin, f"{skin.title}: electric field of a ridge")
         if kind == "time":
             states = self._timed()
             if not states:
@@ -128,13 +115,9 @@ class Drawing:
         return "" if size is None else f"path on its own mesh, contact size {size * 1e6:.3g} µm"
 
     # -- skin ----------------------------------------------------------------------------------------
-    def _skin(self, path: Path | None, skins: Mapping[str, SurfaceProfile], on: Figure | None = None) -> Figure:
+    def _skin(self, path: Path | None, skins: Mapping[str, SurfaceProfile]) -> Figure:
         conditions = style.conditions([skin.state for skin in skins.values()], self.mu_0)
-        return curves.surface(path, list(skins.values()), conditions, on=on)
-
-    def _skin_to(self, path: Path, skins: Mapping[str, SurfaceProfile], on: Figure | None = None) -> Figure:
-        """Write the picture of the skin in some states; ``path`` has no suffix."""
-        return self._skin(path.with_name(f"{path.name}.png"), skins, on)
+        return curves.surface(path, list(skins.values()), conditions)
 
     def _along(self, skin: Along, title: str, state: ContactState, view: View | None = None) -> SurfaceProfile:
         return SurfaceProfile(title, state, **sorted_along(skin, state), note=self._note(view))
@@ -224,17 +207,13 @@ class Drawing:
         load = list(self.ends)[-1]
         return self._finger(path, f"After {load}", self.ends[load])
 
-    def _finger_to(self, path: Path, title: str, view: View, on: Figure | None) -> Figure:
-        """Write the picture of a finger; ``path`` has no suffix."""
-        return self._finger(path.with_name(f"{path.name}.png"), title, view, on)
-
-    def _finger(self, path: Path | None, title: str, view: View, on: Figure | None = None) -> Figure:
+    def _finger(self, path: Path | None, title: str, view: View) -> Figure:
         words = f"{style.plain(title)}: {style.conditions([view.state], self.mu_0, place=True)}"
         skin = self.skins.get(view.state.step) if view.size is None else view.skin
         ridges = {} if skin is None else _places(sorted_along(skin, view.state))
         assert view.snapshot is not None
         title, common = self._title(words, view), self._scales
-        return finger_picture.finger(path, view.snapshot, view.merkel, title, ridges, common, on)
+        return finger_picture.finger(path, view.snapshot, view.merkel, title, ridges, common)
 
     @cached_property
     def _scales(self) -> finger_picture.Scales:
@@ -245,10 +224,6 @@ class Drawing:
 
 def _title(name: str, state: ContactState) -> str:
     return called(name, state.voltage).capitalize()
-
-
-def _file(words: str) -> str:
-    return words.replace(" ", "_")
 
 
 def _places(along: Mapping[str, Array]) -> dict[int, float]:

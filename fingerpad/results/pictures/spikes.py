@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from fingerpad.results import style
+from fingerpad.results.pictures import style
 
 COLOURS = (style.BLUE, style.VERMILION, style.BLACK, style.GREEN, style.PURPLE)
 _HIGH, _ROW, _LEAST = 1.3, 0.09, 0.6  # in: of all but the panels; of a unit; of a panel at the least

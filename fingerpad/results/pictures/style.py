@@ -15,17 +15,17 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.axis import Axis
 from matplotlib.backends.backend_agg import FigureCanvasAgg
-from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 from matplotlib.text import Text
 from matplotlib.ticker import MaxNLocator
 from PIL import Image
 
 from fingerpad.results.files import replace
-from fingerpad.results.palette import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, SKY, VERMILION, YELLOW  # noqa: F401
 from fingerpad.results.quantities import SYMBOL
 from variational.state import ContactState
 
+BLACK, ORANGE, SKY, GREEN, YELLOW = "#000000", "#E69F00", "#56B4E9", "#009E73", "#F0E442"
+BLUE, VERMILION, PURPLE, GREY = "#0072B2", "#D55E00", "#CC79A7", "#999999"
 CATEGORIES = (BLUE, VERMILION, GREEN, PURPLE, SKY, ORANGE, BLACK)
 MARKERS = ("o", "s", "^", "D", "v", "P", "X")
 STATE = {"uncharged": SKY, "charged": BLUE, "full_slip": VERMILION}
@@ -37,14 +37,9 @@ _NOTHING = 1e-9  # N/m, V or mm: what a title calls zero
 DPI = 150
 _PAGE = 96  # pixels of an inch of a page
 _COLOURS = 256  # of a PNG file
-_LEVEL = 3  # of compression: the next one takes twice as long and saves a tenth
-_ROWS = 4  # of pixels, one of which is counted for the colours of a PNG file
-_LINE = 0.2  # in, of a title
-_ABOVE_TITLE, _BELOW, _BESIDE = 0.1, 0.27, 0.55  # in: above a figure's title, from axes to labels of x and y
 _LOOK = {
     "font.size": 10.5,
     "axes.titlesize": 10.5,
-    "axes.titley": 1.0,
     "legend.fontsize": 9.5,
     "legend.frameon": False,
     "figure.titlesize": 12,
@@ -74,70 +69,27 @@ def look() -> Iterator[None]:
         yield
 
 
-def figure(height: float, width: float = WIDTH) -> Figure:
-    """Return an empty figure of a size (in); its parts keep clear of each other."""
-    return Picture(figsize=(width, height), layout="constrained")
-
-
-def sheet(height: float, title: str) -> Figure:
-    """Return a figure of the width of a page with a title, whose parts :func:`panel` places.
-
-    To find places takes as long as to draw: a picture whose parts have known sizes is drawn in half the time.
-
-    Args:
-        height: of a figure whose title has one line (in).
-        title: of one line or several.
-    """
-    drawn = Picture(figsize=(WIDTH, height + _LINE * title.count("\n")))
-    head(drawn, title)
+def figure(height: float, title: str = "", width: float = WIDTH) -> Figure:
+    """Return an empty figure of a size (in) with a title; its parts keep clear of each other."""
+    drawn = Picture(figsize=(width, height), layout="constrained")
+    if title:
+        drawn.suptitle(title)
     return drawn
 
 
-def head(on: Figure, title: str) -> None:
-    """Write the title of a figure whose parts :func:`panel` places, or another one instead."""
-    on.suptitle(title, y=1 - _ABOVE_TITLE / on.get_size_inches()[1], va="top")
-
-
-def panel(on: Figure, left: float, right: float, bottom: float, top: float, **options: Any) -> Axes:
-    """Return axes at a place of a figure (in, from its lower left corner); its title and labels keep their places."""
-    wide, high = on.get_size_inches()
-    axes = on.add_axes((left / wide, bottom / high, (right - left) / wide, (top - bottom) / high), **options)
-    axes.set_title("")  # else a draw would look for the places of titles and of labels
-    axes.xaxis.set_label_coords(0.5, -_BELOW / (top - bottom))
-    axes.yaxis.set_label_coords(-_BESIDE / (right - left), 0.5)
-    return axes
-
-
-def column(on: Figure, left: float, right: float, heights: Sequence[tuple[float, float]]) -> list[Axes]:
-    """Return axes below each other, between heights (in), with one scale along x below the last."""
-    panels: list[Axes] = []
-    for bottom, top in heights:
-        panels.append(panel(on, left, right, bottom, top, sharex=panels[0] if panels else None))
-    for axes in panels[:-1]:
-        axes.xaxis.set_visible(False)
+def column(on: Figure, ratios: Sequence[float]) -> list[Axes]:
+    """Return axes below each other, of heights in a ratio, with one scale along x and light lines at its ticks."""
+    panels = list(on.subplots(len(ratios), 1, sharex=True, squeeze=False, height_ratios=ratios)[:, 0])
+    for axes in panels:
+        axes.grid(axis="x", color="0.9", linewidth=0.8)
+        axes.set_axisbelow(True)
     return panels
 
 
-def align(panels: Sequence[Axes]) -> None:
-    """Draw light lines through axes below each other at the ticks of their scale along x, which stays as it is now."""
-    panels[-1].set_xlim(panels[-1].get_xlim())
-    lines = [[(x, 0), (x, 1)] for x in panels[-1].get_xticks()]
-    for axes in panels:
-        across = axes.get_xaxis_transform()
-        axes.add_artist(LineCollection(lines, colors="0.9", linewidths=0.8, zorder=0, transform=across))
-
-
 def second_scale(axes: Axes, unit: float, label: str) -> None:
-    """Draw the scale of a quantity over ``unit`` on the right of axes, or change the one that is there."""
+    """Draw the scale of a quantity over ``unit`` on the right of axes."""
     functions: Any = (lambda value: value / unit, lambda ratio: ratio * unit)
-    there: list[Any] = axes.child_axes
-    if there:
-        there[0].set_functions(functions)
-        return
-    right = axes.secondary_yaxis("right", functions=functions)
-    right.set_ylabel(label)
-    right.yaxis.label.set_verticalalignment("top")
-    right.yaxis.set_label_coords(1 + _BESIDE / (WIDTH * axes.get_position().width), 0.5, axes.transAxes)
+    axes.secondary_yaxis("right", functions=functions).set_ylabel(label)
 
 
 def clear(axes: Iterable[Axes]) -> None:
@@ -184,24 +136,12 @@ def save(drawn: Figure, path: Path | str | None) -> Figure:
 
 
 def _write_png(drawn: Figure, data: BytesIO) -> None:
-    """Write a figure as PNG of 256 colours: a third of the bytes of all colours, in less time."""
+    """Write a figure as PNG of 256 colours: a third of the bytes of all colours."""
     drawn.set_dpi(DPI)
     canvas = FigureCanvasAgg(drawn)
     canvas.draw()
-    pixels = np.ascontiguousarray(canvas.buffer_rgba())
-    packed = pixels.view("<u4")[:, :, 0]  # red in the lowest byte
-    kind = ((packed >> 3 & 0x1F) | (packed >> 5 & 0x7E0) | (packed >> 8 & 0xF800)).astype(np.uint16)
-    colour = np.zeros(1 << 16, dtype="<u4")
-    colour[kind] = packed  # the last of each kind: it was drawn, as white was
-    found = np.flatnonzero(colour)
-    known = colour[found].view(np.uint8).reshape(-1, 4)[:, :3].astype(np.float32)
-    count = np.bincount(kind[::_ROWS].ravel(), minlength=1 << 16)[found]
-    palette = known[np.argsort(-count, kind="stable")[:_COLOURS]]
-    nearest = np.zeros(1 << 16, dtype=np.uint8)
-    nearest[found] = ((palette**2).sum(axis=1) - 2 * known @ palette.T).argmin(axis=1)
-    image = Image.fromarray(nearest[kind])
-    image.putpalette(palette.astype(np.uint8).tobytes())
-    image.save(data, "PNG", dpi=(DPI, DPI), compress_level=_LEVEL)
+    image = Image.fromarray(np.asarray(canvas.buffer_rgba())[:, :, :3].copy())
+    image.quantize(_COLOURS, dither=Image.Dither.NONE).save(data, "PNG", dpi=(DPI, DPI))
 
 
 def plain(words: str) -> str:

@@ -1,11 +1,13 @@
 """An animation of a run: the finger on the screen, its ridges with pressure and attraction, and the forces.
 
-Every state of the motion in ``fields.npz`` is a frame. Frames between two states are linear in displacements and
-stresses, which is no solution of the model; over a jump there are none.
+Every state of the motion in ``fields.npz`` is a frame: lines of the finger, and its skin with pressure and attraction.
+Frames between two states are linear in displacements and stresses, which is no solution of the model; over a jump there
+are none. A state takes some 50 kB. Long runs keep every second, fourth, … of their states.
 """
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, MutableMapping, Sequence
+from dataclasses import dataclass
 from io import BytesIO
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -19,17 +21,24 @@ from matplotlib.patches import Patch, PathPatch, Rectangle
 from numpy.typing import NDArray
 from PIL import Image
 
-from fingerpad.results import motion, style
+from fingerpad.results import fields
 from fingerpad.results.data import ResultData
 from fingerpad.results.files import replace
-from fingerpad.results.finger_picture import LAYER_COLOURS, curve
+from fingerpad.results.pictures import style
+from fingerpad.results.pictures.finger import LAYER_COLOURS, curve
 from fingerpad.results.states import by_load
 from fingerpad.scene.messages import SceneError, clip
 from fingerpad.scene.remarks import coefficient
-from variational.snapshot import loops
+from variational.snapshot import Snapshot, loops
 from variational.state import ContactState
 
 Array = NDArray[np.float64]
+Numbers = NDArray[np.int64]
+Moved = Mapping[str, NDArray[np.float32]]
+"""A state: ``u``, displacement of the points on lines (m), shape (points, 2); ``skin``, shape (rows, skin points)."""
+ROWS = ("x", "p", "t", "p_el")
+"""Rows of the skin: place (m), contact pressure, shear traction and attraction (Pa)."""
+_KEPT = 160  # states of a run, at most
 ENDINGS = (".webp", ".gif")
 _FRAMES, _LOAD = 160, 16  # of an animation, about at most; of each load, at least
 _DPI, _HEIGHT = 90, 6.0  # of a frame; in
@@ -37,10 +46,94 @@ _MS, _LAST = 90, 2000  # of a frame, and of the last one
 _QUALITY = 55  # of WebP, of 100
 _COLOURS = 64  # of GIF
 _MM, _KPA = 1e3, 1e-3
-_WHOLE, _FORCES = (0.75, 3.35, 3.75, 5.5), (4.6, 8.75, 3.85, 5.25)  # in: left, right, lower and upper end
-_NEAR, _STRESS = (0.75, 8.75, 2.0, 3.2), (0.75, 8.75, 0.5, 1.7)
 _LOW, _HIGH = -0.18, 1.55  # mm, of the view near the contact
 _SLIPS = 1e-3  # relative: a traction this near the limit of friction counts as on it
+
+
+def moved(snapshot: Snapshot, skin: Mapping[str, Array]) -> Moved:
+    """Return a state in single precision.
+
+    Args:
+        snapshot: the body.
+        skin: along the skin by the names in :data:`ROWS`, a NaN between ridges.
+    """
+    u = snapshot.u[np.unique(snapshot.lines)]
+    return {"u": u.astype(np.float32), "skin": np.stack([skin[name] for name in ROWS]).astype(np.float32)}
+
+
+def thin(states: MutableMapping[int, Moved]) -> None:
+    """Drop every second state but the last where there are too many; they are by step, in order."""
+    if len(states) > _KEPT:
+        for step in list(states)[-2::-2]:
+            del states[step]
+
+
+def group(snapshot: Snapshot, states: Mapping[int, Moved]) -> dict[str, NDArray[Any]]:
+    """Return the group ``motion`` of ``fields.npz``.
+
+    Args:
+        snapshot: the body in any state.
+        states: by step.
+    """
+    points, lines = np.unique(snapshot.lines, return_inverse=True)
+    layers = np.where(snapshot.beside >= 0, snapshot.tag[snapshot.beside], 0)
+    arrays = {name: np.stack([state[name] for state in states.values()]) for name in ("u", "skin")}
+    about = {"x": snapshot.x[points], "lines": lines.reshape(-1, 3), "layers": layers}
+    return {"step": np.array(list(states)), **about, **arrays}
+
+
+@dataclass(frozen=True)
+class Motion:
+    """The motion of a finger."""
+
+    step: Numbers
+    """Of each state, shape (states,)."""
+    x: Array
+    """Reference places of points on lines (m), shape (points, 2)."""
+    u: Array
+    """Their displacements (m), shape (states, points, 2)."""
+    lines: Numbers
+    """Points where each line begins, has its middle and ends, shape (lines, 3)."""
+    layers: Numbers
+    """Tags on the left and on the right of each, 0 outside, shape (lines, 2)."""
+    skin: Array
+    """The rows of :data:`ROWS`, shape (states, rows, skin points)."""
+
+    def between(self, k: int, part: float) -> tuple[Array, Array]:
+        """Return places of points (m), shape (points, 2), and rows of the skin, on the way from a state to the next.
+
+        Args:
+            k: number of the first of both.
+            part: of the way, 0 to 1; values are linear in between.
+        """
+        after = min(k + 1, len(self.step) - 1)
+        u, skin = ((1 - part) * each[k] + part * each[after] for each in (self.u, self.skin))
+        return self.x + u, skin
+
+
+def motion_of(folder: Path) -> Motion:
+    """Return the motion of the finger of a run.
+
+    Raises:
+        SceneError: the folder has none; one sentence.
+    """
+    found: dict[str, Any] = fields.read(folder).get("motion", {})
+    try:
+        made = Motion(**{name: found[name] for name in Motion.__dataclass_fields__})
+        states, points = len(made.step), len(made.x)
+        whole = made.u.shape == (states, points, 2) and made.skin.shape[:2] == (states, len(ROWS)) and states > 0
+        whole &= made.lines.shape[1:] == (3,) and made.layers.shape == (len(made.lines), 2)
+        whole &= all(each.dtype.kind == "i" for each in (made.step, made.lines, made.layers))
+        whole = bool(whole and np.all((made.lines >= 0) & (made.lines < points)))
+    except (KeyError, TypeError):
+        whole = False
+    if not whole:
+        where = clip(str(folder), 80)
+        raise SceneError(
+            f"{where} has no motion of a run in {fields.FILE}, which is written at the end of a full run with "
+            "output.each_load = true; make the run again"
+        )
+    return made
 
 
 class _Frame(NamedTuple):
@@ -54,7 +147,7 @@ class _Scene(NamedTuple):
     """What all frames have in common."""
 
     states: Sequence[ContactState]
-    motion: motion.Motion
+    motion: Motion
     mu_0: float | None
     half: float
     """Of the width of the view near the contact (mm)."""
@@ -77,7 +170,7 @@ def animate(result: ResultData, path: Path, on_frame: Callable[[int, int], None]
         raise SceneError(f"{clip(str(path), 80)} must end with {' or '.join(ENDINGS)}, the formats of animations")
     if result.folder is None:
         raise SceneError("a run without a folder has no motion to animate; give fingerpad.run an out")
-    found = motion.read(result.folder)
+    found = motion_of(result.folder)
     by_step = {state.step: state for state in result.steps}
     if missing := [int(step) for step in found.step if step not in by_step]:
         raise SceneError(f"step {missing[0]} of the motion is not in the run; make the run again")
@@ -107,12 +200,12 @@ def _frames(states: Sequence[ContactState]) -> list[_Frame]:
 
 
 def _figure() -> Figure:
-    """Return a figure with empty panels, on which all frames are drawn: to make them takes as long as a frame."""
-    with style.look():
-        figure = Figure(figsize=(style.WIDTH, _HEIGHT))
-        for box in (_WHOLE, _FORCES, _NEAR, _STRESS):
-            style.panel(figure, *box)
-    return figure
+    """Return a figure with empty panels, on which all frames are drawn: whole finger, forces, contact and stresses."""
+    drawn = style.figure(_HEIGHT)
+    grid = drawn.add_gridspec(3, 5, height_ratios=(6, 4, 4))
+    for place in (grid[0, :2], grid[0, 2:], grid[1, :], grid[2, :]):
+        drawn.add_subplot(place)
+    return drawn
 
 
 def _drawn(scene: _Scene, frame: _Frame, figure: Figure) -> Image.Image:
@@ -121,7 +214,7 @@ def _drawn(scene: _Scene, frame: _Frame, figure: Figure) -> Image.Image:
     with style.look():
         whole, forces, near, stress = figure.axes
         style.clear(figure.axes)
-        style.head(figure, _words(scene.states[frame.state]))
+        figure.suptitle(_words(scene.states[frame.state]))
         _draw_finger(whole, scene, _MM * xy, None)
         _draw_finger(near, scene, _MM * xy, scene.half)
         whole.add_artist(Rectangle((-scene.half, _LOW), 2 * scene.half, _HIGH - _LOW, fill=False, ls="--"))
@@ -132,6 +225,7 @@ def _drawn(scene: _Scene, frame: _Frame, figure: Figure) -> Image.Image:
         figure.set_dpi(_DPI)
         canvas = FigureCanvasAgg(figure)
         canvas.draw()
+        figure.set_layout_engine("none")  # the panels of the first frame keep their places
         return Image.fromarray(np.asarray(canvas.buffer_rgba())[:, :, :3].copy())
 
 
