@@ -97,7 +97,7 @@ def microscopic(scene: Scene) -> BearingArea | TabulatedClosure:
     if not closure.shared:
         names = " or ".join(CLOSURES.laws)
         raise SceneError(f"roughness is a {type(closure).__name__}; the microscale is that of a law {names}")
-    return closure
+    return closure  # type: ignore[return-value]  # those with parameters of a surface
 
 
 def table(scene: Scene, voltages: Sequence[float], pressures: Sequence[float]) -> list[dict[str, Any]]:
