@@ -51,7 +51,7 @@ def test_command_and_report(tmp_path, capsys):
     shown = capsys.readouterr().out
     assert "Result (model 'block')" in shown and "Report: " in shown
     page = (tmp_path / "report.html").read_text(encoding="utf-8")
-    assert "A rigid block on the screen (model &#x27;block&#x27;)" in page and "--model block" in page
+    assert "A rigid block on the screen (model 'block')" in page and "--model block" in page
     assert "a cheaper one" in page and "discretisation error of the contact length" not in page
     assert main(["report", str(tmp_path)]) == 0
 

@@ -38,6 +38,7 @@ def test_samples_are_of_the_wave(kind, offset):
     times, values = zip(*samples, strict=True)
     assert times[0] == 0 and times[-1] == seconds and all(b > a for a, b in zip(times, times[1:], strict=False))
     assert values == pytest.approx([shape(keys, time) for time in times], abs=1e-9)
+    assert wave(**keys).at(times) == pytest.approx(values, abs=1e-9)
     assert all(a * b >= 0 for a, b in zip(values, values[1:], strict=False))
     assert values.count(max(values)) == 3 and max(values) == offset + 200 and min(values) == offset - 200
     assert len(samples) >= 2.3 * SAMPLES

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Collection, Mapping
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from mpi4py import MPI
@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from fingerpad.accuracy.states import Solve, State, StateRecorder, contact_ends, edge_places, together
 from fingerpad.model.cautions import adhering, lost
 from fingerpad.model.checks import FingerExceeded
+from fingerpad.model.finger import Step
 from fingerpad.model.options import FingerModel
 from fingerpad.model.record import Viewer
 from fingerpad.model.schedule import loads_to_normal_contact
@@ -21,9 +22,6 @@ from geometry.profiles import GeometryError, Profiles
 from variational.contact.formulation import Formulation
 from variational.solvers.continuation import Attempt, StepFailed
 from variational.solvers.transfer import restore
-
-if TYPE_CHECKING:
-    from fingerpad.model.finger import Step
 
 Array = NDArray[np.float64]
 _JUMPED = "skin jumped on the way, and roundoff (the number of ranks) may have chosen this state among others"
@@ -117,7 +115,7 @@ class StateSolver(Simulation):
 def follow(
     model: FingerModel,
     comm: MPI.Comm,
-    on_step: Callable[[Simulation, "Step", float], None] = lambda simulation, step, done: None,
+    on_step: Callable[[Simulation, Step, float], None] = lambda simulation, step, done: None,
 ) -> Solve | RestartRequired:
     """Return the named states of a model's path, or what must be added to the model; collective.
 
@@ -131,7 +129,7 @@ def follow(
         StepFailed: a load could not be reached.
     """
 
-    def record(step: "Step", done: float) -> None:
+    def record(step: Step, done: float) -> None:
         recorder.record(step)
         on_step(simulation, step, done)
 
@@ -261,7 +259,7 @@ class Solves:
             raise StepFailed(found.reason)
         return self._keep(found)
 
-    def on_coarser_path(self, on_step: Callable[["Simulation", "Step", float], None]) -> Solve:
+    def on_coarser_path(self, on_step: Callable[["Simulation", Step, float], None]) -> Solve:
         """Return the named states of the whole path on elements twice as large; collective; see :func:`follow`.
 
         The loads are gone through again where more of the model turns out to matter on that mesh.

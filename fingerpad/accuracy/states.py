@@ -9,12 +9,13 @@ import math
 import time
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from fingerpad.model.finger import both_sides
+from fingerpad.model.finger import Step, both_sides
+from fingerpad.model.simulation import Simulation
 from fingerpad.results.fields import View
 from fingerpad.results.quantities import FRICTION, RESULTS, in_table
 from fingerpad.results.states import before_sliding
@@ -22,10 +23,6 @@ from geometry.parameters import MeshSize
 from variational.output import Receptors
 from variational.solvers.state_snapshot import SkinState, StateSnapshot, take_snapshot
 from variational.state import ContactState
-
-if TYPE_CHECKING:
-    from fingerpad.model.finger import Step
-    from fingerpad.model.simulation import Simulation
 
 Array = NDArray[np.float64]
 _OUTSIDE = 0.3  # of a facet: how far outside of where it is found contact may end
@@ -112,7 +109,7 @@ def with_values(path: ContactState, final: State) -> ContactState:
 class StateRecorder:
     """Keeps the named states of a path as it goes; of full slips the last one that was held."""
 
-    def __init__(self, simulation: "Simulation") -> None:
+    def __init__(self, simulation: Simulation) -> None:
         """Find the Merkel sites of the ridges that can touch."""
         self._simulation = simulation
         self._start = time.process_time()
@@ -124,7 +121,7 @@ class StateRecorder:
         self.states: dict[str, State] = {}
         self.views: dict[str, View] = {}
 
-    def record(self, step: "Step") -> None:
+    def record(self, step: Step) -> None:
         """Record an accepted step; collective."""
         state = step.state
         if not step.touches and (step.ends or not math.isnan(state.time)):

@@ -22,7 +22,7 @@ COMMANDS = {
     "report": "a run or a sweep as one HTML file; a run's animation or spikes; the closed form as a page with sliders",
     "compare": "models of a scene side by side: their results and their cost",
     "compare-data": "tables of measurements beside a run or a sweep: misfit as a ratio, picture",
-    "check": "what a run contains, omits and costs, a picture of its mesh, its mesh for gmsh; solves nothing",
+    "check": "what a run contains, omits and costs, with a picture of its mesh, or the mesh for gmsh; solves nothing",
     "solve": "the voltage, coating or other key at which friction has a given value, by the closed form, at once",
     "drive": "friction over the period of an alternating voltage, its spectrum, and whether it is felt, in a second",
     "microscale": "air gap, attraction and real area of contact of a ridge over its pressure",
@@ -124,10 +124,9 @@ How a fingertip sticks and slides on a touchscreen under electroadhesion, and sp
 commands:
 {commands}
 
-A scene is a TOML file, the default press, charge and slide where none is given. Every key of a scene can be given as an
-option, with a unit where one helps: --set f_ext="50 N/m" --set roughness.h_rms=2e-6. Forces are per metre of finger
-along its axis, in N/m: 75 N/m at its centre correspond to about 0.5 N on the
-whole default finger. run --force takes newtons.
+A scene is a TOML file; without one it is the default press, charge and slide. Every key of a scene can be given as an
+option, with or without a unit: --set f_ext="50 N/m" --set roughness.h_rms=2e-6. Forces f_ext are per metre of finger
+along its axis: 75 N/m at the centre of the default finger correspond to about 0.5 N in all. run --force takes newtons.
 
 examples:
   fingerpad estimate --f-ext 20:75:3 --voltage 0:200:5

@@ -123,10 +123,10 @@ def _over_time(drive: Drive, seconds: float) -> tuple[Array, Array]:
 
 def _table(times: ArrayLike, volts: ArrayLike, period: float) -> Waveform:
     """Return a waveform of a table; jumps take a short time."""
-    given = np.asarray(times, dtype=float)
-    t = given.tolist()
+    given: Array = np.asarray(times, dtype=np.float64)
+    t = [float(each) for each in given]
     for k in range(1, len(t)):
         if given[k] - given[k - 1] < _JUMP * period:
             t[k] = t[k - 1] + _JUMP * period
     with computed():
-        return Waveform(waveform="file", times=tuple(t), voltages=tuple(np.asarray(volts, dtype=float).tolist()))
+        return Waveform(waveform="file", times=tuple(t), voltages=tuple(map(float, np.asarray(volts))))

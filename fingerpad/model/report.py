@@ -15,9 +15,8 @@ from fingerpad.model.options import Omission
 from fingerpad.model.record import PathRecord, Viewer
 from fingerpad.model.simulation import Simulation
 from fingerpad.results import states
-from fingerpad.results.data import Cost
+from fingerpad.results.data import Cost, valued
 from fingerpad.results.fields import View
-from fingerpad.results.outputs import valued
 from fingerpad.results.pictures import animation
 from fingerpad.results.quantities import Output
 from fingerpad.results.terminal import Console

@@ -19,13 +19,13 @@ without voltage where it has one, else the default finger's.
 The band is that of the result's headline: of the whole finger wherever slices are summed over it. Ratios of the middle
 section are taken for it.
 
-The changes are conventions, those of docs/assumptions.md. Full runs of these changes are known at one load, in
-``full_changes.json`` by ``python3 -m benchmarks.assumptions``. The ratio of the cylinders is taken to the power that
-gives the full model's ratio at that load (:func:`powers`), for friction law, tips, roughness and coating.
+The changes are conventions, those of docs/assumptions.md. Full runs of these changes are known at one load
+(``full_changes.json`` by ``python3 -m benchmarks.assumptions``). The ratio of the cylinders is taken to the power that
+gives the full model's ratio there (:func:`powers`), for friction law, tips, roughness and coating.
 
 The parts are taken as independent: the band is the root of the sum of their squares, in the logarithm of µ_app and to
 either side. A closure whose ridges adhere, beyond its table of gaps, has no number: the upper end of its part and of
-the band is then open, and the band has the end of the other parts beside it.
+the band is then open.
 """
 
 import json
@@ -254,9 +254,10 @@ def changes(
 
     Arguments are those of :func:`friction`, and it raises SceneError of a finger that is none of cylinders.
     """
-    own, still = scene.closure(), _cylinders(_at(scene, 0.0), slip, scene.closure(), press)
+    own: Any = scene.closure()
+    still = _cylinders(_at(scene, 0.0), slip, own, press)
     laws = laws_like(scene.friction_law(), still.f_contact / still.contact_length)
-    found = {
+    found: dict[str, list[tuple[Scene, Closure, float]]] = {
         LAW: [(scene.model_copy(update={"friction": law}), own, 1.0) for law in laws],
         "tips": [(scene, own, tips) for tips in TIPS],
     }

@@ -118,25 +118,21 @@ def check_supported(scene: "Scene", model: str) -> None:
     Raises:
         SceneError: it has a history, a mesh, or viscous layers.
     """
-    viscous = viscous_layers(scene.materials)
-    if viscous:
-        raise SceneError(
-            f"{viscous[0]}.viscosity is given; the model '{model}' has no time, so use the model 'full' with loads "
-            "over time, or leave the viscosity out"
-        )
+    why, timeless = "", f"the model '{model}' has no time, so use the model 'full' with loads over time, or"
     law = scene.friction_law()
-    if law is not None and law.memory is not None:
-        raise SceneError(
-            f"friction is {type(law).__name__}; the model '{model}' has no time, so use the model 'full' with loads "
-            "over time, or another law"
-        )
-    if scene.geometry.file is not None:
-        raise SceneError(
+    if viscous := viscous_layers(scene.materials):
+        why = f"{viscous[0]}.viscosity is given; {timeless} leave the viscosity out"
+    elif law is not None and law.memory is not None:
+        why = f"friction is {type(law).__name__}; {timeless} another law"
+    elif scene.geometry.file is not None:
+        why = (
             f"geometry.file is {show(scene.geometry.file)}; the model '{model}' answers for fingers of the scene's own "
             "geometry, so use the model 'full'"
         )
-    if scene.history is not None:
-        raise SceneError(
+    elif scene.history is not None:
+        why = (
             f"history is given; the model '{model}' answers for press, charge and slide alone, so use the model 'full' "
             "or give f_ext and voltage instead"
         )
+    if why:
+        raise SceneError(why)

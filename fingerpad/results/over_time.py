@@ -17,16 +17,13 @@ Fritsch, Carlson, SIAM J. Numer. Anal. 17 (1980), doi 10.1137/0717021.
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from fingerpad.results.quantities import EXTREMES
+from fingerpad.scene.waveform import Waveform
 from variational.state import ContactState
-
-if TYPE_CHECKING:
-    from fingerpad.scene.waveform import Waveform
 
 NOTE = (
     "Loads over time are quasi-static: no inertia. Time acts in layers with a viscosity, in friction of the laws "
@@ -63,7 +60,7 @@ class OverTime:
     """What every second state alone would change the means by, in their units; of loads at a constant voltage."""
 
 
-def over_time(states: Sequence[ContactState], wave: "Waveform | None") -> OverTime | None:
+def over_time(states: Sequence[ContactState], wave: Waveform | None) -> OverTime | None:
     """Return means and spectrum of a load; None where it takes no time.
 
     Args:

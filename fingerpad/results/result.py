@@ -7,9 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 from fingerpad import launcher
 from fingerpad.results import dataset, loading, printing
-from fingerpad.results.data import Cost, ResultData
+from fingerpad.results.data import Cost, ResultData, checked, valued
 from fingerpad.results.headline import Headline, headline
-from fingerpad.results.outputs import checked, valued
 from fingerpad.results.quantities import Output
 from fingerpad.scene.messages import SceneError, clip
 from fingerpad.scene.remarks import coefficient

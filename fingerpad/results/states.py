@@ -14,15 +14,12 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import groupby
 from operator import attrgetter
-from typing import TYPE_CHECKING
 
 from fingerpad.results.over_time import OverTime, over_time, without_parts_of_jumps
 from fingerpad.results.quantities import EXTREMES
+from fingerpad.scene import Load
+from fingerpad.scene.waveform import Waveform
 from variational.state import ContactState
-
-if TYPE_CHECKING:
-    from fingerpad.scene import Load
-    from fingerpad.scene.waveform import Waveform
 
 _STILL = 1e-12  # m, largest sideways displacement of a bone at rest
 SLIDE_ON = 0.2e-3  # m, further sliding over which the forces of full slip are constant
@@ -219,7 +216,7 @@ class LoadResult:
 
 def load_results(
     rows: Sequence[ContactState],
-    loads: Sequence["Load"],
+    loads: Sequence[Load],
     stable: Callable[[int, ContactState], bool | None],
     mu_0: float | None = None,
 ) -> Iterator[LoadResult]:
@@ -245,7 +242,7 @@ def load_result(
     mine: Sequence[ContactState],
     stable: bool | None,
     before: Sequence[ContactState] = (),
-    wave: "Waveform | None" = None,
+    wave: Waveform | None = None,
     mu_0: float | None = None,
 ) -> LoadResult:
     """Return the result of a load.

@@ -16,9 +16,9 @@ from fingerpad.model.report import Clock, Report
 from fingerpad.model.simulation import RestartRequired, Simulation
 from fingerpad.model.state import broken, force_error
 from fingerpad.results import fields
+from fingerpad.results.data import valued
 from fingerpad.results.folder import CheckpointError
 from fingerpad.results.interrupt import Interrupt, Interrupted
-from fingerpad.results.outputs import valued
 from fingerpad.results.provenance import provenance, refuse_unread
 from fingerpad.results.quantities import Output
 from fingerpad.results.result import Result

@@ -9,8 +9,8 @@ import fingerpad.startup  # noqa: F401
 from fingerpad.model.cautions import breakdown_ahead
 from fingerpad.model.options import FingerModel, by_rule, plan
 from fingerpad.model.report import Clock
+from fingerpad.results.data import checked
 from fingerpad.results.interrupt import Interrupt, all_together, no_room
-from fingerpad.results.outputs import checked
 from fingerpad.results.provenance import check_options
 from fingerpad.results.result import Result
 from fingerpad.results.terminal import Console

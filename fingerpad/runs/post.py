@@ -15,10 +15,10 @@ from pkgutil import resolve_name
 from typing import NamedTuple
 
 from fingerpad.results import dataset
+from fingerpad.results.data import checked
 from fingerpad.results.files import replace as replace_file
 from fingerpad.results.files import replace_json
 from fingerpad.results.folder import Serial
-from fingerpad.results.outputs import checked
 from fingerpad.results.quantities import Output
 from fingerpad.results.result import Result
 from fingerpad.results.writing import Writer

@@ -14,9 +14,9 @@ from fingerpad import launcher
 from fingerpad.launcher import needed_by, source, version
 from fingerpad.model.cautions import breakdown_ahead
 from fingerpad.reduced.registry import find
+from fingerpad.results.data import checked as checked_outputs
 from fingerpad.results.files import replace_json
 from fingerpad.results.folder import CheckpointError, FolderError, Serial, on_rank_0
-from fingerpad.results.outputs import checked as checked_outputs
 from fingerpad.results.quantities import Output
 from fingerpad.results.result import Result
 from fingerpad.runs.context import RunContext, finished

@@ -16,8 +16,8 @@ from fingerpad import launcher
 from fingerpad.launcher import source, version
 from fingerpad.reduced.registry import MODELS, find
 from fingerpad.report.write import attempt
+from fingerpad.results.data import checked as checked_outputs
 from fingerpad.results.files import FORMAT, below, check_folder, replace_json
-from fingerpad.results.outputs import checked as checked_outputs
 from fingerpad.results.quantities import Output
 from fingerpad.results.result import Result
 from fingerpad.runs import batch, chains

@@ -223,7 +223,7 @@ def _roughness(scene: "Scene") -> list[str]:
     """Return the cautions on the waves of a roughness; none of a closure of one's own, or of a mesh of a file."""
     if scene.geometry.file is not None or not getattr(scene.roughness, "shared", ()):
         return []
-    longest = scene.roughness.wavelength
+    longest = scene.roughness.wavelength  # type: ignore[attr-defined]
     return on_waves(longest, longest, scene.geometry.ridge_wavelength)
 
 

@@ -85,7 +85,7 @@ class Carrier(Table):
     @property
     def depth(self) -> float:
         """Depth m of the modulation."""
-        return 1.0 if self.modulation is None else self.modulation
+        return self.modulation or 1.0
 
 
 class Burst(Table):
@@ -152,7 +152,10 @@ class Waveform(Table):
         for name in _OF_FILE[1:]:
             if getattr(self, name) is not None:
                 raise ValueError(f"{name} is {show(getattr(self, name))} and no file is given; {name} is one of a file")
-        refuse_table(self) if self.waveform == "file" else self._refuse_wave()
+        if self.waveform == "file":
+            refuse_table(self)
+        else:
+            self._refuse_wave()
         return self
 
     def _refuse_wave(self) -> None:
@@ -166,8 +169,7 @@ class Waveform(Table):
             values = " and ".join(f"{name} is {show(getattr(self, name))}" for name in given[:2])
             raise ValueError(f"{values}; give one of {', '.join(MEASURES)}")
         if not given or self.frequency is None:
-            what = "frequency" if given else "amplitude"
-            instead = "" if given else ", or peak_to_peak or rms in its place"
+            what, instead = ("frequency", "") if given else ("amplitude", ", or peak_to_peak or rms in its place")
             raise ValueError(f"{what} is missing; waveform is {show(self.waveform)} and needs it{instead}")
         if self.peak > HIGHEST:
             raise ValueError(
@@ -177,11 +179,11 @@ class Waveform(Table):
         if self.carrier is None:
             return
         if self.carrier.frequency <= self.frequency:
-            given = f"carrier.frequency is {show(self.carrier.frequency)} Hz and frequency is {show(self.frequency)} Hz"
-            raise ValueError(f"{given}; the carrier must have the higher one")
+            both = f"carrier.frequency is {show(self.carrier.frequency)} Hz and frequency is {show(self.frequency)} Hz"
+            raise ValueError(f"{both}; the carrier must have the higher one")
         if (periods := self.carrier.frequency * self.period) > _MOST_CARRIED:
-            given = f"carrier.frequency is {show(self.carrier.frequency)} Hz, {periods:.4g} periods in one of the drive"
-            raise ValueError(f"{given}; there must be at most {_MOST_CARRIED:g}")
+            words = f"carrier.frequency is {show(self.carrier.frequency)} Hz, {periods:.4g} periods in one of the drive"
+            raise ValueError(f"{words}; there must be at most {_MOST_CARRIED:g}")
 
     # -- what it is --------------------------------------------------------------------------------------
     @property
@@ -225,7 +227,7 @@ class Waveform(Table):
             return f"by a table of {len(self.times)} points over {self.times[-1]:g} s, up to {self.peak:g} V{repeated}"
         offset = f" about {self.offset:g} V" if self.offset else ""
         measure = next(name for name in MEASURES if getattr(self, name) is not None)
-        how = "" if measure == "amplitude" else f" {measure.replace('_', ' ')}"
+        how = f" {measure.replace('_', ' ')}".removesuffix(" amplitude")
         found = f"{self.waveform} of {getattr(self, measure):g} V{how}{offset} at {self.frequency:g} Hz"
         found += "" if self.carrier is None else f" on a carrier of {self.carrier.frequency:g} Hz"
         return found + ("" if self.burst is None else f", {self.burst.on} periods on and {self.burst.off} off")
@@ -238,16 +240,16 @@ class Waveform(Table):
             part: times, in parts of the period; in seconds without ``parts``.
             parts: of a period; whole numbers of both give the same values in each quarter, to the last bit.
         """
-        parts = self.period if parts is None else parts
+        parts = parts or self.period
         if self.times is not None and self.voltages is not None:
             return np.asarray(np.interp(np.asarray(part) / parts * self.period, self.times, self.voltages))
-        on, periods = np.asarray(part) * round(self.period * (self.frequency or 1.0)), parts
-        found = shape(self.waveform, on, periods)
+        phase = np.asarray(part) * round(self.period * (self.frequency or 1.0))  # in parts of the wave's own period
+        found = shape(self.waveform, phase, parts)
         if self.carrier is not None:
             carried = np.asarray(part) * round(self.carrier.frequency * self.period)
             found = (1 + self.carrier.depth * found) / (1 + self.carrier.depth) * shape("sine", carried, parts)
         if self.burst is not None:
-            found = np.where(on < self.burst.on * parts, found, 0.0)
+            found = np.where(phase < self.burst.on * parts, found, 0.0)
         return np.asarray(self.offset + self.height * found)
 
     # -- samples -----------------------------------------------------------------------------------------
@@ -302,8 +304,7 @@ class Waveform(Table):
         if self.waveform != "triangle":
             return []
         half = 0.5 / (self.frequency or math.nan)
-        turns = ((k + 0.5) * half for k in range(math.ceil(seconds / half)))
-        return [time for time in turns if not self._in_pause(time)]
+        return [t for k in range(math.ceil(seconds / half)) if not self._in_pause(t := (k + 0.5) * half)]
 
     def _wave(self, part: float, parts: float = 1.0) -> float:
         """Return the voltage (V) of the wave without its carrier, at a part of its own period."""
@@ -326,9 +327,8 @@ class Waveform(Table):
             waves = [(k + phase, *values) for k in range(on) for phase, *values in one]
             parts = [(on + off * k / (n // 2), pause) for k in range(1, n // 2)]
             one = [(0.0, pause, one[0][-1]), *waves[1:], (float(on), one[0][1], pause), *parts]
-        for period in count():
-            for phase, *values in one:
-                yield (period * periods + phase) / (self.frequency or math.nan), *values
+        for k in count():
+            yield from (((k * periods + phase) / (self.frequency or math.nan), *values) for phase, *values in one)
 
     def _one_period(self, n: int) -> list[tuple[float, ...]]:
         """Return phases from 0 to below 1 and the voltages there."""

@@ -50,7 +50,7 @@ _NO_EDGE = 1e-6  # relative difference of gap and reach behind which there is no
 
 
 class NoEquilibriumError(ValueError):
-    """A ridge that cannot be in contact as asked; one sentence."""
+    """A ridge without an equilibrium in contact under its loads; one sentence."""
 
 
 @dataclass(frozen=True)

@@ -30,11 +30,7 @@ HURSTS = (0.6, 0.75, 0.9)
 """Hurst exponents of the tables that come with the package; 0.75 is the paper's."""
 RATIOS = (8.0, 16.0, 32.0, 64.0)
 """Ratios of the longest to the shortest wave of these tables."""
-_WIDE, _NARROW, _WIDEST_RATIO = (
-    4,
-    2,
-    32.0,
-)  # longest waves in the side of a surface, and the ratio up to which it is wide
+_WIDE, _NARROW, _WIDEST_RATIO = 4, 2, 32.0  # longest waves in the side of a surface; ratio up to which it is wide
 _FIELDS = ("pressure", "area", "weight", "mean", "deviation")
 _ROUNDOFF = 1e-6
 
