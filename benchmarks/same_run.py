@@ -78,6 +78,15 @@ def scene(case: dict[str, Any], folder: Path) -> dict[str, Any]:
     return {name: plain(value) for name, value in found.items()}
 
 
+def newtons(finger: Any) -> dict[str, Any]:
+    """Return the sums of a whole finger and their errors by state; a program of before had them in a dictionary."""
+    if hasattr(finger, "to_dict"):
+        kept = finger.to_dict()["states"]
+        numbers = {name: {k: v for k, v in each.items() if isinstance(v, float)} for name, each in kept.items()}
+        return {name: each | {"error": kept[name]["error"]} for name, each in numbers.items()}
+    return {name: total.values | {"error": finger.error.get(name, {})} for name, total in finger.states.items()}
+
+
 def with_laws(given: fp.Scene, laws: dict[str, Any]) -> tuple[fp.Scene, dict[str, Any]]:
     """Return a scene with its laws, and what a run is given beside it: a program of before took them as arguments."""
     if not hasattr(given, "with_laws"):
@@ -94,9 +103,14 @@ def with_laws(given: fp.Scene, laws: dict[str, Any]) -> tuple[fp.Scene, dict[str
 def write_mesh(path: Path) -> None:
     """Write the mesh of the small finger to a file, on rank 0; collective."""
     if MPI.COMM_WORLD.rank == 0:
-        from fingerpad.model import section
+        try:
+            from fingerpad.model import section
+        except ImportError:  # a program of before
+            from fingerpad.cli import mesh
 
-        section.write(fp.Scene.load(Path("demos/scenes/small_finger.toml")).replace(mesh={"contact": 40e-6}), path)
+            mesh.main(["demos/scenes/small_finger.toml", "--set", "mesh.contact=40e-6", "--out", str(path)])
+        else:
+            section.write(fp.Scene.load(Path("demos/scenes/small_finger.toml")).replace(mesh={"contact": 40e-6}), path)
     MPI.COMM_WORLD.barrier()
 
 

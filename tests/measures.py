@@ -3,6 +3,7 @@
 import csv
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import ufl
@@ -60,7 +61,7 @@ def rows_of(folder: Path, name: str = "steps") -> list[dict[str, str]]:
         return list(csv.DictReader(file))
 
 
-def _rows(state: ContactState, name: str) -> Iterator[dict[str, object]]:
+def _rows(state: ContactState, name: str) -> Iterator[dict[str, Any]]:
     if name == "coupling":
         yield from ({"iteration": k, "change": change} for k, change in enumerate(state.changes, start=1))
     elif (group := getattr(state, {"ridges": "ridges", "receptors": "sites"}[name])) is not None:

@@ -105,9 +105,10 @@ def computed(source: Source | Sequence[Source], table: Measured) -> Computed:
         SceneError: the source is of another type, the quantity is not there, the runs differ in more than force and
             voltage, or two of them have other values at the same force and voltage.
     """
-    alone = not isinstance(source, Sequence) or isinstance(source, Sweep | str | bytes)
-    found = list[Any]()
-    for each in [source] if alone else source:
+    found, several = list[Any](), [source]
+    if isinstance(source, Sequence) and not isinstance(source, Sweep | str | bytes):
+        several = [*source]
+    for each in several:
         refuse_type("result", each, Source, _SOURCES)
         found += each if isinstance(each, Sweep) else [content(Path(each)) if isinstance(each, str | Path) else each]
     if not found:
