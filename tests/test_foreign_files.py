@@ -5,6 +5,7 @@ import os
 import shlex
 import shutil
 import struct
+import tomllib
 import zlib
 from io import BytesIO
 from pathlib import Path
@@ -17,7 +18,7 @@ from PIL import Image
 import fingerpad as fp
 from fingerpad.cli import main
 from fingerpad.reduced.registry import find
-from fingerpad.report.page import again, picture
+from fingerpad.report.page import picture, recipe
 from fingerpad.report.write import write
 from fingerpad.results import fields
 from fingerpad.results.dataset import content
@@ -121,9 +122,9 @@ def test_pipes_in_a_folder_are_not_waited_for(answered, tmp_path, name):
 
 
 @pytest.mark.timeout(20)
-def test_pipe_in_place_of_the_table_of_a_sweep(tmp_path):
-    os.mkfifo(tmp_path / "table.csv")
-    with pytest.raises(SceneError, match="the table of .* cannot be read: .* not an ordinary file"):
+def test_pipe_in_place_of_the_record_of_a_sweep(tmp_path):
+    os.mkfifo(tmp_path / "sweep.json")
+    with pytest.raises(SceneError, match="sweep.json in .* cannot be read: .* not an ordinary file"):
         write(tmp_path)
 
 
@@ -138,11 +139,14 @@ def test_model_that_is_no_name_is_refused(answered, tmp_path, capsys, model):
     assert "it must be the name of a model" in capsys.readouterr().err
 
 
-def test_values_in_the_command_of_a_report_are_quoted():
-    """What a shell gets for them are the words themselves."""
-    text = "a 'b' $(rm x); `rm x` & <i>"
-    code = again({"finger": text}, "my model")
-    assert shlex.split(code)[2:] == ["--set", f"finger={text}", "--model", "my model", "--out", "results/again"]
+def test_values_in_the_recipe_of_a_report_are_quoted():
+    """A scene file has them, with lists of tables as a whole; a shell gets the name of the model as one word."""
+    text = "a 'b' $(rm x); \"rm x\" & <i>"
+    history = [{"name": text, "f_ext": 5.0, "bone_x": None}]
+    *lines, command = recipe({"finger": text, "mesh": {"contact": 5e-6}, "history": history}, "my model").splitlines()
+    found = tomllib.loads("\n".join(lines))
+    assert found == {"finger": text, "mesh": {"contact": 5e-6}, "history": [{"name": text, "f_ext": 5.0}]}
+    assert shlex.split(command)[1:] == ["run", "mine.toml", "--model", "my model", "--out", "results/again"]
 
 
 # -- pictures ------------------------------------------------------------------------------------------

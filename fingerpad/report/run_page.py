@@ -56,7 +56,7 @@ def page(result: Result) -> str:
         model=MODELS[result.model].words if result.model in MODELS else "A model that is not registered here",
         omitted=[f"{each['what']}: {each['reason']}" for each in result.record.get("omitted") or []],
         work=_work(result), cost=_cost(result), parameters=html.parameters(result.parameters), versions=versions,
-        again=html.again(result.parameters, result.model),
+        again=html.recipe(result.parameters, result.model),
     )  # fmt: skip
 
 
