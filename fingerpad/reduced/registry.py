@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING
 from fingerpad.model.options import check
 from fingerpad.reduced.cylinders import Cylinders
 from fingerpad.reduced.model import Model
+from fingerpad.results.data import FULL_WORDS
 from fingerpad.scene import Scene
 from fingerpad.scene.messages import SceneError, show
 from fingerpad.scene.reading import DEFAULT_MODEL
@@ -17,7 +18,7 @@ if TYPE_CHECKING:
 class Full(Model):
     """The whole cross-section with every ridge, along the path of its loads (:mod:`fingerpad.runs.full`)."""
 
-    name, words = DEFAULT_MODEL, "Every ridge of the cross-section"
+    name, words = DEFAULT_MODEL, FULL_WORDS
     traces = "traces of the full model"
     meshes = path = resumes = True
 
@@ -48,8 +49,3 @@ def find(name: str) -> Model:
     if not (isinstance(name, str) and name in MODELS):
         raise SceneError(f"model is {show(name)}; it must be {' or '.join(map(repr, MODELS))}")
     return MODELS[name]
-
-
-def follows_path(name: str) -> bool:
-    """Return whether a model of that name follows the loads; one that is not registered here does not."""
-    return name in MODELS and MODELS[name].path

@@ -101,7 +101,7 @@ def _picture(kind: str) -> Callable[[Result], None]:
 
 
 def _followed(result: Result, context: RunContext) -> bool:
-    return bool(resolve_name("fingerpad.reduced.registry:follows_path")(result.model))
+    return result.follows_path
 
 
 def _page(result: Result, context: RunContext) -> bool:

@@ -14,6 +14,7 @@ from fingerpad import launcher
 from fingerpad.launcher import needed_by, source, version
 from fingerpad.model.cautions import breakdown_ahead
 from fingerpad.reduced.registry import find
+from fingerpad.results.data import MODEL_WORDS
 from fingerpad.results.data import checked as checked_outputs
 from fingerpad.results.files import replace_json
 from fingerpad.results.folder import CheckpointError, FolderError, Serial, on_rank_0
@@ -156,7 +157,7 @@ def _solved(scene: Scene, model: "Model", context: RunContext) -> Result:
     if model.path:
         return result
     versions = {"versions": {"fingerpad": version(), "source": source()}}
-    return replace(result, record={**result.record, "provenance": versions})
+    return replace(result, record=result.record | {"provenance": versions, MODEL_WORDS: model.words})
 
 
 def _refuse_different(scene: Scene, comm: "MPI.Comm | Serial") -> None:
