@@ -6,8 +6,7 @@ from typing import Any
 
 from fingerpad.accuracy.estimate import with_errors
 from fingerpad.accuracy.refinement import Refinement
-from fingerpad.accuracy.solves import Solves
-from fingerpad.accuracy.states import StateRecorder
+from fingerpad.accuracy.solves import StateRecorder
 from fingerpad.accuracy.whole_path import WholePath
 from fingerpad.model.cautions import lost
 from fingerpad.model.finger import Step, meshed
@@ -150,7 +149,7 @@ class Attempt:
         self._solves += 1
         if self._model.asked:  # until it is met
             assert isinstance(self._estimate, Refinement)
-            number, least = self._estimate.to_come, self._estimate.solves.least()
+            number, least = self._estimate.to_come, self._estimate.least()
             text = f"states on other meshes, to the accuracy asked for: solve {self._solves}, {number} or more to come"
             self._console.phase(f"{text}; {in_words(number * least)} or more left" if least else text)
             return
@@ -174,12 +173,12 @@ class Attempt:
             if restart is not None or self._recorder is None:
                 return self._affordable(restart)
             path, show = self._recorder.solve(), self._console.show
-            solves = Solves(self._model, path, self._comm, show, self._before_solve)
+            of_path = self._model, path, self._comm, show
             if self._model.options.past:
-                self._estimate = whole = WholePath(solves, self.report.record.states, self._on_coarser)
+                self._estimate = whole = WholePath(*of_path, self.report.record.states, self._on_coarser)
                 whole.run()
                 return None
-            self._estimate = refinement = Refinement(solves)
+            self._estimate = refinement = Refinement(*of_path, self._before_solve)
             return self._affordable(refinement.run())
         except StepFailed as error:
             tip = hint(error) if self._model.mesh_file is None else ""
@@ -245,7 +244,7 @@ class Attempt:
             result = replace(result, drawing=drawing, **found)  # type: ignore[arg-type]
             failure = result.failure or broken(result.full_slip, error, mu_0)
             notes = (*result.notes, *([] if estimate is None else estimate.notes))
-            cautions = [] if estimate is None else estimate.solves.doubts()
+            cautions = [] if estimate is None else estimate.doubts()
             return post.with_cautions(replace(result, failure=failure, notes=notes), cautions)
 
         def with_outputs(result: Result) -> Result:
