@@ -104,7 +104,7 @@ def some(result):
     if MPI.COMM_WORLD.rank == int(sys.argv[2]):
         raise ValueError("raised on one rank")
     return replace(result, notes=("of the others",))
-entries = [post.Entry("one", lambda *_: True, some), post.Entry("two", lambda *_: True, lambda result: result)]
+entries = [post.Entry("one", some), post.Entry("two", lambda result: result)]
 found = post.kept(cylinders.solve(Scene()), RunContext(Path(sys.argv[1]), MPI.COMM_WORLD, report=False), entries)
 assert found.notes[-1] == "one: ValueError: raised on one rank", found.notes
 assert "of the others" not in found.notes

@@ -90,8 +90,8 @@ class WholePath(Estimate):
         self.over_time: dict[str, float] = {}
         self._errors: dict[str, float] = {}  # of these, likewise
 
-    def run(self) -> None:
-        """Follow the path on the coarser mesh, and estimate; collective.
+    def run(self) -> RestartRequired | None:
+        """Follow the path on the coarser mesh, and estimate, which needs nothing more of the model; collective.
 
         Raises:
             Interrupted: ``on_step`` stopped the run.
@@ -102,7 +102,7 @@ class WholePath(Estimate):
             raise
         except (StepFailed, GeometryError) as error:
             self._note(f"discretisation errors could not be estimated: on elements twice as large, {error}")
-            return
+            return None
         self._compare(self._comparable(coarse), self.base, short=False)
         self._few_facets()
         self._report()
@@ -115,6 +115,7 @@ class WholePath(Estimate):
                 f"Over time, friction has an estimated discretisation error of up to {part} % of its largest value, "
                 "from the path on elements twice as large."
             )
+        return None
 
     def _on_coarser_path(self) -> Solve:
         """Return the named states on elements twice as large; collective.

@@ -140,7 +140,7 @@ def _section(scene: Scene, model: "Model", context: RunContext) -> Result:
         here = replace(context, folder=None)
         return traces.with_sum(result, model, lambda each: _solved(each, model, here), context.outputs)
 
-    own = [Entry("newtons of the whole finger", lambda *_: model.sums, with_sum), *of_outputs(context.outputs)]
+    own = [Entry("newtons of the whole finger", with_sum, lambda *_: model.sums), *of_outputs(context.outputs)]
     return kept(result, context, own)
 
 
