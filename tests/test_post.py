@@ -6,11 +6,10 @@ from pathlib import Path
 import pytest
 
 import fingerpad as fp
-from fingerpad.reduced.registry import find
 from fingerpad.results.result import Result
 from fingerpad.runs import post
 from fingerpad.runs.context import RunContext, ended, summary
-from fingerpad.runs.solve import solved
+from fingerpad.runs.solve import find, solved
 from fingerpad.scene import from_data
 from tests.commands import python
 from tests.runs import tables_alone

@@ -11,14 +11,13 @@ import pytest
 from matplotlib.collections import LineCollection
 
 from fingerpad.cli import main
-from fingerpad.reduced.registry import find
 from fingerpad.report import run_page, trust
 from fingerpad.report.write import NAME
 from fingerpad.results import fields
 from fingerpad.results.quantities import cell
 from fingerpad.results.result import Result
 from fingerpad.runs.context import RunContext
-from fingerpad.runs.solve import solved
+from fingerpad.runs.solve import find, solved
 from tests.browser import SIZES, asked
 from tests.small_finger import small
 from variational.attraction.dielectric import VACUUM_PERMITTIVITY

@@ -8,14 +8,13 @@ from pathlib import Path
 from fingerpad.cli.arguments import Parser, echo, path, refuse_twice, scene_of
 from fingerpad.launcher import raising_at_ctrl_c
 from fingerpad.model.cautions import breakdown_ahead
-from fingerpad.reduced.registry import MODELS, find
 from fingerpad.report.write import NAME
 from fingerpad.results.files import check_folder
 from fingerpad.results.folder import full_scene
 from fingerpad.results.result import Result
 from fingerpad.runs.context import RunContext
 from fingerpad.runs.post import in_words
-from fingerpad.runs.solve import solved
+from fingerpad.runs.solve import MODELS, find, solved
 from fingerpad.scene import Scene
 from fingerpad.scene.messages import SceneError
 from fingerpad.scene.reading import DEFAULT_MODEL, model_of
