@@ -5,9 +5,9 @@ import pytest
 from numpy.testing import assert_allclose
 
 import fingerpad as fp
+from fingerpad.model.cautions import examine
 from fingerpad.reduced import cylinders
 from fingerpad.scene.drive import GAPS, SAMPLES, Drive, one_period
-from fingerpad.scene.remarks import leakage, remarks
 from variational.attraction.circuit import GapCircuit
 
 SINE = {"waveform": "sine", "amplitude": 200.0, "frequency": 100.0}
@@ -93,26 +93,29 @@ def test_interpolation_between_gaps():
 
 def test_constant_voltage_says_what_remains():
     """With a leak the note has the time constant; without one that of every constant voltage stays."""
-    (note,) = leakage(fp.Scene(electric=DRY))
+    (note,) = map(str, examine("note", fp.Scene(electric=DRY)))
     assert "time constant of 12.1 ms" in note and "230 to 410" in note
     table = {"frequency": [1.0, 1e6], "eps": [2e3, 1e3], "sigma": [1e-4, 1e-3]}
-    (note,) = leakage(fp.Scene(electric={"tissue": table, "leak": 300.0}))
+    (note,) = map(str, examine("note", fp.Scene(electric={"tissue": table, "leak": 300.0})))
     assert "A constant voltage leaks away in it" in note
 
 
 def test_offset_without_a_leak_has_a_caution():
     scene = fp.Scene(voltage=SINE | {"offset": 50.0})
-    assert ["has a mean of 50 V, which leaks away" in text for text in remarks(scene)] == [True]
-    assert remarks(scene.replace(electric=DRY)) == []
+    assert ["has a mean of 50 V, which leaks away" in text.text for text in examine("scene", scene)] == [True]
+    assert examine("scene", scene.replace(electric=DRY)) == []
 
 
 def test_breakdown_is_by_the_local_field():
     """Across the gap of a ridge, with the instant; a total voltage of more than 330 V can do."""
     safe = cylinders.solve(fp.Scene(voltage=SINE | {"amplitude": 380.0}, electric=DRY))
-    assert not any("breaks down" in text for text in safe.cautions)
+    assert not any("breaks down" in text for text in map(str, safe.cautions))
     found = cylinders.solve(fp.Scene(voltage=SINE | {"amplitude": 450.0}, electric=DRY))
-    assert any("V are across a gap of 1.4" in text and "after the start of a period" in text for text in found.cautions)
-    assert any("breaks down" in text for text in cylinders.solve(fp.Scene(voltage=460.0)).cautions)
+    assert any(
+        "V are across a gap of 1.4" in text and "after the start of a period" in text
+        for text in map(str, found.cautions)
+    )
+    assert any("breaks down" in text for text in map(str, cylinders.solve(fp.Scene(voltage=460.0)).cautions))
 
 
 def test_scene_of_a_drive_survives_its_files():

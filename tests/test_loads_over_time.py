@@ -265,9 +265,9 @@ def test_mean_from_steps_that_are_too_long_is_told(tmp_path):
         {"name": "lift", "bone_height": 5e-5, "duration": 1.0},
     ]
     long, short = (full.run(scene(*loads, numerics={"step_scale": part}), RunContext()) for part in (1, 0.1))
-    told = [note.split(" the mean ")[0] for note in long.cautions]
+    told = [note.text.split(" the mean ")[0] for note in long.cautions]
     assert told == ["In the load back", "In the load lift"]
-    assert not any("In the load back" in text for text in short.cautions)
+    assert not any("In the load back" in text.text for text in short.cautions)
     means = [result.loads[2].over_time.mean["f_t"] for result in (long, short)]
     assert means[0] == pytest.approx(means[1], rel=0.1) and means[0] != pytest.approx(means[1], rel=0.05)
     assert abs(means[0] - means[1]) < long.loads[2].over_time.mean_change["f_t"]

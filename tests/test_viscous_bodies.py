@@ -10,7 +10,7 @@ from fingerpad.model.options import FingerModel, by_rule, plan
 from fingerpad.model.simulation import Simulation
 from fingerpad.model.state import least_dissipation
 from fingerpad.scene import SceneError
-from fingerpad.scene.remarks import remarks, used
+from fingerpad.scene.remarks import used
 from fingerpad.scene.viscosity import PRESETS
 from geometry import tags
 from geometry.bodies import ridge
@@ -169,8 +169,8 @@ def test_parts_of_the_model():
     options = plan(scene(PRESS, HOLD))
     assert options.errors and options.past and not plan(scene(PRESS, HOLD, preset=None)).past
     assert not any("discretisation errors" in str(each) for each in options.omitted)
-    assert not [text for text in remarks(scene(PRESS, HOLD)) if "relax" in text]
-    (text,) = [text for text in remarks(scene(PRESS)) if "relax" in text]
+    assert not [text for text in map(str, cautions.examine("scene", scene(PRESS, HOLD))) if "relax" in text]
+    (text,) = [text for text in map(str, cautions.examine("scene", scene(PRESS))) if "relax" in text]
     assert "nothing will relax" in text
     assert used(scene(PRESS, HOLD))["dermis"].endswith(", QLV(moduli=" + text_of(PRESETS["fingerpad"]))
 
@@ -184,7 +184,7 @@ def test_caution():
     record = StepRecord(*[0] * 12, viscous=1.0, viscous_least=-0.2)
     state = fp.ContactState(f_ext=1.0, voltage=0.0, f_t=0.0, mu_app=0.0, f_contact=1.0, f_electrostatic=0.0,
                             ridges_in_contact=0, contact_length=0.0, record=record)  # fmt: skip
-    (text,) = cautions.on_states([state], None)
+    (text,) = map(str, cautions.on_states([state], None))
     assert "in 1 of 1 steps branches of viscous layers made energy at points and dissipated none, up to 0.2" in text
 
 

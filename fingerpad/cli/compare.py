@@ -92,7 +92,7 @@ def table(results: Sequence[Result]) -> str:
     rows.append(["unknowns", *(str(result.cost.unknowns) for result in results)])
     widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
     lines = ["  ".join([row[0].ljust(widths[0]), *map(str.rjust, row[1:], widths[1:])]).rstrip() for row in rows]
-    remarks = [(result.model, (*result.notes, *result.cautions, _failure(result))) for result in results]
+    remarks = [(result.model, (*result.notes, *map(str, result.cautions), _failure(result))) for result in results]
     shared = [note for note in remarks[0][1] if note and len(remarks) > 1 and all(note in each for _, each in remarks)]
     notes = [f"{model}: {note}" for model, each in remarks for note in each if note and note not in shared]
     known = [result for result in results if any(state.error.known() for state in result.named.values())]

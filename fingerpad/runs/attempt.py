@@ -33,6 +33,7 @@ from fingerpad.scene.reading import DEFAULT_MODEL
 from fingerpad.scene.remarks import coefficient, used
 from fingerpad.startup import MPI
 from geometry.profiles import GeometryError
+from variational.caution import Caution
 from variational.solvers.checkpoint import OtherBody
 from variational.solvers.continuation import StepFailed
 
@@ -245,7 +246,7 @@ class Attempt:
             result = replace(result, drawing=drawing, **found)  # type: ignore[arg-type]
             failure = result.failure or broken(result.full_slip, error, mu_0)
             notes = (*result.notes, *([] if estimate is None else estimate.notes))
-            cautions = [] if estimate is None else estimate.solves.doubts()
+            cautions = [] if estimate is None else [Caution("roundoff", each) for each in estimate.solves.doubts()]
             return post.with_cautions(replace(result, failure=failure, notes=notes), cautions)
 
         def with_outputs(result: Result) -> Result:

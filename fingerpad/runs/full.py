@@ -6,7 +6,7 @@ from contextlib import closing
 from typing import Any
 
 import fingerpad.startup  # noqa: F401
-from fingerpad.model.cautions import breakdown_ahead
+from fingerpad.model.cautions import examine
 from fingerpad.model.options import FingerModel, by_rule, plan
 from fingerpad.model.report import Clock
 from fingerpad.results.data import checked
@@ -77,8 +77,8 @@ def _run(scene: Scene, session: Session, kept: dict[str, Any] | None, context: R
     comm, writer, console = session.comm, session.writer, session.console
     clock, restarts, checkpoint = session.clock, session.restarts, session.checkpoint
     writer.log.info("scene %s", json.dumps(scene.parameters()))
-    for caution in breakdown_ahead(scene):
-        writer.log.warning(caution)
+    for caution in examine("load", scene):
+        writer.log.warning("%s", caution)
     model = FingerModel(by_rule(scene), plan(scene)).of_path()
     if kept is not None:
         clock.earlier(*kept["seconds"])
