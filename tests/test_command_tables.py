@@ -213,14 +213,6 @@ def test_sweep_and_run_have_folders_of_their_own(tmp_path, capsys):
     assert "holds the results of a sweep" in refused(capsys, "run", "--model=cylinders", f"--out={study}")
 
 
-# -- models side by side -----------------------------------------------------------------------------------
-def test_compare_says_why_a_model_has_no_values(capsys):
-    """In one sentence below a column of dashes."""
-    assert main(["compare", str(ROOT / "demos" / "scenes" / "small_finger.toml"), "--model", "cylinders"]) == 1
-    out = capsys.readouterr().out
-    assert "cylinders: no values, since geometry is not that of the default finger" in out
-
-
 def test_sweep_over_keys_that_need_each_other_and_whole_numbers(tmp_path):
     """Only the points are checked: a value may need that of another axis. Some keys take whole numbers alone."""
     axes = {"contact.formulation": ["nitsche"], "contact.gamma_0": [1, 2]}
