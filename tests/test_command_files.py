@@ -18,9 +18,9 @@ OUTPUTS = (
     ("check", "--mesh", "a mesh; its name must end with .msh"),
     ("estimate", "--csv", "a table; its name must end with .csv"),
     ("estimate", "--plot", "a picture; its name must end with one of .png"),
-    ("compare-data", "--csv", "a table; its name must end with .csv"),
+    ("compare", "--csv", "a table; its name must end with .csv"),
 )
-GIVEN = {"report": ["--calculator"], "compare-data": ["none.csv", "--run", "none"], "topography": ["none.csv"]}
+GIVEN = {"report": ["--calculator"], "compare": ["none.csv", "--run", "none"], "topography": ["none.csv"]}
 
 
 @pytest.mark.parametrize(("command", "option", "words"), OUTPUTS)

@@ -175,9 +175,6 @@ def test_sweep_and_run_have_folders_of_their_own(tmp_path, capsys):
     assert "holds the results of a sweep" in refused(capsys, "run", "--model=cylinders", f"--out={study}")
 
 
-# -- models side by side -----------------------------------------------------------------------------------
-
-
 def test_sweep_over_keys_that_need_each_other_and_whole_numbers(tmp_path):
     """Only the points are checked: a value may need that of another axis. Some keys take whole numbers alone."""
     axes = {"contact.formulation": ["nitsche"], "contact.gamma_0": [1, 2]}
