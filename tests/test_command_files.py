@@ -23,11 +23,11 @@ OUTPUTS = (
     ("estimate", "--csv", "a table; its name must end with .csv"),
     ("estimate", "--plot", "a picture; its name must end with one of .png"),
     ("microscale", "--csv", "a table; its name must end with .csv"),
-    ("compare-data", "--csv", "a table; its name must end with .csv"),
-    ("compare-data", "--out", "a picture; its name must end with one of .png"),
+    ("compare", "--csv", "a table; its name must end with .csv"),
+    ("compare", "--out", "a picture; its name must end with one of .png"),
     ("topography", "--plot", "a picture; its name must end with one of .png"),
 )
-GIVEN = {"report": ["--calculator"], "compare-data": ["none.csv", "--run", "none"], "topography": ["none.csv"]}
+GIVEN = {"report": ["--calculator"], "compare": ["none.csv", "--run", "none"], "topography": ["none.csv"]}
 
 
 @pytest.mark.parametrize(("command", "option", "words"), OUTPUTS)

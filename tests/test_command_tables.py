@@ -95,6 +95,8 @@ def test_estimate_without_an_answer_is_refused(capsys):
         ("estimate --over voltage=", "--over is voltage=; write it as --over voltage or"),
         ("estimate --over geometry.ridge_count", "it must be a key of one number that may have a fraction"),
         ("estimate --over zebra=1,2", "zebra is not a key of a scene"),
+        ("estimate --over out=1,2", "out is varied and is no key of a scene"),
+        ("solve --target scene=1", "target is 'scene=1'; scene is no quantity, such as mu_app"),
         ("estimate --over voltage --over friction --over force --plot a.png", "a picture is over one key or two"),
         ("estimate --over voltage=0:200:101 --over friction=0.1:1:100", "the sweep has 10100 points; at most 10000"),
         ("estimate --voltage 0:1e400:3", "--voltage is 0:1e400:3; each value must be a finite number"),
@@ -209,14 +211,6 @@ def test_sweep_and_run_have_folders_of_their_own(tmp_path, capsys):
         capsys, "sweep", "--model=cylinders", over, f"--out={run}"
     )
     assert "holds the results of a sweep" in refused(capsys, "run", "--model=cylinders", f"--out={study}")
-
-
-# -- models side by side -----------------------------------------------------------------------------------
-def test_compare_says_why_a_model_has_no_values(capsys):
-    """In one sentence below a column of dashes."""
-    assert main(["compare", str(ROOT / "demos" / "scenes" / "small_finger.toml"), "--model", "cylinders"]) == 1
-    out = capsys.readouterr().out
-    assert "cylinders: no values, since geometry is not that of the default finger" in out
 
 
 def test_sweep_over_keys_that_need_each_other_and_whole_numbers(tmp_path):

@@ -5,9 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-import fingerpad as fp
-from fingerpad.measurements.compare import comparison
-from fingerpad.measurements.computed import computed, refuse_mixed
+from fingerpad.measurements.compare import comparison, computed, refuse_mixed
 from fingerpad.measurements.table import read
 from fingerpad.results.result import Result
 from fingerpad.scene import Scene, SceneError
@@ -86,21 +84,6 @@ def total(force, area):
     values = {"f_ext": force, "f_t": force / 2, "f_electrostatic": 0.0, "contact_length": area / 5, "gross_width": area}
     one = np.ones(1)
     return Total(1e-3, 0 * one, one, 1e-3 * one, force, {name: value * one for name, value in values.items()})
-
-
-def test_smaller_forces_are_those_of_the_traces(table):
-    """Of one run to the largest force, as of runs to each; a run of its own wins, and what no trace reaches is left."""
-    runs = [fp.run(fp.Scene(voltage=150.0, force=force), model="cylinders") for force in (0.5, 1.0)]
-    asked = read(table("force (N), friction force (N)\n0.3, 0.1\n0.5, 0.1\n1, 0.1\n3, 0.1\n"))
-    one, both = (computed(given, asked) for given in (runs[1:], runs))
-    at = np.array([0.3, 0.5, 1.0, 3.0]), np.full(4, 150.0)
-    (of_one, _), (of_both, _) = one.at(*at), both.at(*at)
-    direct = [run.finger.values("full_slip")["f_t"] for run in runs]
-    assert of_both[1:3] == pytest.approx(direct, rel=1e-9)
-    assert 1e-6 < abs(of_one[1] / direct[0] - 1) < 5e-3, "its trace has other points"
-    assert both.points.force.tolist() == pytest.approx([0.3, 0.5, 1.0]), "0.5 N is that of its own run alone"
-    assert of_both[0] == runs[0].finger.under(0.3).values("full_slip")["f_t"]
-    assert np.isnan(of_both[3])
 
 
 # -- runs together -------------------------------------------------------------------------------------------

@@ -93,7 +93,7 @@ def test_command_prints_fit_and_remarks(grid, tmp_path, capsys):
     """Fit, signs and ignored columns in words; a column for the coefficient in the file; a picture."""
     file = tmp_path / "lab.csv"
     file.write_text(LABORATORY + "75;200;60;;23\n75;200;64;;23\n75;200;40;;22\n25;0;24;;22\n")
-    argv = ["compare-data", str(file), "--sweep", str(grid.folder)]
+    argv = ["compare", str(file), "--sweep", str(grid.folder)]
     assert main([*argv, "--out", str(tmp_path / "lab.png"), "--csv", str(tmp_path / "out.csv")]) == 0
     out = capsys.readouterr().out
     assert "Columns not read: Temperature (°C).\n" in out
@@ -173,6 +173,6 @@ def test_misfit_without_voltage_is_named(grid, tmp_path, capsys):
     """It says nothing of the attraction; one row under voltage and the sentence is gone."""
     for more in ("", "75,200,9\n"):
         (tmp_path / "lab.csv").write_text(f"force (N/m),voltage (V),contact length (mm)\n75,0,9\n{more}")
-        assert main(["compare-data", str(tmp_path / "lab.csv"), "--sweep", str(grid.folder)]) == 0
+        assert main(["compare", str(tmp_path / "lab.csv"), "--sweep", str(grid.folder)]) == 0
         out = capsys.readouterr().out
         assert ("All compared rows are at 0 V: attraction is not compared.\n" in out) == (more == "")

@@ -1,17 +1,13 @@
 """The ladder's rungs: one set of keys, forces in balance, sources named, and what they cannot answer refused."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
-from fingerpad.cli import compare
 from fingerpad.reduced import cylinders
 from fingerpad.reduced.cylinder_errors import REGIONS
 from fingerpad.scene import SceneError, from_data
 from tests.test_laws import Held
 from variational.contact.friction import Derjaguin
-from variational.state import Errors
 
 
 def scene(**data):
@@ -67,20 +63,6 @@ def test_other_screen_than_the_runs_is_said():
 def test_scene_it_does_not_know_is_refused(data, sentence):
     with pytest.raises(SceneError, match=sentence):
         cylinders.solve(scene(**data))
-
-
-def test_errors_of_a_run_stand_beside_its_values(default):
-    """With what ± is; a state that comes without an error has its value alone."""
-    slip = replace(default.full_slip, contact_length=1.6e-3, error=Errors.of({"contact_length": 2e-5}))
-    charged = replace(default.charged, contact_length=1.7e-3, error=Errors())
-    answer = replace(default, model="full", record={}, charged=charged, full_slip=slip)
-    assert answer.full_slip.error.known() == {"contact_length": 2e-5}
-    lines = compare.table([answer]).splitlines()
-    assert next(line for line in lines if line.startswith("full slip: contact length")).endswith("1.600 ± 0.020")
-    assert next(line for line in lines if line.startswith("charged normal contact: contact length")).endswith(
-        "  1.7000"
-    )
-    assert any(line.startswith("±: error by mesh (full); ") for line in lines)
 
 
 def test_closed_form_has_the_error_that_it_is_known_to(default):

@@ -9,7 +9,7 @@ import pytest
 
 import fingerpad as fp
 from fingerpad.cli import main
-from fingerpad.measurements.computed import computed
+from fingerpad.measurements.compare import computed
 from fingerpad.measurements.table import Measured, read
 from fingerpad.runs.sweep import sweep
 from fingerpad.scene import Scene, SceneError
@@ -63,7 +63,7 @@ def test_tables_as_labs_publish_them(tmp_path, grid, capsys):
     assert one.attrs["ignored"] == ("Subject", "friction force (N/m)", "remark") and one.index.tolist() == [3, 4]
     assert one.attrs["source"] == one.attrs["table"] and one.attrs["table"].endswith("lab.csv")
     words = [f"--column={head}={name}" for head, name in MAPPING.items()]
-    assert main(["compare-data", str(lab), *words, "--sweep", str(grid.folder)]) == 0
+    assert main(["compare", str(lab), *words, "--sweep", str(grid.folder)]) == 0
     assert "Columns not read: Subject, friction force (N/m), remark.\n" in capsys.readouterr().out
 
 
@@ -173,7 +173,7 @@ HEADS = "force (N/m), friction (1)\n"
 )
 def test_tables_are_refused(table, capsys, text, words):
     """In one sentence, before the folder of results is looked at."""
-    assert words in refused(capsys, "compare-data", str(table(text)), "--run", "nowhere")
+    assert words in refused(capsys, "compare", str(table(text)), "--run", "nowhere")
 
 
 def test_tables_in_the_repository_are_read():
@@ -216,7 +216,7 @@ def test_misfit_is_printed_and_drawn(folder, table, tmp_path, capsys):
     file = table(
         "\n".join(["# doi: 10.1/x", "force (N/m), voltage (V), friction (1), spread (1)", *lines, "500, 100, 1, 1"])
     )
-    assert main(["compare-data", str(file), "--sweep", str(folder), "--out", str(tmp_path / "out.png")]) == 0
+    assert main(["compare", str(file), "--sweep", str(folder), "--out", str(tmp_path / "out.png")]) == 0
     out = capsys.readouterr().out
     assert "friction at full slip: Somebody 2020\ndoi 10.1/x\n" in out
     assert "Misfit: computed over measured 0.5 (geometric mean of 3), at most a factor of 2. " in out
@@ -233,7 +233,7 @@ def test_numbers_are_written(folder, table, tmp_path, capsys):
     first = table("force (N/mm), voltage (V), contact length (mm), spread (um)\n0.025, 100, 1, 20\n0.9, 0, 1,\n")
     both = first.rename(tmp_path / "first.csv"), table("force (N/m), voltage (V), friction (1)\n75, 100, 0.3\n")
     csv_file = tmp_path / "out.csv"
-    argv = ["compare-data", *map(str, both), "--sweep", str(folder), "--csv", str(csv_file)]
+    argv = ["compare", *map(str, both), "--sweep", str(folder), "--csv", str(csv_file)]
     assert main(argv) == 0
     assert capsys.readouterr().out.endswith(f"Written: {csv_file}\n")
     rows = rows_of(tmp_path, "out")
@@ -260,7 +260,7 @@ def test_errors_of_a_sweep_count_with_the_spread(folder, table, tmp_path, capsys
     # 0.375 ± 0.035 at 86.6 V
     lines = "25, 50, 0.27, 0.04\n25, 86.602540378, 0.33, 0.011\n25, 100, 0.33, 0.02\n25, 200, 0.51, 0.02\n"
     file = table("force (N/m), voltage (V), friction (1), spread (1)\n" + lines)
-    assert main(["compare-data", str(file), "--sweep", str(place)]) == 0
+    assert main(["compare", str(file), "--sweep", str(place)]) == 0
     out = capsys.readouterr().out
     assert re.search(r"^ *25.000 +86.6 +0.3300 +0.0110 +0.3750 +0.0350 +0.0450 +13.6$", out, re.MULTILINE)
     assert re.search(r"^ *25.000 +200.0 +0.5100 +0.0200 +0.5000 +– +-0.0100 +-2.0$", out, re.MULTILINE)
@@ -282,16 +282,16 @@ def test_errors_of_a_sweep_count_with_the_spread(folder, table, tmp_path, capsys
     ],
 )
 def test_what_the_results_do_not_have(folder, table, capsys, text, words):
-    assert words in refused(capsys, "compare-data", str(table(text)), "--sweep", str(folder))
+    assert words in refused(capsys, "compare", str(table(text)), "--sweep", str(folder))
 
 
 def test_rows_whose_value_is_zero_are_told_apart(folder, table, capsys):
     """They are within the results, and have no ratio."""
     text = "force (N/m), voltage (V), attraction (N/m)\n25, 0, 3\n"
-    said = refused(capsys, "compare-data", str(table(text)), "--sweep", str(folder))
+    said = refused(capsys, "compare", str(table(text)), "--sweep", str(folder))
     assert "no attraction above 0 is computed in the 1 rows of" in said
-    said = refused(capsys, "compare-data", str(table(text + "500, 100, 3\n")), "--sweep", str(folder))
+    said = refused(capsys, "compare", str(table(text + "500, 100, 3\n")), "--sweep", str(folder))
     assert "in the 2 rows of" in said and said.rstrip().endswith("and 1 of them are not within the results")
-    assert main(["compare-data", str(table(text + "25, 100, 3\n500, 100, 3\n")), "--sweep", str(folder)]) == 0
+    assert main(["compare", str(table(text + "25, 100, 3\n500, 100, 3\n")), "--sweep", str(folder)]) == 0
     out = capsys.readouterr().out
     assert "since a value is 0 or is not computed there: 2 of 3 rows." in out

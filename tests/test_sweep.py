@@ -70,6 +70,12 @@ def test_crash_is_told_and_tried_again(started, tmp_path):
     assert len(started) == 2
 
 
+def test_point_whose_files_are_not_whole_fails_alone(started, tmp_path):
+    found = fp.sweep(Scene(), tmp_path, quiet=True, f_ext=[10, 666])
+    assert [r.failure.partition(":")[0] for r in found.results][1] == "CRASH_-11"
+    assert "is not a folder of a finished run" in found.results[0].failure
+
+
 @pytest.mark.slow
 def test_run_that_was_refused_its_folder_is_tried_again(tmp_path):
     """A run of a killed sweep may still be at it; when that is gone the scene is run."""

@@ -127,7 +127,7 @@ def test_command_and_measurements(tmp_path, capsys):
     words = ["sweep", "--over", "force=100,400 mN", "--over", "voltage=200", "--model", "cylinders", "--out", str(out)]
     assert main(words) == 0 and "Whole finger, at full slip" in capsys.readouterr().out
     table.write_text("# source: X 2020\nforce (mN), friction force (N)\n100, 0.09\n200, 0.15\n", encoding="utf-8")
-    assert main(["compare-data", str(table), "--sweep", str(out), "--csv", str(tmp_path / "both.csv")]) == 0
+    assert main(["compare", str(table), "--sweep", str(out), "--csv", str(tmp_path / "both.csv")]) == 0
     low, high = (float(row["full_slip_finger_f_t"]) for row in rows_of(out, "table"))
     ours = [float(row["computed"]) for row in rows_of(tmp_path, "both")]
     assert ours == pytest.approx([low, np.sqrt(low * high)], rel=1e-9)

@@ -17,19 +17,12 @@ U = 1.5 * np.sin(2 * np.pi * 100 * T)
 PLAIN = "".join(f"{t:.6e},{u:.6e}\n" for t, u in zip(T, U, strict=True))
 TWO = "".join(f"{t:.6e},{u:.6e},{-u / 2:.6e}\n" for t, u in zip(T, U, strict=True))
 COMMAS = "".join(f"{1e3 * t:.4f};{1e3 * u:.4f}\n" for t, u in zip(T, U, strict=True)).replace(".", ",")
-POINTED = COMMAS.replace(",", ".").replace(";", ",")
-ENUM = [*enumerate(zip(T, U, strict=True))]
-MIXED = "".join(f"{u:.6f},{k},{1e3 * t:.4f},\n" for k, (t, u) in ENUM)
 FILES = {
     "units in a line of their own": "Record Length,41\nSample Interval,5e-4\nSource,CH1\nSecond,Volt\n" + PLAIN,
     "units in brackets": "Model,X\n\ntime [s],Channel 1 (V)\n" + PLAIN,
     "semicolons and decimal commas": "Zeit;Kanal A\n(ms);(mV)\n\n" + COMMAS,
-    "micro": "time (µs),U (kV)\n" + "".join(f"{1e6 * t:.2f},{u / 1e3:.9f}\n" for t, u in zip(T, U, strict=True)),
-    "time in the last column": "CH1 (V),No.,msecs\n" + MIXED,
     "heads of NumPy": "# t/ms,U/kV\n" + "".join(f"{1e3 * t:.4f},{u / 1e3:.9f}\n" for t, u in zip(T, U, strict=True)),
     "quoted, with a named mark": 'sep=;\n"time_ms";"voltage mV"\n' + COMMAS,
-    "an index of pandas": ",Time ms,Voltage V\n" + "".join(f"{k},{1e3 * t:.4f},{u:.6f}\n" for k, (t, u) in ENUM),
-    "units of a preamble": "Horizontal Units,ms\nVertical Units,mV\n\nTIME,CH1\n" + POINTED,
 }
 
 

@@ -41,15 +41,13 @@ from benchmarks.loads.meshes import errors, without
 from benchmarks.loads.scenes import COUNT, MESHES, Data, scenes, section
 from benchmarks.loads.shear import Point, Spread, fitted, points
 from benchmarks.loads.shear import spread as errors_of
-from benchmarks.loads.states import pressed, solved
+from benchmarks.loads.states import by_scene, pressed, short, solved
 from fingerpad.reduced import default_finger
 from fingerpad.reduced.cylinder_errors import REGIONS, WHOLE, find
 from fingerpad.reduced.cylinders import SHEAR
 from fingerpad.results.files import replace
 from fingerpad.scene import Scene
 
-_SHORT = ("f_ext", "f_t", "mu_app", "f_electrostatic", "contact_length", "ridges_in_contact", "bone_height",
-          "factorisations", "failure", "reached")  # fmt: skip
 REGIONS_FILE = harness.ROOT / "fingerpad" / "reduced" / "cylinder_errors.json"
 _MINUTES = 20.0
 _LAST = 150.0  # N/m, largest force of a full run in the tables of fingerpad/reduced
@@ -59,13 +57,9 @@ def compute(args: argparse.Namespace) -> None:
     """Solve for what is missing, and keep the numbers."""
     folder = args.out / "loads"
     states, far = solved(folder, args.minutes), _pressed(folder)
-    kept = [
-        {"scene": k, "values": data, "states": [_short(each) for each in states[f"scene {k}"]]}
-        for k, data in enumerate(scenes())
-        if f"scene {k}" in states
-    ]
-    checked = [_short(each) for which in range(len(MESHES)) for each in states[f"mesh {which}"]]
-    slipped = [_short(each) for each in states["far"]]
+    kept = by_scene(scenes(), states)
+    checked = [short(each) for which in range(len(MESHES)) for each in states[f"mesh {which}"]]
+    slipped = [short(each) for each in states["far"]]
     numbers = {"scenes": kept, "mesh": checked, "far": {"full_slip": slipped, "charged": far}, "count": COUNT}
     harness.keep("loads", numbers, harness.made(), args.docs)
     better = without(kept, errors(checked, harness.kept("models", args.docs).numbers["scenes"]))
@@ -78,15 +72,9 @@ def _pressed(folder: Path) -> list[Data]:
     """Return the states of :func:`pressed`, kept in a file in the folder."""
     file = folder / "pressed.json"
     if not file.exists():
-        replace(file, json.dumps([_short(each) for each in pressed()]) + "\n")
+        replace(file, json.dumps([short(each) for each in pressed()]) + "\n")
     found: list[Data] = json.loads(file.read_text(encoding="utf-8"))
     return found
-
-
-def _short(state: Data) -> Data:
-    """Return what docs/loads.json has of a state, numbers of seven digits."""
-    found = {key: state[key] for key in _SHORT if key in state}
-    return {key: float(f"{value:.7g}") if isinstance(value, float) else value for key, value in found.items()}
 
 
 # -- numbers -------------------------------------------------------------------------------------------------

@@ -12,18 +12,11 @@ from typing import Any, NamedTuple
 from benchmarks import harness
 from benchmarks.loads import meshes
 from benchmarks.loads.scenes import Data, of_scenes, scenes, section
-from benchmarks.loads.states import solved
+from benchmarks.loads.states import by_scene, solved
 from fingerpad.reduced import cylinders
 
 COUNT, SEED = 8, 58
 _MINUTES = 10.0
-_KEYS = ("f_ext", "f_t", "mu_app", "f_electrostatic", "contact_length", "ridges_in_contact", "bone_height", "failure")
-
-
-def short(state: Data) -> Data:
-    """Return what a file has of a state, numbers of seven digits."""
-    found = {key: state[key] for key in _KEYS if key in state}
-    return {key: float(f"{value:.7g}") if isinstance(value, float) else value for key, value in found.items()}
 
 
 def fresh() -> list[Data]:
@@ -72,11 +65,7 @@ def main() -> int:
     args = given.parse_args()
     every = fresh()
     states: dict[str, list[Any]] = solved(args.out / "fresh", args.minutes, of_scenes(every))
-    kept = [
-        {"scene": k, "values": data, "states": [short(each) for each in states[f"scene {k}"]]}
-        for k, data in enumerate(every)
-        if f"scene {k}" in states
-    ]
+    kept = by_scene(every, states)
     harness.keep("fresh", {"scenes": kept, "count": COUNT, "seed": SEED}, harness.made(), args.docs)
     return 0
 

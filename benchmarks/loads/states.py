@@ -6,6 +6,7 @@ solved for from the nearest state in its turn. A rung that is not found is halve
 
 import json
 import time
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from hashlib import sha256
 from pathlib import Path
@@ -38,6 +39,9 @@ from variational.state import ContactState
 
 if TYPE_CHECKING:
     from fingerpad.model.full_slip import FullSlips, Solved
+
+_SHORT = ("f_ext", "f_t", "mu_app", "f_electrostatic", "contact_length", "ridges_in_contact", "bone_height",
+          "factorisations", "failure", "reached")  # fmt: skip
 
 
 class _TooManyError(RuntimeError):
@@ -200,3 +204,18 @@ def solved(folder: Path, minutes: float, of: Tasks | None = None) -> dict[str, l
 def _shown(state: Data) -> str:
     value = f"{state['mu_app']:.4g}" if "mu_app" in state else "none"
     return f"{value} ({state['factorisations']})"
+
+
+def short(state: Data) -> Data:
+    """Return what a file in docs has of a state, numbers of seven digits."""
+    found = {key: state[key] for key in _SHORT if key in state}
+    return {key: float(f"{value:.7g}") if isinstance(value, float) else value for key, value in found.items()}
+
+
+def by_scene(every: Sequence[Data], states: Mapping[str, Sequence[Data]]) -> list[Data]:
+    """Return the scenes that were solved, each with its number, values and states."""
+    return [
+        {"scene": k, "values": data, "states": [short(each) for each in states[f"scene {k}"]]}
+        for k, data in enumerate(every)
+        if f"scene {k}" in states
+    ]

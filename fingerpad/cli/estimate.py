@@ -1,5 +1,6 @@
 """``fingerpad estimate``: friction over force, voltage or other keys by the closed form, a sweep without a folder."""
 
+import inspect
 import math
 from collections.abc import Sequence
 from pathlib import Path
@@ -46,11 +47,14 @@ def main(argv: Sequence[str]) -> int:
     scene = scene_of(args, meshed=False)
     Cylinders().check(scene)
     over = _over(args, scene)
+    if own := next((key for key in over if key in inspect.signature(sweep).parameters), None):
+        raise SceneError(f"{own} is varied and is no key of a scene")
     if args.plot and len(over) > 2:
         raise SceneError(f"--plot is given, and {len(over)} keys are varied; a picture is over one key or two")
     if args.csv:
         refuse_file(args.csv, Kind("a table", (".csv",), f"{next(iter(over))},"))
-    found = sweep(scene.replace(force=None) if "f_ext" in over else scene, None, model=Cylinders.name, **over)
+    options: dict[str, Any] = {"model": Cylinders.name, **over}
+    found = sweep(scene.replace(force=None) if "f_ext" in over else scene, None, **options)
     if all(result.failure for result in found.results):
         raise SceneError(found.results[-1].failure)
     echo(str(found))
@@ -58,8 +62,9 @@ def main(argv: Sequence[str]) -> int:
         found.to_csv(args.csv)
     if args.plot:
         draw(found, args.plot, args.quantity, args.target)
-    for file in filter(None, (args.csv, args.plot)):
-        echo(f"Written: {file}")
+    for file in (args.csv, args.plot):
+        if file is not None:
+            echo(f"Written: {file}")
     return 0
 
 

@@ -59,7 +59,7 @@ def microscale(argv: Sequence[str]) -> int:
     if args.voltage is None and scene.history is not None:
         raise SceneError("history is given, whose loads have their own voltages; name those wanted by --voltage")
     rows = table(scene, several(args, scene, "voltage"), quantities("--p", args.p, "Pa"))
-    closure = microscopic(scene)
+    closure = _microscopic(scene)
     um, low, high = 1e6, *(p * 1e-3 for p in closure.pressures)
     echo(
         f"A ridge of rms roughness {closure.h_rms * um:.3g} µm, largest wavelength {closure.wavelength * um:.3g} µm; "
@@ -83,11 +83,11 @@ def microscale(argv: Sequence[str]) -> int:
         echo(f"{text}.")
     for text in on_closure(closure, [(row["p_c"], 1.0, row["voltage"]) for row in rows], "pressures and voltages"):
         echo(f"{text[0].upper()}{text[1:]}.")
-    output.write_files(args, _COLUMNS, rows, draw_microscale)
+    output.write_files(args, _COLUMNS, rows, _draw_microscale)
     return 0
 
 
-def microscopic(scene: Scene) -> BearingArea | TabulatedClosure:
+def _microscopic(scene: Scene) -> BearingArea | TabulatedClosure:
     """Return the closure of a scene.
 
     Raises:
@@ -105,7 +105,7 @@ def table(scene: Scene, voltages: Sequence[float], pressures: Sequence[float]) -
 
     Pressures beyond the closure's range are held at its ends, as in a run.
     """
-    closure = microscopic(scene)
+    closure = _microscopic(scene)
     gaps = closure.statistics(np.clip(np.array(pressures), *closure.pressures))
     rows = []
     for voltage in voltages:
@@ -117,7 +117,7 @@ def table(scene: Scene, voltages: Sequence[float], pressures: Sequence[float]) -
     return rows
 
 
-def draw_microscale(file: Path, rows: Sequence[dict[str, Any]]) -> None:
+def _draw_microscale(file: Path, rows: Sequence[dict[str, Any]]) -> None:
     """Draw lengths, attraction and real area over pressure."""
     voltages = list(dict.fromkeys(row["voltage"] for row in rows))
     first = [row for row in rows if row["voltage"] == voltages[0]]

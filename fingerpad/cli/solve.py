@@ -1,6 +1,8 @@
 """``fingerpad solve``: the value of a key at which friction, or another quantity at full slip, has a target."""
 
+import inspect
 from collections.abc import Sequence
+from typing import Any
 
 from fingerpad.cli.arguments import Parser, echo, scene_of
 from fingerpad.runs.inverse import solve
@@ -34,8 +36,10 @@ def main(argv: Sequence[str]) -> int:
     if (args.low is None) != (args.high is None):
         raise SceneError(f"one of --from and --to is given without the other; give both, or none for {clip(args.over)}")
     between = None if args.low is None else [_number(args.low), _number(args.high)]
-    scene = scene_of(args, meshed=False)
-    echo(str(solve(scene, args.over, relative=args.relative, between=between, **{name: _number(value)})))
+    if name in inspect.signature(solve).parameters:
+        raise SceneError(f"target is {show(args.target[0])}; {name} is no quantity, such as mu_app")
+    options: dict[str, Any] = {"relative": args.relative, "between": between, name: _number(value)}
+    echo(str(solve(scene_of(args, meshed=False), args.over, **options)))
     return 0
 
 

@@ -13,7 +13,7 @@ depth d brings down the skin within sqrt(2 R d) of the lowest ridge, R the radiu
 one ridge to spare in every full run of ``tests/reach.json``. What it misses on other fingers costs a restart:
 :mod:`fingerpad.model.checks` checks each accepted step.
 
-**Memory.** A run takes :data:`PROGRAM` bytes and :data:`PER_UNKNOWN` for each unknown of its path's mesh, error
+**Memory.** A run takes :data:`_PROGRAM` bytes and :data:`_PER_UNKNOWN` for each unknown of its path's mesh, error
 estimate included. Before meshing, a lower bound of the unknowns is known. More ranks take some 0.2 GB each, and
 refining to an accuracy, which holds two meshes at a time, takes more as well.
 """
@@ -39,9 +39,9 @@ from variational.materials.material import Material
 
 COARSER = 2.0
 """Sizes of the elements on which a path is followed over those with which its named states are solved again."""
-PROGRAM = 0.23e9
+_PROGRAM = 0.23e9
 """Bytes of the program itself."""
-PER_UNKNOWN = 6.3e3
+_PER_UNKNOWN = 6.3e3
 """Bytes of an unknown, of which the factors of MUMPS are most. ``fingerpad run --set mesh.contact=…`` prints the memory
 of a run: 0.35 GB with 27 000 unknowns, 0.56 GB with 73 000, 1.2 GB with 186 000, 5.7 GB with 873 000: the last."""
 _RIDGES, _FORCE, _FRICTION = 10, 75.0, 0.25  # on either side, at a force (N/m) and a friction coefficient
@@ -265,7 +265,7 @@ def unknowns(points: int, triangles: int, element: str) -> int:
 
 def memory(number: float) -> float:
     """Return the bytes of a run on a mesh of so many unknowns, on all ranks together."""
-    return PROGRAM + PER_UNKNOWN * number
+    return _PROGRAM + _PER_UNKNOWN * number
 
 
 def refuse_mesh(points: int, triangles: int, model: FingerModel) -> None:
@@ -302,8 +302,8 @@ def refuse_sizes(finger: Fingertip, size: MeshSize, numerics: Numerics, needed: 
 
 def _refuse(has: str, triangles: int, number: int, numerics: Numerics, finger: Fingertip, size: MeshSize) -> None:
     allowed = f"numerics.memory allows {numerics.memory / 1e9:g} GB"
-    if numerics.memory <= PROGRAM:
-        raise GeometryError(f"{allowed}, and the program takes {PROGRAM / 1e9:g} GB without a mesh; raise it")
+    if numerics.memory <= _PROGRAM:
+        raise GeometryError(f"{allowed}, and the program takes {_PROGRAM / 1e9:g} GB without a mesh; raise it")
     if memory(number) > numerics.memory:
         raise GeometryError(
             f"the mesh {has} {about(triangles)} triangles and {about(number)} unknowns, which need about "

@@ -254,9 +254,10 @@ def changes(
 
     Arguments are those of :func:`friction`, and it raises SceneError of a finger that is none of cylinders.
     """
-    own, still = scene.closure(), _cylinders(_at(scene, 0.0), slip, scene.closure(), press)
+    own: Any = scene.closure()
+    still = _cylinders(_at(scene, 0.0), slip, own, press)
     laws = laws_like(scene.friction_law(), still.f_contact / still.contact_length)
-    found = {
+    found: dict[str, list[tuple[Scene, Closure, float]]] = {
         LAW: [(scene.model_copy(update={"friction": law}), own, 1.0) for law in laws],
         "tips": [(scene, own, tips) for tips in TIPS],
     }

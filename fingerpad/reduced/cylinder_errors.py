@@ -160,7 +160,8 @@ def _outside(given: Mapping[str, Any], region: Region) -> Iterator[Outside]:
     tables = (key for key in {**default, **given} if key.partition(".")[0] in _TABLES)
     for key in dict.fromkeys([*region.ranges, *tables]):
         value, unit, table = given.get(key), units.get(key, ""), key.partition(".")[0]
-        low, high = region.ranges.get(key, (default.get(key),) * 2)
+        ends: tuple[Any, Any] = region.ranges.get(key, (default.get(key),) * 2)
+        low, high = ends
         if value == low or (value is None and table not in _TABLES):  # the force that is not given
             continue
         if value is None or low is None:
@@ -169,7 +170,7 @@ def _outside(given: Mapping[str, Any], region: Region) -> Iterator[Outside]:
                 yield Outside(table, "of another law", "that of the default scene")
         elif not (_number(value) and _number(low)):
             yield Outside(key, show(value), show(low))
-        elif not within(value, (low, high)):
+        elif not within(value, ends):
             end = min(max(abs(value), low), high)
             far = abs(math.log(max(abs(value), _TINY) / max(abs(end), _TINY)))
             yield Outside(key, _span(value, value, unit), _span(low, high, unit), far)

@@ -8,14 +8,13 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from markupsafe import Markup
-from matplotlib.collections import LineCollection
-from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from fingerpad.report.charts import Panel, Series, chart
 from fingerpad.report.page import linked
 from fingerpad.results.fields import ALONG, View, views_of
+from fingerpad.results.pictures.finger import DECADES, Scales, density, scales
 from fingerpad.results.result import Result
 from fingerpad.results.states import called, shown
 from fingerpad.scene.messages import counted
@@ -27,7 +26,6 @@ _MAX_FRAMES = 12
 _BELOW, _ABOVE, _BESIDE = -0.1, 1.25, 0.6  # mm of the view around the contact
 _HIGHEST = 0.4  # of its width
 _WIDE, _DPI = 500.0, 160  # px of the panel with the finger where a page is narrow; of its picture
-_DECADES = 3  # of the colours
 _STRESSES = (("p", "contact pressure", "ink", ""), ("p_el", "attraction", "blue", "6 3"),
              ("t", "shear traction", "orange", "2 3"))  # fmt: skip
 
@@ -64,12 +62,12 @@ def frames(result: Result) -> tuple[list[Frame], list[str]]:
     stresses = [_KPA * values for skin in skins for values in (skin["p"], skin["p_el"], skin["t"])]
     low, high = (float(each) for each in (np.nanmin(np.concatenate(stresses)), np.nanmax(np.concatenate(stresses))))
     scale = 1.05 * min(low, 0.0), 1.08 * max(high, 1e-9)
-    densities = [view.snapshot.sed[_near(view.snapshot, ends)] for *_, view in found if view.snapshot is not None]
-    most = _KPA * max((float(np.quantile(each, 0.999)) for each in densities if len(each)), default=1.0)
+    bodies = [view.snapshot for *_, view in found if view.snapshot is not None]
+    most = scales(bodies).highest if bodies else 1e3
     return [
         Frame(label, _about(state), _drawn(state, view, skin, ends, scale, most), *_extremes(state, skin))
         for (label, state, view), skin in zip(found, skins, strict=True)
-    ], [f"{most * 10.0**-_DECADES:.2g}", f"{most:.2g}"]
+    ], [f"{_KPA * most / DECADES:.2g}", f"{_KPA * most:.2g}"]
 
 
 def _listed(result: Result, folder: Path) -> Iterator[tuple[str, ContactState, View]]:
@@ -141,28 +139,14 @@ def _extremes(state: ContactState, skin: dict[str, Array]) -> tuple[str, str]:
     return f"{peak:.1f}", f"{min(gaps):.2f} to {max(gaps):.2f}" if gaps else "–"
 
 
-def _near(body: Any, ends: tuple[float, float]) -> NDArray[np.bool_]:
-    """Return which cells of a snapshot have a corner near the contact."""
-    corners = _MM * (body.x + body.u)[body.triangles]
-    return np.asarray(
-        ((corners[:, :, 0] > ends[0]) & (corners[:, :, 0] < ends[1]) & (corners[:, :, 1] < _ABOVE)).any(axis=1)
-    )
-
-
 def _finger(body: Any, view: tuple[float, float, float, float], most: float) -> str:
     """Return a link of an image: the energy density of a snapshot near the contact, and lines between layers."""
     from PIL import Image
 
-    xy = _MM * (body.x + body.u)
     figure = Figure(figsize=(5.0, 5.0 * (view[3] - view[2]) / (view[1] - view[0])), dpi=_DPI)
     axes = figure.add_axes((0, 0, 1, 1))
-    norm = LogNorm(most * 10.0**-_DECADES, most, clip=True)
-    axes.tripcolor(*xy.T, body.triangles, np.maximum(_KPA * body.sed, norm.vmin), norm=norm, cmap="viridis")
-    for lines, colour in ((body.lines[body.beside[:, 1] >= 0], "white"), (body.lines[body.beside[:, 1] < 0], "black")):
-        axes.add_collection(LineCollection(list(xy[lines]), colors=colour, linewidths=0.7))
-    axes.axhline(0, color="black", lw=2)
-    axes.set(xlim=view[:2], ylim=view[2:])
     axes.axis("off")
+    density(axes, body, Scales(view, view, most))
     data = BytesIO()
     figure.savefig(data, format="png", facecolor="#ebebeb")
     return linked(Image.open(data).convert("RGB"))

@@ -2,7 +2,6 @@
 
 import base64
 import json
-import math
 import re
 import shlex
 from collections.abc import Collection, Mapping
@@ -104,11 +103,6 @@ def linked(image: Any) -> str:
     out = BytesIO()
     image.save(out, "WEBP", quality=_QUALITY)
     return f"data:image/webp;base64,{base64.b64encode(out.getvalue()).decode()}"
-
-
-def number(value: float, digits: int = 6) -> float:
-    """Return a number to some digits, and NaN of one that is not finite."""
-    return float(f"{value:.{digits}g}") if math.isfinite(value) else math.nan
 
 
 # -- parameters and how to repeat a run -------------------------------------------------------------------

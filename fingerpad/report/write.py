@@ -50,9 +50,13 @@ def of_result(result: Result) -> None:
 
 
 def _page(found: "Result | Table") -> str:
-    from fingerpad.report import run_page, sweep_page  # Matplotlib and Jinja
+    if isinstance(found, Result):
+        from fingerpad.report import run_page  # Matplotlib
 
-    return run_page.page(found) if isinstance(found, Result) else sweep_page.page(found)
+        return run_page.page(found)
+    from fingerpad.report import sweep_page  # Jinja
+
+    return sweep_page.page(found)
 
 
 def attempt(folder: Path) -> Path | None:

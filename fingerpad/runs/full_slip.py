@@ -260,7 +260,7 @@ def _of_state(
         notes: on how the state was found.
     """
     newton, factorisations = cost.newton_iterations - before.newton, cost.factorisations - before.factorisations
-    unknowns, record, cautions = finger.unknowns, dict[str, Any](), []
+    unknowns, record, cautions = finger.unknowns, dict[str, Any](), list[str]()
     words = "without an error estimate; it was reached by"
     if fine is not None:
         if fine.state.ridges_in_contact != state.ridges_in_contact:

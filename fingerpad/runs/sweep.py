@@ -248,12 +248,14 @@ def _in_processes(
         found |= chains.sweep({name: named[name] for name in along}, place, jobs, quiet, executor)
     else:
         found |= batch.sweep(named, place, jobs, _LIMIT, model.name, quiet, executor)
-    return [
-        _failed(scene, model, found[name]["failure"])
-        if set(found[name]) == {"failure"}
-        else Result.load(place / batch.key(scene))
-        for name, scene in zip(names, scenes, strict=True)
-    ]
+    results = list[Result]()
+    for name, scene in zip(names, scenes, strict=True):
+        try:
+            lost = found[name]["failure"] if set(found[name]) == {"failure"} else ""
+            results.append(_failed(scene, model, lost) if lost else Result.load(place / batch.key(scene)))
+        except SceneError as error:  # of files that are not whole
+            results.append(_failed(scene, model, str(error)))
+    return results
 
 
 def _neighbours(axes: Mapping[str, Sequence[Any]]) -> list[int]:

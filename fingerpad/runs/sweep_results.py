@@ -103,7 +103,8 @@ class Sweep:
         if state not in STATES:
             raise ValueError(f"state is {state!r}; it must be one of {', '.join(STATES)}")
         own = (each.name for each in self.outputs)
-        known = (*(FINGER if self.whole else (*list(CONDITIONS)[2:], *RESULTS)), *own)
+        given = [key for key in CONDITIONS if key not in ("step", "load")]
+        known = (*(FINGER if self.whole else (*given, *RESULTS)), *own)
         if quantity not in known:
             raise ValueError(f"quantity is {quantity!r}; it must be one of {', '.join(known)}")
         if self.whole:

@@ -17,7 +17,7 @@ DEFAULT_HISTORY = ("f_ext", "voltage", "slide_length")
 """Keys of the default loads, which a history replaces."""
 _RECORD = ("geometry", "materials", "roughness", "electric", "slices", "output", "numerics")  # tables of every record
 _SHAPE = (*(name for name in Fingertip.model_fields if name != "sc_thickness"), "file_sha256")
-REPLACED = {
+_REPLACED = {
     "history": (*DEFAULT_HISTORY, "force"),
     "force": ("f_ext",),
     "f_ext": ("force",),
@@ -45,7 +45,7 @@ def presets(data: Mapping[str, Any]) -> dict[str, Any]:
 def with_presets(data: Mapping[str, Any], laws: Mapping[str, type]) -> Mapping[str, Any]:
     """Return the data of a scene with the values of its presets.
 
-    A key that is given wins, and so does one that makes it meaningless (:data:`REPLACED`), or a law that is given as
+    A key that is given wins, and so does one that makes it meaningless (:data:`_REPLACED`), or a law that is given as
     an object, of one's own, or without such a parameter; ``laws`` has those of the package by name.
     """
     found, gone = data, set(_replaced(data))
@@ -70,14 +70,14 @@ def preset_keys(data: Mapping[str, Any], laws: Mapping[str, type], default: Call
     if any(data.get(name) is None for name in _RECORD):
         return [key for key in keys if _takes(data, key.split("."), laws)]
     scene = default()
-    return [key for key in keys if value_at(data, key) in (values.get(key), reduce(getattr, key.split("."), scene))]
+    return [key for key in keys if _value_at(data, key) in (values.get(key), reduce(getattr, key.split("."), scene))]
 
 
 def without(data: Mapping[str, Any], keys: Sequence[str]) -> dict[str, Any]:
     """Return the data of a scene without some dotted keys."""
     found = dict(data)
     for key in keys:
-        if value_at(found, key) is not None:
+        if _value_at(found, key) is not None:
             found = _put(found, key.split("."), None)
     return found
 
@@ -95,8 +95,8 @@ def changed(present: Mapping[str, Any], changes: Mapping[str, Any]) -> dict[str,
 
 def _replaced(data: Mapping[str, Any]) -> Iterator[str]:
     """Yield the keys that others of nested tables make meaningless."""
-    for given, keys in REPLACED.items():
-        yield from keys if value_at(data, given) is not None else ()
+    for given, keys in _REPLACED.items():
+        yield from keys if _value_at(data, given) is not None else ()
 
 
 def _merged(present: Mapping[str, Any], changes: Mapping[str, Any]) -> dict[str, Any]:
@@ -135,7 +135,7 @@ def _put(table: Mapping[str, Any], parts: Sequence[str], value: Any) -> dict[str
     return rest if inner is None else {**rest, parts[0]: inner}
 
 
-def value_at(table: Any, key: str) -> Any:
+def _value_at(table: Any, key: str) -> Any:
     """Return the value at a dotted key of nested tables, None where there is none."""
     for part in key.split("."):
         table = table.get(part) if isinstance(table, Mapping) else None

@@ -55,16 +55,16 @@ def _kind(value: Any) -> str:
     return NAME if isinstance(value, str) and not any(map(str.isdigit, value)) else NUMBER
 
 
-TissueName = Literal["lossless", "dry", "moist"]
-LeakName = Literal["none", "sliding dry", "resting", "moist"]
-assert {*TISSUES, "lossless"} == {*TissueName.__args__} and {*LEAKS, "none"} == {*LeakName.__args__}  # type: ignore[attr-defined]
+_TissueName = Literal["lossless", "dry", "moist"]
+_LeakName = Literal["none", "sliding dry", "resting", "moist"]
+assert {*TISSUES, "lossless"} == {*_TissueName.__args__} and {*LEAKS, "none"} == {*_LeakName.__args__}  # type: ignore[attr-defined]
 _Tissue = Annotated[
-    Annotated[TissueName, Tag(NAME)] | Annotated[TissueTable, Tag(TABLE)],
+    Annotated[_TissueName, Tag(NAME)] | Annotated[TissueTable, Tag(TABLE)],
     Discriminator(lambda value: TABLE if _kind(value) == TABLE else NAME),
 ]
 _Ohms = Annotated[Finite, within(1e-3, 1e9, "ohm m^2")]
 _Leak = Annotated[
-    Annotated[_Ohms, Tag(NUMBER)] | Annotated[LeakName, Tag(NAME)] | Annotated[PeakLeak, Tag(TABLE)],
+    Annotated[_Ohms, Tag(NUMBER)] | Annotated[_LeakName, Tag(NAME)] | Annotated[PeakLeak, Tag(TABLE)],
     Discriminator(_kind),
 ]
 

@@ -52,7 +52,7 @@ _MOISTURE = "Yuan and Verma 2006, Colloids and Surfaces B 48, 6 to 12, abstract"
 _FRICTION = "Buchholz, Frederick and Armstrong 1988, Ergonomics 31, 317 to 325, as tabled on a page of the authors"
 
 
-NOT_MEASURED = "This finger was not measured: its values are from several sources, or assumed (docs/assumptions.md)."
+_NOT_MEASURED = "This finger was not measured: its values are from several sources, or assumed (docs/assumptions.md)."
 MOISTURE = (
     "No finger was measured for these values. Moisture raises the attraction of a constant voltage here, without "
     "losses; people with moist fingers needed a higher voltage to feel it (arXiv 2409.16936)."
@@ -76,7 +76,7 @@ class NamedFinger:
     words: str
     """Who it is."""
     traits: tuple[Trait, ...] = ()
-    remark: str = NOT_MEASURED
+    remark: str = _NOT_MEASURED
     """What a reader must know of its numbers, a sentence; empty for none."""
 
     @property

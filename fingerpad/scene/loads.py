@@ -17,7 +17,7 @@ from fingerpad.scene.wavefile import Volts
 from fingerpad.scene.waveform import MOST, Waveform
 from geometry.units import Finite, Switch, Table, within
 
-FINAL_STATES = ("uncharged normal contact", "charged normal contact", "full slip")
+_FINAL_STATES = ("uncharged normal contact", "charged normal contact", "full slip")
 """States that have files of their own where errors are estimated."""
 _MAX_BYTES = 100  # of a name; a file system allows 255, of which the files take some
 _EITHER = (
@@ -26,7 +26,7 @@ _EITHER = (
     ("speed", "duration", "one follows from the other, so give one"),
 )  # keys of which a load has one at most
 _HELD = ("f_ext", "bone_height", "voltage")  # controls that a slide to full slip may not have reached
-CONTROLS = (*_HELD, "bone_x", "bone_x_by")
+_CONTROLS = (*_HELD, "bone_x", "bone_x_by")
 """Keys of what a load controls: force, height, voltage and place or move of the bone."""
 _FORBIDDEN = '/\\:*?"<>|'  # the first separates folders, the others are forbidden on memory sticks
 Way = Annotated[Finite, within(1e-9, 0.1, "m", zero=True, sides=2)]
@@ -52,7 +52,7 @@ def load_name(name: str) -> str:
     return name
 
 
-def first_clash(names: Sequence[str]) -> tuple[int, int] | None:
+def _first_clash(names: Sequence[str]) -> tuple[int, int] | None:
     """Return the places of the first two loads whose files would be one, also where letters have no case."""
     seen: dict[str, int] = {}
     for k, name in enumerate(names):
@@ -104,13 +104,13 @@ class Load(Table):
 
     @model_validator(mode="after")
     def _consistent(self) -> "Load":
-        given = {name: getattr(self, name) for name in CONTROLS if getattr(self, name) is not None}
+        given = {name: getattr(self, name) for name in _CONTROLS if getattr(self, name) is not None}
         for one, other, remedy in _EITHER:
             values = getattr(self, one), getattr(self, other)
             if None not in values:
                 raise ValueError(f"{one} is {show(values[0])} and {other} is {show(values[1])}; {remedy}")
         if not given:
-            *first, last = CONTROLS
+            *first, last = _CONTROLS
             raise ValueError(
                 f"name is {show(self.name)} and nothing else is given; it must come with at least one of "
                 f"{', '.join(first)} and {last}"
@@ -204,14 +204,14 @@ def refuse_contradictions(history: Sequence[Load], given: Mapping[str, Any], err
             f"history[0].name is {show(first.name)}, with neither f_ext nor bone_height; "
             "the first load must give one of them"
         )
-    if clash := first_clash([load.name for load in history]):
+    if clash := _first_clash([load.name for load in history]):
         one, other = (show(history[k].name) for k in clash)
         raise ValueError(
             f"history[{clash[1]}].name is {other} and history[{clash[0]}].name is {one}; each load must have a "
             "name of its own, also where spaces become _ and letters have no case, since files are named by it"
         )
     for k, load in enumerate(history) if errors else ():
-        if first_clash([*FINAL_STATES, load.name]):
+        if _first_clash([*_FINAL_STATES, load.name]):
             raise ValueError(
                 f"history[{k}].name is {show(load.name)}, and the state of that name has files of its own; take "
                 "another name"

@@ -63,7 +63,7 @@ _SILENT = 30.0  # s between two lines of progress in a file
 LARGEST_GAP = 1.0  # m, with which the attraction is as good as none
 
 
-class MaterialKey(LawKey):
+class _MaterialKey(LawKey):
     """The key of a layer's material, which may be viscous."""
 
     def tables(self, law: type) -> tuple[type[BaseModel], ...]:
@@ -107,7 +107,7 @@ class MaterialKey(LawKey):
 
 def _layer(default: Material) -> Any:
     """Return the annotation of a layer's material; an Ogden solid has its exponent from the key before it."""
-    return MaterialKey(MATERIALS, default, of_scene=lambda data: {"convention": data.get("exponent")})
+    return _MaterialKey(MATERIALS, default, of_scene=lambda data: {"convention": data.get("exponent")})
 
 
 _SUBCUTIS, _DERMIS = Ogden(25e3, 5.0), Ogden(2.55e3, -14.53)
@@ -201,7 +201,7 @@ class _Solved:
         sys.stderr.flush()
 
 
-class RoughnessKey(LawKey):
+class _RoughnessKey(LawKey):
     """The key of the model of roughness, which can be that of a height map."""
 
     def tables(self, law: type) -> tuple[type[BaseModel], ...]:
@@ -253,7 +253,7 @@ def _insulators(data: Mapping[str, Any]) -> dict[str, Any]:
 
 
 BEARING_AREA = BearingArea(Electric().h_0(Fingertip().sc_thickness))
-ROUGHNESS = RoughnessKey(CLOSURES, BEARING_AREA, of_scene=_insulators, all_laws=True)
+ROUGHNESS = _RoughnessKey(CLOSURES, BEARING_AREA, of_scene=_insulators, all_laws=True)
 FRICTION = LawKey(FRICTION_LAWS, Coulomb(0.25), number="mu_f")
 
 

@@ -25,13 +25,13 @@ FORMULATIONS: dict[str, type[Formulation]] = {"penalty": Penalty, "nitsche": Nit
 """Contact formulations by their names, key ``contact.formulation``: a new one is an entry here."""
 CONTACT = LawKey(Kind(Formulation, "a Formulation", FORMULATIONS), Penalty(), flat="formulation")
 Asked = Annotated[Finite, within(1e-6, 0.5)]
-MOST_PLACES = 1000  # along the axis of a finger
+_MOST_PLACES = 1000  # along the axis of a finger
 # A finger of the default's width bears some 0.53 N where its centre bears 75 N/m; forces grow as F^0.77.
 LINE, POINT, POWER, WIDTH = 75.0, 0.53, 0.77, 20e-3
 Place = Annotated[Finite, within(1e-9, 0.1, "m", zero=True, sides=2)]
 Height = Annotated[Finite, within(1e-9, 0.1, "m", zero=True)]
 Scale = Annotated[Finite, within(0.1, 10)]
-Many = Field(min_length=1, max_length=MOST_PLACES)
+Many = Field(min_length=1, max_length=_MOST_PLACES)
 
 
 class Accuracy(Table):
@@ -265,7 +265,7 @@ class Slices(Table):
     width: Annotated[tuple[Scale, ...], Many] | None = None
     """Width of the slices at the places ``z``, over that of the scene's cross-section: a slice is the cross-section
     on this scale. *Assumption*: 1 everywhere. Range: a tenth to ten times."""
-    count: Annotated[int, Field(strict=True, ge=4, le=MOST_PLACES)] = 48
+    count: Annotated[int, Field(strict=True, ge=4, le=_MOST_PLACES)] = 48
     """Number of slices in each stretch of contact, the points of a Gauss rule. Half the default changes forces by less
     than 0.01 % and areas by less than 0.3 % on a smooth trace (``docs/newtons.md``), and by more where ridges jump."""
 

@@ -31,7 +31,7 @@ from variational.attraction.dielectric import TISSUES, VACUUM_PERMITTIVITY, Cole
 
 Complex = NDArray[np.complex128]
 Array = NDArray[np.float64]
-LOSSLESS = "lossless"
+_LOSSLESS = "lossless"
 _PEAKS = (1.0, 1e5)  # Hz, among which a peak is looked for
 _LEAKS = (1e-3, 1e9)  # ohm m²
 
@@ -65,7 +65,7 @@ class GapCircuit:
     the stratum corneum (m).
     """
 
-    tissue: str | Tissue = LOSSLESS
+    tissue: str | Tissue = _LOSSLESS
     """``"lossless"``, ``"dry"``, ``"moist"``, or a :class:`~variational.attraction.dielectric.Tissue`."""
     leak: str | float | None = None
     """R_gap (ohm m²), a name of :data:`LEAKS`, or None for no leak."""
@@ -78,8 +78,8 @@ class GapCircuit:
         Raises:
             ValueError: in one sentence.
         """
-        if isinstance(self.tissue, str) and self.tissue != LOSSLESS and self.tissue not in TISSUES:
-            names = ", ".join(map(repr, (LOSSLESS, *TISSUES)))
+        if isinstance(self.tissue, str) and self.tissue != _LOSSLESS and self.tissue not in TISSUES:
+            names = ", ".join(map(repr, (_LOSSLESS, *TISSUES)))
             raise ValueError(f"tissue is {self.tissue!r}; it must be {names} or a Tissue")
         if isinstance(self.leak, str) and self.leak not in LEAKS:
             raise ValueError(f"leak is {self.leak!r}; it must be {', '.join(map(repr, LEAKS))}, or a number of ohm m²")
@@ -89,7 +89,7 @@ class GapCircuit:
     @property
     def lossless(self) -> bool:
         """Whether the share of the gap is the same at every frequency, Eq. 3."""
-        return self.leak is None and self.tissue == LOSSLESS
+        return self.leak is None and self.tissue == _LOSSLESS
 
     @property
     def resistance(self) -> float:
@@ -103,7 +103,7 @@ class GapCircuit:
         """The stratum corneum."""
         if isinstance(self.tissue, Tissue):
             return self.tissue
-        return ColeCole(self.eps_sc) if self.tissue == LOSSLESS else TISSUES[self.tissue]
+        return ColeCole(self.eps_sc) if self.tissue == _LOSSLESS else TISSUES[self.tissue]
 
     def gain(self, frequency: ArrayLike, gap: ArrayLike, d_i: float, eps_i: float, d_sc: float) -> Complex:
         """Return H = E g / U at frequencies (Hz) from 0 on and gaps (m), arrays that broadcast.

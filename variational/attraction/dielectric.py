@@ -29,9 +29,9 @@ from numpy.typing import ArrayLike, NDArray
 
 Complex = NDArray[np.complex128]
 Array = NDArray[np.float64]
-SPECTRUM_ERROR = 1e-9
+_SPECTRUM_ERROR = 1e-9
 """Relative error of a fractional term by its sum of Debye terms, of the rule and of each end."""
-FASTEST = 1e-11  # s: a Debye term that relaxes faster counts as instantaneous, an error of 6e-5 of it at 1 MHz
+_FASTEST = 1e-11  # s: a Debye term that relaxes faster counts as instantaneous, an error of 6e-5 of it at 1 MHz
 
 
 VACUUM_PERMITTIVITY = 8.854e-12  # F/m, Table 3
@@ -99,7 +99,7 @@ class ColeCole(Tissue):
         """Return the tissue as Debye terms, for a history in time; see the head of this module for their error."""
         spectra = [np.empty((2, 0)), *(_spectrum(*each) for each in self.terms)]
         strength, time = np.concatenate(spectra, axis=1)
-        slow = time >= FASTEST
+        slow = time >= _FASTEST
         return Debye(self.eps_inf + float(strength[~slow].sum()), strength[slow], time[slow], self.sigma)
 
 
@@ -107,7 +107,7 @@ def _spectrum(delta: float, tau: float, alpha: float) -> Array:
     """Return strengths and times (s) of the Debye terms of a Cole–Cole term, shape (2, terms)."""
     if alpha == 0:
         return np.array([[delta], [tau]])
-    beta, error = 1 - alpha, -np.log(SPECTRUM_ERROR)
+    beta, error = 1 - alpha, -np.log(_SPECTRUM_ERROR)
     step = 2 * np.pi * min(np.pi * alpha / beta, np.pi / 2) / error
     count = int(np.ceil(error / beta / step))
     s = step * np.arange(-count, count + 1)

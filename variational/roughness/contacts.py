@@ -99,7 +99,7 @@ def measured_table(measured: HeightMap, progress: Progress | None = None) -> tup
     Raises:
         ValueError: a flat map, one with a tilt or with pixels that are not square, or of too few pixels; one sentence.
     """
-    refuse_map(measured)
+    _refuse_map(measured)
     wavelength = min(measured.size)
     return gap_table([mirrored(measured)], wavelength, progress=progress, copies=4), measured.h_rms, wavelength
 
@@ -117,7 +117,7 @@ def mirrored(measured: HeightMap) -> HeightMap:
     return HeightMap(np.concatenate([both, both[:, ::-1]], axis=1), (2 * measured.size[0], 2 * measured.size[1]))
 
 
-def refuse_map(measured: HeightMap) -> None:
+def _refuse_map(measured: HeightMap) -> None:
     """Refuse a height map whose contact would not be that of its roughness.
 
     Raises:
@@ -158,7 +158,7 @@ def keep(measured: HeightMap, progress: Progress | None = None) -> tuple[str, fl
     Raises:
         ValueError: as :func:`measured_table`, or a folder that takes no files.
     """
-    refuse_map(measured)
+    _refuse_map(measured)
     content = np.ascontiguousarray(measured.heights).tobytes() + repr((measured.size, _METHOD)).encode()
     name = hashlib.sha256(content).hexdigest()[:16]
     try:

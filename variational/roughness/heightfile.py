@@ -26,7 +26,7 @@ from variational import files
 from variational.roughness.topography import HeightMap, filled
 
 Array = NDArray[np.float64]
-UNITS = {"m": 1.0, "cm": 1e-2, "mm": 1e-3, "um": 1e-6, "µm": 1e-6, "μm": 1e-6, "nm": 1e-9, "pm": 1e-12}
+_UNITS = {"m": 1.0, "cm": 1e-2, "mm": 1e-3, "um": 1e-6, "µm": 1e-6, "μm": 1e-6, "nm": 1e-9, "pm": 1e-12}
 """Units of length in m."""
 _HIGHEST, _WIDEST = 1.0, 0.1  # m: heights that can be roughness, and a map of five fingertips
 _POINTS = 3  # columns of a text of points x, y, z
@@ -69,7 +69,7 @@ def scan(
 
     Args:
         file: path of the file.
-        unit: of the heights, a key of :data:`UNITS`, for a file that has no unit of its own.
+        unit: of the heights, a key of :data:`_UNITS`, for a file that has no unit of its own.
         size: lengths (m) along x, from the first line of a plain matrix to its last, and y, along a line; for a file
             that has no size of its own.
         pixel: lengths (m) of a pixel along x and y, in place of ``size``.
@@ -106,7 +106,7 @@ def scan(
     x, y = found.size or size or (pixel[0] * nx, pixel[1] * ny)  # type: ignore[index]
     if max(x, y) > _WIDEST:
         raise ValueError(f"{path} is {x:.3g} m x {y:.3g} m large, at most {_WIDEST:g} m is allowed; check the unit")
-    heights = heights * (UNITS[unit] if unit else 1.0)
+    heights = heights * (_UNITS[unit] if unit else 1.0)
     known = heights[np.isfinite(heights)]
     if known.size and (over := float(np.ptp(known))) > _HIGHEST:
         raise ValueError(f"{path} has heights over {over:.3g} m, at most {_HIGHEST:g} m is allowed; check their unit")

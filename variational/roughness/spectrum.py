@@ -34,7 +34,7 @@ from scipy.optimize import minimize_scalar
 from variational.roughness.topography import HeightMap, wavevectors
 
 Array = NDArray[np.float64]
-Window = Literal["none", "hann"]
+_Window = Literal["none", "hann"]
 HURST = (0.01, 2.0)
 """Range in which the Hurst exponent is searched; above 1 a surface is not self-affine, which the fitted value shows."""
 _END = 1e-3  # distance of an exponent from an end of that range at which it is the end's
@@ -190,7 +190,7 @@ class PowerSpectrum:
     """C (m^4) of each mode, zero at q = 0."""
     size: tuple[float, float]
     """Lengths (m) of the map."""
-    window: Window
+    window: _Window
 
     @property
     def h_rms(self) -> float:
@@ -269,7 +269,7 @@ class PowerSpectrum:
         return Fit(level, hurst, 2 * np.pi / (low * float(np.exp(ln_q_0))), bool(resolved), (low, high))
 
 
-def power_spectrum(*maps: HeightMap, window: Window = "none") -> PowerSpectrum:
+def power_spectrum(*maps: HeightMap, window: _Window = "none") -> PowerSpectrum:
     """Return the spectrum of a map, or the mean one of maps of the same shape and size, each about its mean.
 
     Args:

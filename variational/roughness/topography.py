@@ -27,8 +27,8 @@ from scipy.sparse.linalg import spsolve
 from scipy.special import ndtr
 
 Array = NDArray[np.float64]
-Trend = Literal["mean", "tilt", "curvature"]
-_DEGREE: dict[Trend, int] = {"mean": 0, "tilt": 1, "curvature": 2}
+_Trend = Literal["mean", "tilt", "curvature"]
+_DEGREE: dict[_Trend, int] = {"mean": 0, "tilt": 1, "curvature": 2}
 MOST = 0.25  # of a map that may be missing
 _FLAT = 1e-12  # rms height over the largest height, at which what is left of a map is roundoff
 
@@ -68,7 +68,7 @@ class HeightMap:
         """Root mean square height (m) about the mean."""
         return float(self.heights.std())
 
-    def detrended(self, trend: Trend) -> "HeightMap":
+    def detrended(self, trend: _Trend) -> "HeightMap":
         """Return the map without the polynomials up to the degree that ``trend`` names (0, 1, 2).
 
         Heights that are such a polynomial leave zeros, and not their roundoff.

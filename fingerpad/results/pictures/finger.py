@@ -46,7 +46,7 @@ _TOUCHING = 0.5e-6  # m: vertices lower than this count as in contact when a vie
 _MARGIN = 0.05  # of the cross-section, around it
 _LEAST = 1e-6  # Pa, of the upper end of the colours
 _HEIGHT = 6.75  # in, of the picture of a state
-_DECADES = 1e3  # span of the colours of the energy density
+DECADES = 1e3  # span of the colours of the energy density
 
 
 class Scales(NamedTuple):
@@ -135,7 +135,7 @@ def _empty(snapshot: "Snapshot", scale: Scales, sites: bool, title: str) -> Figu
     colours = ScalarMappable(norm(scale), style.MAGNITUDE)
     bar = figure.colorbar(
         colours, ax=near, location="bottom", extend="both", aspect=50,
-        ticks=style.decades(_KPA * scale.highest / _DECADES, _KPA * scale.highest), format="%g",
+        ticks=style.decades(_KPA * scale.highest / DECADES, _KPA * scale.highest), format="%g",
     )  # fmt: skip
     bar.minorticks_off()
     bar.set_label("strain energy density, mean of each element (kPa = kJ/m³ of reference volume)")
@@ -144,7 +144,7 @@ def _empty(snapshot: "Snapshot", scale: Scales, sites: bool, title: str) -> Figu
 
 def norm(scale: Scales) -> LogNorm:
     """Return what makes colours of densities (kPa)."""
-    return LogNorm(_KPA * scale.highest / _DECADES, _KPA * scale.highest)
+    return LogNorm(_KPA * scale.highest / DECADES, _KPA * scale.highest)
 
 
 def _layers(snapshot: "Snapshot") -> list[int]:
