@@ -21,8 +21,6 @@ def table_of(text: str) -> dict[str, float]:
     [
         ("1 2 3 4\n" * 4, ["--size", "1 um", "1 um"], "holds numbers without a unit; give --unit"),
         ("1 2 3 4\n" * 4, ["--unit", "um"], "has no size; give --size or --pixel"),
-        ("1 2 nan nan\n" * 4, ["--unit", "um", "--size", "1 um", "1 um"], "8 of 16 heights are missing or infinite"),
-        ("1 0 0 0\n" * 4, ["--unit", "um", "--pixel", "1 um", "4 V"], "--pixel[1] is '4 V'; its unit is not a unit of"),
     ],
 )
 def test_topography_refuses(text, options, message, tmp_path, capsys):
@@ -62,22 +60,6 @@ def test_scene_may_name_a_height_map(tmp_path, capsys):
     )
     again = from_data(scene.parameters())
     assert again == scene and scene.replace(voltage=100.0).roughness == scene.roughness
-
-
-@pytest.mark.parametrize(
-    ("table", "message"),
-    [
-        ({"file": "none.csv", "unit": "um"}, "roughness.topography.file is 'none.csv': No such file"),
-        ({"file": "none.csv", "size": [1, 1]}, "roughness.topography.size[0] is 1 m; it must be from 1e-10 to 0.1 m"),
-        ({"fil": "none.csv"}, "roughness.topography.file is missing"),
-    ],
-)
-def test_bad_height_map_of_a_scene(table, message):
-    with pytest.raises(SceneError) as refusal:
-        from_data({"roughness": {"topography": table}})
-    assert str(refusal.value).startswith(message)
-    with pytest.raises(SceneError, match="roughness.h_rms is 3e-06 and roughness.topography is given too"):
-        from_data({"roughness": {"h_rms": 3e-6, "topography": {"file": "skin.csv", "unit": "um"}}})
 
 
 # -- maps that do not show the roughness -------------------------------------------------------------------

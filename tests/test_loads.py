@@ -6,9 +6,9 @@ import json
 import pytest
 
 from benchmarks.loads import compared, meshes
-from benchmarks.loads.__main__ import REGIONS_FILE, far
+from benchmarks.loads.__main__ import REGIONS_FILE
 from benchmarks.loads.scenes import AXES, checked, section
-from fingerpad.reduced import cylinder_errors, cylinders, default_finger
+from fingerpad.reduced import cylinder_errors, cylinders
 from fingerpad.runs.solve import run
 from fingerpad.scene import Scene, from_data
 from tests.commands import kept
@@ -104,23 +104,6 @@ def test_band_with_enough_states_has_an_error(monkeypatch):
     finger = {"force": 0.5, "voltage": 100.0, "friction": 0.5, "electric": {"d_i": 2e-6}}
     (outside,) = cylinder_errors.outside(from_data(finger))
     assert (outside.key, outside.known) == ("force", "sections alone")
-
-
-def test_tables_go_on_by_the_kept_states(numbers):
-    """To the four digits that they are kept with."""
-    for state, each in far(numbers).items():
-        count = len(each["lengths"])
-        assert default_finger.LENGTHS[state][-count:] == pytest.approx(each["lengths"], abs=0.6e-7)
-        assert default_finger.INDENTATIONS[state][-count:] == pytest.approx(each["indentations"], abs=0.6e-7)
-        assert list(default_finger.RIDGES[state][-count:]) == each["ridges"]
-
-
-def test_error_of_the_mesh_is_found_between_checked_loads(mesh):
-    """From the loads on both sides of it, within 1 % of the attraction; that of the smallest load is 6.6 %."""
-    for of_mesh in mesh:
-        for k in range(1, len(of_mesh) - 1):
-            others = [*of_mesh[:k], *of_mesh[k + 1 :]]
-            assert meshes.error(others, of_mesh[k].f_contact) == pytest.approx(of_mesh[k].attraction, abs=0.01)
 
 
 def test_states_without_the_error_of_their_mesh(mesh, numbers):

@@ -47,15 +47,6 @@ def test_state_that_roundoff_may_choose_is_a_caution():
     assert not [text for text in plain.cautions if "skin jumped" in text.text]
 
 
-def test_slide_without_full_slip_names_the_ridge_that_adheres():
-    """A slide that ends before full slip is no failure, and had no word on adhesion."""
-    output = {"receptors": False, "errors": False, "each_load": False}
-    result = fp.run(adhering(slide_length=0.05e-3, output=output))
-    assert result.full_slip is None and not result.failure
-    (said,) = [each.text for each in result.cautions if each.code == "no_full_slip"]
-    assert said.startswith("full slip was not reached, or not held: ridge ") and ADHERES in said
-
-
 def test_meshes_too_coarse_to_be_of_one_shape_are_noted(monkeypatch):
     """The run keeps its path's states, without errors; it ended in a traceback."""
 
