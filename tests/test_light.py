@@ -74,17 +74,6 @@ def test_closed_form_works_without_finite_elements(tmp_path):
     assert {"report.html", "sweep.nc", "table.csv"} <= {file.name for file in tmp_path.iterdir()}
 
 
-def test_help_is_printed_without_scenes():
-    """Of the program, whose commands read their own modules."""
-    done = without("from fingerpad.cli import main; main(['--help'])", "numpy", "pydantic", "scipy")
-    assert done.returncode == 0 and "estimate" in done.stdout, done.stderr
-
-
-def test_what_is_blocked_is_blocked():
-    """Without this the tests above would hold of any module."""
-    assert "ModuleNotFoundError" in without("import ufl", *HEAVY).stderr
-
-
 def test_scene_is_read_without_parts_of_scipy():
     """They take longer to import than all the rest that a command starts with."""
     code = "import sys, fingerpad.cli; print(*sys.modules.keys() & {'scipy.optimize', 'scipy.special', 'scipy.linalg'})"

@@ -14,6 +14,7 @@ from fingerpad.model.options import FingerModel
 from fingerpad.results.quantities import QUANTITIES, Output, plus_minus
 from fingerpad.results.states import WORDS
 from fingerpad.scene.messages import SceneError
+from variational.caution import Caution
 from variational.element import ELEMENTS
 from variational.state import ContactState, Errors
 
@@ -94,9 +95,9 @@ class Estimate:
             "processor_seconds": sum(seconds),
         }
 
-    def doubts(self) -> list[str]:
-        """Return which states roundoff may have chosen among others, a sentence each."""
-        return [each for solve in self.found for each in solve.doubts]
+    def doubts(self) -> list[Caution]:
+        """Return which states roundoff may have chosen among others."""
+        return [Caution("roundoff", each) for solve in self.found for each in solve.doubts]
 
     def _compare(self, coarse: Solve, fine: Solve, short: bool = True) -> None:
         """Take the errors of states from two meshes, of which the coarser has elements twice as large.

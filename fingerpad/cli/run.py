@@ -7,7 +7,7 @@ from pathlib import Path
 
 from fingerpad.cli.arguments import Parser, echo, path, refuse_twice, scene_of
 from fingerpad.launcher import raising_at_ctrl_c
-from fingerpad.model.cautions import breakdown_ahead
+from fingerpad.model.cautions import examine
 from fingerpad.report.write import NAME
 from fingerpad.results.files import check_folder
 from fingerpad.results.folder import full_scene
@@ -66,7 +66,7 @@ def main(argv: Sequence[str]) -> int:
 
     start(args.petsc)
     # PETSc has its options from here on.
-    for caution in breakdown_ahead(scene.resolved()) if shown else ():
+    for caution in examine("load", scene.resolved()) if shown else ():
         echo(f"Caution: {caution}.")
     with raising_at_ctrl_c():
         result = solved(scene, model, context)

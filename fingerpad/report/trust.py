@@ -54,7 +54,7 @@ def verdict(found: list[Finding]) -> tuple[str, str]:
 
 
 def _cautions(result: Result) -> Iterator[Finding]:
-    for text in result.cautions:
+    for text in map(str, result.cautions):
         key = {".", "_"} & set(text.split(" ", 1)[0])  # a key of the scene begins the sentence, spelled as it is
         yield Finding("limit of validity", CARE, f"{text[0] if key else text[0].upper()}{text[1:].removesuffix('.')}.")
 

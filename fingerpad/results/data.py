@@ -23,6 +23,7 @@ from fingerpad.results.quantities import (
 from fingerpad.results.states import STATES, LoadResult
 from fingerpad.scene.messages import SceneError, show
 from fingerpad.scene.reading import DEFAULT_MODEL
+from variational.caution import Caution
 from variational.state import ContactState, StepRecord
 
 if TYPE_CHECKING:
@@ -87,7 +88,7 @@ class ResultData:
     """Name of the signal that ended the run, else empty."""
     notes: tuple[str, ...] = ()
     """Remarks on the result: sources and omissions."""
-    cautions: tuple[str, ...] = ()
+    cautions: tuple[Caution, ...] = ()
     """Why the numbers may be further off than their errors say: limits of validity that the scene reaches."""
     record: dict[str, Any] = field(default_factory=dict)
     """All else, ready for JSON: omissions, restarts, refinement, laws, provenance."""

@@ -11,7 +11,7 @@ from fingerpad.accuracy.estimate import with_errors
 from fingerpad.accuracy.refinement import Refinement
 from fingerpad.accuracy.solves import StateRecorder
 from fingerpad.accuracy.whole_path import WholePath
-from fingerpad.model.cautions import breakdown_ahead, lost
+from fingerpad.model.cautions import examine, lost
 from fingerpad.model.finger import Step, meshed
 from fingerpad.model.options import FingerModel, by_rule, plan
 from fingerpad.model.report import Clock, Report
@@ -106,8 +106,8 @@ def _run(scene: Scene, session: _Session, kept: dict[str, Any] | None, context: 
     """Run a scene until nothing must be added to its model; go on from what an earlier run kept, if it did."""
     writer, console, restarts, checkpoint = session.writer, session.console, session.restarts, session.checkpoint
     writer.log.info("scene %s", json.dumps(scene.parameters()))
-    for caution in breakdown_ahead(scene):
-        writer.log.warning(caution)
+    for caution in examine("load", scene):
+        writer.log.warning("%s", caution)
     model, loads = FingerModel(by_rule(scene), plan(scene)).of_path(), scene.loads()
     slipping = [load.name for load in loads if load.until_full_slip]
     first = next((k for k, load in enumerate(loads) if load.wave is not None), 0)  # over time

@@ -24,7 +24,8 @@ from fingerpad.results.quantities import Output
 from fingerpad.results.result import Result
 from fingerpad.results.writing import Writer
 from fingerpad.runs.context import BEGUN, RunContext
-from fingerpad.scene.messages import SceneError, alike, clip
+from fingerpad.scene.messages import SceneError, clip
+from variational.caution import Caution
 from variational.state import ContactState
 
 _LONGEST = 300  # characters of a failure in a note, whose traceback is in run.log
@@ -46,27 +47,20 @@ class Entry(NamedTuple):
 
 
 # -- values ------------------------------------------------------------------------------------------------
-def with_cautions(result: Result, found: Iterable[str]) -> Result:
+def with_cautions(result: Result, found: Iterable[Caution]) -> Result:
     """Return a result with further cautions, but for those that it has with other numbers."""
-    known = {alike(text) for text in result.cautions}
-    return replace(result, cautions=(*result.cautions, *(text for text in found if alike(text) not in known)))
+    known = {each.form for each in result.cautions}
+    return replace(result, cautions=(*result.cautions, *(each for each in found if each.form not in known)))
 
 
 def _cautions(result: Result, states: Sequence[ContactState]) -> Result:
     """Return a result of the full model with the notes on its drives, and the cautions on scene, states and loads."""
-    from fingerpad.model.cautions import on_scene, without_slip
+    from fingerpad.model.cautions import examine, on_scene
     from fingerpad.results.over_time import NOTE
-    from fingerpad.results.states import long_steps
-    from fingerpad.scene.remarks import leakage
 
-    scene, loads = result.scene, result.scene.loads()
-    notes = [*leakage(scene), *([NOTE] if any(load.takes_time for load in loads) else [])]
-    lacks_slip = result.full_slip is None and any(load.until_full_slip for load in loads) and not result.failure
-    found = [
-        *on_scene(scene, states),
-        *long_steps(result.loads, result.record.get("force_error", 0.0)),
-        *(without_slip(states, scene.closure()) if lacks_slip else []),
-    ]
+    scene = result.scene
+    notes = [*map(str, examine("note", scene)), *([NOTE] if any(load.takes_time for load in scene.loads()) else [])]
+    found = [*on_scene(scene, states), *examine("result", result, states)]
     return with_cautions(replace(result, notes=tuple(dict.fromkeys((*result.notes, *notes)))), found)
 
 

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 from fingerpad import launcher
 from fingerpad.launcher import needed_by, source, version
-from fingerpad.model.cautions import breakdown_ahead
+from fingerpad.model.cautions import examine
 from fingerpad.model.options import check
 from fingerpad.reduced.cylinders import Cylinders
 from fingerpad.reduced.model import Model
@@ -115,8 +115,8 @@ def run(
         raise SceneError(
             f"resume is true, out is {show(out)} and model {show(model)}; only a full run in a folder can go on"
         )
-    for caution in breakdown_ahead(scene.resolved()) if way.path and launcher.rank() == 0 else ():
-        warnings.warn(caution, stacklevel=2)
+    for caution in examine("load", scene.resolved()) if way.path and launcher.rank() == 0 else ():
+        warnings.warn(str(caution), stacklevel=2)
     context = RunContext(None if out is None else Path(out), comm, resume=resume, outputs=outputs, on_step=on_step)
     result = solved(scene, way, context)
     if result.interrupted:

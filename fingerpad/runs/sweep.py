@@ -14,6 +14,7 @@ import numpy as np
 
 from fingerpad import launcher
 from fingerpad.launcher import source, version
+from fingerpad.model.cautions import examine
 from fingerpad.report.write import attempt
 from fingerpad.results.data import checked as checked_outputs
 from fingerpad.results.files import FORMAT, below, check_folder, replace_json
@@ -27,7 +28,6 @@ from fingerpad.runs.sweep_results import FILE, Sweep
 from fingerpad.scene import Scene, value_of, with_values
 from fingerpad.scene.messages import SceneError, clip, show
 from fingerpad.scene.reading import DEFAULT_MODEL, plain
-from fingerpad.scene.remarks import leakage
 from variational.state import PATH
 
 if TYPE_CHECKING:
@@ -115,7 +115,7 @@ def sweep(
         found = [applied(each, of_kept(outputs)) for each in kept]
     else:
         found = [_here(each, way, outputs) for each in scenes]
-    leaks = list(dict.fromkeys(note for each in found for note in leakage(each.scene)))
+    leaks = list(dict.fromkeys(str(note) for each in found for note in examine("note", each.scene)))
     notes = [f"{'First point: ' * (len(leaks) > 1)}{note}" for note in leaks[:1]]
     done = Sweep(values, tuple(found), folder, tuple(notes))
     if folder is None:
