@@ -11,7 +11,7 @@ from fingerpad.cli import main
 from fingerpad.cli import sweep as cli_sweep
 from fingerpad.report.write import NAME, write
 from fingerpad.runs.sweep import sweep
-from fingerpad.scene import Scene, SceneError, from_data
+from fingerpad.scene import Scene, from_data
 from tests.browser import SIZES, asked
 
 
@@ -81,10 +81,3 @@ def test_files_of_an_earlier_sweep_do_not_stay_beside_a_new_table(tmp_path, monk
     assert main(words) == 0
     assert not (tmp_path / "sweep.nc").exists() and not (tmp_path / "report.html").exists()
     assert capsys.readouterr().out.strip().endswith("table.csv, sweep.json")
-
-
-def test_sweep_without_its_scene_is_refused(tmp_path):
-    sweep(Scene(), tmp_path, model="cylinders", voltage=[0, 100])
-    (tmp_path / "sweep.json").write_text("{}", encoding="utf-8")
-    with pytest.raises(SceneError, match=r"sweep.json in .* has no 'axes'; give the command of the sweep again"):
-        write(tmp_path)
