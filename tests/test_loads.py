@@ -206,7 +206,7 @@ def test_ridge_is_stiffer_by_the_shear_stress_at_its_own_pressure():
 
 def test_number_is_that_of_the_kept_states(sheared):
     """To one digit."""
-    assert cylinders.SHEAR == float(f"{fitted(reached):.1g}")
+    assert cylinders.SHEAR == float(f"{fitted(sheared):.1g}")
 
 
 def test_states_that_did_not_make_it_come_nearer(sheared):
