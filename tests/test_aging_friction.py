@@ -5,9 +5,9 @@ import pytest
 from mpi4py import MPI
 
 import fingerpad as fp
+from fingerpad.model.cautions import examine
 from fingerpad.model.schedule import targets
 from fingerpad.scene import Load, SceneError
-from fingerpad.scene.remarks import remarks
 from geometry import tags
 from geometry.bodies import block, ridge
 from geometry.mesh import load
@@ -129,7 +129,9 @@ def test_refused(friction, message):
 def test_without_time():
     """Without a load over time a remark says so; newtons and models without time are refused."""
     scene = fp.Scene(friction=OCCLUSION)
-    assert [text for text in remarks(scene) if "friction is Occlusion and no load takes time" in text]
+    assert [
+        text for text in map(str, examine("scene", scene)) if "friction is Occlusion and no load takes time" in text
+    ]
     with pytest.raises(SceneError, match="force is given and friction has a memory"):
         fp.Scene(force=0.5, friction=OCCLUSION)
     with pytest.raises(SceneError, match="friction is Occlusion; the model 'cylinders' has no time"):

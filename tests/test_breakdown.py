@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 import fingerpad as fp
-from fingerpad.model.cautions import breakdown_ahead, breakdown_in_states
+from fingerpad.cli import main
+from fingerpad.model.cautions import examine
 from tests.small_finger import NINE
 from variational.state import ContactState, RidgeStates
 
@@ -27,22 +28,26 @@ def state(voltage, gaps=(1.5e-6, 1.7e-6), length=(1e-4, 1e-4), **more) -> Contac
     )  # fmt: skip
 
 
+def in_states(scene, states) -> list[str]:
+    return [str(each) for each in examine("gap", scene, states)]
+
+
 def test_ridge_is_named_whose_gap_is_the_farthest_beyond():
     """Of 440 V, 440 * 1.7 / (1.7 + h_0) lie across the wider gap; of a ridge above the screen nothing is said."""
     across = 440 * 1.7e-6 / (1.7e-6 + H_0)
-    (found,) = breakdown_in_states(fp.Scene(), [state(300.0), state(-440.0), state(0.0)])
+    (found,) = in_states(fp.Scene(), [state(300.0), state(-440.0), state(0.0)])
     words = "V are across a gap of 1.7 µm in ridge 1 in 'slide', step 7, and from 330 V on"
     assert found.startswith(f"{across:.4g} {words}")
-    assert breakdown_in_states(fp.Scene(), [state(440.0, length=(1e-4, 0.0))]) == []
-    assert breakdown_in_states(fp.Scene(), [replace(state(440.0), ridges=None)]) == []
+    assert in_states(fp.Scene(), [state(440.0, length=(1e-4, 0.0))]) == []
+    assert in_states(fp.Scene(), [replace(state(440.0), ridges=None)]) == []
 
 
 def test_narrow_gaps_break_down_by_the_field():
     """At 350 V/µm: 0.2 µm bear 70 V, and 250 V put 70.0 V there where h_0 is 0.514 µm."""
     volts = 70.0 * (0.2e-6 + H_0) / 0.2e-6
     gaps = (0.2e-6, 1.5e-6)
-    assert breakdown_in_states(fp.Scene(), [state(0.999 * volts, gaps)]) == []
-    (found,) = breakdown_in_states(fp.Scene(), [state(1.001 * volts, gaps)])
+    assert in_states(fp.Scene(), [state(0.999 * volts, gaps)]) == []
+    (found,) = in_states(fp.Scene(), [state(1.001 * volts, gaps)])
     assert "across a gap of 0.2 µm in ridge 0 in" in found and "from 70 V on" in found
 
 
@@ -55,16 +60,16 @@ def test_period_counts_where_states_have_a_mean(drive, electric):
     """The mean attraction is that of some 280 V and 160 V, and the peaks of 500 V are beyond breakdown."""
     drive = drive | {"amplitude": 500.0}
     scene = fp.Scene(voltage=drive, electric=electric)
-    (found,) = breakdown_in_states(scene, [state(scene.volts)])
+    (found,) = in_states(scene, [state(scene.volts)])
     peak = float(np.abs(scene.drive.across(1.7e-6)).max())
     assert found.startswith(f"{peak:.4g} V are across a gap of 1.7 µm in ridge 1") and "start of a period" in found
-    assert breakdown_in_states(fp.Scene(voltage=scene.volts), [state(scene.volts)]) == []
+    assert in_states(fp.Scene(voltage=scene.volts), [state(scene.volts)]) == []
     if "follows" in electric:
         timed = fp.Scene(
             history=[{"name": "press", "f_ext": 1.0}, {"name": "wave", "voltage": drive, "duration": 0.1}],
             electric=electric,
         )
-        assert breakdown_in_states(timed, [state(scene.volts, load="wave", load_number=2)]) == [
+        assert in_states(timed, [state(scene.volts, load="wave", load_number=2)]) == [
             found.replace("'slide'", "'wave'")
         ]
 
@@ -81,9 +86,14 @@ def test_period_counts_where_states_have_a_mean(drive, electric):
 def test_before_a_run(scene, volts):
     """The peak over gap and insulators, by Eq. 3 in the gap of a ridge under 10 kPa; four digits are printed."""
     gap = float(scene.closure()(1e4).d_eq)
-    (found,) = breakdown_ahead(scene)
+    (found,) = map(str, examine("load", scene))
     assert float(found.partition(" V ")[0]) == pytest.approx(volts * gap / (gap + H_0), rel=5e-4)
     assert "in a ridge under 10 kPa" in found and "from 330 V on air breaks down there" in found
+
+
+def test_estimate_names_breakdown_where_it_has_no_friction(capsys):
+    main(["estimate", "--force", "0.5 N", "--set", "voltage=5000"])
+    assert "from 330 V on air breaks down there" in capsys.readouterr().err
 
 
 def test_run_tells_before_it_computes(monkeypatch):

@@ -222,11 +222,11 @@ def test_states_that_attraction_holds_are_counted():
     pressed, pulled = state(150.0, [3.0, 2.0, 1.5]), replace(state(150.0, [3.0, 2.0, 0.9]), f_ext=-0.1)
     free, lifted = replace(pressed, f_ext=1e-9), replace(pulled, contact_length=0.0)
     (text,) = on_states([pressed, free, pulled, lifted], EXACT)[:1]
-    assert text == (
+    assert str(text) == (
         "in 2 of 3 charged states the finger adheres without a load, most by ridge 1, at -0.1 N/m and 150 V; by "
         "the closure BoundaryElements ridges adhere without a load from 90.5 V on"
     )
-    assert not any("without a load" in text for text in on_states([pressed, replace(pulled, voltage=0.0)], EXACT))
+    assert not any("without a load" in str(text) for text in on_states([pressed, replace(pulled, voltage=0.0)], EXACT))
 
 
 def test_cylinders_without_an_equilibrium_say_it():

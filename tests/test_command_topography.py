@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from fingerpad.cli import main
+from fingerpad.model.cautions import examine
 from fingerpad.scene import from_data, load
 from fingerpad.scene.messages import SceneError
-from fingerpad.scene.remarks import remarks
 from tests.commands import refused
 from variational.roughness.spectrum import SelfAffine
 
@@ -94,4 +94,4 @@ def test_map_smaller_than_the_longest_waves_is_told(tmp_path, capsys, width, tol
     assert (words in printed(tmp_path, capsys, heights, (width, width))) == told
     topography = {"file": str(tmp_path / "map.npy"), "unit": "m", "size": [width, width]}
     scene = from_data({"roughness": {"topography": topography}})
-    assert any("roughness ends at waves" in text for text in remarks(scene)) == told
+    assert any("roughness ends at waves" in text for text in map(str, examine("scene", scene))) == told

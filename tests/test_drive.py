@@ -6,9 +6,9 @@ from numpy.testing import assert_allclose
 
 import fingerpad as fp
 from fingerpad.model import drive_loads
+from fingerpad.model.cautions import examine
 from fingerpad.reduced import cylinders
 from fingerpad.scene.drive import REFERENCE, Drive, one_period
-from fingerpad.scene.remarks import remarks
 from tests.small_finger import SMALL
 from variational.attraction.circuit import GapCircuit
 
@@ -78,8 +78,8 @@ def test_ridge_has_the_share_of_its_own_gap(state):
 
 def test_offset_without_a_leak_has_a_caution():
     scene = fp.Scene(voltage=SINE | {"offset": 50.0})
-    assert ["has a mean of 50 V, which leaks away" in text for text in remarks(scene)] == [True]
-    assert remarks(scene.replace(electric=DRY)) == []
+    assert ["has a mean of 50 V, which leaks away" in text.text for text in examine("scene", scene)] == [True]
+    assert examine("scene", scene.replace(electric=DRY)) == []
 
 
 def test_scene_of_a_drive_survives_its_files():

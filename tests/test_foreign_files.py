@@ -15,7 +15,6 @@ from PIL import Image
 
 import fingerpad as fp
 from fingerpad.cli import main
-from fingerpad.reduced.registry import find
 from fingerpad.report.page import picture
 from fingerpad.report.write import write
 from fingerpad.results import fields
@@ -25,7 +24,7 @@ from fingerpad.results.folder import Folder, FolderError, Serial, full_scene
 from fingerpad.results.pictures import style
 from fingerpad.runs.checkpoint import Checkpoint
 from fingerpad.runs.context import RunContext
-from fingerpad.runs.solve import solved
+from fingerpad.runs.solve import find, solved
 from fingerpad.scene import Scene, SceneError
 from variational.state import ContactState
 

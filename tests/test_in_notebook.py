@@ -11,6 +11,7 @@ import fingerpad as fp
 from benchmarks.notebook import main
 from tests.commands import python
 from tests.small_finger import small
+from variational.caution import Caution
 
 pytestmark = pytest.mark.slow
 CELLS = """
@@ -60,7 +61,7 @@ def test_figure_is_a_picture(shown, cell):
 # -- without a kernel ------------------------------------------------------------------------------------------
 def test_words_are_escaped():
     """Cautions and notes may have words of anybody's."""
-    found = replace(fp.run(model="cylinders"), cautions=("<script>a",), notes=("<b>note",))._repr_html_()
+    found = replace(fp.run(model="cylinders"), cautions=(Caution("a", "<script>a"),), notes=("<b>note",))._repr_html_()
     assert "&lt;script&gt;a" in found and "&lt;b&gt;note" in found and "<script>" not in found
     sweep = fp.sweep(model="cylinders", voltage=[100.0], quiet=True)
     assert "&lt;i&gt;" in replace(sweep, notes=("<i>",))._repr_html_()

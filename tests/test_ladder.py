@@ -40,9 +40,9 @@ def nearest(key: str, value: float, friction: float) -> str:
 
 def test_other_screen_than_the_runs_is_said():
     found = cylinders.solve(scene(friction=0.3, electric={"d_i": 2e-5}))
-    assert any(nearest("electric.d_i", 2e-5, 0.3) in text for text in found.cautions)
+    assert any(nearest("electric.d_i", 2e-5, 0.3) in text.text for text in found.cautions)
     own = scene().replace(roughness=Held(), friction=Derjaguin(0.3, 1e3))
-    (text,) = cylinders.solve(own).cautions
+    (text,) = map(str, cylinders.solve(own).cautions)
     for table in ("friction", "roughness"):
         assert f"{table} is of another law, and it is known for that of the default scene" in text
 

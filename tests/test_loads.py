@@ -69,7 +69,7 @@ def known(reached) -> list[tuple[compared.Compared, dict[str, float]]]:
     for each in reached:
         result = cylinders.solve(section(each.values, each.force))
         errors = result.record["model_error"].get("full_slip", {})
-        assert bool(errors) != any("error of this model is not known here" in text for text in result.cautions)
+        assert bool(errors) != any("error of this model is not known here" in text.text for text in result.cautions)
         found.append((each, errors))
     return found
 
@@ -135,7 +135,7 @@ def test_whole_finger_has_its_error():
     assert known["mu_app"] == known["f_t"] == pytest.approx(share * known["f_electrostatic"], rel=1e-12)
     beyond = run(Scene(force=5.0, voltage=150.0), model="cylinders")
     assert cylinder_errors.WHOLE not in beyond.record["model_error"]
-    assert any("force is 5 N, and it is known for" in text for text in beyond.cautions)
+    assert any("force is 5 N, and it is known for" in text.text for text in beyond.cautions)
 
 
 # -- the closed form's errors on scenes drawn anew, which nothing was fitted to: docs/fresh.json ---------------------

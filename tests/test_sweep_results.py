@@ -209,7 +209,7 @@ def test_cautions_of_points_are_the_sweep_s(tmp_path):
     ours += ", numbers of the first)"
     assert unknown[0] == ours, "of two thicknesses at 200 V"
     places = [text for text in cautions if "the closure is out of its range" in text and "d_eq rises" in text]
-    count = sum(any("the closure is out of its range" in text for text in each.cautions) for each in found)
+    count = sum(any("the closure is out of its range" in text.text for text in each.cautions) for each in found)
     assert len(places) == 1 and f"({count} of 6 points" in places[0] and 1 < count < 6
     assert f"! {ours}" in str(found).splitlines()
     page = (tmp_path / "report.html").read_text(encoding="utf-8").replace("\u00a0", " ")

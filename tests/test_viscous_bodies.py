@@ -169,7 +169,7 @@ def test_caution():
     record = StepRecord(*[0] * 12, viscous=1.0, viscous_least=-0.2)
     state = fp.ContactState(f_ext=1.0, voltage=0.0, f_t=0.0, mu_app=0.0, f_contact=1.0, f_electrostatic=0.0,
                             ridges_in_contact=0, contact_length=0.0, record=record)  # fmt: skip
-    (text,) = cautions.on_states([state], None)
+    (text,) = map(str, cautions.on_states([state], None))
     assert "in 1 of 1 steps branches of viscous layers made energy at points and dissipated none, up to 0.2" in text
 
 
