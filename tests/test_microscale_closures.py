@@ -7,7 +7,7 @@ import pytest
 from scipy.optimize import brentq
 
 import fingerpad as fp
-from variational.roughness import persson, tables
+from variational.roughness import gaps, persson
 from variational.roughness.gaps import breakdown_voltage, breaking_gaps
 
 H_0 = 0.514e-6
@@ -59,8 +59,8 @@ def test_spread_is_of_surfaces_of_one_size():
     """
     wide, narrow = (fp.BoundaryElements(H_0, shortest_wave=100e-6 / ratio).spread(PRESSURES) for ratio in (32, 64))
     np.testing.assert_allclose(narrow, wide, rtol=0.5)
-    two = tables.of_spectrum(0.75, 64.0)[0][1]
-    assert two.waves == 2 and tables.of_spectrum(0.75, 32.0)[0][1].waves == 4
+    two = gaps.of_spectrum(0.75, 64.0)[0][1]
+    assert two.waves == 2 and gaps.of_spectrum(0.75, 32.0)[0][1].waves == 4
 
 
 @each_closure

@@ -6,7 +6,7 @@ import pytest
 from mpi4py import MPI
 
 from fingerpad.scene import Scene
-from geometry import curved, fingertip, sizing, tags
+from geometry import fingertip, sizing, tags, triangles
 from geometry.bodies import foot, ridge
 from geometry.mesh import load
 from geometry.profiles import GeometryError
@@ -24,7 +24,7 @@ def test_least_determinant(height, expected):
     nodes = PLAIN.copy()
     nodes[3, 1] = height
     turned = nodes[[2, 1, 0, 4, 3, 5]]
-    np.testing.assert_allclose(curved.least(np.stack([nodes, turned])), expected, atol=1e-14)
+    np.testing.assert_allclose(triangles.least(np.stack([nodes, turned])), expected, atol=1e-14)
 
 
 def test_middles_are_on_the_curve():
@@ -57,7 +57,7 @@ def test_no_triangle_is_folded(case, monkeypatch):
         numbers, places, _ = gmsh.model.mesh.getNodes()
         at = np.empty((int(numbers.max()) + 1, 2))
         at[numbers] = places.reshape(-1, 3)[:, :2]
-        assert curved.least(at[curved.second_order()]).min() >= 0.2
+        assert triangles.least(at[triangles.second_order()]).min() >= 0.2
 
 
 def folded() -> float:
