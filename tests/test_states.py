@@ -254,7 +254,7 @@ def test_touch_belongs_to_the_load_on_the_way():
     history.still("press", f_ext=2.0)
     history.still("press", f_ext=3.0)
     assert [(name, len(mine)) for name, mine in states.by_load(history.rows)] == [("press", 4), ("press", 2)]
-    stopped = states.load_results(history.rows[:1], [Load(name="press", f_ext=2.0)], lambda k, end: None)
+    stopped = states.load_results(history.rows[:1], [Load(name="press", f_ext=2.0)], lambda end: None)
     assert [load.name for load in stopped] == ["press"], "a run stopped in the first touch"
 
 
@@ -272,6 +272,6 @@ def test_first_touch_is_no_named_state(slides):
     found = states.named(history.rows)
     assert "uncharged" not in found and ("charged" in found) == (not slides)
     assert not states.named(history.rows[:2], ["press"]), "a run that was cut short in the touch"
-    press = next(states.load_results(history.rows, [Load(name="press", f_ext=0.05)], lambda k, end: None))
+    (press,) = states.load_results(history.rows, [Load(name="press", f_ext=0.05)], lambda end: None)
     own = [state.contact_length for state in history.rows if state.load == "press"]
     assert press.extremes["contact_length"].max == max(own)

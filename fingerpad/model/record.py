@@ -146,7 +146,7 @@ class PathRecord:
         """
         last, rows = self.states[-1], self.states
         shown = [*states.named(rows, loads).values(), *(end.state for end in self.ends.values()), last]
-        shown += [row for row in (states.partial_slip(rows), states.nearest_to_half(rows)) if row]
+        shown += [row for row in (states.partial_slip(rows), states.partial_slip(rows, math.inf)) if row]
         steps = {state.step for state in shown} | {last.slip_began}
         self.skins = {step: skin for step, skin in self.skins.items() if step in steps}
 
@@ -173,14 +173,14 @@ class PathRecord:
         same = [other.step for other in self.states if other.slip_began == state.slip_began > 0]
         return next((self._checks[k] for k in (state.step, *same) if k in self._checks), None)
 
-    def loads(self, loads: Sequence[Load], mu_0: float | None) -> list[states.LoadResult]:
+    def loads(self, loads: Sequence[Load], mu_0: float | None) -> tuple[states.LoadResult, ...]:
         """Return the result of each load of a history; see :func:`fingerpad.results.states.load_results`."""
 
-        def stable(k: int, end: ContactState) -> bool | None:
+        def stable(end: ContactState) -> bool | None:
             check = self._check(end)
             return None if check is None else check.stable
 
-        return list(states.load_results(self.states, loads, stable, mu_0))
+        return states.load_results(self.states, loads, stable, mu_0)
 
     def drawing(
         self, mu_0: float | None, final: Mapping[str, View], size: float | None, named: Mapping[str, ContactState]

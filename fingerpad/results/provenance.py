@@ -44,7 +44,7 @@ def provenance() -> dict[str, Any]:
         "libraries": [file.name for file in libraries],
         "blas": _openblas(libraries),
         "petsc_options": _in_use(),
-        "jit_options": {name: _plain(value) for name, value in jit.options().items()},
+        "jit_options": {name: _plain(value) for name, value in dolfinx.jit.get_options(jit.OPTIONS).items()},
         "ffcx_options": {name: _plain(value) for name, value in ffcx.options.get_options().items()},
         "environment": {name: value for name, value in sorted(os.environ.items()) if _VARIABLES.fullmatch(name)},
         "processor": _processor(),

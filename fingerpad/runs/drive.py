@@ -27,14 +27,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from fingerpad.model.cautions import on_scene
+from fingerpad.model.cautions import examine, on_scene
 from fingerpad.reduced.cylinders import Cylinders
 from fingerpad.runs.context import RunContext
 from fingerpad.runs.solve import solved
 from fingerpad.scene import Scene
 from fingerpad.scene.drive import REFERENCE, Drive
 from fingerpad.scene.messages import SceneError
-from fingerpad.scene.remarks import leakage
 from fingerpad.scene.waveform import shape
 from geometry.units import computed
 from variational.attraction.circuit import GapCircuit
@@ -159,7 +158,7 @@ def drive(scene: Scene) -> DrivenFriction:
     time = np.arange(len(f_t)) / len(f_t) / given.frequency
     least = float(gap[int(np.argmax(volts))])
     cautions = on_scene(scene, gaps=[("full slip", least, 0.0)])
-    notes = [*leakage(scene), *(f"! {text}" for text in cautions)]
+    notes = [*map(str, examine("note", scene)), *(f"! {text}" for text in cautions)]
     if 2 * (given.wave.frequency or given.frequency) > _QUASI_STATIC:
         notes.append(
             f"! friction varies faster than {_QUASI_STATIC:g} Hz, where inertia of the skin begins to matter: "
