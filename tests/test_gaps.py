@@ -3,12 +3,11 @@
 import numpy as np
 import pytest
 
-from variational.roughness import contacts, gaps, tables
+from variational.roughness import contacts, gaps
 from variational.roughness.contacts import gap_table, measured_table
-from variational.roughness.gaps import GapTable, bins
+from variational.roughness.gaps import HURSTS, GapTable, bins, ratios
 from variational.roughness.halfspace import press
 from variational.roughness.spectrum import SelfAffine
-from variational.roughness.tables import HURSTS, ratios
 from variational.roughness.topography import HeightMap
 
 RATIO, WIDTH = 8.0, 8 * np.pi
@@ -56,7 +55,7 @@ def test_tables_of_the_package(hurst, ratio):
 
     Contact grows and gaps close with pressure.
     """
-    ((part, found),) = tables.of_spectrum(hurst, ratio)
+    ((part, found),) = gaps.of_spectrum(hurst, ratio)
     assert part == 1 and len(found.area) == (12 if (hurst, ratio) == (0.75, 64) else 6)
     np.testing.assert_allclose(found.area + found.weight.sum(axis=-1), 1, rtol=1e-5)
     assert (np.diff(found.area) > 0).all() and (np.diff(found.mean_gap()) < 0).all()
@@ -68,7 +67,7 @@ def test_table_of_the_package_is_made_again():
     """The first surface of the ratio 16 at two of its pressures, to what another library of transforms rounds."""
     from benchmarks.gap_tables import surfaces
 
-    kept = tables.of_spectrum(0.75, 16.0)[0][1]
+    kept = gaps.of_spectrum(0.75, 16.0)[0][1]
     for k in (10, 20):
         ((_, found),) = contacts.over_pressure(surfaces(16.0, 1)[0], 2 * np.pi, [kept.pressure[k]])
         assert found.area == pytest.approx(kept.area[0, k], rel=1e-3)
@@ -85,7 +84,7 @@ def test_between_tables_is_the_contact_itself(hurst, ratio):
     from benchmarks.gap_tables import surfaces
 
     (first, *_), h_0 = surfaces(ratio, 1, hurst=hurst), 0.166
-    between = tables.of_spectrum(hurst, ratio)
+    between = gaps.of_spectrum(hurst, ratio)
     for pressure in between[0][1].pressure[[8, 14]]:
         ((_, found),) = contacts.over_pressure(first, 2 * np.pi, [pressure])
         alone = GapTable(np.array([pressure]), *(np.array(each)[None, None] for each in found))
@@ -99,18 +98,18 @@ def test_between_tables_is_the_contact_itself(hurst, ratio):
 
 def test_between_ratios_and_exponents():
     """Parts of the neighbours add to one, by the ratio's logarithm and the exponent; beyond the ends it is refused."""
-    (low, _), (high, _) = tables.of_spectrum(0.75, 16 * np.sqrt(2))
+    (low, _), (high, _) = gaps.of_spectrum(0.75, 16 * np.sqrt(2))
     assert low == pytest.approx(0.5) and high == pytest.approx(0.5)
-    assert [part for part, _ in tables.of_spectrum(0.65, 8.0)] == pytest.approx([2 / 3, 1 / 3])
-    parts = [part for part, _ in tables.of_spectrum(0.825, 8 * np.sqrt(2))]
+    assert [part for part, _ in gaps.of_spectrum(0.65, 8.0)] == pytest.approx([2 / 3, 1 / 3])
+    parts = [part for part, _ in gaps.of_spectrum(0.825, 8 * np.sqrt(2))]
     assert parts == pytest.approx([0.25] * 4)
     assert ratios(0.75) == [8.0, 16.0, 32.0, 64.0] and set(ratios(0.8)) <= set(ratios(0.75))
     for ratio in (7.0, 65.0):
         with pytest.raises(ValueError, match=rf"{ratio:g} times the shortest one; tables .* for 8 to 64 times"):
-            tables.of_spectrum(0.75, ratio)
+            gaps.of_spectrum(0.75, ratio)
     for hurst in (0.5, 0.95):
         with pytest.raises(ValueError, match=rf"hurst is {hurst:g}; tables of the package are for 0.6 to 0.9"):
-            tables.of_spectrum(hurst, 16.0)
+            gaps.of_spectrum(hurst, 16.0)
 
 
 # -- measured maps -----------------------------------------------------------------------------------------
@@ -128,7 +127,7 @@ def test_measured_map_is_computed_once(cache, surface):
     assert done[-1] == (len(gaps.PRESSURES), len(gaps.PRESSURES)) and wavelength == pytest.approx(50e-6)
     again: list[tuple[int, int]] = []
     assert contacts.keep(measured, lambda *each: again.append(each))[0] == name and not again
-    ((_, found),) = tables.of_map(name)
+    ((_, found),) = gaps.of_map(name)
     whole = measured_table(measured)[0]
     np.testing.assert_allclose(found.mean_gap(), whole.mean_gap(), rtol=1e-6)
     other = measured.heights.copy()
@@ -139,7 +138,7 @@ def test_measured_map_is_computed_once(cache, surface):
 
 def test_map_that_is_not_there(cache):
     with pytest.raises(ValueError, match="surface is 'abc', and .* has no table of that name .*; compute it again by"):
-        tables.of_map("abc")
+        gaps.of_map("abc")
 
 
 X = np.linspace(-1, 1, 32)
@@ -153,10 +152,10 @@ def test_damaged_table_is_computed_again(cache, content):
     file = cache / f"gaps_{name}.npz"
     file.write_bytes(file.read_bytes()[:2000] if content is None else content)
     with pytest.raises(ValueError, match=rf"surface is '{name}', and .*{file.name} holds no table of gaps"):
-        tables.of_map(name)
+        gaps.of_map(name)
     done: list[int] = []
     assert contacts.keep(WAVES, lambda *each: done.append(each[0]))[0] == name and done
-    assert len(tables.of_map(name)) == 1 and sorted(cache.iterdir()) == [file]
+    assert len(gaps.of_map(name)) == 1 and sorted(cache.iterdir()) == [file]
 
 
 @pytest.mark.parametrize(("place", "why"), [("file", "File exists"), ("/proc", "No such file or directory")])

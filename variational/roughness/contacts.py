@@ -8,7 +8,7 @@ from contextlib import contextmanager
 import numpy as np
 from numpy.typing import NDArray
 
-from variational.roughness import tables
+from variational.roughness import gaps
 from variational.roughness.closure import Progress
 from variational.roughness.gaps import FULL, PRESSURES, Bins, GapTable, bins
 from variational.roughness.halfspace import press
@@ -162,13 +162,13 @@ def keep(measured: HeightMap, progress: Progress | None = None) -> tuple[str, fl
     content = np.ascontiguousarray(measured.heights).tobytes() + repr((measured.size, _METHOD)).encode()
     name = hashlib.sha256(content).hexdigest()[:16]
     try:
-        tables.of_map(name)
+        gaps.of_map(name)
     except ValueError:  # none yet, or a damaged one
         with _kept_in():
-            tempfile.TemporaryFile(dir=tables.cache()).close()  # before minutes of contacts
+            tempfile.TemporaryFile(dir=gaps.cache()).close()  # before minutes of contacts
         table = measured_table(measured, progress)[0]
         with _kept_in():
-            tables.save(tables.map_file(name), table)
+            gaps.save(gaps.map_file(name), table)
     return name, measured.h_rms, min(measured.size)
 
 
@@ -180,10 +180,10 @@ def _kept_in() -> Iterator[None]:
         ValueError: it does not; in one sentence.
     """
     try:
-        tables.cache().mkdir(parents=True, exist_ok=True)
+        gaps.cache().mkdir(parents=True, exist_ok=True)
         yield
     except OSError as error:
         raise ValueError(
-            f"the table of the height map cannot be kept in {tables.cache()} ({error.strerror or error}); name another "
+            f"the table of the height map cannot be kept in {gaps.cache()} ({error.strerror or error}); name another "
             "folder by FINGERPAD_CACHE"
         ) from None
