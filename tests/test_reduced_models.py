@@ -76,5 +76,5 @@ def test_what_it_cannot_do_is_refused(tmp_path):
         fp.run(Scene(history=[{"name": "press", "f_ext": 5.0}]), model="block")
     with pytest.raises(SceneError, match="can go on"):
         fp.run(model="block", out=tmp_path, resume=True)
-    with pytest.raises(SceneError, match="it must be 'cylinders' or 'full' or 'block'"):
+    with pytest.raises(SceneError, match=f"it must be {' or '.join(map(repr, registry.MODELS))}"):
         fp.run(model="blocks")

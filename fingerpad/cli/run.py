@@ -37,7 +37,8 @@ def main(argv: Sequence[str]) -> int:
     parser.add_argument(
         "--model",
         choices=MODELS,
-        help="every ridge (full) or a closed form (default: full, or that of the run whose scene.json is given)",
+        help=f"{'; '.join(f'{name}: {each.words}' for name, each in MODELS.items())} "
+        "(default: full, or that of the run whose scene.json is given)",
     )
     parser.add_argument("--resume", type=path, metavar="DIR", help="go on with a run that was cut short in this folder")
     parser.add_argument(

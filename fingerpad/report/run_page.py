@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Iterator
+from itertools import cycle
 from typing import Any
 
 import numpy as np
@@ -235,7 +236,7 @@ def _raster(result: Result, spikes: Spikes) -> Markup:
         Series(f"ridge {number}", time, each) for number, each in zip(numbers, np.transpose(pressures), strict=True)
     ]
     panels = [Panel("pressure (kPa)", [each for each in ridges if max(each.y) > 0])]
-    for law, colour in zip(spikes.laws, ("blue", "vermilion", "ink", "green", "purple"), strict=False):
+    for law, colour in zip(spikes.laws, cycle(("blue", "vermilion", "ink", "green", "purple")), strict=False):
         mine = [(u, train) for u, train in zip(spikes.units, spikes.trains, strict=True) if u.law == law]
         places = [(_MS * float(t), u.place) for u, train in mine for t in train]
         x, y = zip(*places, strict=True) if places else ((), ())

@@ -129,7 +129,8 @@ def _of_law(table: str, key: LawKey, meaning: str) -> Iterator[Key]:
             same = next((each for each in readers if replace(each, default=value) == found), found)
             readers.setdefault(same, []).append(key.kind.name(law))
     for found, laws in readers.items():
-        alone = f" Of {' and '.join(laws)} alone." if several and len(laws) < len(key.kind.laws) else ""
+        those = " and ".join([", ".join(laws[:-1]), laws[-1]] if laws[1:] else laws)
+        alone = f" Of {those} alone." if several and len(laws) < len(key.kind.laws) else ""
         of = "" if key.kind.name(type(default)) in laws else laws[0]
         yield replace(found, meaning=found.meaning + alone, law=of)
     for each in key.tables(type(default)):  # that a law may have, and the default law has not
