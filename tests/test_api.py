@@ -9,7 +9,7 @@ from mpi4py import MPI
 import fingerpad as fp
 from fingerpad.results.quantities import CONDITIONS, RESULTS
 from fingerpad.results.states import STATES
-from fingerpad.runs import attempt, full
+from fingerpad.runs import full
 from fingerpad.scene import SceneError, from_data
 from tests.runs import no_pictures
 from tests.small_finger import NINE
@@ -110,14 +110,14 @@ def test_signal_ends_the_program_after_the_step(monkeypatch, name, error):
 
 def test_a_run_starts_again_with_smaller_elements(monkeypatch):
     """Every solve of 40 um elements fails; with 20 um the loads are reached, and the result says what was tried."""
-    solve = attempt.Simulation.run
+    solve = full.Simulation.run
 
     def lost(self):
         if self.finger.contact_size > 30e-6:
             raise StepFailed("no equilibrium") from NotConverged("DIVERGED_LOCAL_MIN", False)
         return solve(self)
 
-    monkeypatch.setattr(attempt.Simulation, "run", lost)
+    monkeypatch.setattr(full.Simulation, "run", lost)
     lean = {"history": [{"name": "press", "f_ext": 0.5}], "output": {"receptors": False, "errors": False}}
     found = fp.run(from_data({key: SMALL[key] for key in ("geometry", "mesh")} | lean))
     assert not found.failure and found.charged.mesh_contact == 20e-6

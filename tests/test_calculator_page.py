@@ -6,7 +6,7 @@ import re
 import pytest
 
 import fingerpad as fp
-from fingerpad.calculator import presets
+from fingerpad.calculator import page as calculator
 from fingerpad.calculator.page import page
 from fingerpad.reduced import cylinder_errors
 from fingerpad.scene import Scene
@@ -69,7 +69,7 @@ def test_two_screens_are_beside_each_other(whole, tmp_path):
 
 def test_presets_are_scenes():
     """Each has a source, and values that a scene takes for fields of the page."""
-    found = presets.presets(FIELDS)
+    found = calculator.presets(FIELDS)
     assert {"adult", "dry", "moist"} <= {each.name for each in found} and "child" not in {each.name for each in found}
     for each in found:
         data: dict = {}

@@ -2,8 +2,8 @@
 
 import pytest
 
-from fingerpad.accuracy import solves
 from fingerpad.accuracy.richardson import ONCE, ORDER, MeshParameter, errors, rigid, to_refine
+from fingerpad.model.schedule import loads_to_normal_contact
 from fingerpad.scene import SceneError, from_data
 
 
@@ -115,4 +115,4 @@ def test_loads_to_normal_contact(places, kept):
         loads[2:] = [{"name": "lift", "bone_height": 1e-5}, {"name": "over"}, {"name": "again", "f_ext": 1.0}, loads[2]]
     moves = [{} if place is None else {"bone_x": place} for place in places]
     scene = from_data({"history": [load | move for load, move in zip(loads, moves, strict=True)]})
-    assert solves.loads_to_normal_contact(scene.loads()) == scene.history[:kept]
+    assert loads_to_normal_contact(scene.loads()) == scene.history[:kept]

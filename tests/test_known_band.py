@@ -11,7 +11,7 @@ from fingerpad.reduced.closure_band import Slip, friction, powers, with_band
 from fingerpad.report import run_page, trust
 from fingerpad.results.headline import known_in_words
 from fingerpad.results.quantities import KNOWN
-from tests.test_closure_band import Held
+from tests.test_closures import Held
 from variational.caution import Caution
 
 

@@ -6,9 +6,9 @@ import pytest
 
 import fingerpad as fp
 from fingerpad.cli import main
-from fingerpad.reduced import registry
 from fingerpad.reduced.model import Model, reduced_state
 from fingerpad.results.result import Result
+from fingerpad.runs import solve as registry
 from fingerpad.scene import Scene, SceneError
 from tests.measures import rows_of
 

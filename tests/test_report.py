@@ -11,14 +11,13 @@ import pytest
 from matplotlib.collections import LineCollection
 
 from fingerpad.cli import main
-from fingerpad.reduced.registry import find
 from fingerpad.report import run_page, trust
 from fingerpad.report.write import NAME
 from fingerpad.results import fields
 from fingerpad.results.quantities import cell
 from fingerpad.results.result import Result
 from fingerpad.runs.context import RunContext
-from fingerpad.runs.solve import solved
+from fingerpad.runs.solve import find, solved
 from tests.browser import SIZES, asked
 from tests.small_finger import small
 from variational.attraction.dielectric import VACUUM_PERMITTIVITY
@@ -235,10 +234,10 @@ def test_run_without_an_accepted_step_is_read_back(folder):
         ({"summary.json": '{"f_ext": 75,'}, "is not a folder of a finished run"),
         ({"result.nc": "CDF"}, "result.nc is not whole, or not of a run"),
         ({"summary.json": '{"failure": "f_ext is too large"}'}, "was refused and has no results: f_ext is too large"),
-        ({"table.csv": "voltage,full_slip_mu_app,failure\n100,0.3,\n200"}, "is cut short"),
+        ({"sweep.json": '{"axes": ['}, "sweep.json in"),
         ({"scene.json": "{}", "steps.csv": "step\n"}, "has not ended"),
         ({"notes.txt": "hello"}, "holds no results of fingerpad"),
-        ({"table.csv": "a,b\n1,2\n"}, "is not the table of a sweep"),
+        ({"sweep.json": '{"axes": ["a"], "rows": [{"b": 1}]}'}, "its rows have no value of a varied key"),
         ({"summary.json": "[" * 100_000}, "is not a folder of a finished run"),
         ({"full/0123/asked.json": "{}"}, "has not ended (0 runs are there)"),
     ],

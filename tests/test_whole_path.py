@@ -10,9 +10,8 @@ import pytest
 from mpi4py import MPI
 
 import fingerpad as fp
-from fingerpad.accuracy import solves
+from fingerpad.accuracy import whole_path
 from fingerpad.accuracy.richardson import TWO, of_two_meshes, value
-from fingerpad.accuracy.solves import Solves
 from fingerpad.accuracy.states import Solve
 from fingerpad.accuracy.whole_path import WholePath, differences
 from fingerpad.model.options import FingerModel, by_rule, plan
@@ -152,18 +151,18 @@ def test_path_that_is_lost_on_the_coarser_mesh(monkeypatch):
 def test_signal_on_the_coarser_path(monkeypatch, tmp_path):
     """The run ends as at any signal, and goes on with the coarser path alone."""
     whole = fp.run(scene())
-    plain = solves.follow
+    plain = whole_path.follow
 
     def stopped(model, comm, on_step):
         signal.raise_signal(signal.SIGTERM)
         return plain(model, comm, on_step)
 
-    monkeypatch.setattr(solves, "follow", stopped)
+    monkeypatch.setattr(whole_path, "follow", stopped)
     with pytest.raises(SystemExit) as ended:
         fp.run(scene(), out=tmp_path)
     result, steps = ended.value.result, len(whole.steps)
     assert result.failure.startswith(f"stopped by SIGTERM after step {steps}") and "--resume" in result.failure
-    monkeypatch.setattr(solves, "follow", plain)
+    monkeypatch.setattr(whole_path, "follow", plain)
     again = fp.run(scene(), out=tmp_path, resume=True)
     assert dataset.values(again) == dataset.values(whole) and again.notes == whole.notes
     assert again.record["accuracy"]["over_time"] == whole.record["accuracy"]["over_time"]
@@ -175,9 +174,9 @@ def _whole_path(monkeypatch, fine: Solve, coarse: Solve) -> WholePath:
     asked = scene(PRESS)
     model = FingerModel(by_rule(asked), plan(asked)).of_path()
     assert model.mesh.contact == SIZES["contact"] and model.final is None
-    monkeypatch.setattr(solves, "follow", lambda *args: coarse)
+    monkeypatch.setattr(whole_path, "follow", lambda *args: coarse)
     states = [next(iter(fine.states.values())).state]
-    found = WholePath(Solves(model, fine, MPI.COMM_SELF, lambda text: None, lambda: None), states, lambda done: None)
+    found = WholePath(model, fine, MPI.COMM_SELF, lambda text: None, states, lambda done: None)
     found.run()
     return found
 

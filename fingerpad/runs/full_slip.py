@@ -23,8 +23,8 @@ from typing import Any, NamedTuple
 from fingerpad.startup import MPI  # isort: skip  # before the libraries of finite elements
 from fingerpad.accuracy.estimate import errors_of
 from fingerpad.accuracy.richardson import of_two_meshes, rigid
-from fingerpad.accuracy.solves import solve_again
-from fingerpad.accuracy.states import Solve, StateRecorder, with_values
+from fingerpad.accuracy.solves import StateRecorder, solve_again
+from fingerpad.accuracy.states import Solve, with_values
 from fingerpad.model.cautions import lost
 from fingerpad.model.drive_loads import EQUAL, gap_factor
 from fingerpad.model.finger import Finger

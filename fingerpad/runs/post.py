@@ -11,6 +11,7 @@ the others waiting. Ranks agree after each entry whether it failed on any of the
 import traceback
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
+from functools import partial
 from pkgutil import resolve_name
 from typing import NamedTuple
 
@@ -36,11 +37,11 @@ class Entry(NamedTuple):
 
     name: str
     """In notes, with its article where it has one."""
-    needs: Callable[[Result, RunContext], bool]
-    """Whether a result has it, and a run wants it."""
     compute: str | Callable[[Result], object]
     """Takes the result, and returns it with what is new; what makes a file returns nothing of use. A text is the place
     of a function, ``module:function``, which is imported when it is needed."""
+    needs: Callable[[Result, RunContext], bool] = lambda *_: True
+    """Whether a result has it, and a run wants it."""
     files: bool = False
     """Whether it makes a file, of a result that is written: after all others, and on rank 0 alone."""
 
@@ -69,7 +70,7 @@ def cautions_on(states: Sequence[ContactState] = ()) -> Entry:
     Args:
         states: that it was computed from; by default its steps, or its named states.
     """
-    return Entry("cautions", _followed, lambda each: _cautions(each, states or each.steps or [*each.named.values()]))
+    return Entry("cautions", lambda each: _cautions(each, states or each.steps or [*each.named.values()]), _follows)
 
 
 def _sums(result: Result) -> Result:
@@ -94,60 +95,49 @@ def _picture(kind: str) -> Callable[[Result], None]:
     return draw
 
 
-def _followed(result: Result, context: RunContext) -> bool:
-    return bool(resolve_name("fingerpad.reduced.registry:follows_path")(result.model))
+def _follows(result: Result, _: RunContext) -> bool:
+    return result.follows_path
 
 
 def _page(result: Result, context: RunContext) -> bool:
     return context.report and result.folder is not None
 
 
-SUMS = Entry("sums of outputs", lambda result, _: result.finger is not None, _sums)
-WORDS = Entry("headline", lambda result, _: True, _words)
-BANDS = Entry(
-    "bands of friction",
-    lambda result, context: context.report or _followed(result, context),
-    "fingerpad.reduced.closure_band:with_band",
+SUMS = Entry("sums of outputs", _sums, lambda result, _: result.finger is not None)
+WORDS = Entry("headline", _words)
+BANDS = Entry("bands of friction", "fingerpad.reduced.closure_band:with_band", lambda r, c: c.report or r.follows_path)
+NEWTONS = Entry(
+    "newtons of the whole finger",
+    "fingerpad.slices.estimate:with_newtons",
+    lambda r, _: r.follows_path and r.finger is None,
 )
 POST: list[Entry] = [
-    Entry(
-        "newtons of the whole finger",
-        lambda result, c: _followed(result, c) and result.finger is None,
-        "fingerpad.slices.estimate:with_newtons",
-    ),
+    NEWTONS,
     SUMS,
     BANDS,
     cautions_on(),
     WORDS,
     Entry(
         "footprint.png",
-        lambda r, c: _page(r, c) and r.finger is not None and (r.whole or not r.steps),
         _picture("footprint"),
+        lambda r, c: _page(r, c) and r.finger is not None and (r.whole or not r.steps),
         files=True,
     ),
-    Entry("solid.png", lambda r, c: _page(r, c) and r.finger is not None and r.whole, _picture("solid"), files=True),
-    Entry("report", _page, "fingerpad.report.write:of_result", files=True),
+    Entry("solid.png", _picture("solid"), lambda r, c: _page(r, c) and r.finger is not None and r.whole, files=True),
+    Entry("report", "fingerpad.report.write:of_result", _page, files=True),
 ]
 """What follows from the states of a result, in order."""
 
 
 def of_outputs(outputs: Sequence[Output]) -> list[Entry]:
     """Return the entries of outputs of one's own, for results whose states do not have them yet."""
-
-    def computed(output: Output) -> Callable[[Result], Result]:
-        return lambda result: result.with_outputs([output])
-
-    return [Entry(f"output {each.name}", lambda *_: True, computed(each)) for each in checked(outputs)]
+    return [Entry(f"output {each.name}", partial(Result.with_outputs, outputs=[each])) for each in checked(outputs)]
 
 
 def of_kept(outputs: Sequence[Output]) -> list[Entry]:
     """Return the entries of outputs of one's own, for results that were read from their files, with their sums."""
-
-    def needs(result: Result, context: RunContext) -> bool:
-        return _followed(result, context) and result.finger is not None and not result.whole
-
-    sums = [POST[0]._replace(needs=needs), SUMS] if any(each.sum for each in outputs) else []
-    return [*of_outputs(outputs), *sums]
+    again = NEWTONS._replace(needs=lambda r, _: r.follows_path and r.finger is not None and not r.whole)
+    return [*of_outputs(outputs), *([again, SUMS] if any(each.sum for each in outputs) else [])]
 
 
 # -- where a result is made --------------------------------------------------------------------------------

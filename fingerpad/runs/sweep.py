@@ -15,7 +15,6 @@ import numpy as np
 from fingerpad import launcher
 from fingerpad.launcher import source, version
 from fingerpad.model.cautions import examine
-from fingerpad.reduced.registry import MODELS, find
 from fingerpad.report.write import attempt
 from fingerpad.results.data import checked as checked_outputs
 from fingerpad.results.files import FORMAT, below, check_folder, replace_json
@@ -24,7 +23,7 @@ from fingerpad.results.result import Result
 from fingerpad.runs import batch, chains
 from fingerpad.runs.context import RunContext
 from fingerpad.runs.post import applied, of_kept
-from fingerpad.runs.solve import checked, solved
+from fingerpad.runs.solve import MODELS, checked, find, solved
 from fingerpad.runs.sweep_results import FILE, Sweep
 from fingerpad.scene import Scene, value_of, with_values
 from fingerpad.scene.messages import SceneError, clip, show
@@ -65,7 +64,7 @@ def sweep(
         out: folder of the results, of ``table.csv`` and of ``report.html``; None to write nothing, of a model without
             finite elements alone.
         jobs: points that are run at a time.
-        model: a name of :data:`fingerpad.reduced.registry.MODELS`, ``"full"`` or ``"cylinders"``.
+        model: a name of :data:`fingerpad.runs.solve.MODELS`, ``"full"`` or ``"cylinders"``.
         quiet: whether to print no line for each point, and show no progress bar.
         outputs: further quantities, each computed from every state; the folders of the points do not have them.
         states: ``"all"``, each point by its own path; or ``"full_slip"``, full slip alone, which the full model solves
@@ -131,12 +130,12 @@ def _written(done: Sweep, folder: Path, about: dict[str, Any], place: Path) -> S
     Args:
         done: the sweep, with its notes.
         folder: of the files.
-        about: what ``sweep.json`` has beside outputs, cautions and notes.
+        about: what ``sweep.json`` has beside axes, rows, outputs, cautions and notes.
         place: folder of the points.
     """
     for name in FILES[:-1]:  # else that of an earlier sweep may stay beside this one's
         (folder / name).unlink(missing_ok=True)
-    about |= {"outputs": [each.to_dict() for each in done.outputs]}
+    about |= {"axes": list(done.axes), "rows": done.table(), "outputs": [each.to_dict() for each in done.outputs]}
     replace_json(folder / FILES[-1], about | {"cautions": done.cautions(), "notes": list(done.notes)})
     done.to_csv(folder / FILES[0])
     notes = (*done.notes, *filter(None, (_reached(done), done.save(), _older(done, place))))
