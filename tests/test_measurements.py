@@ -1,5 +1,6 @@
 """Tables of measurements beside computed values: what is read, compared, and refused in one sentence."""
 
+import json
 import re
 import shutil
 
@@ -236,11 +237,12 @@ def test_numbers_are_written(folder, table, tmp_path, capsys):
 
 def test_errors_of_a_sweep_count_with_the_spread(folder, table, tmp_path, capsys):
     """They are interpolated as the values are; a value without an error has a dash."""
-    heads = "f_ext,voltage,full_slip_mu_app,full_slip_mu_app_error,failure"
-    rows = f"{heads}\n25,0,0.30,0.02,\n25,100,0.40,0.04,\n25,200,0.5,,\n"
+    heads = ("f_ext", "voltage", "full_slip_mu_app", "full_slip_mu_app_error", "failure")
+    points = (25, 0, 0.3, 0.02, ""), (25, 100, 0.4, 0.04, ""), (25, 200, 0.5, None, "")
+    rows = {"rows": [dict(zip(heads, point, strict=True)) for point in points]}
     place = tmp_path / "kept"
     shutil.copytree(folder, place)
-    (place / "table.csv").write_text(rows)
+    (place / "sweep.json").write_text(json.dumps(json.loads((place / "sweep.json").read_text()) | rows))
     # 0.375 ± 0.035 at 86.6 V
     lines = "25, 50, 0.27, 0.04\n25, 86.602540378, 0.33, 0.011\n25, 100, 0.33, 0.02\n25, 200, 0.51, 0.02\n"
     file = table("force (N/m), voltage (V), friction (1), spread (1)\n" + lines)

@@ -225,8 +225,8 @@ def test_run_without_an_accepted_step_is_read_back(folder):
         ({"summary.json": '{"f_ext": 75,'}, "is not a folder of a finished run"),
         ({"result.nc": "CDF"}, "result.nc is not whole, or not of a run"),
         ({"summary.json": '{"failure": "f_ext is too large"}'}, "was refused and has no results: f_ext is too large"),
-        ({"table.csv": "voltage,full_slip_mu_app,failure\n100,0.3,\n200"}, "is cut short"),
-        ({"table.csv": "a,b\n1,2\n"}, "is not the table of a sweep"),
+        ({"sweep.json": '{"axes": ['}, "sweep.json in"),
+        ({"sweep.json": '{"axes": ["a"], "rows": [{"b": 1}]}'}, "its rows have no value of a varied key"),
     ],
 )
 def test_bad_folder_is_refused_in_a_sentence(tmp_path, capsys, files, words):
