@@ -98,7 +98,7 @@ def test_mean_density_of_bending(problem):
     Tolerance: strains of 1e-3 leave twelve digits of an energy density that is a difference of ones, some 1e-7 J/m.
     """
     problem.w.interpolate(lambda x: np.stack([0 * x[0], x[0] ** 2]))
-    cells, sed = sed_per_cell(problem)
+    sed = sed_per_cell(problem)
     area = 1e-6 / 72
     body = problem.mesh.comm.allreduce(float(sed.sum()) * area)
     dx = ufl.Measure("dx", problem.mesh, subdomain_data=problem.cell_tags, metadata={"quadrature_degree": 2})

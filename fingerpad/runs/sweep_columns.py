@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 from fingerpad.results import dataset
 from fingerpad.results.headline import SECTION, WHOLE
-from fingerpad.results.quantities import FINGER, FRICTION, QUANTITIES, SWEPT, Output, cell, in_table
+from fingerpad.results.quantities import FINGER, FRICTION, QUANTITIES, SWEPT, Output, in_table
 from fingerpad.results.states import STATES, LoadResult
 from fingerpad.scene import Scene
 from fingerpad.scene.keys import Key, by_name
@@ -155,7 +155,7 @@ def _cell(column: str, value: float | None) -> str:
     if value is None or math.isnan(value):
         return "–"
     key = next((key for key in _IN_TIME if re.search(rf"_{key}_(min|max|mean|amplitude)$", column)), None)
-    return f"{value:.4g}" if key is None else cell(key, value)
+    return f"{value:.4g}" if key is None else QUANTITIES[key].shown(value)
 
 
 def tables(rows: Sequence[Mapping[str, Any]], axes: Mapping[str, str]) -> Iterator[tuple[str, list[list[str]]]]:
