@@ -32,11 +32,6 @@ def test_sticking_by_voltage():
     assert "BearingArea" in sticking(fp.BearingArea(0.514e-6), 200.0)
 
 
-def test_ridge_that_adheres_is_named():
-    words = adhering(state(150.0, [3.0, 2.0, 0.9]), EXACT)
-    assert words.startswith("ridge 1 adheres without a load at 150 V: by the closure BoundaryElements ridges adhere")
-
-
 def test_ridge_under_the_least_load_is_the_nearest():
     """A ridge that lifted off, with a contact force of zero, is none that adheres."""
     words = adhering(state(150.0, [30.0, 20.0, 0.0]), EXACT)
@@ -46,28 +41,16 @@ def test_ridge_under_the_least_load_is_the_nearest():
     assert adhering(state(50.0, [3.0, 2.0, 0.9]), EXACT) == adhering(None, EXACT) == ""
 
 
-def test_fold_below_the_voltage_of_sticking():
-    """At 88 V a ridge of 1.2 kPa is past the fold, though a flat one adheres from 90.5 V on; one of 70 kPa is not."""
-    low, high = state(88.0, [0.12, 7.0, 7.0]), state(88.0, [7.0, 7.0, 7.0])
-    less = replace(low.ridges, f_electrostatic=0 * low.ridges.length)
-    assert adhering(replace(low, ridges=less), EXACT) == (
-        "ridge -1 is past the fold at 88 V of the closure BoundaryElements, where it comes down or lets go at once; "
-        "take a smaller voltage or another roughness.law"
-    )
-    assert adhering(low, EXACT) == "ridge -1 adheres without a load at 88 V; take a smaller voltage"
-    assert adhering(high, EXACT) == ""
-
-
 def test_states_that_attraction_holds_are_counted():
     """Without a force or pulled, under a voltage, in contact: the last of them and its ridge are named."""
     pressed, pulled = state(150.0, [3.0, 2.0, 1.5]), replace(state(150.0, [3.0, 2.0, 0.9]), f_ext=-0.1)
     free, lifted = replace(pressed, f_ext=1e-9), replace(pulled, contact_length=0.0)
     (text,) = on_states([pressed, free, pulled, lifted], EXACT)[:1]
-    assert text == (
+    assert str(text) == (
         "in 2 of 3 charged states the finger adheres without a load, most by ridge 1, at -0.1 N/m and 150 V; by "
         "the closure BoundaryElements ridges adhere without a load from 90.5 V on"
     )
-    assert not any("without a load" in text for text in on_states([pressed, replace(pulled, voltage=0.0)], EXACT))
+    assert not any("without a load" in str(text) for text in on_states([pressed, replace(pulled, voltage=0.0)], EXACT))
 
 
 def test_cylinders_without_an_equilibrium_say_it():

@@ -101,25 +101,14 @@ def test_filter_in_time_has_its_closed_form(name, frequency):
     assert np.ptp(found) / 2 == pytest.approx(15e-3 * 1e-6 / fp.afferents.threshold(name, frequency), rel=1e-2)
 
 
-def test_thresholds_take_arrays_and_short_names():
-    assert fp.afferents.threshold("RA", 40) == pytest.approx(1.050e-6, rel=1e-3)
-    assert fp.afferents.threshold("PC", [[100, 250]]) == pytest.approx(np.array([[0.174e-6, 0.084e-6]]), rel=1e-2)
-
-
 # -- refusals --------------------------------------------------------------------------------------------------------
 @pytest.mark.parametrize(
     ("ask", "said"),
     [
         (lambda: fp.afferents.find("SA9"), "the class is 'SA9'; it must be 'SA1' or"),
-        (lambda: fp.afferents.threshold("touch", 40), "the class is 'touch'; it must be 'SA1' or 'RA1' or 'PC'"),
         (lambda: fp.afferents.threshold("RA", 0), "the frequency is 0; it must be greater than 0 Hz"),
-        (lambda: fp.afferents.SA1().spikes([0, 1], 0), "dt is 0; it must be greater than 0 s"),
         (lambda: fp.afferents.RA1().spikes([0, 1], 0.02), "dt is 0.02 s; RA1 needs 0.00313 s or less between two"),
         (lambda: fp.afferents.SA1().spikes([0, np.nan], STEP), "must have finite numbers along (samples,)"),
-        (lambda: fp.afferents.SA1().spikes("loud", STEP), "the stimulus of SA1 or its dt is no number"),
-        (lambda: fp.afferents.RA1("touch"), "input is 'touch'; it must be 'stress' or 'strain'"),
-        (lambda: fp.afferents.threshold("RA", "loud"), "the frequency is 'loud'; it must be greater than 0 Hz"),
-        (lambda: fp.afferents.RA1(gain=-1.0), "gain is -1.0; it must be greater than 0"),
         (lambda: fp.afferents.PC(gain=0.0), "gain is 0.0; it must be greater than 0"),
     ],
 )

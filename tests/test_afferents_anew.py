@@ -7,7 +7,6 @@ import pytest
 from scipy.integrate import quad
 
 import fingerpad as fp
-from fingerpad.afferents.linear import FILTERS
 
 STEP = 1e-4
 
@@ -28,20 +27,6 @@ def test_every_law_begins_in_the_steady_state(law):
 
     assert len(spikes(0.0)) > 0
     assert spikes(0.0) == pytest.approx(spikes(3.0), abs=1e-9)
-
-
-def test_first_spikes_under_a_stress_that_has_always_been_there():
-    """20 kPa, and 5 kPa more in 30 ms from 20 ms: spikes (ms) of the independent program."""
-    time = STEP * np.arange(2001)
-    found = fp.afferents.SA1().spikes(np.interp(time, [0.02, 0.05], [20e3, 25e3]), STEP)
-    assert 1e3 * found == pytest.approx([38.4, 100.6, 187.5], abs=0.15)
-
-
-@pytest.mark.parametrize("name", sorted(FILTERS))
-def test_filter_begins_in_the_steady_state(name):
-    """The potential of a displacement that stays, K_u A_s of it, is there at once. Tolerance: roundoff of poles."""
-    one = FILTERS[name]
-    assert one.potential(np.full(2000, 1e-5), STEP) == pytest.approx(one.gain * one.k_u * 1e-5, abs=1e-9)
 
 
 # -- SA1 -------------------------------------------------------------------------------------------------------------
@@ -88,12 +73,6 @@ def test_sa1_has_the_spikes_of_a_second_program(times, stress, least):
     found, expected = 1e3 * fp.afferents.SA1().spikes(1e3 * held, STEP), sa1(held)
     assert len(found) == len(expected) >= least
     assert found == pytest.approx(expected, abs=0.11)
-
-
-def test_least_interval():
-    """A stress whose current charges a unit within 1 ms gives 1000 spikes in a second, no more."""
-    spikes = fp.afferents.SA1().spikes(np.full(10001, 4e6), STEP)
-    assert np.diff(spikes) == pytest.approx(1e-3, abs=1e-9)
 
 
 # -- RA1 and PC ------------------------------------------------------------------------------------------------------

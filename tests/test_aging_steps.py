@@ -30,13 +30,6 @@ def test_between_samples():
     assert longest(0.5, duration=0.1, since=10.0) == pytest.approx((2.5 * TAU + 0.05) / 4)
 
 
-def test_without_time():
-    """A load that changes at once, and laws without a time, have no such bound."""
-    assert Way(Progress(Control(), 0.0, 0.0, np.zeros(2), 0.0, 0), Target("load")).longest(0.0, TAU) == 1.0
-    start = Progress(Control(), 0.0, 0.0, np.zeros(2), 0.0, 0)
-    assert Way(start, Target("load", duration=1.0, since=1.0)).longest(0.0, np.inf) == np.inf
-
-
 def test_pieces_of_a_square():
     """Each jump of the voltage begins the time anew; pieces after it go on."""
     wave = {"waveform": "square", "amplitude": 50.0, "frequency": 10.0}

@@ -8,12 +8,11 @@ import pytest
 from PIL import Image
 
 from fingerpad.cli import main
-from fingerpad.reduced.registry import find
 from fingerpad.results import fields
 from fingerpad.results.pictures import animation
 from fingerpad.results.result import Result
 from fingerpad.runs.context import RunContext
-from fingerpad.runs.solve import solved
+from fingerpad.runs.solve import find, solved
 from tests.small_finger import small
 
 pytestmark = pytest.mark.slow

@@ -36,18 +36,6 @@ def test_errors_from_two_meshes_need_their_factors(numbers, safety, sites):
     assert any(whole(weaker, kind) < COVERED * n for kind, n in counts.items())
 
 
-def test_energy_density_counts_once():
-    """One at the mirrored site of a symmetric state is the same number; full slip has no such symmetry."""
-    facets, one = {"charged": 1e-6, "full_slip": 1e-6}, {"charged_sed_1": 8.0, "charged_sed_-1": 8.0}
-    parts = one | {"full_slip_sed_-1": 8.0, "full_slip_mu_app": 0.5, "full_slip_f_t": 37.5}
-    finer = {name: 1.01 * value for name, value in parts.items()}
-    solves = {name: {"parts": parts, "facets": facets} for name in ("coarse", "final")}
-    known = two_meshes.cases({"a scene": solves | {"finer": {"parts": finer}}, "another": {"failure": "none"}})
-    assert [case.name for case in known] == ["charged_sed_1", "full_slip_sed_-1", "full_slip_mu_app"]
-    assert [case.known for case in known] == pytest.approx([100 * 0.01 / 1.01] * 3, rel=1e-9)
-    assert two_meshes.coverage(known) == (3, 0)  # two meshes that agree estimate no error
-
-
 # -- runs with an accuracy -----------------------------------------------------------------------------------
 @pytest.fixture(scope="module")
 def cases():

@@ -121,8 +121,8 @@ def test_two_states_are_found_from_both_sides(monkeypatch):
     assert [r.record.get(OTHER, {}).get("ridges_in_contact") for r in results] == [None, 3, 3, None]
     assert results[2].record[OTHER]["reached"] == "full slip from voltage 50 V"
     caution = "there are two states of full slip: f_T 1.25 N/m with 5 ridges (full slip from voltage 70 V) and f_T 0.75"
-    assert results[2].cautions[-1].startswith(caution)
-    assert not any("two states" in text for r in (results[0], results[3]) for text in r.cautions)
+    assert str(results[2].cautions[-1]).startswith(caution)
+    assert not any("two states" in text.text for r in (results[0], results[3]) for text in r.cautions)
     assert results[1].record["reached"] == "full slip from voltage 100 V"
 
 
@@ -157,10 +157,12 @@ def test_point_has_the_values_and_errors_of_the_scenes_mesh(monkeypatch):
     cost = result.cost
     assert (cost.unknowns, cost.factorisations, cost.newton_iterations) == (100, 5, 9)
     assert result.record["accuracy"]["mesh"] == MeshSize().model_dump() and "path_mesh" in result.record
-    assert any("0.99 N/m with 4 ridges on the scene's mesh, and 1.25 N/m with 5" in text for text in result.cautions)
+    assert any(
+        "0.99 N/m with 4 ridges on the scene's mesh, and 1.25 N/m with 5" in text.text for text in result.cautions
+    )
     monkeypatch.setattr(Chain, "_final", lambda self, model, state: sharp(state))
     (result,), _ = followed(monkeypatch, Skin(), [100.0])
-    assert not any("mesh" in text for text in result.cautions)
+    assert not any("mesh" in text.text for text in result.cautions)
 
 
 def test_second_state_is_one_of_the_scenes_mesh(monkeypatch):
@@ -178,7 +180,9 @@ def test_second_state_is_one_of_the_scenes_mesh(monkeypatch):
     results, written = followed(monkeypatch, Skin(), [100.0, 70.0, 65.0, 50.0])
     assert written == [0, 1, 2, 3, 1], "from 65 V, the one that was not found there goes on"
     assert results[1].record[OTHER]["f_t"] == 0.375
-    assert "f_T 0.625 N/m with 5 ridges (full slip from voltage 100 V) and f_T 0.375 N/m" in results[1].cautions[-1]
+    assert "f_T 0.625 N/m with 5 ridges (full slip from voltage 100 V) and f_T 0.375 N/m" in str(
+        results[1].cautions[-1]
+    )
 
 
 def test_point_not_found_on_the_scenes_mesh_is_a_run(monkeypatch):

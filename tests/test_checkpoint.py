@@ -53,15 +53,6 @@ def test_goes_on_from_the_one_before(tmp_path):
     assert read(tmp_path) == (3, [0, 1, 10, 70])
 
 
-@pytest.mark.parametrize("count", [1, 2, 5])
-def test_another_list_begins_anew(tmp_path, count):
-    """As that of a path that is followed again on another mesh, shorter or longer than the one before."""
-    kept = checkpoint(tmp_path)
-    kept.write({"number": 1}, items(0, 2))
-    kept.write({"number": 2}, items(50, count))
-    assert read(tmp_path) == (2, list(range(50, 50 + count)))
-
-
 def test_damaged_items(tmp_path):
     """Of the last checkpoint, and of an earlier one."""
     kept, grown = checkpoint(tmp_path), items(0, 2)

@@ -1,13 +1,12 @@
 """The band of friction over models of roughness: its numbers, its words, and where there is none."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 import pytest
 
 import fingerpad as fp
 from fingerpad.reduced import closure_band
-from fingerpad.report.trust import GOOD, Finding, verdict
 from fingerpad.results.headline import band_in_words
 from fingerpad.results.quantities import BAND
 from fingerpad.scene import from_data
@@ -32,19 +31,6 @@ def test_band_is_that_of_runs_with_these_closures(result):
         other = fp.run(result.scene.replace(roughness=law), model="cylinders")
         assert kept[words] == pytest.approx(other.full_slip.mu_app, rel=1e-9), words
     assert len(kept) == 5
-
-
-def test_band_scales_the_result(result):
-    """A result with twice the friction has twice the band."""
-    twice = replace(result, full_slip=replace(result.full_slip, mu_app=2 * result.full_slip.mu_app))
-    found, kept = closure_band.with_band(twice).record[BAND]["mu_app"], result.record[BAND]["mu_app"]
-    assert found == {words: pytest.approx(2 * value) for words, value in kept.items()}
-
-
-def test_points_of_a_sweep_have_the_band(result):
-    """That of a run, kept or not; none without voltage."""
-    none, point = fp.sweep(fp.Scene(), model="cylinders", voltage=[0.0, 70.7])
-    assert none.closures == {} and point.closures == pytest.approx(result.closures, rel=1e-9)
 
 
 def test_own_closure_is_in_the_band():
@@ -91,11 +77,6 @@ def charged(result):
     """Return the ridges' pressure (Pa), and the voltage (V) of a drive across their air gap."""
     p_c, d_eq = (result.record[f"full_slip_{name}"] for name in ("p_c", "d_eq"))
     return p_c, float(result.scene.drive.effective(d_eq))
-
-
-def test_verdict_is_of_what_was_examined():
-    kind, words = verdict([Finding("mesh", GOOD, "Fine.")])
-    assert kind == GOOD and words.endswith("What the finger and the model assume is not in it.")
 
 
 def test_closure_beyond_its_table_has_no_number():

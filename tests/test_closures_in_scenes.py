@@ -5,7 +5,6 @@ import pytest
 
 import fingerpad as fp
 from fingerpad.cli import main
-from fingerpad.cli import roughness as microscale
 from fingerpad.scene import with_values
 from variational.roughness.spectrum import SelfAffine
 
@@ -24,9 +23,6 @@ def test_scene_and_back(law):
         ({"shortest_wave": 1e-6}, "roughness.shortest_wave is 1e-06 m; .* so take 1.563e-06 to 1.25e-05 m"),
         ({"hurst": 0.5}, "roughness.hurst is 0.5; tables of the package are for 0.6 to 0.9, and Persson has no such"),
         ({"p_floor": 1e6}, "roughness.p_floor is 1000000; it must be below the end of the table of gaps"),
-        ({"surface": "abc"}, "roughness.surface is 'abc', and .* has no table of that name"),
-        ({"field_in_contact": 2}, "roughness.field_in_contact is 2; it must be true or false"),
-        ({"gamma": 0.4}, "roughness.gamma"),
     ],
 )
 def test_refused_in_a_scene(table, words, tmp_path, monkeypatch):
@@ -50,20 +46,6 @@ def test_height_map_of_a_scene(tmp_path, monkeypatch):
         fp.Scene(roughness={"law": "BoundaryElements", "topography": given | {"size": ["100 um", "90 um"]}})
 
 
-def test_height_map_has_what_it_measures(tmp_path, monkeypatch):
-    """Keys that would not be read are refused beside a map; heights in another unit are refused."""
-    monkeypatch.setenv("FINGERPAD_CACHE", str(tmp_path))
-    rough = SelfAffine(2.0, 0.8, 40.0, shortest=12.0).surface((48, 48), (100.0, 100.0), 1)
-    np.save(tmp_path / "skin.npy", rough.heights)
-    given = {"file": str(tmp_path / "skin.npy"), "unit": "um", "size": ["100 um", "100 um"]}
-    for name, value in (("hurst", 0.8), ("shortest_wave", "3 um"), ("surface", "abc")):
-        with pytest.raises(fp.SceneError, match=f"roughness.{name} is .* and roughness.topography is given too"):
-            fp.Scene(roughness={"law": "BoundaryElements", "topography": given, name: value})
-    assert fp.Scene(roughness={"law": "Persson", "topography": given, "hurst": 0.8}).roughness.hurst == 0.8
-    with pytest.raises(fp.SceneError, match="roughness.topography has h_rms = .* is the unit of the heights or"):
-        fp.Scene(roughness={"law": "BoundaryElements", "topography": given | {"unit": "pm"}})
-
-
 def test_result_is_read_where_the_table_is_not(tmp_path, monkeypatch):
     """A folder on another computer: numbers, band and report are in it; another run needs the map."""
     monkeypatch.setenv("FINGERPAD_CACHE", str(tmp_path / "here"))
@@ -76,14 +58,6 @@ def test_result_is_read_where_the_table_is_not(tmp_path, monkeypatch):
     assert found.full_slip.mu_app == made.full_slip.mu_app and main(["report", str(tmp_path / "run")]) == 0
     with pytest.raises(fp.SceneError, match="roughness.surface is .* has no table of that name"):
         fp.run(found.scene.replace(voltage=60.0), model="cylinders")
-
-
-@pytest.mark.parametrize("law", ["BoundaryElements", "Persson"])
-def test_microscale_table(law):
-    scene = fp.Scene(roughness={"law": law})
-    for row in microscale.table(scene, [100.0], [5e3, 5e4]):
-        assert row["p_el"] == pytest.approx(float(scene.roughness.attraction(row["p_c"], 100.0)), rel=1e-4)
-        assert row["p_ext"] == pytest.approx(row["p_c"] - row["p_el"])
 
 
 def test_sweep_over_closures_is_of_one_surface():
@@ -101,15 +75,6 @@ def test_sweep_over_laws_of_friction_keeps_a_coefficient_that_is_a_number():
     scene = fp.Scene(friction=0.3)
     assert with_values(scene, {"friction.law": "Coulomb"}).friction == 0.3
     assert with_values(scene, {"friction.law": "Derjaguin", "friction.tau_0": 5e3}).friction.mu_f == 0.3
-
-
-def test_sweep_over_closures():
-    """Cylinders, 75 N/m at 70.7 V: more attraction by boundary elements, least without a field where it touches."""
-    curve = fp.sweep(
-        fp.Scene(voltage=70.7), model="cylinders", **{"roughness.law": ["BearingArea", "BoundaryElements"]}
-    )
-    bearing, exact = (run.full_slip.mu_app for run in curve)
-    assert 0.25 < bearing < exact - 0.05
 
 
 @pytest.mark.parametrize(("voltage", "told"), [(200, True), (80, False)])

@@ -97,19 +97,6 @@ def test_runs_of_other_models_and_screens_are_refused(tmp_path):
         refuse_mixed(runs)
 
 
-def test_two_values_at_one_place_are_refused(table):
-    """Roundoff of force, voltage and value is none, nor is what the errors allow."""
-    friction = read(table("force (N/m), voltage (V), friction (1)\n20, 100, 0.3\n"))
-
-    def slip(mu, f_ext=20.0, **more):
-        return Result(Scene(), "full", None, None, state(4, f_ext, 100.0, mu_app=mu, **more))
-
-    computed([slip(0.4), slip(0.4 + 1e-7, 20 + 1e-8)], friction)
-    computed([slip(0.4), slip(0.41, error=Errors(mu_app=0.02))], friction)  # on another mesh, for an accuracy
-    with pytest.raises(SceneError, match="friction is 0.4 in a run and 0.41 in a run, both at 20 N/m and 100 V; give"):
-        computed([slip(0.4), slip(0.41)], friction)
-
-
 def test_forces_on_the_finger_may_differ():
     """And be those at its centre; all else may not."""
 
@@ -119,17 +106,3 @@ def test_forces_on_the_finger_may_differ():
     refuse_mixed([under(0.3, voltage=100), under(0.5, voltage=150), Result(Scene(), "full", *[None] * 3)])
     with pytest.raises(SceneError, match=r"friction is 0\.25 in a run and 0\.3 in a run"):
         refuse_mixed([under(0.3), under(0.5, friction=0.3)])
-
-
-def test_histories_may_differ_in_force_and_voltage():
-    """The force may be given by the height of the bone too; other moves are other loads."""
-
-    def history(press, volts, way):
-        loads = [{"name": "press"} | press, {"name": "on", "voltage": volts}, {"name": "off", "bone_x": way}]
-        return Result(Scene(history=loads), "full", None, None, None)
-
-    refuse_mixed([history({"f_ext": 20}, 100, 1e-3), history({"bone_height": -1e-3}, 200, 1e-3)])
-    with pytest.raises(SceneError, match=r"history\[2\].bone_x is 0.001 in a run and 0.002 in a run"):
-        refuse_mixed([history({"f_ext": 20}, 100, 1e-3), history({"f_ext": 20}, 100, 2e-3)])
-    with pytest.raises(SceneError, match="in a run and .* in a run; give runs that differ in force and voltage alone"):
-        refuse_mixed([Result(Scene(), "full", None, None, None), history({"f_ext": 20}, 100, 1e-3)])

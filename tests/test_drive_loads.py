@@ -24,11 +24,6 @@ def over(found: fp.Scene):
     return np.array(wave.times), np.array(wave.voltages)
 
 
-def test_lossless_waveform_stays_itself():
-    found = scene(SINE)
-    assert drive_loads.loads(found) == found.history and drive_loads.gap_factor(found) is None
-
-
 def test_ends_in_the_steady_state():
     """Amplitude and phase of the last period are those of the circuit. Tolerance: of 48 straight pieces a period."""
     found = scene(SINE, **DRY)
@@ -68,25 +63,12 @@ def _after(t, v, begin: float):
     return v[(t > begin + 1e-6) & (t < begin + 0.024)]
 
 
-def test_mean_is_constant():
-    _, v = over(scene(SINE | {"frequency": 5e3}, follows="mean"))
-    assert_allclose(v, 100 / 2**0.5, rtol=1e-6)
-
-
 def test_mean_of_a_file_is_constant():
     """A triangle's root mean square, however often it repeats itself: its points are no steps."""
     file = {"waveform": "file", "times": [0.0, 1e-5, 3e-5, 4e-5], "voltages": [0.0, 100.0, -100.0, 0.0]}
     t, v = over(scene(file | {"repeat": True}, follows="mean"))
     assert list(t) == [0.0, 0.2]
     assert_allclose(v, 100 / 3**0.5, rtol=1e-5)
-
-
-def test_share_is_that_of_the_gap():
-    """One at the reference gap."""
-    found = scene(SINE, **DRY)
-    gaps = np.array([1e-6, REFERENCE, 12e-6])
-    ratio = drive_loads.gap_factor(found)(gaps)
-    assert ratio[1] == pytest.approx(1.0) and ratio[2] < ratio[0] != 1.0
 
 
 @pytest.mark.parametrize(

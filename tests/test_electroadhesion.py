@@ -5,12 +5,10 @@ import pytest
 import ufl
 from dolfinx import fem
 from mpi4py import MPI
-from scipy.integrate import trapezoid
 
 from geometry.bodies import block
 from geometry.mesh import load
-from tests.test_problem import D_EQ, EPS_0, H_0, VOLTAGE, make, rates, residual
-from variational.attraction import electroadhesion
+from tests.test_problem import EPS_0, H_0, VOLTAGE, make, rates, residual
 from variational.problem import Problem
 from variational.resultants import Observer
 
@@ -92,31 +90,3 @@ def test_resultant_of_a_slope():
     over_the_rise = EPS_0 * VOLTAGE**2 / 2 * (1 / (H_0 + left) - 1 / (H_0 + right))
     assert loads.f_attraction[0] == pytest.approx(over_the_rise * 1.1e-3 / (right - left), rel=5e-9)
     assert loads.f_attraction_x[0] == pytest.approx(over_the_rise, rel=5e-9)
-
-
-def test_law_of_the_attraction():
-    """The potential's slope is p_el, and both are continuous at d_eq.
-
-    Tolerance: central differences of step 1e-4 of the length over which p_el changes leave 1.5e-9 of it; p_el itself
-    is the closed form to roundoff.
-    """
-    y = np.array([-0.5e-6, 0.3e-6, 1.9e-6, 2.1e-6, 5e-6])
-    step = 1e-10
-
-    def at(law, heights):
-        return np.array([float(law(ufl.as_ufl(h), D_EQ, VOLTAGE, H_0)) for h in heights])
-
-    slope = (at(electroadhesion.potential, y + step) - at(electroadhesion.potential, y - step)) / (2 * step)
-    pressure = at(electroadhesion.attraction, y)
-    np.testing.assert_allclose(slope, pressure, rtol=1e-8)
-    closed = EPS_0 * VOLTAGE**2 / 2 / (H_0 + np.maximum(y, D_EQ)) ** 2
-    np.testing.assert_allclose(pressure, closed, rtol=1e-14)
-
-
-def test_force_at_the_end_of_a_skin_on_the_screen():
-    """That of docs/laws.md: the end of a charged foot bears the potential, as does a vertical side above it."""
-    at_the_corner = float(electroadhesion.potential(ufl.as_ufl(0.0), 2e-6, 200.0, 0.5e-6))
-    assert at_the_corner == pytest.approx(-0.13, abs=0.005)
-    y = np.concatenate([[0.0], np.geomspace(1e-9, 1e3, 20001)])
-    pull = EPS_0 * 200.0**2 / 2 / (0.5e-6 + np.maximum(y, 2e-6)) ** 2
-    assert trapezoid(pull, y) == pytest.approx(-at_the_corner, rel=1e-5)

@@ -55,28 +55,6 @@ def test_without_it_they_would_be(tmp_path, clean):
     assert done.stdout == "True ['found']\n77 77.0\n"
 
 
-@pytest.mark.slow
-def test_nothing_is_taken_from_the_home_folder(tmp_path, clean):
-    """Its files were written for other programs; the control shows that these libraries read them."""
-    place, home = tmp_path / "place", tmp_path / "home"
-    for name in (".petscrc", ".config/dolfinx/dolfinx_jit_options.json", ".config/ffcx/ffcx_options.json"):
-        (home / name).parent.mkdir(parents=True, exist_ok=True)
-        (home / name).write_text(FOUND[name.rpartition("/")[2]].format())
-    place.mkdir()
-    found = [
-        run(place, first + STATE.replace(', matplotlib.rcParams["lines.linewidth"]', ""), HOME=str(home))
-        for first in ("", "import fingerpad.startup")
-    ]
-    assert found[0].stdout == "True ['found']\n77\n"
-    assert found[1].stdout == clean.replace(" 1.5\n", "\n"), found[1].stderr
-
-
-def test_the_environment_and_the_command_line_are_obeyed(tmp_path):
-    code = "from fingerpad.startup import start; start(['-c', 'line'])\nfrom petsc4py import PETSc\n"
-    code += "o = PETSc.Options(); print(*(o.getString(name) for name in 'bc'))"
-    assert run(tmp_path, code, PETSC_OPTIONS="-b environment -c environment").stdout == "environment line\n"
-
-
 def test_modules_of_the_current_folder_are_not_run(tmp_path):
     """Processes of a sweep are started with python3 -m, which looks there first."""
     (tmp_path / "numpy.py").write_text("raise SystemExit('found')")

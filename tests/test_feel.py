@@ -2,10 +2,9 @@
 
 import copy
 
-import numpy as np
 import pytest
 
-from benchmarks.feel import rules, scenes, subfield
+from benchmarks.feel import rules, scenes
 from benchmarks.measured.rules import HIT, MISS
 
 STEP = {
@@ -62,16 +61,3 @@ def test_each_rule_can_miss(number):
         part = part[step]
     part[key] = value
     assert rules.judge(numbers)[number - 1].verdict == MISS
-
-
-def test_gain_and_what_it_leaves():
-    """Thresholds that are 3 times others leave nothing; a factor of 10 both ways leaves 1."""
-    assert rules.log_gain([3.0, 30.0], [1.0, 10.0]) == pytest.approx((np.log10(3), 0.0))
-    assert rules.log_gain([10.0, 1.0], [1.0, 10.0]) == pytest.approx((0.0, 1.0))
-
-
-def test_width_at_half_height():
-    """Of a triangle, and of one on a foot beyond which there is more."""
-    arcs = np.linspace(-2, 2, 401)
-    assert subfield.width(arcs, np.maximum(1 - np.abs(arcs), 0)) == pytest.approx(1.0)
-    assert subfield.width(arcs, np.maximum(1 - np.abs(arcs), 0) + 0.9 * (arcs > 1.5)) == pytest.approx(1.0)

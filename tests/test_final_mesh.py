@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 
-from fingerpad.accuracy import solves
+from fingerpad.accuracy import refinement as refining
 from fingerpad.accuracy.richardson import SITES, TWO, of_two_meshes, value
 from fingerpad.model.options import FingerModel, by_rule, plan
 from fingerpad.results.interrupt import Interrupted
@@ -44,7 +44,7 @@ def test_estimate_is_of_the_path_and_the_final_mesh(monkeypatch):
 @pytest.mark.parametrize(("receptor", "estimated"), [(5e-6, True), (20e-6, False)])
 def test_energy_densities_on_large_elements_have_no_error(monkeypatch, receptor, estimated):
     """On elements larger than the tips at the sites, of a radius of 6 µm, two meshes do not show it."""
-    monkeypatch.setattr(solves, "solve_again", lambda model, states, comm, *more: known(model, states, comm))
+    monkeypatch.setattr(refining, "solve_again", lambda model, states, comm, *more: known(model, states, comm))
     model = model_of({"mesh": {"receptor": receptor}})
     found = refinement(model, known(model, {}, MPI.COMM_SELF))
     found.run()
@@ -99,7 +99,7 @@ def test_path_is_followed_on_the_final_mesh_where_other_ridges_touch_there(monke
         change(solve, ridges_in_contact=16 if model.mesh.contact < 20e-6 else 17)
         return solve
 
-    monkeypatch.setattr(solves, "solve_again", other)
+    monkeypatch.setattr(refining, "solve_again", other)
     model = model_of({"numerics": {"memory": 1e15}})
     restart = refinement(model, known(model, {}, None)).run()
     words = "found no equilibrium" if lost_there else "16 ridges touch at full slip on the final mesh"

@@ -13,7 +13,7 @@ from geometry import fingertip, sizing, tags
 from geometry.mesh import load
 from geometry.parameters import Fingertip
 from geometry.profiles import GeometryError
-from geometry.reflection import HalfMesh, swapped
+from geometry.reflection import HalfMesh
 from tests.measures import integral, vertices
 from tests.small_finger import SMALL
 from tests.test_profiles import UM, WAVE, dense
@@ -74,44 +74,6 @@ def test_ridges_of_the_mesh(finger_mesh, profiles):
         assert away_from(nodes, ends) < 1e-15
 
 
-def test_contact_size(finger_mesh):
-    """Facets about the tips that can touch are about as long as asked; those in the grooves may be longer.
-
-    Tolerance: gmsh's freedom to space them, 2 % here; those in the grooves are at most twice as long on average.
-    """
-    body = finger_mesh
-    for j in (-4, 0, 3):
-        facets = body.facet_tags.find(tags.ridge(j))
-        x = np.sort(vertices(body, facets)[:, 0])
-        if j == 0:
-            x = x[np.abs(x) < 0.3 * WAVE]
-            assert np.diff(x).max() < 1.1 * 30 * UM
-        assert len(facets) >= WAVE / (2 * 30 * UM)
-
-
-def interface(body, one, other):
-    layer = np.zeros(body.mesh.topology.index_map(2).size_local, dtype=int)
-    layer[body.cell_tags.indices] = body.cell_tags.values
-    body.mesh.topology.create_connectivity(1, 2)
-    links = body.mesh.topology.connectivity(1, 2)
-    every = range(body.mesh.topology.index_map(1).size_local)
-    return [f for f in every if sorted(layer[links.links(f)]) == sorted((one, other))]
-
-
-@pytest.mark.parametrize(
-    ("layers", "depth", "within"),
-    [
-        ((tags.STRATUM_CORNEUM, tags.VIABLE_EPIDERMIS), "sc_ve", 0.1 * UM),
-        ((tags.VIABLE_EPIDERMIS, tags.DERMIS), "ve_d", 0.5 * UM),
-        ((tags.DERMIS, tags.SUBCUTIS), "d_sub", 0.1 * UM),
-    ],
-)
-def test_interfaces_of_the_mesh(finger_mesh, profiles, layers, depth, within):
-    """Nodes between two layers are on their curve. Tolerance: splines, above all at the VE-D junction's sharp tips."""
-    nodes = vertices(finger_mesh, interface(finger_mesh, *layers))
-    assert away_from(dense(profiles, getattr(profiles, depth)), nodes) < within
-
-
 @pytest.mark.mpi
 def test_bone_rim(finger_mesh, profiles):
     """The rim is closed: its normals add up to nothing; its length is the ellipse's. Tolerance: chords of 1 mm."""
@@ -144,16 +106,6 @@ def test_finger_is_a_half_and_its_mirror_image(coarse, finger_mesh):
 
 # -- triangles with two sides on the skin ----------------------------------------------------------------------------
 SQUARE = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
-
-
-@pytest.mark.parametrize("turn", [0, 1, 2])
-def test_corner_of_a_square_goes_to_its_neighbour(turn):
-    """Whatever node a triangle begins with: same area, same sense, one side each."""
-    triangles = np.array([np.roll([1, 2, 3], turn), [1, 3, 4]])
-    found = swapped(SQUARE, np.array([[1, 2], [3, 2]]), {7: triangles})[7]
-    assert {frozenset(nodes) for nodes in found.tolist()} == {frozenset((1, 2, 4)), frozenset((2, 3, 4))}
-    a, b, c = (SQUARE[found[:, k] - 1] for k in range(3))
-    np.testing.assert_allclose(np.linalg.det(np.stack([b - a, c - a], axis=1)), 1.0)
 
 
 @pytest.mark.slow

@@ -77,15 +77,6 @@ def test_one_run_at_a_time(scene, folder, finished):
         pass
 
 
-def test_folder_of_a_refused_scene_goes_again(tmp_path):
-    """One that the run has made; not one that was there, nor what is in it."""
-    other, new = from_data({"geometry": {"ridge_count": 9}}), tmp_path / "new"
-    for out in (new, tmp_path):
-        with pytest.raises(fp.SceneError, match="geometry is not that of the default finger"):
-            fp.run(other, model="cylinders", out=out)
-    assert not new.exists() and tmp_path.exists()
-
-
 @pytest.mark.mpi
 def test_refused_on_all_ranks(scene, folder):
     """The folder is a file: the first rank finds out, and all say so."""
@@ -139,7 +130,7 @@ def test_a_crash_before_the_first_step_leaves_the_last_one(scene, folder, finish
     def crash(*_):
         raise ZeroDivisionError
 
-    monkeypatch.setattr("fingerpad.runs.attempt.Simulation", crash)
+    monkeypatch.setattr("fingerpad.runs.full.Simulation", crash)
     with pytest.raises(ZeroDivisionError):
         run(scene, folder, MPI.COMM_WORLD)
     assert kept(folder) == finished
@@ -155,10 +146,3 @@ def test_a_run_takes_the_folder(scene, folder, finished):
     assert json.loads((folder / "scene.json").read_text()) == json.loads(json.dumps(scene.parameters()))
     assert [name for name, data in kept(folder).items() if data == b"old"] == ["notes of mine.txt"]
     assert summary["provenance"]["petsc_options"]["-fingerpad_pc_type"] == "lu"
-
-
-@pytest.mark.mpi
-def test_model_without_a_path_takes_a_communicator(tmp_path):
-    """Of one rank: each has a folder of its own."""
-    found = fp.run(model="cylinders", out=tmp_path / "own", comm=MPI.COMM_SELF)
-    assert found.folder == tmp_path / "own" and (tmp_path / "own" / "summary.json").exists()

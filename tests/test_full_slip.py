@@ -44,19 +44,6 @@ def test_slide_goes_on_the_way_it_came(end):
     assert slid[-1].f_t == pytest.approx(np.sign(end) * 0.25, rel=1e-6)
 
 
-def test_time_goes_on_where_full_slip_is_not_steady_at_once(monkeypatch):
-    """The slide goes on from where it is, and so does its time, at the speed of the bone."""
-    steady = iter([False])
-    slides_on = FullSlip.slides_on
-    monkeypatch.setattr(FullSlip, "slides_on", lambda self, *args: slides_on(self, *args) and next(steady, True))
-    slide = {"name": "slide", "bone_x": 1e-3, "speed": 0.02, "until_full_slip": True}
-    scene = small(output={"receptors": False}).replace(history=[{"name": "press", "f_ext": 1.0}, slide])
-    simulation = followed(scene)
-    slid = [state for state in simulation.states if state.load == "slide"]
-    assert [state.time for state in slid] == pytest.approx([state.bone_x / 0.02 for state in slid], rel=1e-9)
-    assert next(steady, None) is None
-
-
 class Slid:
     """In place of a continuation: each load changes f_t by a given part."""
 

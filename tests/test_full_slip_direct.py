@@ -108,9 +108,3 @@ def test_unsteady_and_unstable_states_are_refused(solved, monkeypatch):
     monkeypatch.setattr("fingerpad.model.state._STEADY", -1.0)
     with pytest.raises(StepFailed, match="not steady"):
         slips.solve(there, first)
-
-
-def test_path_without_full_slip_is_no_beginning():
-    simulation = path_of({"slide_length": 1e-6})
-    with pytest.raises(StepFailed, match="ends without full slip"):
-        FullSlips(simulation).first(Conditions.of(model_of({})))

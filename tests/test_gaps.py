@@ -137,33 +137,6 @@ def test_measured_map_is_computed_once(cache, surface):
     assert h_rms == measured.h_rms
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize(("waves", "low", "high"), [(1, 0.03, 0.13), (2, 0.0, 0.05)])
-def test_size_of_what_mirror_images_change(waves, low, high):
-    """Maps cut out of a larger surface have a smaller air gap than it, by what the docstring has, or some of that.
-
-    All cuts of one surface: chance differs by 2 % at most from one surface to the next.
-    """
-    spectrum = SelfAffine(1.0, 0.75, 2 * np.pi, plateau=False, shortest=2 * np.pi / RATIO)
-    whole, n, h_0 = spectrum.surface((256, 256), (2 * WIDTH, 2 * WIDTH), 0), 32 * waves, 0.166
-    cuts = [whole.cut((i, j), (n, n)).detrended("curvature") for i in range(0, 256, n) for j in range(0, 256, n)]
-
-    def air_gap(maps: list[HeightMap], pressure: float) -> float:
-        square = [((h_0 + press(each, pressure, 1.0).gap) ** -2).mean() for each in maps]
-        return float(np.mean(square) ** -0.5) - h_0
-
-    for pressure in (0.07, 0.3):
-        part = air_gap([contacts.mirrored(cut) for cut in cuts], pressure) / air_gap([whole], pressure)
-        assert low < 1 - part < high
-
-
-def test_pixels_of_a_measured_map_count_once():
-    """At the lowest pressure of the table 20 of the map's own pixels touch, or 80 of its mirror images."""
-    measured = SelfAffine(1.0, 0.8, 40.0, shortest=12.0).surface((48, 48), (100.0, 100.0), 1).detrended("curvature")
-    found = measured_table(measured)[0]
-    assert found.area[0, 0] * measured.heights.size >= contacts.FEWEST_PIXELS
-
-
 def test_map_that_is_not_there(cache):
     with pytest.raises(ValueError, match="surface is 'abc', and .* has no table of that name .*; compute it again by"):
         tables.of_map("abc")
@@ -209,12 +182,3 @@ def test_cache_that_takes_no_files_is_refused_before_contacts_are_solved(tmp_pat
 def test_bad_maps(cache, heights, size, words):
     with pytest.raises(ValueError, match=words):
         contacts.keep(HeightMap(heights, size))
-
-
-def test_too_few_pixels():
-    """One bump on 8 x 8 pixels never has 20 in contact at six pressures."""
-    bump = np.exp(-((np.arange(8) - 3.5) ** 2))
-    with pytest.raises(
-        ValueError, match="pressures .* have 20 pixels or more in contact .* measure with smaller pixels"
-    ):
-        gap_table([HeightMap(bump[:, None] * bump, (1.0, 1.0))], 1.0)

@@ -115,9 +115,3 @@ def test_no_half_where_the_finger_is_not_its_own_mirror_image(history, moves):
     )
     assert (straight.both_halves, straight.symmetric_start) == (moves, moves)
     assert (inclined.both_halves, inclined.symmetric_start) == (True, False)
-
-
-def test_no_half_with_multipliers_that_a_step_corrects():
-    scene = from_data(NINE | {"history": HISTORY, "contact": {"formulation": "augmented"}})
-    assert not plan(scene).symmetric_start
-    assert plan(scene.replace(contact={"formulation": "nitsche"})).symmetric_start

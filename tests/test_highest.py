@@ -59,14 +59,3 @@ def test_the_half_of_a_symmetric_contact_has_the_value_of_the_whole():
     mirrored = [np.concatenate([each, each]) for each in half[:3]]
     mirrored.append(np.concatenate([half[3], half[3] * [-1.0, 1.0]]))
     assert highest(*mirrored) == pytest.approx(highest(*whole), rel=1e-12)
-
-
-def test_of_a_facet_that_is_partly_in_contact_it_is_the_mean_over_that_part():
-    force, width, _, ends = facets(np.linspace(0.0, 3.0, 4), lambda x: 1.0 * ((x > 1.0) & (x < 2.0)))
-    assert highest(force, width, np.array([0.0, 0.25, 0.0]), ends) == pytest.approx(4.0, rel=1e-9)
-
-
-def test_without_contact_it_is_zero():
-    force, width, closed, ends = facets(np.linspace(0.0, 3.0, 4), lambda x: 0.0 * x)
-    assert highest(force, width, 0 * closed, ends) == 0.0
-    assert highest(*(each[:0] for each in (force, width, closed, ends))) == 0.0

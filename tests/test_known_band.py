@@ -12,6 +12,7 @@ from fingerpad.report import run_page, trust
 from fingerpad.results.headline import known_in_words
 from fingerpad.results.quantities import KNOWN
 from tests.test_closure_band import Held
+from variational.caution import Caution
 
 
 def bars(result: fp.Result) -> str:
@@ -152,7 +153,7 @@ def test_result_whose_own_closure_has_no_number(adhering):
     kind, words = trust.verdict(trust.findings(own))
     assert (kind, words) == (trust.BAD, f"Do not use these numbers as they are: friction is not known. B{why[1:]}.")
     assert not [each for each in trust.findings(adhering) if each.verdict == trust.BAD]
-    cautions = replace(adhering, cautions=("one", "another"))
+    cautions = replace(adhering, cautions=(Caution("a", "one"), Caution("b", "another")))
     assert trust.verdict(trust.findings(cautions))[1].startswith("Use with care: model and limit of validity. The")
 
 

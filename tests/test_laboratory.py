@@ -1,16 +1,12 @@
 """Tables as laboratories write them, and the friction coefficient of their rows without voltage."""
 
-import re
-
 import numpy as np
 import pandas as pd
 import pytest
 
 import fingerpad as fp
 from fingerpad.cli import main
-from fingerpad.cli.output import write
 from fingerpad.measurements.table import read
-from fingerpad.results.quantities import Output
 from fingerpad.runs.sweep import sweep
 from fingerpad.scene import Scene
 from tests.measures import rows_of
@@ -45,17 +41,6 @@ def test_semicolons_commas_percent_and_signs(tmp_path, encoding):
     assert (found.turned, found.ignored, found.about["source"]) == (1, ("Temperature (°C)",), "Größe und Söhne")
 
 
-def test_percent_in_cells_and_of_friction(tmp_path):
-    """In cells as in the head; a spread in percent of a friction without is a part of that."""
-    file = tmp_path / "lab.csv"
-    file.write_text("force (N/m),friction,spread (%)\n25,31 %,4\n50,28%,\n")
-    found = read(file).rows
-    assert found.measured.tolist() == pytest.approx([0.31, 0.28])
-    assert found.spread.iloc[0] == pytest.approx(0.04)
-    file.write_text("force (N/m),contact length (mm),spread\n25,2,5%\n")
-    assert read(file).rows.spread.iloc[0] == pytest.approx(0.05 * 2e-3)
-
-
 def frame(**columns):
     heads = {"force": "force (N/m)", "voltage": "voltage (V)", "friction": "friction (1)"}
     return pd.DataFrame({heads.get(name, name): values for name, values in columns.items()})
@@ -73,13 +58,6 @@ def test_coefficient_is_fitted_without_voltage(grid):
     assert found.attrs["misfit"] == pytest.approx(
         {"ratio": 1.0, "factor": 1.0, "shape_factor": 1.0, "rows": 2, "spreads": 0, "within": 0}
     )
-
-
-def test_forces_are_divided(grid):
-    """A friction force at 0 V is one of a coefficient, too."""
-    table = pd.DataFrame({"force (N/m)": [25, 75], "voltage (V)": [0, 200], "friction force (N/m)": [-10.0, -30.0]})
-    found = fp.compare(table, grid)
-    assert found.attrs["fit"]["mu_0"] == pytest.approx(0.4) and found.attrs["turned"] == 2
 
 
 @pytest.mark.parametrize("columns", [{"voltage": [0, 0]}, {"voltage": [100, 200]}])
@@ -124,14 +102,6 @@ def test_voltages_are_effective(head, effective):
     assert voltages(frame.assign(remark=["moist"])) == pytest.approx([effective], rel=1e-7)
 
 
-def test_column_that_may_be_a_voltage_is_not_taken_for_one():
-    frame = pd.DataFrame({"force (N)": [0.5], "Vpp (V)": [100.0], "friction (1)": [0.3]})
-    said = "{'Vpp (V)': 'voltage (V)' or 'voltage (V peak to peak)'}, or leave it out by {'Vpp (V)': ''}"
-    with pytest.raises(fp.SceneError, match=re.escape(said)):
-        read(frame)
-    assert voltages(frame, {"Vpp (V)": "voltage (V peak to peak)"}) == pytest.approx([35.355339])
-
-
 def test_categorical_and_nullable_columns():
     """As the same numbers of NumPy: categories as groupby makes them, whole numbers and NA of pandas."""
     plain = pd.DataFrame(
@@ -160,19 +130,3 @@ def test_units_stand_where_they_stand(text, tmp_path):
     (tmp_path / "lab.csv").write_text(text, encoding="utf-8")
     found = read(tmp_path / "lab.csv", {} if "index" not in text else {"index": ""})
     assert found.rows[["force", "measured"]].iloc[0].tolist() == pytest.approx([0.5, 120e-6], rel=1e-12)
-
-
-# -- the command ---------------------------------------------------------------------------------------------------
-@pytest.mark.parametrize("mark", "=+-@＝\t")
-def test_first_letters_of_formulas(mark, tmp_path):
-    write(tmp_path / "out.csv", [Output("a", "")], [{"a": f"{mark}1+1"}, {"a": "1+1"}])
-    assert (tmp_path / "out.csv").read_text() == f"a\n'{mark}1+1\n1+1\n"
-
-
-def test_misfit_without_voltage_is_named(grid, tmp_path, capsys):
-    """It says nothing of the attraction; one row under voltage and the sentence is gone."""
-    for more in ("", "75,200,9\n"):
-        (tmp_path / "lab.csv").write_text(f"force (N/m),voltage (V),contact length (mm)\n75,0,9\n{more}")
-        assert main(["compare", str(tmp_path / "lab.csv"), "--sweep", str(grid.folder)]) == 0
-        out = capsys.readouterr().out
-        assert ("All compared rows are at 0 V: attraction is not compared.\n" in out) == (more == "")

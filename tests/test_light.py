@@ -15,10 +15,8 @@ LIGHT = (
     "fingerpad.results.result",
     "fingerpad.scene",
     "fingerpad.reduced.cylinders",
-    "fingerpad.reduced.registry",
     "fingerpad.runs.context",
     "fingerpad.calculator.page",
-    "fingerpad.model.options",
     "fingerpad.model.options",
     "fingerpad.results.folder",
     "fingerpad.cli",
@@ -74,17 +72,6 @@ def test_closed_form_works_without_finite_elements(tmp_path):
     done = without(WORK, *HEAVY, "pint", "rich", "matplotlib", argument=str(tmp_path))
     assert (done.returncode, done.stderr) == (0, "")
     assert {"report.html", "sweep.nc", "table.csv"} <= {file.name for file in tmp_path.iterdir()}
-
-
-def test_help_is_printed_without_scenes():
-    """Of the program, whose commands read their own modules."""
-    done = without("from fingerpad.cli import main; main(['--help'])", "numpy", "pydantic", "scipy")
-    assert done.returncode == 0 and "estimate" in done.stdout, done.stderr
-
-
-def test_what_is_blocked_is_blocked():
-    """Without this the tests above would hold of any module."""
-    assert "ModuleNotFoundError" in without("import ufl", *HEAVY).stderr
 
 
 def test_scene_is_read_without_parts_of_scipy():

@@ -1,28 +1,20 @@
 """Memory by the unknowns of a mesh, its refusal, and the bound that refuses element sizes before gmsh meets them."""
 
-from functools import cache, partial
+from functools import partial
 
 import pytest
 from mpi4py import MPI
 
-from fingerpad.model.finger import meshed
-from fingerpad.model.options import FingerModel, check, memory, plan, unknowns
+from fingerpad.model.options import check, memory
 from fingerpad.scene import SceneError, from_data
 from geometry import fingertip
 from geometry.mesh import load
 from geometry.parameters import Fingertip, MeshSize
-from geometry.profiles import GeometryError
 from geometry.sizing import least_triangles
 
 FINE = {"contact": 10e-6, "receptor": 10e-6, "touching_half_arc": 1.0e-3}
 COARSE = {"contact": 30e-6, "receptor": 60e-6, "interface": 120e-6, "growth": 0.5, "touching_half_arc": 2.0e-3}
 EVEN = {"contact": 100e-6, "receptor": 100e-6, "interface": 150e-6, "coarsest": 150e-6, "touching_half_arc": 1.0e-3}
-
-
-@cache
-def coarse():
-    """Return a default finger on a coarse mesh, with receptors."""
-    return load(MPI.COMM_SELF, partial(fingertip.build, Fingertip(), MeshSize(**COARSE), True, False)).mesh
 
 
 @pytest.mark.parametrize(
@@ -46,19 +38,6 @@ def test_triangles_are_bounded_before_meshing(finger, size, receptors, half):
 def test_memory_of_runs(number, gigabytes):
     """Measured, in GB, of runs with quadratic elements: never more than by the constant, and a fifth less at most."""
     assert 0.995 * gigabytes < memory(number) / 1e9 < gigabytes / 0.8
-
-
-@pytest.mark.slow
-def test_mesh_that_needs_too_much_memory_is_refused_when_it_is_made():
-    """The bound lets it pass; on every rank, by the triangles that it has."""
-    scene = from_data({"mesh": COARSE})
-    triangles = least_triangles(scene.geometry, scene.mesh)
-    allowed = memory(unknowns(int(0.6 * triangles), int(1.2 * triangles), "P2"))
-    scene = from_data({"mesh": COARSE, "numerics": {"memory": allowed}})
-    check(scene)
-    words = r"the mesh has [\d ]+ triangles and [\d ]+ unknowns, which need about .* GB; numerics.memory allows "
-    with pytest.raises(GeometryError, match=words):
-        meshed(FingerModel(scene, plan(scene)), MPI.COMM_WORLD)
 
 
 @pytest.mark.parametrize(("mesh", "key"), [({"contact": 1e-8}, "contact"), ({"interface": 1e-8}, "interface")])

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from matplotlib.tri import Triangulation
 
-from variational.snapshot import Snapshot, loops, outline
+from variational.snapshot import loops, outline
 
 
 def square(n: int = 6) -> tuple[np.ndarray, np.ndarray]:
@@ -34,16 +34,3 @@ def test_loops_go_around_each_part():
     areas = {part: sorted(area(x[loop[:, 0]]) for loop in loops(lines, cells, tag, part)) for part in (5, 7, 0)}
     assert areas[5] == pytest.approx([2 - 2 / 9]) == areas[7]
     assert areas[0] == pytest.approx([-4, 4 / 9])
-
-
-def test_mirrored_lines_are_those_of_the_whole_body():
-    """The line of symmetry is none of it, and each part is still on the left of its lines."""
-    x = np.array([[0, 0], [1, 0], [1, 1], [0, 1.0]])
-    triangles, tag = np.array([[0, 1, 2], [0, 2, 3]]), np.array([5, 5], dtype=np.int32)
-    ends, beside, _ = outline(x, triangles, tag)
-    points = np.concatenate([x, x[ends].mean(axis=1) + 0.1 * (x[ends].mean(axis=1) == [1, 0.5])])
-    lines = np.stack([ends[:, 0], 4 + np.arange(len(ends)), ends[:, 1]], axis=1)
-    whole = Snapshot(points, 0 * points, triangles, np.ones(2), tag, lines, beside).whole()
-    assert len(whole.lines) == 6 and (whole.beside[:, 1] == -1).all()
-    (loop,) = loops(whole.lines, whole.beside, whole.tag, 5)
-    assert area(whole.x[loop[:, :2]].reshape(-1, 2)) == pytest.approx(2 + 2 * 0.5 * 0.1)

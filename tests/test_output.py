@@ -4,7 +4,6 @@ import dolfinx
 import numpy as np
 import pytest
 import ufl
-from dolfinx import fem
 from mpi4py import MPI
 
 from variational import kinematics
@@ -13,7 +12,7 @@ from variational.contact.penalty import Penalty
 from variational.materials import ogden, saint_venant
 from variational.materials.ogden import Ogden
 from variational.materials.saint_venant import SaintVenant
-from variational.output import Cellwise, Lines, Receptors, sed_per_cell
+from variational.output import Cellwise, Lines, Receptors
 from variational.problem import Problem
 from variational.surface import Surface
 
@@ -90,20 +89,6 @@ def test_cauchy_stress(problem, F):
         expected = cauchy_3d(tag, F)
         error = np.abs(found[cells[cells < len(found)]] - expected.ravel()).max(initial=0)
         assert error < 5e-9 * np.abs(expected).max()
-
-
-def test_mean_density_of_bending(problem):
-    """Cell means integrate to the body's energy where strain varies, exactly for degree 2 of linear strain.
-
-    Tolerance: strains of 1e-3 leave twelve digits of an energy density that is a difference of ones, some 1e-7 J/m.
-    """
-    problem.w.interpolate(lambda x: np.stack([0 * x[0], x[0] ** 2]))
-    sed = sed_per_cell(problem)
-    area = 1e-6 / 72
-    body = problem.mesh.comm.allreduce(float(sed.sum()) * area)
-    dx = ufl.Measure("dx", problem.mesh, subdomain_data=problem.cell_tags, metadata={"quadrature_degree": 2})
-    forms = [fem.assemble_scalar(fem.form(density * dx(tags))) for tags, density in problem.densities.items()]
-    assert body == pytest.approx(problem.mesh.comm.allreduce(sum(forms)), rel=1e-10, abs=0)
 
 
 def test_gathered_mesh(problem):

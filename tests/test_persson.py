@@ -71,8 +71,3 @@ def test_persson_is_near_boundary_elements(hurst):
 def test_persson_needs_shorter_waves():
     with pytest.raises(fp.SceneError, match="roughness.shortest_wave is 9e-05 m; it must be below two thirds"):
         fp.Scene(roughness={"law": "Persson", "shortest_wave": 90e-6})
-
-
-def test_persson_needs_an_exponent_below_one():
-    with pytest.raises(ValueError, match="hurst is 1; a self-affine surface has an exponent below 1"):
-        fp.Persson(H_0, hurst=1.0)(1e4)

@@ -151,17 +151,6 @@ def test_jacobian(square, solid, element, lowest, mu_f, voltage):
     check_jacobian(problem, move)
 
 
-def test_disturbed_state_sees_every_law(square):
-    """It has points that stick, slip both ways, are attracted in and above d_eq."""
-    problem = make(square)
-    disturb(problem)
-    c = problem.contact
-    y, p_n, t_t = problem.surface.evaluate(problem.surface.compile([problem.y, c.p_n, c.t_t]))
-    share = np.divide(t_t, 0.25 * p_n, out=np.zeros_like(t_t), where=p_n > 0)
-    assert (share > 0.99).any() and (share < -0.99).any() and ((np.abs(share) < 0.9) & (p_n > 0)).any()
-    assert ((y > 0) & (y < D_EQ)).any() and (y > D_EQ).any()
-
-
 def states(problem):
     """Tell of each point whether it touches, is above d_eq, sticks or slips which way; shape (4, facets, points)."""
     c = problem.contact

@@ -28,19 +28,6 @@ def test_arc_length(profiles):
     assert steps.sum() == pytest.approx(WAVE, rel=2e-8)
 
 
-def test_number_of_ridges(profiles):
-    """As many tips as ridges on the skin, and as many intermediate and limiting ridges below."""
-    s = np.linspace(-profiles.ridged_arc, profiles.ridged_arc, 55 * 200 + 1)
-
-    def extrema(depth):
-        slope = np.sign(np.diff(depth(s)))
-        return int(((slope[:-1] < 0) & (slope[1:] > 0)).sum()), int(((slope[:-1] > 0) & (slope[1:] < 0)).sum())
-
-    assert len(profiles.ridges) == 55
-    assert extrema(profiles.skin) == (55, 54)  # the outermost grooves are the ends of the range
-    assert extrema(profiles.ve_d) == (110, 55 + 54)  # two papillae a ridge; tips under its centre and inner grooves
-
-
 @pytest.mark.parametrize("theta", [0.0, 0.3, np.pi / 2, 2.0, np.pi, -2.5])
 def test_depths(profiles, theta):
     """The formulas of the three interfaces, below the outline's mean. Tolerance: roundoff."""
@@ -50,17 +37,6 @@ def test_depths(profiles, theta):
     assert profiles.sc_ve(s) - HALF_DEPTH == pytest.approx((425 - 50 * np.cos(theta)) * UM, rel=1e-12, abs=0)
     assert profiles.ve_d(s) - HALF_DEPTH == pytest.approx(ve_d * UM, rel=1e-12, abs=0)
     assert profiles.d_sub(s) - HALF_DEPTH == pytest.approx(2000 * UM, rel=1e-12, abs=0)
-
-
-def test_measured_profile_keeps_the_amplitude():
-    """Fourier coefficients of any size are scaled to the height between groove and tip; tips stay on the outline.
-
-    Tolerance: points a twenty-thousandth of the wavelength apart miss an extremum by 1e-8 of its height.
-    """
-    profiles = Profiles(Fingertip(ridge_profile=(3.0, -0.5)))
-    s = np.linspace(0, WAVE, 20001)
-    assert np.ptp(profiles.skin(s)) == pytest.approx(100 * UM, rel=1e-7, abs=0)
-    assert profiles.skin(0.0) == pytest.approx(0, abs=1e-18)
 
 
 @pytest.mark.parametrize(

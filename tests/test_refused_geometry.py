@@ -36,12 +36,9 @@ def test_size_is_refused(name, value):
     ("given", "message"),
     [
         ({"ridge_count": 54}, "ridge_count is 54; it must be odd"),
-        ({"ridge_count": -1}, "ridge_count"),
         ({"ridge_profile": (0.0, 0.0)}, "ridge_profile has only zero coefficients"),
         ({"nail_half_width": 10e-3}, "nail_half_width is 0.01 m; it must be below half the width, 0.01 m"),
-        ({"nail_bed_half_width": 4e-3}, "nail_bed_half_width is 0.004 m; it must be below half the bone_width"),
         ({"nail_thickness": 2e-3}, "nail_thickness is 0.002 m; it must be below the thickness of the skin layers"),
-        ({"fingernail": 1e-3}, "fingernail"),
     ],
 )
 def test_parameters_are_refused(given, message):
@@ -62,8 +59,6 @@ def test_parameters_are_refused(given, message):
             },
             "between the nail's edges; 3 do where ridge_wavelength is 0.00[0-9]+ m or less",
         ),
-        ({"nail_thickness": 50e-6}, "and the skin's mean line at the nail's edge is 5e-05 m deep"),
-        ({"limiting_ridge_height": 450e-6}, "SC-VE junction and VE-D junction cross by .*ve_thickness is 0.000175 m"),
         ({"dermis_thickness": 100e-6}, "VE-D junction and D-subcutis junction cross by .*dermis_thickness is 0.0001 m"),
         (
             {"merkel_offset": 900e-6},
@@ -78,11 +73,8 @@ def test_parameters_are_refused(given, message):
             {"nail_thickness": 475e-6},
             "nail_thickness is 0.000475 m, the depth of the SC-VE junction at the nail's edge",
         ),
-        ({"ridge_count": 101}, "ridge_count 101 of ridge_wavelength 0.000483 m do not fit"),
         ({"dermis_thickness": 5e-3}, "0.00565 m deep, more than the outline's radius of curvature, 0.0049 m"),
         ({"bone_centre": 4.5e-3}, "bone touches the skin's layers at .*bone_centre"),
-        ({"bone_width": 17e-3}, "bone touches the skin's layers at .*bone_width"),
-        ({"bone_height": 13e-3}, "bone touches the skin's layers at .*bone_height"),
         ({"bone_centre": 10.95e-3}, "bone reaches the nail: .* is at 0.01355 m and must stay below .* 0.0135 m"),
     ],
 )

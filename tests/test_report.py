@@ -11,17 +11,17 @@ import pytest
 from matplotlib.collections import LineCollection
 
 from fingerpad.cli import main
-from fingerpad.reduced.registry import find
 from fingerpad.report import run_page, trust
 from fingerpad.report.write import NAME
 from fingerpad.results import fields
 from fingerpad.results.quantities import cell
 from fingerpad.results.result import Result
 from fingerpad.runs.context import RunContext
-from fingerpad.runs.solve import solved
+from fingerpad.runs.solve import find, solved
 from tests.browser import SIZES, asked
 from tests.small_finger import small
 from variational.attraction.dielectric import VACUUM_PERMITTIVITY
+from variational.caution import Caution
 
 pytestmark = pytest.mark.slow
 FEW = "contacts of few facets"
@@ -255,5 +255,5 @@ def test_bad_folder_is_refused_in_a_sentence(tmp_path, capsys, files, words):
 @pytest.mark.parametrize("model", ["full", "cylinders"])
 def test_cautions_are_findings(folder, model):
     """The page is to be used with care where a limit of validity is reached."""
-    found = trust.findings(replace(Result.load(folder), model=model, cautions=("the model ends here",)))
+    found = trust.findings(replace(Result.load(folder), model=model, cautions=(Caution("end", "the model ends here"),)))
     assert [each.verdict for each in found if each.words == "The model ends here."] == [trust.CARE]

@@ -9,7 +9,7 @@ import pytest
 from mpi4py import MPI
 from petsc4py import PETSc
 
-from fingerpad.accuracy.states import StateRecorder
+from fingerpad.accuracy.solves import StateRecorder
 from fingerpad.model import report
 from fingerpad.model.checks import FullSlip
 from fingerpad.model.state import force_error

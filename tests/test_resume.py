@@ -199,19 +199,6 @@ def test_refusals(cut_short, tmp_path_factory, capsys):
     refused("has no checkpoint to go on from", cut_short)
 
 
-def test_numbers_do_not_depend_on_the_folder(tmp_path, monkeypatch):
-    """To the last bit on one rank: the solver forgets at the same places. Without a folder nothing is kept."""
-    inside = fp.run(scene(), out=tmp_path)
-    monkeypatch.setattr(Checkpoint, "write", lambda *args: pytest.fail("a checkpoint"))
-    outside = fp.run(scene())
-    assert dataset.values(outside) == dataset.values(inside)
-    rows = [
-        [{k: v for k, v in state.row().items() if "seconds" not in k} for state in found.steps]
-        for found in (inside, outside)
-    ]
-    assert str(rows[0]) == str(rows[1])
-
-
 def test_checkpoint_of_another_mesh(cut_short, monkeypatch):
     """As by another version of gmsh: the places are compared, not trusted."""
     read = Checkpoint.read

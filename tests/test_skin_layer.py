@@ -8,7 +8,7 @@ from geometry.bodies import ridge
 from geometry.mesh import load
 from tests.test_contact import MU_F, make
 from tests.test_newton import walk
-from variational.solvers.equations import OUTSIDE, Control
+from variational.solvers.equations import Control
 
 pytestmark = pytest.mark.mpi
 
@@ -70,21 +70,6 @@ def test_balance_moves_the_layer_alone(pressed):
     rest = np.delete(x.array_r - before, layer._rows)
     assert not rest.any()
     assert total(x.array_r - before) > 0
-
-
-@pytest.mark.parametrize("why", ["too far", "in vain"])
-def test_unknowns_stay_where_the_layer_does_not_help(pressed, monkeypatch, why):
-    solver, layer, x = pressed
-    before, f = x.array_r.copy(), x.duplicate()
-
-    def lost(ksp, x, f, largest):
-        x.array_w[layer._rows] += 1.0
-        return OUTSIDE
-
-    if why == "in vain":
-        monkeypatch.setattr(layer, "_iterate", lost)
-    layer.balance(x, f, 0.0, 0.0 if why == "too far" else np.inf)
-    assert np.array_equal(x.array_r, before)
 
 
 @pytest.mark.slow

@@ -7,9 +7,9 @@ from dataclasses import replace
 import pytest
 
 import fingerpad as fp
-from fingerpad.reduced.registry import find
 from fingerpad.report import run_page, trust
 from fingerpad.report.page import GOOD
+from fingerpad.runs.solve import find
 from fingerpad.scene import SceneError, load
 from fingerpad.slices import traces
 from fingerpad.slices.estimate import with_newtons

@@ -2,24 +2,13 @@
 
 from dataclasses import replace
 
-import numpy as np
 import pytest
 
 from benchmarks.stability import solve
 from benchmarks.stability.solve import Case
-from fingerpad.scene import Scene
-from variational.solvers.equations import Control
 
 # A press of half an newton a metre on facets of 60 um: two seconds a run.
 TINY = Case(contact_size=60e-6, force=0.5, voltage=50.0, element="P1", slide=0.0)
-
-
-def test_default_is_the_products():
-    """The default case is what a scene has by default."""
-    scene, case = Scene(), Case()
-    assert case.parameter == scene.contact.eps_n and case.contact_size == scene.mesh.contact
-    assert (case.element, case.voltage, case.mu_f) == (scene.numerics.element, scene.voltage, scene.friction)
-    assert case.nu == scene.materials.dermis.poisson
 
 
 @pytest.mark.slow
@@ -30,17 +19,6 @@ def test_friction_at_full_slip():
     assert found.f_ext == pytest.approx(0.5, rel=1e-7)
     assert found.f_t == pytest.approx(0.25 * 0.5, rel=1e-6)
     assert found.contact_length > 0 < found.penetration
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("sides", ["carried", "free"])
-def test_strip_off_the_screen_follows_the_bone(sides):
-    """Lifted and moved sideways without touching, all of it translates alike, lateral faces included."""
-    body = solve.make(replace(TINY, sides=sides))
-    body.solver.control = Control(5e-6, 2e-6)
-    body.solver.solve()
-    nodes = body.problem.V.dofmap.index_map.size_local
-    np.testing.assert_allclose(body.problem.displacement(), [[5e-6, 2e-6]] * nodes)
 
 
 @pytest.mark.slow

@@ -67,6 +67,7 @@ def test_each_module_is_imported_by_a_quick_test():
                 "results.pictures.spikes",
                 "results.pictures.solid",
                 "runs.batch",
+                "runs.newtons",
             )
         ),
     ]

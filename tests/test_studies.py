@@ -3,16 +3,9 @@
 import numpy as np
 import pytest
 
-from benchmarks.harness import DOCS, kept
-from benchmarks.measured import __main__ as command
 from benchmarks.measured import rows, rules
 from benchmarks.measured.rules import HIT, MISS, PART, by_factor, by_form, by_share
 from benchmarks.runs import VOLTAGES
-
-
-@pytest.fixture(scope="module")
-def judged():
-    return {row.key: row for row in command.judged(DOCS)}
 
 
 def test_rules():
@@ -54,30 +47,3 @@ def test_forms_find_their_own_curves(form, parameter, fit):
     x = np.linspace(0.1e-3, 1e-3, 8)
     found = fit(form, x, 3e4 * form(x, parameter))
     assert found.parameter == pytest.approx(parameter, rel=1e-4) and found.misfit < 1e-4
-
-
-@pytest.mark.parametrize("form", [rules.paraboloid, rules.ellipse])
-def test_pressures_find_their_own_curves(form):
-    """The half width comes back, in units of the outermost ridge; the other form leaves some per cent."""
-    x = np.linspace(-3e-3, 3e-3, 13)
-    pressure = 2e4 * form(x, 1.2)
-    found = rules.of_largest(form, x, pressure)
-    assert found.parameter == pytest.approx(1.2, rel=1e-4) and found.misfit < 1e-4
-    other = rules.ellipse if form is rules.paraboloid else rules.paraboloid
-    assert 0.005 < rules.of_largest(other, x, pressure).misfit < 0.1
-
-
-@pytest.mark.parametrize(("form", "parameter"), [(rules.first_order, 0.2), (rules.ramp, 0.4)])
-def test_rises_find_their_own_curves(form, parameter):
-    """Time and end come back; the other form leaves some per cent."""
-    x = np.linspace(0.02, 1, 50)
-    found = rules.of_largest(form, x, form(x, parameter))
-    assert found.parameter == pytest.approx(parameter, rel=1e-3)
-    other = rules.ramp if form is rules.first_order else rules.first_order
-    assert rules.of_largest(other, x, form(x, parameter)).misfit > 0.02
-
-
-# -- the page of assumptions -----------------------------------------------------------------------------------------
-@pytest.fixture(scope="module")
-def found():
-    return kept("assumptions").numbers

@@ -8,7 +8,6 @@ import pytest
 import ufl
 from dolfinx import fem, mesh
 from mpi4py import MPI
-from numpy.testing import assert_allclose
 
 from geometry import tags
 from geometry.bodies import block
@@ -70,16 +69,6 @@ def test_history_is_read_where_it_was_written(body, written, read, request):
     assert total(surface, (history - there) ** 2) < 1e-29 * total(surface, there**2)
 
 
-@pytest.mark.parametrize("body", ["strip", "finger_mesh"])
-def test_history_is_evaluated_where_it_was_written(body, request):
-    """Values at random come back point by point. Tolerance: roundoff."""
-    surface = make(request.getfixturevalue(body))
-    history = fem.Function(surface.history_space)
-    values = np.random.default_rng(surface.mesh.comm.rank).uniform(-1, 1, (len(surface.pairs), 4))
-    surface.set_history(history, values)
-    assert_allclose(surface.evaluate(surface.compile([history]))[0], values, rtol=0, atol=1e-13)
-
-
 @pytest.mark.parametrize("name", ["strip", "finger_mesh"])
 def test_every_facet_is_counted_once(name, request):
     """Facets of all ranks together have the length that the mesh's own measure gives. Tolerance: roundoff."""
@@ -126,12 +115,3 @@ def test_order_of_the_contact_length():
         errors.append(abs(below(surface, x, y, 0.0) / exact - 1))
     assert errors[-1] < 2e-7
     assert np.polyfit(np.log(sizes), np.log(errors), 1)[0] > 2.5
-
-
-def test_two_facets_of_a_cell_are_refused():
-    """A corner cell with two facets on the surface has no place for their history; all ranks hear of it."""
-    domain = mesh.create_unit_square(MPI.COMM_WORLD, 3, 3)
-    facets = mesh.locate_entities_boundary(domain, 1, lambda x: np.isclose(x[1], 0) | np.isclose(x[0], 1))
-    marked = mesh.meshtags(domain, 1, np.sort(facets), np.full(len(facets), 7, dtype=np.int32))
-    with pytest.raises(ValueError, match="two facets on the touching surface"):
-        Surface(domain, marked, {0: 7})

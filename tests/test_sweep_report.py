@@ -11,10 +11,9 @@ import pytest
 
 from fingerpad.cli import main
 from fingerpad.cli import sweep as cli_sweep
-from fingerpad.report.page import option_of
 from fingerpad.report.write import NAME, write
 from fingerpad.runs.sweep import sweep
-from fingerpad.scene import Scene, SceneError, from_data, override
+from fingerpad.scene import Scene, from_data
 from tests.browser import SIZES, asked
 from tests.measures import rows_of
 
@@ -59,14 +58,6 @@ def test_failed_points_are_listed_with_their_reason(table):
 
 
 @pytest.mark.parametrize(
-    "value", [0.3, 5, True, "penalty", "5", "true", "a b'c.msh", "[x].csv", [True, "a"], [1.0, -0.1]]
-)
-def test_option_is_read_as_its_value(value):
-    flag, option = shlex.split(option_of("key", value))
-    assert flag == "--set" and override(option) == ("key", value)
-
-
-@pytest.mark.parametrize(
     "axes",
     [
         {"voltage": [100 / 3, 200], "geometry.ridge_count": [21, 23]},
@@ -97,13 +88,3 @@ def test_files_of_an_earlier_sweep_do_not_stay_beside_a_new_table(tmp_path, monk
     assert main(words) == 0
     assert not (tmp_path / "sweep.nc").exists() and not (tmp_path / "report.html").exists()
     assert capsys.readouterr().out.strip().endswith("table.csv, sweep.json")
-
-
-def test_sweep_without_its_scene_is_refused(tmp_path):
-    sweep(Scene(), tmp_path, model="cylinders", voltage=[0, 100])
-    (tmp_path / "sweep.json").write_text("{}", encoding="utf-8")
-    with pytest.raises(SceneError, match=r"sweep.json in .* has no 'model'; give the command of the sweep again"):
-        write(tmp_path)
-    (tmp_path / "sweep.json").unlink()
-    with pytest.raises(SceneError, match=r"sweep.json in .* cannot be read"):
-        write(tmp_path)

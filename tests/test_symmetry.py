@@ -131,19 +131,6 @@ def test_stability_of_the_half_is_that_of_the_whole(blocks):
     assert half.lambda_min == pytest.approx(whole.lambda_min, rel=1e-4)
 
 
-# -- mirrored numbers --------------------------------------------------------------------------------------
-
-
-def test_mirrored_snapshot_is_one_body():
-    """No edge on the line belongs to one triangle only, and what moves right moves left."""
-    points = np.array([[0, 0], [1, 0], [0, 1.0]])
-    whole = Snapshot(points, points, np.array([[0, 1, 2]]), np.ones(1), np.ones(1, dtype=np.int32)).whole()
-    assert whole.x.tolist() == whole.u.tolist() == [[0, 0], [1, 0], [0, 1], [-1, 0]]
-    assert whole.triangles.tolist() == [[0, 1, 2], [2, 3, 0]]
-    areas = [np.linalg.det(whole.x[t[1:]] - whole.x[t[0]]) for t in whole.triangles]
-    assert areas == [1, 1]
-
-
 # -- the finger --------------------------------------------------------------------------------------------
 MESH = {"contact": 12e-6, "receptor": 80e-6, "interface": 150e-6, "growth": 0.8, "touching_half_arc": 0.8e-3}
 HISTORY = [{"name": "press", "bone_height": -60e-6}, {"name": "charge", "voltage": 60.0}]

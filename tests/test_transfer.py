@@ -11,7 +11,7 @@ from tests.test_contact import MU_F, over
 from variational.solvers.continuation import Continuation, Target
 from variational.solvers.outcome import NotConverged
 from variational.solvers.state_snapshot import take_snapshot
-from variational.solvers.transfer import interpolate, restore, unfolded
+from variational.solvers.transfer import interpolate, restore
 
 pytestmark = pytest.mark.mpi
 H_0, FORCE, VOLTAGE = 0.514e-6, 4.4, 150.0
@@ -208,16 +208,3 @@ def test_a_state_not_found_at_once_is_found(bodies, reached, monkeypatch, failur
         np.testing.assert_array_equal(calls[3][2], calls[1][2])
     assert solver.equations.load_part == 0
     assert -solver.reaction[0] == pytest.approx(reached[FINE][2], rel=2e-6)
-
-
-def test_element_that_a_displacement_folds_is_unfolded(bodies):
-    """By its middle nodes alone, here between corners at rest. A smooth displacement stays as it is."""
-    problem = prepare(bodies[FINE]).problem
-    cells = problem.V.dofmap.list[: problem.mesh.topology.index_map(2).size_local]
-    smooth = 0.05 * problem.V.tabulate_dof_coordinates()[:, :2]
-    np.testing.assert_array_equal(unfolded(problem, smooth), smooth)
-    folded = np.zeros_like(smooth)
-    if MPI.COMM_WORLD.rank == 0:
-        folded[cells[0, 3]] = 1e-3
-    assert MPI.COMM_WORLD.allreduce(float(np.abs(folded).max()), op=MPI.MAX) > 0
-    np.testing.assert_array_equal(unfolded(problem, folded), np.zeros_like(smooth))

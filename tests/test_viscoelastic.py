@@ -16,7 +16,6 @@ from variational.contact.penalty import Penalty
 from variational.materials.neo_hooke import NeoHooke
 from variational.materials.ogden import Ogden
 from variational.materials.qlv import QLV
-from variational.materials.saint_venant import SaintVenant
 from variational.materials.viscoelastic import Viscoelastic
 from variational.output import Receptors
 from variational.problem import Problem
@@ -204,19 +203,10 @@ def compliance(K: float, G: float, t: float) -> float:
     [
         ([0.5, 0.5], [1.0, 2.0], r"moduli sum to 1; .* below 1"),
         ([0.5], [0.0], "times has 0; it must be finite and greater than 0"),
-        ([0.5], [-1.0], "times has -1"),
         ([-0.5], [1.0], "moduli has -0.5"),
-        ([0.5], [float("nan")], "times has nan"),
         ([0.5], [1.0, 2.0], "moduli has 1 entries and times 2"),
-        ([], [], "moduli has 0 entries and times 0; .* at least one branch"),
-        ("soft", [1.0], "two lists of numbers"),
     ],
 )
 def test_refused(moduli, times, message):
     with pytest.raises(ValueError, match=message):
         QLV(moduli, times)
-
-
-def test_refused_without_volumetric_part():
-    with pytest.raises(ValueError, match="SaintVenant has no volumetric part"):
-        Viscoelastic(SaintVenant(1e6), MOUSE).check()

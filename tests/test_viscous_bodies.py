@@ -10,7 +10,6 @@ from fingerpad.model.options import FingerModel, by_rule, plan
 from fingerpad.model.simulation import Simulation
 from fingerpad.model.state import least_dissipation
 from fingerpad.scene import SceneError
-from fingerpad.scene.remarks import remarks, used
 from fingerpad.scene.viscosity import PRESETS
 from geometry import tags
 from geometry.bodies import ridge
@@ -164,27 +163,12 @@ def test_half_and_whole():
     assert found[0].record.viscous == pytest.approx(found[1].record.viscous, rel=1e-6)
 
 
-def test_parts_of_the_model():
-    """Errors are estimated from whole paths; a run without time says that nothing relaxes."""
-    options = plan(scene(PRESS, HOLD))
-    assert options.errors and options.past and not plan(scene(PRESS, HOLD, preset=None)).past
-    assert not any("discretisation errors" in str(each) for each in options.omitted)
-    assert not [text for text in remarks(scene(PRESS, HOLD)) if "relax" in text]
-    (text,) = [text for text in remarks(scene(PRESS)) if "relax" in text]
-    assert "nothing will relax" in text
-    assert used(scene(PRESS, HOLD))["dermis"].endswith(", QLV(moduli=" + text_of(PRESETS["fingerpad"]))
-
-
-def text_of(law: QLV) -> str:
-    return f"{law.moduli}, times={law.times})"
-
-
 def test_caution():
     """A branch that made energy is named."""
     record = StepRecord(*[0] * 12, viscous=1.0, viscous_least=-0.2)
     state = fp.ContactState(f_ext=1.0, voltage=0.0, f_t=0.0, mu_app=0.0, f_contact=1.0, f_electrostatic=0.0,
                             ridges_in_contact=0, contact_length=0.0, record=record)  # fmt: skip
-    (text,) = cautions.on_states([state], None)
+    (text,) = map(str, cautions.on_states([state], None))
     assert "in 1 of 1 steps branches of viscous layers made energy at points and dissipated none, up to 0.2" in text
 
 
@@ -208,16 +192,10 @@ def test_scene_is_written_and_read():
     [
         ({"moduli": [0.5, 0.5], "times": [1, 2]}, "materials.dermis.viscosity.moduli sum to 1; .* must be below 1"),
         ({"moduli": [0.5], "times": [0]}, r"viscosity.times\[0\] is 0 s; it must be from 1e-06"),
-        ({"moduli": [0.5], "times": [-1]}, r"viscosity.times\[0\] is -1 s"),
         ({"moduli": [0.5], "times": ["3 m"]}, "its unit is not a unit of time"),
-        ({"moduli": [0.5, 0.1], "times": [1]}, "viscosity.moduli has 2 entries and times 1"),
-        ({"moduli": [0.5]}, "viscosity.times is missing"),
         ({}, "viscosity.moduli is missing; viscosity must have moduli and times, or a preset"),
-        ({"preset": "mouse"}, "viscosity.preset is 'mouse'; it must be 'skin, mouse' or 'fingerpad'"),
         ({"preset": "fingerpad", "times": [1]}, "preset is 'fingerpad' and times is given too"),
-        ({"law": "Kelvin"}, "viscosity.law is 'Kelvin'; it must be 'QLV'"),
         ({"modul": [1]}, "viscosity.modul is not a key of materials.dermis.viscosity; did you mean"),
-        (5, "materials.dermis.viscosity is 5; it must be a table of keys"),
     ],
 )
 def test_refused(viscosity, message):

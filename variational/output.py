@@ -97,7 +97,7 @@ def _tensors_per_cell(problem: Problem) -> tuple[Array, Array]:
     return stress[:, [0, 4, 8, 1]], strain
 
 
-def sed_per_cell(problem: Problem) -> Array:
+def _sed_per_cell(problem: Problem) -> Array:
     """Return the mean strain energy density of each cell of this rank (J/m^3 of reference volume), shape (cells,)."""
     # Degree 2 integrates the linear solid's energy at P2 exactly.
     points, weights = basix.make_quadrature(basix.CellType.triangle, 2)
@@ -274,7 +274,7 @@ class Lines:
         nodes, edges = self._nodes, (self._beside[:, 0], self._edge)
         vertices, middles = (nodes.coordinates, nodes.gather(problem)), nodes.middles(problem)
         tensors = [nodes.by_cell(each) for each in _tensors_per_cell(problem)] if fields else []
-        sed = nodes.by_cell(sed_per_cell(problem)) if fields else np.zeros(len(self._tag))
+        sed = nodes.by_cell(_sed_per_cell(problem)) if fields else np.zeros(len(self._tag))
         if problem.mesh.comm.rank > 0:
             return None
         x, u = (np.concatenate([at, there[edges]]) for at, there in zip(vertices, middles, strict=True))

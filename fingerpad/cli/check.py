@@ -8,7 +8,7 @@ import numpy as np
 
 from fingerpad.cli import output
 from fingerpad.cli.arguments import Kind, Parser, echo, scene_of
-from fingerpad.model.cautions import breakdown_ahead, on_scene
+from fingerpad.model.cautions import examine
 from fingerpad.model.options import COARSER, FingerModel, ModelOptions, by_rule, memory, plan, refuse_mesh, unknowns
 from fingerpad.model.section import Section, section, write
 from fingerpad.reduced import cylinders
@@ -20,7 +20,7 @@ from fingerpad.results.terminal import about
 from fingerpad.scene import Load, Scene, SceneError
 from fingerpad.scene.loads import ways
 from fingerpad.scene.messages import counted
-from fingerpad.scene.remarks import finger_in_words, leakage, used
+from fingerpad.scene.remarks import finger_in_words, used
 from fingerpad.scene.viscosity import elastic, viscous_layers
 from geometry import tags
 from geometry.profiles import GeometryError
@@ -126,10 +126,8 @@ def _aims(load: Load) -> Iterator[str]:
 
 
 def _model(scene: Scene, needed: ModelOptions) -> Iterator[str]:
-    yield from (*finger_in_words(scene), *on_scene(scene), *leakage(scene), *too_short(scene), *_adhering(scene))
-    yield from breakdown_ahead(scene)
-    if caution := scene.contact.law.caution:
-        yield caution
+    yield from (*finger_in_words(scene), *map(str, examine("scene", scene) + examine("note", scene)))
+    yield from (*too_short(scene), *_adhering(scene), *map(str, examine("load", scene) + examine("law", scene)))
     if scene.geometry.file is None:
         size = scene.mesh
         sizes = {"in contact": size.contact, "at the Merkel sites": size.receptor, "elsewhere at most": size.coarsest}

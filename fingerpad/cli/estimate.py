@@ -10,6 +10,7 @@ import numpy as np
 
 from fingerpad.cli import output, ranges
 from fingerpad.cli.arguments import PICTURE, Kind, Parser, echo, refuse_file, refuse_twice, scene_of
+from fingerpad.model.cautions import examine
 from fingerpad.reduced.cylinders import Cylinders
 from fingerpad.results.quantities import FINGER, QUANTITIES, Output
 from fingerpad.runs.roots import axis
@@ -56,7 +57,8 @@ def main(argv: Sequence[str]) -> int:
     options: dict[str, Any] = {"model": Cylinders.name, **over}
     found = sweep(scene.replace(force=None) if "f_ext" in over else scene, None, **options)
     if all(result.failure for result in found.results):
-        raise SceneError(found.results[-1].failure)
+        last = found.results[-1]
+        raise SceneError("; ".join(map(str, (last.failure, *examine("load", last.scene)))))
     echo(str(found))
     if args.csv:
         found.to_csv(args.csv)

@@ -35,6 +35,7 @@ from geometry.meshfile import file
 from geometry.units import to_si
 from variational import body as setup
 from variational.attraction.electroadhesion import ELECTROSTATIC
+from variational.caution import Caution
 from variational.contact.formulation import Formulation
 from variational.contact.friction import Friction
 from variational.contact.interface import Interface
@@ -271,7 +272,7 @@ class Body(StatePrinted):
         return found
 
     @property
-    def cautions(self) -> list[str]:
+    def cautions(self) -> list[Caution]:
         """Limits of validity that accepted states reach: of the closure, and of the contact's stiffness beside the gap.
 
         They are computed of all states so far; without ``roughness`` there are none.

@@ -229,7 +229,7 @@ def _charts(table: Table) -> dict[str, Any]:
     for name in loads(table.rows[0]):
         words = in_time(name, table.rows[0])
         columns = [f"{LOAD}_{name}_{key}" for key in _IN_TIME]
-        titles |= {column: (words[column], 1.0) for column in columns if column in words}
+        titles |= {column: (words[column].title, 1.0) for column in columns if column in words}
     return {column: _chart(table, column, *title) for column, title in titles.items()}
 
 

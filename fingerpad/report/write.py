@@ -4,7 +4,6 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from fingerpad.reduced.registry import MODELS
 from fingerpad.results.files import replace
 from fingerpad.results.result import Result
 from fingerpad.scene import SceneError
@@ -84,9 +83,8 @@ def read(folder: Path) -> "Result | Table":
         from fingerpad.report.sweep_page import table_of
 
         return table_of(folder)
-    points = [folder / name for name, model in MODELS.items() if model.meshes and (folder / name).is_dir()]
-    done = sum(1 for place in points for _ in place.glob("*/summary.json"))
-    if done or any(any(place.glob("*/asked.json")) for place in points):
+    done = sum(1 for _ in folder.glob("*/*/summary.json"))  # of points, by model
+    if done or any(folder.glob("*/*/asked.json")):
         raise SceneError(f"the sweep in {name} has not ended ({done} runs are there); give its command again to go on")
     if (folder / "scene.json").exists():
         raise SceneError(f"the run in {name} has not ended; make the report when it has, or go on with it by --resume")

@@ -98,8 +98,12 @@ def attributes(result: ResultData) -> dict[str, Any]:
     found: dict[str, Any] = {"title": "fingerpad: a fingertip on a touchscreen", "format": files.FORMAT}
     found |= {"model": result.model, **asdict(result.cost)}
     found |= {name: text for name in ("failure", "interrupted") if (text := getattr(result, name))}
-    for name in ("notes", "cautions"):
-        found |= {name: "\n".join(getattr(result, name))} if getattr(result, name) else {}
+    found |= {
+        name: "\n".join(map(str, getattr(result, name))) for name in ("notes", "cautions") if getattr(result, name)
+    }
+    if result.cautions:
+        found["caution_codes"] = "\n".join(each.code for each in result.cautions)
+        found["caution_numbers"] = [np.nan if each.number is None else float(each.number) for each in result.cautions]
     found |= {"record": json.dumps(result.record)} if result.record else {}
     found |= {"outputs": json.dumps([each.to_dict() for each in result.outputs])} if result.outputs else {}
     if result.finger is not None:
@@ -312,4 +316,5 @@ def summary(result: ResultData) -> dict[str, Any]:
     found |= {f"{name}_reached": each.reached for name, each in result.named.items() if each.reached != PATH}
     found |= {"parameters": result.scene.parameters()} | result.record
     found |= {name: text for name in ("failure", "interrupted") if (text := getattr(result, name))}
-    return found | {name: list(kept) for name in ("notes", "cautions") if (kept := getattr(result, name))}
+    found |= {name: list(map(str, kept)) for name in ("notes", "cautions") if (kept := getattr(result, name))}
+    return found | ({"caution_codes": [each.code for each in result.cautions]} if result.cautions else {})

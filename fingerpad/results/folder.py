@@ -101,7 +101,7 @@ class Folder:
             folder: of the results.
             parameters: of the scene that they are of.
             comm: communicator of the run.
-            model: whose results they are, see :data:`fingerpad.reduced.registry.MODELS`.
+            model: whose results they are, see :data:`fingerpad.runs.solve.MODELS`.
         """
         self.folder, self._comm = folder, comm
         self._parameters = json.loads(json.dumps(parameters))  # as they are read back

@@ -21,6 +21,7 @@ from fingerpad.scene.parameters import Slices
 from fingerpad.scene.reading import model_name
 from fingerpad.scene.remarks import coefficient
 from fingerpad.scene.scene import as_kept
+from variational.caution import Caution
 from variational.files import read as read_bytes
 from variational.state import PATH, ContactState, Errors, Skin, StepRecord
 
@@ -88,7 +89,7 @@ def parts(data: "xarray.Dataset") -> dict[str, Any]:
         )
         found |= {"steps": steps, "loads": loads, "scene": scene, "record": record, "outputs": outputs}
         found |= {name: about.get(name, "") for name in ("failure", "interrupted")}
-        found |= {name: tuple(filter(None, about.get(name, "").split("\n"))) for name in ("notes", "cautions")}
+        found |= {"notes": _lines(about, "notes"), "cautions": _cautions(about)}
         found |= {"cost": Cost(**{each.name: _plain(about[each.name]) for each in fields(Cost)})}
         kept = json.loads(about["finger"]) if "finger" in about else None
         finger = None if kept is None else _finger(arrays, kept, outputs, scene.slices)
@@ -170,6 +171,15 @@ def _named_state(arrays: Arrays, k: int, own: Sequence[str]) -> ContactState:
         values = {name: arrays[f"skin_{name}"][k][facets][:, points] for name in SKIN}
         more["skin"] = Skin(ridge=arrays["skin_ridge"][k][facets].astype(int), **values)
     return replace(_state(arrays, "state_", k, own), reached=str(arrays["state_reached"][k]) or PATH, **more)
+
+
+def _lines(about: Mapping[str, Any], name: str) -> tuple[str, ...]:
+    return tuple(filter(None, about.get(name, "").split("\n")))
+
+
+def _cautions(about: Mapping[str, Any]) -> tuple[Caution, ...]:
+    numbers = (None if np.isnan(each) else float(each) for each in np.atleast_1d(about.get("caution_numbers", ())))
+    return tuple(map(Caution, _lines(about, "caution_codes"), _lines(about, "cautions"), numbers))
 
 
 def _plain(value: Any) -> Any:

@@ -19,6 +19,7 @@ from fingerpad.results.over_time import OverTime, over_time, without_parts_of_ju
 from fingerpad.results.quantities import EXTREMES
 from fingerpad.scene import Load
 from fingerpad.scene.waveform import Waveform
+from variational.caution import Caution
 from variational.state import ContactState
 
 _STILL = 1e-12  # m, largest sideways displacement of a bone at rest
@@ -268,14 +269,14 @@ def _needed(states: Sequence[ContactState], mu_0: float | None) -> float:
     return found if found > abs(end.bone_x) else math.nan
 
 
-def long_steps(loads: Iterable[LoadResult], least: float) -> list[str]:
-    """Return a sentence for each load at a constant voltage whose steps are too long for its means.
+def long_steps(loads: Iterable[LoadResult], least: float) -> list[Caution]:
+    """Return a caution for each load at a constant voltage whose steps are too long for its means.
 
     Args:
         loads: of a run.
         least: friction force (N/m) up to which there is none.
     """
-    found = list[str]()
+    found = list[Caution]()
     for load in loads:
         changes = {} if load.over_time is None else load.over_time.mean_change
         for key, (words, unit, factor) in _MEANS.items():
@@ -283,9 +284,10 @@ def long_steps(loads: Iterable[LoadResult], least: float) -> list[str]:
             most = 0.0 if ends is None else max(abs(ends.min), abs(ends.max))
             change = changes.get(key, 0.0)
             if change > _MEAN_TOLERANCE * most and (key != "f_t" or load.rubs(least)):
-                found.append(
+                text = (
                     f"In the load {load.name} the mean {words} over time would change by {factor * change:.2g} {unit} "
                     "with every second step alone: its steps are too long for it; give a smaller numerics.step_scale."
                 )
+                found.append(Caution("long_steps", text, change))
                 break
     return found

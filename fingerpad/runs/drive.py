@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from fingerpad.model.cautions import on_scene
+from fingerpad.model.cautions import examine, on_scene
 from fingerpad.reduced import detection
 from fingerpad.reduced.cylinders import Cylinders
 from fingerpad.runs.context import RunContext
@@ -21,7 +21,6 @@ from fingerpad.runs.solve import solved
 from fingerpad.scene import Scene
 from fingerpad.scene.drive import REFERENCE, Drive
 from fingerpad.scene.messages import SceneError
-from fingerpad.scene.remarks import leakage
 from geometry.units import computed
 
 if TYPE_CHECKING:
@@ -137,7 +136,7 @@ def drive(scene: Scene) -> DrivenFriction:
     time = np.arange(len(f_t)) / len(f_t) / given.frequency
     least = float(gap[int(np.argmax(volts))])
     cautions = on_scene(scene, gaps=[("full slip", least, 0.0)])
-    notes = [*leakage(scene), *(f"! {text}" for text in cautions)]
+    notes = [*map(str, examine("note", scene)), *(f"! {text}" for text in cautions)]
     if 2 * (given.wave.frequency or given.frequency) > _QUASI_STATIC:
         notes.append(
             f"! friction varies faster than {_QUASI_STATIC:g} Hz, where inertia of the skin begins to matter: "

@@ -19,7 +19,6 @@ from fingerpad.results.quantities import CONDITIONS, FINGER, KNOWN, PER_LENGTH, 
 from fingerpad.results.states import STATES, WORDS
 from fingerpad.runs import post
 from fingerpad.runs.sweep_columns import described, description, head_of, of_finger, printed, row, shown, tables
-from fingerpad.scene.messages import alike
 from fingerpad.scene.reading import flat
 from fingerpad.scene.remarks import drive_in_short, other_under_a_drive
 from fingerpad.slices.errors import remarks
@@ -128,7 +127,7 @@ class Sweep:
         """
         found = dict[str, list[str]]()
         for result in self.results:
-            for form, text in {alike(text): text for text in result.cautions}.items():
+            for form, text in {each.form: each.text for each in result.cautions}.items():
                 found.setdefault(form, []).append(text)
         return [
             f"{texts[0]} ({len(texts)} of {len(self)} points{', numbers of the first' * (len(set(texts)) > 1)})"

@@ -49,11 +49,6 @@ class SceneError(ValueError):
         super().__init__(clip(message, _MAX_MESSAGE))
 
 
-def alike(caution: str) -> str:
-    """Return a caution without its numbers, which differ from state to state."""
-    return re.sub(r"[-+]?\d[\d.]*(e[-+]?\d+)?(, (?=\d))?", "", caution)
-
-
 def refuse_type(name: str, value: object, allowed: Any, words: str) -> None:
     """Refuse an argument that is of none of the types allowed.
 
