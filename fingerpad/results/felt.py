@@ -3,7 +3,7 @@ r"""What mechanoreceptive afferents answer to a run over time: stimuli at its si
 Stimuli are known in the accepted states. Between two of a load they follow the monotone cubic curve of Fritsch and
 Carlson, cut at the ends of loads; a jump of the voltage takes half a sample. The state at t = 0 is taken as a steady
 state. A class is refused where two states are further apart than its ``longest_step`` and its stimulus changes between
-them by more than :data:`CHANGE` of its range.
+them by more than a hundredth of its range.
 """
 
 import math
@@ -22,8 +22,7 @@ from fingerpad.scene.messages import SceneError, show
 from variational.state import ContactState
 
 Array = NDArray[np.float64]
-CHANGE = 0.01
-"""Part of the range of a stimulus that may change between two states, however far they are apart."""
+_CHANGE = 0.01  # of the range of a stimulus, which may change between two states however far they are apart
 _SITE_ERROR = 0.22
 """Largest known error of energy densities at three Merkel sites on the mesh of the default path, 20 µm in contact and
 at the sites (``again`` in docs/errors.json)."""
@@ -122,7 +121,7 @@ def _histories(states: Sequence[ContactState]) -> tuple[NDArray[np.int64], dict[
 def _too_coarse(law: Afferent, stimulus: Array, time: Array, loads: Sequence[str], scale: float) -> str:
     """Return in a sentence that two states are too far apart for a class; empty where none are."""
     apart = np.diff(time)
-    changes = np.abs(np.diff(stimulus, axis=1)).max(axis=0) > CHANGE * np.ptp(stimulus, axis=1).max()
+    changes = np.abs(np.diff(stimulus, axis=1)).max(axis=0) > _CHANGE * np.ptp(stimulus, axis=1).max()
     wide = np.where(changes & (apart > law.longest_step * (1 + 1e-9)), apart, 0.0)
     if not wide.any():
         return ""
