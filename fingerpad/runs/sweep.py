@@ -130,12 +130,12 @@ def _written(done: Sweep, folder: Path, about: dict[str, Any], place: Path) -> S
     Args:
         done: the sweep, with its notes.
         folder: of the files.
-        about: what ``sweep.json`` has beside outputs, cautions and notes.
+        about: what ``sweep.json`` has beside axes, rows, outputs, cautions and notes.
         place: folder of the points.
     """
     for name in FILES[:-1]:  # else that of an earlier sweep may stay beside this one's
         (folder / name).unlink(missing_ok=True)
-    about |= {"outputs": [each.to_dict() for each in done.outputs]}
+    about |= {"axes": list(done.axes), "rows": done.table(), "outputs": [each.to_dict() for each in done.outputs]}
     replace_json(folder / FILES[-1], about | {"cautions": done.cautions(), "notes": list(done.notes)})
     done.to_csv(folder / FILES[0])
     notes = (*done.notes, *filter(None, (_reached(done), done.save(), _older(done, place))))
