@@ -142,18 +142,9 @@ class Spikes:
 
     def plot(self, path: str | Path | None = None) -> "Figure":
         """Draw energy densities at Merkel sites over time, and each spike unit by unit below; write a PNG if asked."""
-        from fingerpad.results.pictures.spikes import Curves, Panel, raster  # Matplotlib
+        from fingerpad.results.pictures.curves import raster  # Matplotlib
 
-        panels = []
-        for law in self.laws:
-            units = [unit for unit in self.units if unit.law == law]
-            places = [unit.place for unit in units]
-            population, half = units[0].ridge is None, bool(units[0].side)
-            panels.append(Panel(law, places, [1e3 * train for train in self.of(law)], population, 0.4 if half else 0.8))
-        loads = [(span.name, 1e3 * span.begin, 1e3 * span.end) for span in self.loads]
-        found = self.densities
-        curves = None if found is None else Curves(found.ridges, 1e3 * found.time, 1e-3 * found.values)
-        return raster(panels, curves, loads, 1e3 * self.seconds, None if path is None else Path(path))
+        return raster(self, path)
 
     @property
     def remarks(self) -> tuple[str, ...]:
