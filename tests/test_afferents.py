@@ -120,7 +120,6 @@ def test_refusals(ask, said):
     assert "\n" not in str(refused.value)
 
 
-# -- laws of afferents against second implementations in plain loops, and where each begins --------------------------
 # -- where a law begins ----------------------------------------------------------------------------------------------
 @pytest.mark.parametrize("law", fp.afferents.LAWS.values(), ids=fp.afferents.LAWS)
 def test_every_law_begins_in_the_steady_state(law):

@@ -114,6 +114,7 @@ def test_jumps_do_not_age():
 # -- the same on every number of ranks ------------------------------------------------------------------
 @pytest.mark.slow
 @pytest.mark.mpi
+@pytest.mark.skipif(MPI.COMM_WORLD.size == 1, reason="one rank has no other to agree with")
 def test_on_any_number_of_ranks():
     """All ranks together find what each finds alone. Tolerance: that of the solves."""
     found = []
