@@ -93,9 +93,8 @@ def test_waveform_is_the_loads_by_hand():
 
 
 def test_sign_of_the_voltage_changes_nothing():
-    """Bit for bit: of a constant voltage, of a table, and where a sign changes between two loads."""
+    """Bit for bit: of a table, and where a sign changes between two loads."""
     for up, down in (
-        ([{"name": "charge", "voltage": 90.0}], [{"name": "charge", "voltage": -90.0}]),
         (
             [{"name": "a", "voltage": 50.0}, {"name": "b", "voltage": 90.0}],
             [{"name": "a", "voltage": 50.0}, {"name": "b", "voltage": -90.0}],

@@ -220,7 +220,7 @@ def follow(history, led: bool) -> Simulation:
     [
         pytest.param(LOADS, id="press, charge, slide"),
         pytest.param([{"name": "lower", "bone_height": -60e-6}, *LOADS[2:]], id="bone height", marks=pytest.mark.mpi),
-        pytest.param([LOADS[0], {"name": "lift", "f_ext": 0.2}, LOADS[1], BRIEF[1]], id="lift"),
+        pytest.param([LOADS[0], {"name": "lift", "f_ext": 0.2}, LOADS[1], BRIEF[1]], id="lift", marks=pytest.mark.long),
     ],
 )
 def test_half_leads_to_the_states_of_the_whole(history):
