@@ -150,7 +150,6 @@ def test_move_after_full_slip_and_its_time():
     assert states[-1].time == pytest.approx(stop.time + 0.01, rel=1e-12)
 
 
-@pytest.mark.mpi
 def test_square_jumps_at_one_place():
     """The bone stands while the voltage jumps, up and down; the forces on either side are those of the plateaus."""
     states = follow(PRESS, SLIDE, BY | {"voltage": WAVE | {"waveform": "square"}, "duration": 1.6 / 60})

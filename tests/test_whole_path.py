@@ -55,7 +55,6 @@ def bare():
 
 # -- whole runs ------------------------------------------------------------------------------------------
 @pytest.mark.slow
-@pytest.mark.mpi
 def test_errors_are_the_difference_to_the_path_on_elements_twice_as_large():
     """That path is followed here by itself. Tolerance: the lengths of single ridges add to the whole change."""
     asked = scene()
