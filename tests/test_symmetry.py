@@ -16,7 +16,6 @@ from fingerpad.runs import full as run_module
 from fingerpad.scene import from_data
 from geometry import tags
 from geometry.mesh import TaggedMesh
-from tests.measures import rows_of
 from tests.runs import followed, run
 from tests.small_finger import NINE
 from variational.body import Body
@@ -149,20 +148,6 @@ def fingers(tmp_path_factory):
         whole = run(scene, folders[1], MPI.COMM_WORLD)
     assert "failure" not in half and "failure" not in whole
     return (half, whole), folders
-
-
-@pytest.mark.long
-def test_half_the_finger_has_the_whole_s_tables(fingers):
-    _, (half, whole) = fingers
-    for name in ("ridges", "receptors"):
-        mine, other = rows_of(half, name), rows_of(whole, name)
-        assert list(mine[0]) == list(other[0])
-        last = [[row["ridge"] for row in rows if row["step"] == rows[-1]["step"]] for rows in (mine, other)]
-        assert last[0] == last[1]
-    sed = {row["ridge"]: row for row in rows_of(half, "receptors")}
-    assert sed["1"]["meissner_left"] == sed["-1"]["meissner_right"]
-    assert sed["2"]["merkel_sed"] == sed["-2"]["merkel_sed"]
-    assert {path.name for path in half.iterdir()} == {path.name for path in whole.iterdir()}
 
 
 @pytest.mark.long
