@@ -13,7 +13,7 @@ from collections.abc import Callable, Collection
 from typing import TYPE_CHECKING, TextIO
 
 from fingerpad import launcher, notebook
-from fingerpad.results.quantities import PER_LENGTH, cell
+from fingerpad.results.quantities import PER_LENGTH, QUANTITIES
 from variational.state import ContactState, StepRecord
 
 if TYPE_CHECKING:
@@ -157,7 +157,7 @@ class Console:
         work = "" if s.record is None else f"{s.record.newton_iterations:6d} {s.record.factorisations:5d}"
         most = self._mu_0 * s.f_contact if s.load in self._slipping else 0.0
         self._pace.at(done, abs(s.f_t) / most if most > 0 else 0.0)
-        left, mu = self._pace.left(), cell("mu_app", s.mu_app)
+        left, mu = self._pace.left(), QUANTITIES["mu_app"].shown(s.mu_app)
         self.show(
             f"{s.step:4d} {s.load[:7]:7s} {s.f_ext:7.3f} {s.voltage:z5.1f} {s.bone_x * 1e3:z7.4f} "
             f"{s.bone_height * 1e3:z8.5f} {s.f_t:z8.4f} {mu:>7s} {s.f_electrostatic:7.3f} "
