@@ -240,7 +240,7 @@ def test_bad_folder_is_refused_in_a_sentence(tmp_path, capsys, files, words):
 
 
 # -- the moving picture of a run: its frames, what they are drawn from, and what is left of one that is stopped ------
-@pytest.mark.parametrize("ending", animation.ENDINGS)
+@pytest.mark.parametrize("ending", [".webp", pytest.param(".gif", marks=pytest.mark.long)])
 def test_animation_has_a_frame_for_each_state(folder, tmp_path, capsys, ending):
     """And some between states, each load at least as many as it is said to have; the last frame stands longest."""
     file = tmp_path / f"run{ending}"
