@@ -16,8 +16,8 @@ from itertools import product
 import numpy as np
 
 from variational.roughness import gaps
-from variational.roughness.contacts import gap_table
 from variational.roughness.gaps import HURSTS, RATIOS, GapTable, save, shipped_file
+from variational.roughness.halfspace import gap_table
 from variational.roughness.spectrum import SelfAffine
 from variational.roughness.topography import HeightMap
 

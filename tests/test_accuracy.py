@@ -125,17 +125,6 @@ def test_steps_are_halved_where_normal_contact_feels_them(monkeypatch):
     assert found.summary()["step_scale"] == 0.5, "a quarter of the scene's"
 
 
-def test_receptors_are_halved_where_energy_density_is_asked_for(monkeypatch):
-    """What is allowed is a part of the largest site's; of the second site's own it is never asked for."""
-    found = search(monkeypatch, {"sed": 0.005})
-    assert found.refinements["receptor"] > 1
-    assert found.refinements["contact"] == 1
-    largest = found.base.values()["full_slip_sed_0"]
-    assert found.allowed() == pytest.approx(
-        {"full_slip_sed_0": 0.005 * largest, "full_slip_sed_1": 0.005 * largest}, rel=1e-12
-    )
-
-
 def springs(model, states, comm, views=False, stiffer=None) -> Solve:
     """A contact that springs of the screen make longer, by their law."""
     solve = known(model, states, comm)
@@ -216,17 +205,6 @@ def test_accuracy_out_of_reach_is_a_failure_and_an_estimate_a_note(monkeypatch, 
     assert bool(found.estimates()) == (solve not in (lost,))
 
 
-def test_coefficient_without_full_slip_or_without_a_force_is_refused():
-    """A finger that slides while nothing presses it has a friction force, and no coefficient to be within 1 %."""
-    model = model_of({"accuracy": {"mu_app": 0.01}})
-    path = known(model, {}, None)
-    with pytest.raises(StepFailed, match="accuracy.mu_app is 0.01, which full slip decides"):
-        refinement(model, Solve({"charged": path.states["full_slip"]}, model.mesh, 1000, 10, 1.0))
-    change(path, mu_app=np.nan)
-    with pytest.raises(StepFailed, match="at full slip no force presses the finger.* ask for accuracy.f_t"):
-        refinement(model, path)
-
-
 @pytest.mark.parametrize(("step", "final"), [(7, True), (3, False)])
 def test_uncharged_state_that_is_the_charged_one_is_of_the_final_mesh(monkeypatch, step, final):
     """At 0 V they are one step of the path. Another step that is not solved again stays."""
@@ -262,20 +240,3 @@ def test_interrupted_search_reached_nothing(monkeypatch):
             found.run()
         assert not found.failure and not found.summary()["reached"]
     assert search(monkeypatch, {"mu_app": 0.01}).summary()["reached"]
-
-
-# -- without a force that presses ---------------------------------------------------------------------------
-def test_errors_without_a_force_are_those_of_the_friction_force(monkeypatch):
-    """There is no coefficient then, and no line that says nan ± nan."""
-
-    def unpressed(model, states, comm, views=False, stiffer=None):
-        solve = known(model, states, comm)
-        change(solve, mu_app=np.nan)
-        return solve
-
-    model, shown = model_of({"numerics": {"memory": 1e15}}), []
-    monkeypatch.setattr(refining, "solve_again", unpressed)
-    found = refinement(model, unpressed(model, {}, MPI.COMM_SELF), shown.append)
-    found.run()
-    assert "full_slip_f_t" in found.estimates() and "full_slip_mu_app" not in found.estimates()
-    assert any("friction force" in line for line in shown) and not any("nan" in line for line in shown)

@@ -11,11 +11,10 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.colors import LogNorm
 from matplotlib.image import imread
 from matplotlib.tri import Triangulation
-from PIL import Image
 
 import fingerpad as fp
 from fingerpad.results.pictures import style
-from fingerpad.results.pictures.curves import SurfaceProfile, history, over_time, saw_teeth, surface
+from fingerpad.results.pictures.curves import SurfaceProfile, history, over_time, surface
 from fingerpad.results.pictures.finger import finger
 from fingerpad.scene import from_data
 from geometry import tags
@@ -111,16 +110,6 @@ def test_finger(tmp_path, snapshot, sites):
     assert "bone" in [text.get_text() for text in whole.texts]
 
 
-def test_finger_views_the_contact(tmp_path, snapshot):
-    """The contact, 1 mm on either side, up to 1.3 mm, with energies in kPa on a logarithmic scale."""
-    near = finger(tmp_path / "finger.png", snapshot, None, TITLE).axes[1]
-    assert near.get_xlim() == pytest.approx((-2.125, 2.125))  # the middle of an edge is 0.3 µm above the screen
-    assert near.get_ylim()[1] == pytest.approx(1.3)
-    colours = near.figure.axes[2]
-    assert colours.get_xscale() == "log"
-    assert colours.get_xlim()[1] == pytest.approx(20.0, rel=0.2)
-
-
 def test_cells_are_drawn_where_they_are(snapshot):
     """The colour of a pixel is that of the density of the cell there; nothing is drawn outside."""
     near = finger(None, snapshot, None, TITLE).axes[1]
@@ -139,17 +128,6 @@ def test_cells_are_drawn_where_they_are(snapshot):
         colour = matplotlib.colormaps["viridis"](norm(1e-3 * snapshot.sed[cell]), bytes=True)[:3]
         expected = colour if cell >= 0 else np.full(3, 255 * 0.92)
         assert np.abs(np.subtract(pixel, expected, dtype=float)).max() <= 3, (x, y)
-
-
-def test_file_has_the_colours_that_were_drawn(tmp_path):
-    """Of a palette: white is white, and large surfaces have their colour."""
-    drawn = style.figure(3.0)
-    drawn.subplots().set_facecolor(style.VERMILION)
-    style.save(drawn, tmp_path / "drawn.png")
-    with Image.open(tmp_path / "drawn.png") as file:
-        assert file.mode == "P"
-        found = np.asarray(file.convert("RGB")).astype(int)
-    assert (found[0, 0] == 255).all() and np.abs(found[225, 300] - [213, 94, 0]).max() <= 3
 
 
 PROFILES = [
@@ -171,20 +149,6 @@ def test_surface(tmp_path):
     pressure = next(line for line in figure.axes[0].lines if line.get_label().startswith("contact pressure"))
     assert np.nanmax(pressure.get_ydata()) == pytest.approx(100.0)
     assert np.isnan(pressure.get_ydata()).sum() == 17  # lines break between ridges
-
-
-@pytest.mark.parametrize(
-    ("p", "height"),
-    [
-        ([0.0, 1.0, 3.0, 2.0, 0.0, np.nan, 0.0, 4.0, 2.0, 1.0], 0.0),
-        ([0.0, 1.0, 4.0, 1.0, 3.0, 1.0, 0.0], 2 / 4),
-        ([4.0, *(8 * [1.0]), 4.0], 0.0),
-        ([0.0, 0.0, 0.0], 0.0),
-    ],
-)
-def test_saw_teeth(p, height):
-    """The depth between two larger pressures, over the peak; gaps of contact and wide hollows are none."""
-    assert saw_teeth(np.array(p)) == pytest.approx(height)
 
 
 @pytest.mark.parametrize(("tooth", "noted"), [(0.0, False), (0.3, True)])
@@ -261,22 +225,6 @@ def test_nothing_is_cut_off(snapshot, scale):
         assert box.x0 >= 0 and box.y0 >= 0 and box.x1 <= wide and box.y1 <= high, figure.get_suptitle()
 
 
-def test_names_are_shown_as_they_are(tmp_path):
-    """A load's name may have dollar signs, between which Matplotlib would set its own mathematics or fail."""
-    figure = surface(tmp_path / "surface.png", [profile(r"After $5 _{ $", 0.0, 1.0)], TITLE)
-    assert figure.axes[0].get_title(loc="left").startswith(r"A  After \$5 _{ \$: ")
-
-
-def test_surface_without_contact(tmp_path):
-    """No pressure anywhere is a state too."""
-    touching = profile("above the screen", 0.0, 0.0)
-    nothing = 0 * touching.p
-    state = replace(touching, y=touching.y + 1e-6, p=nothing, t=nothing, p_el=nothing)
-    state = replace(state, state=replace(LOADED, bone_x=0.0, f_ext=0.0, contact_length=0.0))
-    surface(tmp_path / "surface.png", [state], TITLE)
-    assert (tmp_path / "surface.png").stat().st_size > 10_000
-
-
 # -- pictures of a result that was read from its folder --------------------------------------------------------------
 KINDS = ("history", "surface", "finger")
 RUNS = {"plain": {"output": {"errors": False}}, "refined": {"accuracy": {"mu_app": 0.2}}}
@@ -310,18 +258,3 @@ def test_picture_whose_arrays_are_gone_is_refused(ran, tmp_path, kind):
     assert read.plot("history").axes
     with pytest.raises(ValueError, match="its folder has no fields.npz"):
         read.plot(kind)
-
-
-@pytest.mark.slow
-def test_folder_is_kept_and_a_damaged_file_is_none(ran, tmp_path, monkeypatch):
-    """Where the program goes to another folder; and where a file was cut short."""
-    shutil.copytree(ran.folder, tmp_path / "a")
-    (tmp_path / "b").mkdir()
-    monkeypatch.chdir(tmp_path)
-    read = fp.Result.load("a")
-    monkeypatch.chdir(tmp_path / "b")
-    assert read.plot("surface").axes
-    whole = (tmp_path / "a" / "fields.npz").read_bytes()
-    (tmp_path / "a" / "fields.npz").write_bytes(whole[: len(whole) // 2])
-    with pytest.raises(ValueError, match=r"its folder has no fields\.npz"):
-        read.plot("surface")

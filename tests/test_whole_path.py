@@ -55,7 +55,6 @@ def bare():
 
 # -- whole runs ------------------------------------------------------------------------------------------
 @pytest.mark.slow
-@pytest.mark.mpi
 def test_errors_are_the_difference_to_the_path_on_elements_twice_as_large():
     """That path is followed here by itself. Tolerance: the lengths of single ridges add to the whole change."""
     asked = scene()
@@ -76,6 +75,7 @@ def test_errors_are_the_difference_to_the_path_on_elements_twice_as_large():
 
 @pytest.mark.slow
 @pytest.mark.mpi
+@pytest.mark.skipif(MPI.COMM_WORLD.size == 1, reason="one rank has no other to agree with")
 def test_same_errors_on_all_ranks():
     """As on one rank. Tolerance: that of the solves, of which the errors are differences."""
     alone = MPI.COMM_WORLD.bcast(_errors(fp.run(scene(), comm=MPI.COMM_SELF)) if MPI.COMM_WORLD.rank == 0 else None)
@@ -111,12 +111,10 @@ def test_error_covers_the_change_on_a_finer_mesh():
 
 @pytest.mark.slow
 def test_afferents_state_the_errors_of_their_stimuli():
-    """Of a run with receptors, at their sites; elastic runs have none of these."""
+    """Of a run with receptors, at their sites."""
     asked = scene(PRESS, output={"receptors": True})
     (note, *_) = fp.run(asked).afferents("SA1").notes
     assert "Estimated discretisation errors over time" in note and "stress at Merkel sites" in note
-    (note, *_) = fp.run(asked.replace(output={"errors": False})).afferents("SA1").notes
-    assert "Their discretisation error is not estimated" in note
 
 
 @pytest.mark.slow

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from fingerpad import notebook
 from fingerpad.results.data import ResultData
 from fingerpad.results.headline import band_in_words
-from fingerpad.results.quantities import BAND, FRICTION, PER_LENGTH, QUANTITIES, cell, plus_minus_of
+from fingerpad.results.quantities import BAND, FRICTION, PER_LENGTH, QUANTITIES, plus_minus_of
 from fingerpad.results.states import LoadResult, called
 from fingerpad.scene.reading import DEFAULT_MODEL
 from variational.state import ContactState
@@ -18,9 +18,9 @@ def text(result: ResultData, headline: str) -> str:
     """Return the text *Result* at the end of a run: headline, whole finger, and named states with units and errors."""
     lines = [_title(result)]
     if result.named:
-        heads, rows = _table(result)
+        heads, rows = table(result)
         lines += notebook.side_by_side([*notebook.head_rows(heads[1:]), *rows])
-    lines += [f"  {note}" for note in (*_timed(result), *_remarks(result))]
+    lines += [f"  {note}" for note in (*timed(result), *remarks(result))]
     lines += [f"  ! {caution}" for caution in result.cautions]
     finger = [f"{result.finger}"] if result.finger is not None else []
     return "\n".join([headline, *finger, *lines])
@@ -30,10 +30,10 @@ def page(result: ResultData, headline: str) -> str:
     """Return the same for a notebook, with remarks to unfold."""
     title, *known = map(str.strip, headline.splitlines())
     parts = [] if result.finger is None else [result.finger._repr_html_()]
-    parts += [notebook.page(_title(result), notebook.table(*_table(result)))] if result.named else []
+    parts += [notebook.page(_title(result), notebook.table(*table(result)))] if result.named else []
     cautions = notebook.lines(f"! {each}" for each in result.cautions)
-    remarks = notebook.folded("Remarks", [*_timed(result), *_remarks(result)])
-    return notebook.page(title, notebook.lines(known), *parts, cautions, remarks)
+    folded = notebook.folded("Remarks", [*timed(result), *remarks(result)])
+    return notebook.page(title, notebook.lines(known), *parts, cautions, folded)
 
 
 def _title(result: ResultData) -> str:
@@ -41,7 +41,7 @@ def _title(result: ResultData) -> str:
     return ("Result" if result.finger is None else _SECTION) + model
 
 
-def _table(result: ResultData) -> tuple[list[str], list[list[str]]]:
+def table(result: ResultData) -> tuple[list[str], list[list[str]]]:
     """Return the heads and the rows of the named states side by side, the first of which are words."""
     shown = result.named
     values = ((quantity.title, cells(result, key)) for key, quantity in result.printed.items())
@@ -61,13 +61,13 @@ def cells(result: ResultData, key: str) -> list[str]:
     return shown
 
 
-def _timed(result: ResultData) -> list[str]:
+def timed(result: ResultData) -> list[str]:
     """Return a line for each load over time."""
     least = result.record.get("force_error") or 0.0
     return [_in_time(load, least) for load in result.loads if load.over_time is not None]
 
 
-def _remarks(result: ResultData) -> list[str]:
+def remarks(result: ResultData) -> list[str]:
     """Return the lines after the table: failure, missing full slip, meaning of ± and N/m, effect of the penalty."""
     found = [f"Not finished: {result.failure}"] if result.failure else []
     if (how := result.missing_slip) and not result.failure:
@@ -98,11 +98,11 @@ def _in_time(load: LoadResult, least: float) -> str:
     key = "contact_length" if not rubs else "mu_app" if "mu_app" in load.extremes else "f_t"
     quantity, ends, mean = QUANTITIES[key], load.extremes[key], passed.mean[key]
     unit = f" {quantity.unit}" if quantity.unit else ""
-    words = f"{load.name}: {quantity.words.split()[-1]} {cell(key, ends.min)} to {cell(key, ends.max)}{unit}"
-    words += "" if math.isnan(mean) else f", mean {cell(key, mean)}{unit}"
+    words = f"{load.name}: {quantity.words.split()[-1]} {quantity.shown(ends.min)} to {quantity.shown(ends.max)}{unit}"
+    words += "" if math.isnan(mean) else f", mean {quantity.shown(mean)}{unit}"
     if rubs and passed.periods:
         most, frequency = max(zip(passed.f_t_amplitude, passed.frequency, strict=True))
-        words += f"; amplitude of f_T at {frequency:.4g} Hz {cell('f_t', most)} N/m"
+        words += f"; amplitude of f_T at {frequency:.4g} Hz {QUANTITIES['f_t'].shown(most)} N/m"
     return f"{words}; {load.sticking}" if rubs and load.sticking else words
 
 

@@ -122,12 +122,9 @@ class DrivenFriction:
 
     def plot(self, path: str | Path | None = None) -> "Figure":
         """Draw U, attraction and friction over a period, and the spectrum of friction; write a picture if asked."""
-        from fingerpad.results.pictures.curves import Period, over_period  # Matplotlib
+        from fingerpad.results.pictures.curves import over_period  # Matplotlib
 
-        arrays = self.time, self.voltage, self.sigma_el, self.f_t
-        drawn = Period(*arrays, self.unit, self.frequency, self.amplitude)
-        title = f"{self.scene.voltage}, full slip, closed form"
-        return over_period(drawn, title, None if path is None else Path(path))
+        return over_period(self, path)
 
 
 def drive(scene: Scene) -> DrivenFriction:

@@ -59,7 +59,7 @@ class BoundaryElements(TabulatedClosure):
         Raises:
             ValueError: a map that is flat or has too few pixels or pixels that are not square; in one sentence.
         """
-        from variational.roughness.contacts import keep  # solves contacts
+        from variational.roughness.halfspace import keep  # solves contacts
 
         name, h_rms, wavelength = keep(measured.detrended("curvature"), progress)
         return {"h_rms": h_rms, "wavelength": wavelength, "surface": name}
