@@ -20,7 +20,7 @@ from fingerpad.results.data import checked as checked_outputs
 from fingerpad.results.files import FORMAT, below, check_folder, replace_json
 from fingerpad.results.quantities import Output
 from fingerpad.results.result import Result
-from fingerpad.runs import batch, chains
+from fingerpad.runs import batch
 from fingerpad.runs.context import RunContext
 from fingerpad.runs.post import applied, of_kept
 from fingerpad.runs.solve import MODELS, checked, find, solved
@@ -103,7 +103,7 @@ def sweep(
     values = _values(scenes, axes)
     if states != STATES[0]:
         for each in scenes:
-            chains.check_supported(each)
+            batch.check_supported(each)
     for each in scenes if way.meshes else ():
         each.refuse_laws_of_program("the processes of a sweep")
     folder = None if out is None else Path(out)
@@ -244,7 +244,7 @@ def _in_processes(
             found[names[-1]] = {"failure": str(error)}
     if chained:
         along = [names[k] for k in _neighbours(axes) if names[k] in named]
-        found |= chains.sweep({name: named[name] for name in along}, place, jobs, quiet, executor)
+        found |= batch.sweep_chains({name: named[name] for name in along}, place, jobs, quiet, executor)
     else:
         found |= batch.sweep(named, place, jobs, _LIMIT, model.name, quiet, executor)
     results = list[Result]()
