@@ -35,7 +35,9 @@ class Estimate:
         degree: of the elements.
     """
 
-    def __init__(self, model: FingerModel, path: Solve, comm: MPI.Comm, show: Callable[[str], None]) -> None:
+    def __init__(
+        self, model: FingerModel, path: Solve, comm: MPI.Comm, show: Callable[[str], None] = lambda text: None
+    ) -> None:
         """Begin with the states of the path; ``show`` prints a line."""
         self.model, self.base, self.found = model, path, [path]
         self._comm, self._show = comm, show
@@ -99,7 +101,7 @@ class Estimate:
         """Return which states roundoff may have chosen among others."""
         return [Caution("roundoff", each) for solve in self.found for each in solve.doubts]
 
-    def _compare(self, coarse: Solve, fine: Solve, short: bool = True) -> None:
+    def compare(self, coarse: Solve, fine: Solve, short: bool = True) -> None:
         """Take the errors of states from two meshes, of which the coarser has elements twice as large.
 
         Args:

@@ -147,7 +147,7 @@ class Refinement(Estimate):
         if reason and model.mesh != final:
             return RestartRequired(f"{reason}; the path is followed on the final mesh", model.changed(mesh=final))
         coarser = model.coarser(final)
-        self._compare(path if path.mesh == coarser else self._on_mesh(coarser, path.states), fine)
+        self.compare(path if path.mesh == coarser else self._on_mesh(coarser, path.states), fine)
         return None
 
     def _penalty(self, solve: Solve) -> None:

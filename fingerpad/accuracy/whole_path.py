@@ -103,7 +103,7 @@ class WholePath(Estimate):
         except (StepFailed, GeometryError) as error:
             self._note(f"discretisation errors could not be estimated: on elements twice as large, {error}")
             return None
-        self._compare(self._comparable(coarse), self.base, short=False)
+        self.compare(self._comparable(coarse), self.base, short=False)
         self._few_facets()
         self._report()
         if self._states[-1].time > 0:

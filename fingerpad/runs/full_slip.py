@@ -21,10 +21,10 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from fingerpad.startup import MPI  # isort: skip  # before the libraries of finite elements
-from fingerpad.accuracy.estimate import errors_of
-from fingerpad.accuracy.richardson import of_two_meshes, rigid
+from fingerpad.accuracy.estimate import Estimate, with_errors
+from fingerpad.accuracy.richardson import rigid
 from fingerpad.accuracy.solves import StateRecorder, solve_again
-from fingerpad.accuracy.states import Solve, with_values
+from fingerpad.accuracy.states import Solve
 from fingerpad.model.cautions import lost
 from fingerpad.model.drive_loads import EQUAL, gap_factor
 from fingerpad.model.finger import Finger
@@ -49,10 +49,9 @@ from fingerpad.scene.messages import counted
 from fingerpad.scene.reading import DEFAULT_MODEL
 from fingerpad.scene.remarks import coefficient
 from variational.caution import Caution
-from variational.element import ELEMENTS
 from variational.solvers.continuation import StepFailed
 from variational.solvers.outcome import Counts
-from variational.state import PATH, ContactState, Errors
+from variational.state import PATH, ContactState
 
 _SLIP = "full_slip"
 _SAME_STATE = 1e-3
@@ -96,18 +95,13 @@ class FineSolver:
         final = model.final.model_copy(update=arc)
         self._recorder.keep(_SLIP)
         path, coarser = self._recorder.solve(), model.coarser(final)
-        stiffer = model.contact.over_stiffer_screen()
+        stiffer, estimate = model.contact.over_stiffer_screen(), Estimate(model, path, self._comm)
         fine = solve_again(model.changed(mesh=final), path.states, self._comm, stiffer=stiffer)
-        coarse = path
-        if path.mesh != coarser:
-            coarse = solve_again(model.changed(mesh=coarser), path.states, self._comm)
-        facets = {_SLIP: (coarse.states[_SLIP].facet, fine.states[_SLIP].facet)}
-        found = of_two_meshes(coarse.parts(), fine.parts(), facets, ELEMENTS[model.numerics.element].degree)
-        change = {} if fine.stiffer is None else rigid(fine.values(), fine.stiffer.values())
-        mesh, penalty = (errors_of(_SLIP, each) for each in (found, change))
-        error = {key: value + abs(penalty.get(key, 0.0)) for key, value in mesh.items()}
-        solved = with_values(state, fine.states[_SLIP])
-        return Fine(replace(solved, error=Errors.of(error), penalty=Errors.of(penalty)), fine)
+        same = path.mesh == coarser
+        estimate.compare(path if same else solve_again(model.changed(mesh=coarser), path.states, self._comm), fine)
+        if fine.stiffer is not None:
+            estimate.penalty = rigid(fine.values(), fine.stiffer.values())
+        return Fine(with_errors(estimate, {_SLIP: state})[_SLIP], fine)
 
 
 class Chain:

@@ -6,7 +6,6 @@ from typing import Any
 
 from fingerpad.model.finger import Finger, meshed
 from fingerpad.model.options import FingerModel
-from fingerpad.model.report import Clock
 from fingerpad.model.simulation import RestartRequired
 from fingerpad.results.interrupt import Interrupted
 from fingerpad.results.terminal import Console
@@ -56,11 +55,11 @@ class Restarts:
         """Go on from what another process kept."""
         self.table, self.notes, self._seconds = kept["table"], kept["notes"], kept["seconds"]
 
-    def record(self, restart: RestartRequired, states: Sequence[ContactState], finger: Finger, clock: Clock) -> None:
-        """Record a restart; states and finger are those until here; collective."""
+    def record(self, restart: RestartRequired, states: Sequence[ContactState], finger: Finger, seconds: float) -> None:
+        """Record a restart; states, finger and processor time (s) are those until here."""
         mesh = restart.model.mesh
         step, load = (states[-1].step, states[-1].load) if states else (0, "start")
-        whole, seconds = restart.model.options.both_halves, clock.processor_seconds()
+        whole = restart.model.options.both_halves
         halves = " and both halves of the finger" if whole and not finger.options.both_halves else ""
         added = f"mesh.touching_half_arc {mesh.touching_half_arc:g} m{halves}"
         if mesh.contact < finger.size.contact:
