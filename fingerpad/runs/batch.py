@@ -86,12 +86,7 @@ def _description(summary: Summary) -> str:
 def point(parameters: Mapping[str, Any], folder: str, limit: float, model: str, law_folders: Sequence[str] = ()) -> End:
     """Run a scene in a fresh process into its own folder, unless it is done; any machine with that folder can do it.
 
-    Args:
-        parameters: of the scene, ready for JSON.
-        folder: of the scene's results.
-        limit: processor time (s).
-        model: a name of :data:`fingerpad.runs.solve.MODELS`.
-        law_folders: of laws of one's own.
+    Arguments are as of :func:`sweep`; ``law_folders`` are those of laws of one's own.
     """
     place = Path(folder)
     place.mkdir(parents=True, exist_ok=True)

@@ -72,20 +72,11 @@ class FineSolver:
     """Solves for the full slips of a simulation again on the scene's mesh, and estimates errors from the two meshes."""
 
     def __init__(self, simulation: Simulation, comm: MPI.Comm) -> None:
-        """Find the receptor sites.
-
-        Args:
-            simulation: on the path's mesh; each state is the present one when it is solved for again.
-            comm: communicator of the meshes.
-        """
+        """Find the receptor sites of a simulation on the path's mesh, whose present states are solved for again."""
         self._simulation, self._comm, self._recorder = simulation, comm, StateRecorder(simulation)
 
     def solve(self, model: FingerModel, state: ContactState) -> Fine:
-        """Return the present state on the mesh of a model; collective.
-
-        Args:
-            model: with loads and laws of the state, and the :attr:`~fingerpad.model.options.FingerModel.final` sizes.
-            state: the present state, at full slip.
+        """Return the present state, of these loads and laws, on the model's final mesh; collective.
 
         Raises:
             StepFailed: no steady full slip was found on one of the meshes.
@@ -174,16 +165,10 @@ class Chain:
         return _of_state(scene, found.state, fine, finger, clock.cost(finger.solver.counts, 0), counts, notes)
 
     def _final(self, model: FingerModel, state: ContactState) -> Fine | None:
-        """Return the present state on the scene's own mesh; None without errors, where that is the one it is on.
-
-        Raises:
-            StepFailed: it was not found there.
-        """
-        if model.final is None:
+        """Return the present state on the scene's own mesh; None without errors, where that is the one it is on."""
+        if model.final is None or self._slips is None:
             return None
-        if self._fine is None:
-            assert self._slips is not None
-            self._fine = FineSolver(self._slips.simulation, self._comm)
+        self._fine = self._fine or FineSolver(self._slips.simulation, self._comm)
         return self._fine.solve(model, state)
 
     def _path(self, model: FingerModel) -> FullSlips:

@@ -57,7 +57,7 @@ class Restarts:
 
     def record(self, restart: RestartRequired, states: Sequence[ContactState], finger: Finger, seconds: float) -> None:
         """Record a restart; states, finger and processor time (s) are those until here."""
-        mesh = restart.model.mesh
+        mesh, counts = restart.model.mesh, finger.solver.counts
         step, load = (states[-1].step, states[-1].load) if states else (0, "start")
         whole = restart.model.options.both_halves
         halves = " and both halves of the finger" if whole and not finger.options.both_halves else ""
@@ -71,7 +71,6 @@ class Restarts:
         text = f"step {step} ({load}): {restart.reason}; all loads again with {added}"
         self._console.show(f"fingerpad: {text}")
         self._log.warning(text)
-        counts = finger.solver.counts
         self.table.append(
             {
                 "step": step,
@@ -115,11 +114,8 @@ def finer(model: FingerModel, error: StepFailed, comm: "MPI.Comm", reason: str =
     A path whose elements are twice as large as those of the final mesh is followed on that mesh. Else the contact size
     is halved.
 
-    Args:
-        model: whose loads were not reached.
-        error: why not.
-        comm: communicator of the run.
-        reason: why not, with what else is known of the state before; empty for the error's words.
+    ``reason`` is why the loads were not reached, with what else is known of the state before, in place of the error's
+    words.
     """
     coarse = model.final is not None and model.mesh.contact > model.final.contact
     helps = model.mesh_file is None and finer_mesh_may_help(error, bool(model.asked) or coarse)

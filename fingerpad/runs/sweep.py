@@ -109,8 +109,7 @@ def sweep(
     folder = None if out is None else Path(out)
     if folder is not None:
         _claim(folder)
-    if way.meshes:
-        assert folder is not None
+    if way.meshes and folder is not None:
         kept = _in_processes(scenes, values, folder, jobs, way, quiet, states, executor)
         found = [applied(each, of_kept(outputs)) for each in kept]
     else:
@@ -125,14 +124,7 @@ def sweep(
 
 
 def _written(done: Sweep, folder: Path, about: dict[str, Any], place: Path) -> Sweep:
-    """Write the files of a sweep; return it with notes on them.
-
-    Args:
-        done: the sweep, with its notes.
-        folder: of the files.
-        about: what ``sweep.json`` has beside outputs, cautions and notes.
-        place: folder of the points.
-    """
+    """Write the files of a sweep, whose points are in ``place``; return it with notes on them."""
     for name in FILES[:-1]:  # else that of an earlier sweep may stay beside this one's
         (folder / name).unlink(missing_ok=True)
     about |= {"outputs": [each.to_dict() for each in done.outputs]}
