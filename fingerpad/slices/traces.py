@@ -103,14 +103,8 @@ def of_points(
 ) -> tuple[Trace, list[ContactState]]:
     """Return a trace of a model without a path, and its states; refuse states without a bone.
 
-    Args:
-        scene: without a force on the whole finger.
-        model: that solves.
-        solve: solves a scene by it.
-        name: of the state.
-        expected: force (N/m) at the centre of the finger, about.
-        top: force (N/m) that the trace is to reach.
-        outputs: of one's own, that are summed.
+    Arguments are as of :func:`whole`, of a scene without a force, with the state's ``name``, the force (N/m)
+    ``expected`` at the centre of the finger, and the force that the trace is to reach, ``top``.
     """
     kind = "full_slip" if name == "full_slip" else "charged"
     scene = scene.model_copy(update={"voltage": 0.0}) if name == "uncharged" else scene
@@ -208,12 +202,7 @@ class Reach:
     """Has traces made to forces that are large enough."""
 
     def __init__(self, scene: Scene, make: Callable[[str, float], Traced]) -> None:
-        """Expect the force of the default finger at the centre.
-
-        Args:
-            scene: with a force.
-            make: makes the trace of a state to a largest force (N/m).
-        """
+        """Expect the force of the default finger at the centre; ``make`` makes a trace to a largest force (N/m)."""
         assert scene.force is not None
         self._force, self._count, self._make = scene.force, scene.slices.count, make
         self._finger = profile(scene.slices)
@@ -226,11 +215,7 @@ class Reach:
         return min(max(self._top, _SHORTEST), _LARGEST)
 
     def follow(self, name: str) -> Traced:
-        """Return the trace of a state, long enough for the force.
-
-        Raises:
-            SceneError: it could not be made so long.
-        """
+        """Return the trace of a state, long enough for the force; refuse one that cannot be."""
         for tries in range(_TRIES):
             top = self.top
             made = self._make(name, top)
