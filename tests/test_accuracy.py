@@ -125,17 +125,6 @@ def test_steps_are_halved_where_normal_contact_feels_them(monkeypatch):
     assert found.summary()["step_scale"] == 0.5, "a quarter of the scene's"
 
 
-def test_receptors_are_halved_where_energy_density_is_asked_for(monkeypatch):
-    """What is allowed is a part of the largest site's; of the second site's own it is never asked for."""
-    found = search(monkeypatch, {"sed": 0.005})
-    assert found.refinements["receptor"] > 1
-    assert found.refinements["contact"] == 1
-    largest = found.base.values()["full_slip_sed_0"]
-    assert found.allowed() == pytest.approx(
-        {"full_slip_sed_0": 0.005 * largest, "full_slip_sed_1": 0.005 * largest}, rel=1e-12
-    )
-
-
 def springs(model, states, comm, views=False, stiffer=None) -> Solve:
     """A contact that springs of the screen make longer, by their law."""
     solve = known(model, states, comm)
@@ -214,17 +203,6 @@ def test_accuracy_out_of_reach_is_a_failure_and_an_estimate_a_note(monkeypatch, 
     last = "the effect of the penalty could not be estimated: full slip found no equilibrium"
     assert found.notes[len(found.notes) - notes :] == [last] * notes
     assert bool(found.estimates()) == (solve not in (lost,))
-
-
-def test_coefficient_without_full_slip_or_without_a_force_is_refused():
-    """A finger that slides while nothing presses it has a friction force, and no coefficient to be within 1 %."""
-    model = model_of({"accuracy": {"mu_app": 0.01}})
-    path = known(model, {}, None)
-    with pytest.raises(StepFailed, match="accuracy.mu_app is 0.01, which full slip decides"):
-        refinement(model, Solve({"charged": path.states["full_slip"]}, model.mesh, 1000, 10, 1.0))
-    change(path, mu_app=np.nan)
-    with pytest.raises(StepFailed, match="at full slip no force presses the finger.* ask for accuracy.f_t"):
-        refinement(model, path)
 
 
 @pytest.mark.parametrize(("step", "final"), [(7, True), (3, False)])

@@ -1,16 +1,23 @@
-"""Bodies of the verification: their sizes, their groups and what they refuse."""
+"""Bodies of the verification and the layered strip: their sizes, their groups and what they refuse."""
+
+from dataclasses import replace
+from functools import partial
 
 import numpy as np
 import pytest
 import ufl
 from mpi4py import MPI
+from numpy.testing import assert_allclose
 
+from benchmarks.stability import solve, strip
+from benchmarks.stability.solve import Case
 from geometry import tags
 from geometry.bodies import block, cooks_membrane, pad, quarter_tube, ridge, ridges
 from geometry.mesh import load
+from geometry.parameters import Fingertip, MeshSize
 from geometry.profiles import GeometryError
 from tests.measures import integral, vertices
-from tests.test_profiles import MM, UM
+from tests.test_fingertip import MM, UM
 
 
 def lengths(body) -> dict[int, float]:
@@ -123,3 +130,65 @@ def test_pad():
 def test_body_that_cannot_be_made_is_refused(build, words):
     with pytest.raises(GeometryError, match=words):
         build()
+
+
+# -- the layered strip against the finger's curves and plane geometry ------------------------------------------------
+WAVE, HEIGHT = Fingertip().ridge_wavelength, 1500 * UM
+SIZE = MeshSize(contact=20 * UM, interface=60 * UM)
+
+
+@pytest.fixture(scope="module")
+def body():
+    return load(MPI.COMM_WORLD, partial(strip.build, Fingertip(), SIZE, HEIGHT))
+
+
+def mean_depths() -> list[float]:
+    """Return the mean heights of skin, SC-VE, VE-D junction and top: those of the finger's layers."""
+    return [50 * UM, (50 + 425) * UM, (50 + 425 + 175) * UM, HEIGHT]
+
+
+@pytest.mark.mpi
+def test_area(body):
+    """Each layer is its mean thickness wide times the strip's width.
+
+    Tolerance: facets of up to 60 um cut the waves by 6e-4.
+    """
+    expected = np.diff(mean_depths()) * WAVE
+    found = [integral(body, tag) for tag in strip.LAYERS]
+    assert_allclose(found, expected, rtol=2e-3)
+
+
+@pytest.mark.mpi
+def test_rim_and_sides(body):
+    """The top is as wide as the ridges and at its height; the sides reach from the grooves to it.
+
+    Tolerance: roundoff.
+    """
+    mesh = body
+    assert integral(mesh, tags.BONE_RIM, kind="ds") == pytest.approx(WAVE, rel=1e-12, abs=0)
+    height = integral(mesh, tags.BONE_RIM, ufl.SpatialCoordinate(mesh.mesh)[1], "ds") / (WAVE)
+    assert height == pytest.approx(HEIGHT, rel=1e-12, abs=0)
+    assert integral(mesh, tags.SIDES, kind="ds") == pytest.approx(2 * (HEIGHT - 100 * UM), rel=1e-12, abs=0)
+
+
+# -- single runs of a coarse strip: what they reach, and how a failure is recorded -----------------------------------
+# A press of half an newton a metre on facets of 60 um: two seconds a run.
+TINY = Case(contact_size=60e-6, force=0.5, voltage=50.0, element="P1", slide=0.0)
+
+
+@pytest.mark.slow
+def test_friction_at_full_slip():
+    """Pressed without voltage the ridge bears the force, and the screen drags with mu_0 times it, to the solve's."""
+    found = solve.run(replace(TINY, voltage=0.0, slide=1e-3))
+    assert found.status == "converged" and found.full_slip
+    assert found.f_ext == pytest.approx(0.5, rel=1e-7)
+    assert found.f_t == pytest.approx(0.25 * 0.5, rel=1e-6)
+    assert found.contact_length > 0 < found.penetration
+
+
+@pytest.mark.slow
+def test_failure_is_recorded_with_its_reason():
+    """A penalty 1e12 times the default leaves no digits: the run says by which name and in which load it ended."""
+    found = solve.run(replace(TINY, parameter=1.5e24))
+    assert found.status == "failed" and found.load == "press"
+    assert found.reason.startswith("DIVERGED_") and found.reason in found.message

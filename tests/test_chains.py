@@ -65,13 +65,6 @@ def test_closures_are_no_neighbours():
     assert list(chains(every, 1)) == [["0", "1", "2"], ["3"], ["4"], ["5"]]
 
 
-def test_long_chains_are_shared_among_the_jobs():
-    every = scenes(voltage=[float(v) for v in range(20)])
-    assert [len(names) for names in chains(every, 2)] == [10, 10]
-    assert [name for names in chains(every, 5) for name in names] == list(every)
-    assert len(list(chains(every, 5))) == 2, "a chain is not so short that its path takes most of the time"
-
-
 class Skin:
     """In place of a finger: below 60 V there are 3 ridges, above 80 V 5, and between as many as there were before."""
 
@@ -295,7 +288,6 @@ def test_chain_that_was_stopped_goes_on(tmp_path, monkeypatch):
     ("changes", "message"),
     [
         ({"accuracy": {"mu_app": 0.01}}, "accuracy is given"),
-        ({"force": 0.1}, "force is 0.1"),
         ({"history": [{"name": "press", "f_ext": 1.0}]}, "history is given"),
         (
             {"materials": {"dermis": {"viscosity": {"preset": "fingerpad"}}}},
@@ -310,10 +302,3 @@ def test_chain_that_was_stopped_goes_on(tmp_path, monkeypatch):
 def test_other_scenes_are_refused(changes, message, tmp_path):
     with pytest.raises(SceneError, match=message):
         fp.sweep(fp.Scene(**changes), tmp_path, states="full_slip", **{"roughness.h_rms": [2e-6]})
-
-
-def test_unknown_states_and_models_without_them_are_refused(tmp_path):
-    with pytest.raises(SceneError, match="states is 'some'; it must be 'all' or 'full_slip'"):
-        fp.sweep(out=tmp_path, states="some", voltage=[0])
-    with pytest.raises(SceneError, match="full slip alone is of the model 'full'"):
-        fp.sweep(out=tmp_path, states="full_slip", model="cylinders", voltage=[0])

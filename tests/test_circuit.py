@@ -5,9 +5,8 @@ import pytest
 from numpy.testing import assert_allclose
 
 import fingerpad as fp
-from variational.attraction.circuit import GapCircuit, fit_leak
+from variational.attraction.circuit import GapCircuit, Network, fit_leak
 from variational.attraction.dielectric import DRY, MOIST, VACUUM_PERMITTIVITY, TabledTissue, insulator_thickness
-from variational.attraction.network import Network
 
 LAYERS = {"gap": 1.6e-6, "d_i": 1e-6, "eps_i": 3.9, "d_sc": 425e-6}
 BEHIND = (1e-6, 3.9, 425e-6)

@@ -2,8 +2,10 @@
 
 import json
 import os
+import shlex
 import shutil
 import struct
+import tomllib
 import zlib
 from io import BytesIO
 from pathlib import Path
@@ -15,7 +17,7 @@ from PIL import Image
 
 import fingerpad as fp
 from fingerpad.cli import main
-from fingerpad.report.page import picture
+from fingerpad.report.page import picture, recipe
 from fingerpad.report.write import write
 from fingerpad.results import fields
 from fingerpad.results.dataset import content
@@ -107,6 +109,16 @@ def test_model_that_is_no_name_is_refused(answered, tmp_path, capsys, model):
         write(copy)
     assert main(["run", str(copy / "scene.json"), "--out", str(tmp_path / "again")]) == 2
     assert "it must be the name of a model" in capsys.readouterr().err
+
+
+def test_values_in_the_recipe_of_a_report_are_quoted():
+    """A scene file has them, with lists of tables as a whole; a shell gets the name of the model as one word."""
+    text = "a 'b' $(rm x); \"rm x\" & <i>"
+    history = [{"name": text, "f_ext": 5.0, "bone_x": None}]
+    *lines, command = recipe({"finger": text, "mesh": {"contact": 5e-6}, "history": history}, "my model").splitlines()
+    found = tomllib.loads("\n".join(lines))
+    assert found == {"finger": text, "mesh": {"contact": 5e-6}, "history": [{"name": text, "f_ext": 5.0}]}
+    assert shlex.split(command)[1:] == ["run", "mine.toml", "--model", "my model", "--out", "results/again"]
 
 
 # -- pictures ------------------------------------------------------------------------------------------

@@ -1,11 +1,14 @@
-"""What a notebook shows of results: tables, pictures and a progress bar, in a kernel of its own."""
+"""What a notebook shows of results, and demos as notebooks."""
 
 import json
+import sys
 from dataclasses import replace
+from types import SimpleNamespace
 
 import pytest
 
 import fingerpad as fp
+from benchmarks.notebook import main
 from tests.commands import python
 from tests.small_finger import small
 from variational.caution import Caution
@@ -85,3 +88,25 @@ def test_each_step_is_passed_on():
     assert 0 <= min(parts) == parts[0] < 0.9 < max(parts) <= 1
     with pytest.raises(ZeroDivisionError):
         fp.run(scene, on_step=lambda state, part: 1 / 0)
+
+
+# -- demos as notebooks: valid, without output, and their cells run one after the other ------------------------------
+def test_cells_run(tmp_path, monkeypatch, capsys):
+    """As Jupyter runs them: with its own arguments, without the script's file; the last cell shows its picture."""
+    shown: list[str] = []
+    monkeypatch.chdir(tmp_path)
+    assert main(["drive_over_frequency", "made"]) == 0
+    kept = json.loads((tmp_path / "made" / "drive_over_frequency.ipynb").read_text(encoding="utf-8"))
+    display = SimpleNamespace(Image=str, display=shown.append)
+    ipython = SimpleNamespace(display=display, version_info=(9, 0), get_ipython=lambda: None)
+    monkeypatch.setitem(sys.modules, "IPython", ipython)
+    monkeypatch.setitem(sys.modules, "IPython.display", display)
+    monkeypatch.setattr(sys, "argv", ["ipykernel_launcher.py", "-f", "kernel.json"])
+    monkeypatch.setattr(sys, "path", [*sys.path])
+    monkeypatch.setenv("PYTHONPATH", "")
+    names: dict = {"__name__": "__main__"}
+    for cell in kept["cells"]:
+        if cell["cell_type"] == "code":
+            exec("".join(cell["source"]), names)
+    assert shown == ["results/demos/drive_over_frequency/share.png"]
+    assert capsys.readouterr().out

@@ -1,10 +1,8 @@
 """The report of a sweep: curves, failed points, and the command that makes the sweep again."""
 
-import csv
 import html
-import itertools
+import json
 import re
-import shlex
 from pathlib import Path
 
 import pytest
@@ -15,7 +13,6 @@ from fingerpad.report.write import NAME, write
 from fingerpad.runs.sweep import sweep
 from fingerpad.scene import Scene, from_data
 from tests.browser import SIZES, asked
-from tests.measures import rows_of
 
 
 @pytest.fixture(scope="module")
@@ -23,13 +20,11 @@ def table(tmp_path_factory) -> Path:
     """The folder of a sweep in which one of six points failed."""
     place = tmp_path_factory.mktemp("sweep")
     sweep(Scene(), place, model="cylinders", voltage=[0, 100, 200], f_ext=[25, 75])
-    rows = rows_of(place, "table")
-    rows[-1] = {key: value if key in ("voltage", "f_ext") else "" for key, value in rows[-1].items()}
-    rows[-1]["failure"] = "no equilibrium at part 0.31 of <slide>"
-    with (place / "table.csv").open("w", encoding="utf-8", newline="") as file:
-        out = csv.DictWriter(file, list(rows[0]))
-        out.writeheader()
-        out.writerows(rows)
+    kept = json.loads((place / "sweep.json").read_text(encoding="utf-8"))
+    last = kept["rows"][-1]
+    last |= {key: None for key in last if key not in kept["axes"]}
+    last["failure"] = "no equilibrium at part 0.31 of <slide>"
+    (place / "sweep.json").write_text(json.dumps(kept), encoding="utf-8")
     write(place)
     return place
 
@@ -70,11 +65,9 @@ def test_sweep_is_reproduced_by_what_its_report_says(tmp_path, axes):
     found = sweep(scene, tmp_path, model="cylinders", **axes)
     code = html.unescape(re.search(r"<pre><code>(.*?)</code>", write(tmp_path).read_text("utf-8"), re.DOTALL)[1])
     *study, command = code.splitlines()
-    (tmp_path / "study.toml").write_text("\n".join(study), encoding="utf-8")
-    words = shlex.split(command)
-    assert words[words.index("--model") + 1] == "cylinders"
-    given = {name: [word for flag, word in itertools.pairwise(words) if flag == name] for name in ("--set", "--over")}
-    data, along = cli_sweep.study(tmp_path / "study.toml" if study else None, given["--set"], given["--over"])
+    assert command == "fingerpad sweep mine.toml --model cylinders --out results/again"
+    (tmp_path / "mine.toml").write_text("\n".join(study), encoding="utf-8")
+    data, along = cli_sweep.study(tmp_path / "mine.toml", [], [])
     assert from_data(data).parameters() == scene.parameters()
     assert {key: tuple(values) for key, values in along.items()} == found.axes
 

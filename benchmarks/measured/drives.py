@@ -12,7 +12,8 @@ import numpy as np
 from benchmarks.measured import rules
 from benchmarks.measured.rules import SIMILAR, by_factor, by_share
 from benchmarks.runs import FORCES
-from fingerpad.reduced import cylinders, detection
+from fingerpad.reduced import cylinders
+from fingerpad.runs import drive as detection
 from fingerpad.scene import Scene
 from fingerpad.scene.drive import REFERENCE
 from variational.attraction.circuit import LEAKS, GapCircuit, fit_leak

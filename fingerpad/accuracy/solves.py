@@ -144,8 +144,8 @@ class StateSolver(Simulation):
         try:
             attempt = self._balance(name)
             steady = not state.direction or self._slip.slides_on(name, state.direction)
-            if self._restart is not None:
-                raise StepFailed(f"{again}: {self._restart.reason}")
+            if self.restart is not None:
+                raise StepFailed(f"{again}: {self.restart.reason}")
             if not steady:
                 raise StepFailed(f"{again}, is not steady")
         except (FingerExceeded, StepFailed) as error:
@@ -180,11 +180,11 @@ class StateSolver(Simulation):
         finger.check_balance(loads, name)
         self.states.append(self._slip.placed(self.states, self.present(loads).state, probe=False))
         try:
-            self._restart = self._zone_exceeded(loads)
+            self.restart = self._zone_exceeded(loads)
         except FingerExceeded as error:
             raise StepFailed(f"{name}: {error}") from error
-        if self._restart is not None:
-            raise StepFailed(f"{name}: {self._restart.reason}")
+        if self.restart is not None:
+            raise StepFailed(f"{name}: {self.restart.reason}")
         return attempt
 
 

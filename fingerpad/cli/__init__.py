@@ -28,7 +28,7 @@ COMMANDS = {
     "topography": "roughness of a scene from a measured height map",
     "params": "every key of a scene: unit, default, range and meaning",
 }
-_BESIDE = {"microscale": "roughness", "topography": "roughness"}
+_BESIDE = {"solve": "estimate", "microscale": "roughness", "topography": "roughness"}
 """Modules of the commands that have none of their own name."""
 _COLLECTIVE = ("run",)  # use all ranks; the others are answered by rank 0
 

@@ -55,7 +55,7 @@ def page(result: Result) -> str:
         model=result.model_words,
         omitted=[f"{each['what']}: {each['reason']}" for each in result.record.get("omitted") or []],
         work=_work(result), cost=_cost(result), parameters=html.parameters(result.parameters), versions=versions,
-        again=html.again(result.parameters, result.model),
+        again=html.recipe(result.parameters, result.model),
     )  # fmt: skip
 
 

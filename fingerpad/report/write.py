@@ -79,7 +79,7 @@ def read(folder: Path) -> "Result | Table":
         raise SceneError(f"{name} is not a folder; give one that fingerpad run or fingerpad sweep wrote")
     if any((folder / kept).exists() for kept in ("result.nc", "summary.json")):
         return Result.load(folder)
-    if (folder / "table.csv").exists():
+    if (folder / "sweep.json").exists():
         from fingerpad.report.sweep_page import table_of
 
         return table_of(folder)

@@ -160,11 +160,6 @@ class ResultData:
         return str(words)
 
     @property
-    def last(self) -> ContactState | None:
-        """The last accepted state; without a loading path the last named state."""
-        return self.steps[-1] if self.steps else (self.full_slip or self.charged or self.uncharged)
-
-    @property
     def printed(self) -> dict[str, Output]:
         """Quantities of a state that are printed, with outputs of one's own, by name."""
         return QUANTITIES | {each.name: each for each in self.outputs if "result" in each.tables}

@@ -203,15 +203,18 @@ def views_of(
         steps: its accepted states.
         named: its named states.
     """
-    groups, ends = read(folder), {load: mine[-1] for load, mine in by_load(steps)}
-    loads = {load: _view(groups, f"loads/{load}", end) for load, end in ends.items()}
-    of_path = {**named, **shown(steps)}
-    states = {name: _view(groups, f"states/{name}", state) for name, state in of_path.items()}
+    groups = read(folder)
+
+    def views(kind: str, of: Mapping[str, ContactState]) -> dict[str, View]:
+        found = {name: _view(groups, f"{kind}/{name}", state) for name, state in of.items()}
+        return {name: view for name, view in found.items() if view is not None}
+
+    states = views("states", {**named, **shown(steps)})
     for name, view in states.items():
-        if view is not None and view.snapshot is not None and name in named:  # on another mesh than the path's
+        if view.snapshot is not None and name in named:  # on another mesh than the path's
             there = replace(named[name], bone_x=view.state.bone_x)
             states[name] = replace(view, state=there, size=there.mesh_contact)
-    return tuple({name: view for name, view in each.items() if view} for each in (loads, states))  # type: ignore[return-value]
+    return views("loads", {load: mine[-1] for load, mine in by_load(steps)}), states
 
 
 def _view(groups: Groups, group: str, state: ContactState) -> View | None:

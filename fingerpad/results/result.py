@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from fingerpad.results.pictures.drawing import Drawing
     from fingerpad.results.spikes import Spikes
 
-KINDS = ("surface", "finger", "history", "footprint", "time", "field", "solid")
+_KINDS = ("surface", "finger", "history", "footprint", "time", "field", "solid")
 """Pictures of a result."""
 
 
@@ -58,8 +58,8 @@ class Result(ResultData):
         Raises:
             ValueError: another kind, or a kind without data in this result.
         """
-        if kind not in KINDS:
-            raise ValueError(f"kind is {kind!r}; it must be one of {', '.join(KINDS)}")
+        if kind not in _KINDS:
+            raise ValueError(f"kind is {kind!r}; it must be one of {', '.join(_KINDS)}")
         if kind in ("footprint", "solid"):
             if self.finger is None:
                 raise ValueError("the result has no whole finger to draw: a history has none, else a note says why")

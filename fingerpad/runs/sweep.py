@@ -127,7 +127,7 @@ def _written(done: Sweep, folder: Path, about: dict[str, Any], place: Path) -> S
     """Write the files of a sweep, whose points are in ``place``; return it with notes on them."""
     for name in FILES[:-1]:  # else that of an earlier sweep may stay beside this one's
         (folder / name).unlink(missing_ok=True)
-    about |= {"outputs": [each.to_dict() for each in done.outputs]}
+    about |= {"axes": list(done.axes), "rows": done.table(), "outputs": [each.to_dict() for each in done.outputs]}
     replace_json(folder / FILES[-1], about | {"cautions": done.cautions(), "notes": list(done.notes)})
     done.to_csv(folder / FILES[0])
     notes = (*done.notes, *filter(None, (_reached(done), done.save(), _older(done, place))))

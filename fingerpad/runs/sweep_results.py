@@ -156,13 +156,16 @@ class Sweep:
             return f"{FILE} was not written: {error.strerror or error}; all other files are complete"
         return ""
 
+    def table(self) -> list[dict[str, Any]]:
+        """Return the rows with the same columns in each, ``failure`` last; None where a point has no value."""
+        rows = self.rows()
+        columns = sorted(dict.fromkeys(key for row in rows for key in row), key="failure".__eq__)
+        return [{key: _plain(row.get(key)) for key in columns} for row in rows]
+
     def to_csv(self, path: str | Path) -> None:
         """Write the rows as a table."""
-        rows = self.rows()
-        columns = list(dict.fromkeys(key for row in rows for key in row))
-        columns.sort(key="failure".__eq__)  # last
-        text = io.StringIO()
-        table = csv.DictWriter(text, columns)
+        rows, text = self.table(), io.StringIO()
+        table = csv.DictWriter(text, list(rows[0]))
         table.writeheader()
         table.writerows(rows)
         replace(Path(path), text.getvalue())
@@ -214,6 +217,12 @@ class Sweep:
         fingers = [each.finger.parts() for each in self.results if each.finger is not None and True in shown]
         sections = [each.parts() for each in self.results if False in shown]
         return [plus_minus_of(itertools.chain(*fingers, *sections))] if shown else []
+
+
+def _plain(value: Any) -> Any:
+    """Return a number, a switch or a text of Python; anything else as text."""
+    value = value.item() if isinstance(value, np.generic) else value
+    return value if value is None or isinstance(value, bool | int | float | str) else str(value)
 
 
 def _aligned(table: Sequence[Sequence[str]]) -> list[str]:

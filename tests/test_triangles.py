@@ -6,7 +6,7 @@ import pytest
 from mpi4py import MPI
 
 from fingerpad.scene import Scene
-from geometry import curved, fingertip, sizing, tags
+from geometry import fingertip, sizing, tags, triangles
 from geometry.mesh import load
 from geometry.profiles import GeometryError
 from geometry.shape import session
@@ -22,7 +22,7 @@ def test_least_determinant(height, expected):
     nodes = PLAIN.copy()
     nodes[3, 1] = height
     turned = nodes[[2, 1, 0, 4, 3, 5]]
-    np.testing.assert_allclose(curved.least(np.stack([nodes, turned])), expected, atol=1e-14)
+    np.testing.assert_allclose(triangles.least(np.stack([nodes, turned])), expected, atol=1e-14)
 
 
 FINGERS = {
@@ -44,7 +44,7 @@ def test_no_triangle_is_folded(case, monkeypatch):
         numbers, places, _ = gmsh.model.mesh.getNodes()
         at = np.empty((int(numbers.max()) + 1, 2))
         at[numbers] = places.reshape(-1, 3)[:, :2]
-        assert curved.least(at[curved.second_order()]).min() >= 0.2
+        assert triangles.least(at[triangles.second_order()]).min() >= 0.2
 
 
 def folded() -> float:
