@@ -103,13 +103,7 @@ class Chain:
     """
 
     def __init__(self, scenes: Sequence[Scene], half_arc: float | None, comm: MPI.Comm) -> None:
-        """Take the scenes in order.
-
-        Args:
-            scenes: each beside the one before.
-            half_arc: ``mesh.touching_half_arc`` (m) where they give none.
-            comm: communicator of the mesh.
-        """
+        """Take the scenes, each beside the one before, with ``mesh.touching_half_arc`` (m) where they give none."""
         self._scenes, self._half_arc, self._comm = scenes, half_arc, comm
         self._options = plan(max(scenes, key=lambda scene: abs(scene.volts)))
         self._shared = any(gap_factor(scene) is not None for scene in scenes)

@@ -95,13 +95,7 @@ def run(scene: Scene, context: RunContext) -> Result:
 
 
 class _Newtons:
-    """A force on the whole finger while it is worked on.
-
-    Attributes:
-        doing: what is being followed, in words.
-        clock: of the run.
-        branches: the traces.
-    """
+    """A force on the whole finger while it is worked on: ``branches`` are its traces, ``doing`` is in words."""
 
     def __init__(
         self,
