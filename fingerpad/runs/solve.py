@@ -28,7 +28,6 @@ from fingerpad.runs.processes import limit_processor_time
 from fingerpad.scene import Scene, from_data
 from fingerpad.scene.messages import SceneError, show
 from fingerpad.scene.reading import DEFAULT_MODEL, flat
-from fingerpad.slices import traces
 from variational.coefficients import LawError
 from variational.state import ContactState
 
@@ -167,7 +166,7 @@ def _section(scene: Scene, model: Model, context: RunContext) -> Result:
         return result
 
     def with_sum(result: Result) -> Result:
-        return traces.with_sum(result, model, lambda each: _solved(each, model, here), context.outputs)
+        return model.with_sum(result, lambda each: _solved(each, model, here), context.outputs)
 
     own = [Entry("newtons of the whole finger", with_sum, lambda *_: model.sums), *of_outputs(context.outputs)]
     return kept(result, context, own)
@@ -220,7 +219,7 @@ def _whole(scene: Scene, model: Model, context: RunContext) -> Result:
         model.check(scene)
         return newtons.run(scene, context)
     here = replace(context, folder=None)
-    found = traces.whole(scene, model, lambda each: _solved(each, model, here), context.outputs)
+    found = model.whole(scene, lambda each: _solved(each, model, here), context.outputs)
     return kept(found, context, of_outputs(context.outputs))
 
 
