@@ -12,7 +12,7 @@ from numpy.testing import assert_allclose
 from benchmarks.stability import solve, strip
 from benchmarks.stability.solve import Case
 from geometry import tags
-from geometry.bodies import block, cooks_membrane, pad, quarter_tube, ridge, ridges
+from geometry.bodies import block, pad, quarter_tube, ridge, ridges
 from geometry.mesh import load
 from geometry.parameters import Fingertip, MeshSize
 from geometry.profiles import GeometryError
@@ -80,18 +80,6 @@ def test_quarter_tube():
     for tag, radius in ((tags.ridge(0), 2 * MM), (tags.BONE_RIM, MM)):
         x = vertices(body, body.facet_tags.find(tag))
         np.testing.assert_allclose(np.hypot(x[:, 0], x[:, 1] - 4 * MM), radius, rtol=1e-12)
-
-
-@pytest.mark.mpi
-def test_cooks_membrane():
-    """Its edges' lengths and its area, 48 mm times the mean of 44 and 16 mm; tolerance: roundoff."""
-    body = load(MPI.COMM_WORLD, cooks_membrane(3))
-    assert body.mesh.topology.index_map(2).size_global == 18
-    expected = {tags.ridge(0): np.hypot(48, 44), tags.BONE_RIM: 44.0, tags.SIDES: 16 + np.hypot(48, 16)}
-    assert lengths(body) == pytest.approx({tag: value * MM for tag, value in expected.items()}, rel=1e-12)
-    assert integral(body, tags.STRATUM_CORNEUM) == pytest.approx(48 * 30 * MM**2, rel=1e-12, abs=0)
-    lowest = MPI.COMM_WORLD.allreduce(float(body.mesh.geometry.x[:, 1].min()), op=MPI.MIN)
-    assert lowest == pytest.approx(10 * MM, rel=1e-12, abs=0)
 
 
 def bottom(body) -> np.ndarray:

@@ -190,7 +190,7 @@ def test_full_slip_without_a_coefficient_has_its_force(folder):
     page = run_page.page(found)
     text = re.sub(r"<script.*?</script>", "", page, flags=re.DOTALL)
     assert f"f<sub>T</sub> = {QUANTITIES['f_t'].shown(slip.f_t, slip.error.f_t)} N/m" in text.replace("\u00a0", " ")
-    assert "would change f<sub>T</sub> at full slip by" in text and not re.search(r"\bnan\b", text)
+    assert not re.search(r"\bnan\b", text)
     told = [each.what for each in trust.findings(found)]
     assert "errors are not estimated" not in told and {"mesh", "the mesh is coarse"} & set(told)
 

@@ -12,7 +12,7 @@ from itertools import product
 from typing import Any
 
 import numpy as np
-from scipy.optimize import minimize_scalar
+from scipy.optimize import brentq, minimize_scalar
 
 from benchmarks.verification import bearing_area as exact
 from benchmarks.verification.bodies import over_screen
@@ -80,10 +80,18 @@ def folds(small: bool) -> list[Row]:
     ]
 
 
+def air_gap_at_external(bam: BearingArea, p_ext: float, voltage: float) -> float:
+    """Return d_eq (m) on the branch in contact at an external pressure (Pa) and a voltage (V)."""
+    fold = bam.pull_off_fold(voltage)
+    end = 20 * bam.h_rms if fold is None else fold
+    found = brentq(lambda v: bam.external_pressure(v, voltage) - p_ext, 0.0, end, xtol=1e-15 * bam.h_rms)
+    return float(bam.air_gap(found))
+
+
 def scalar(p_ext: float, voltage: float) -> tuple[float, float, float]:
     """Return d_eq (m), p_c (Pa) and mu_app of the scalar equation at a pressure (Pa) and a voltage (V)."""
     bam = BearingArea(H_0)
-    d_eq = bam.air_gap_at_external(p_ext, voltage)
+    d_eq = air_gap_at_external(bam, p_ext, voltage)
     p_c = p_ext + float(exact.EPS_0) * voltage**2 / 2 / (H_0 + d_eq) ** 2
     return d_eq, p_c, MU_F * p_c / p_ext
 
